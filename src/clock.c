@@ -6,6 +6,8 @@
  *           rounding of one addition.
  * Source    G. Fiedler, Fix your timestep (2004)
  */
+#include "arithmetic.h"
+
 #include <math.h>
 #include <stddef.h>
 

@@ -8,26 +8,11 @@
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H
 
-#include <float.h>
+#include "arithmetic.h"
+
 #include <math.h>
 
 #include <springstep/spring.h>
-
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "springstep promises the same bits everywhere and notices NaN: compile it without -ffast-math"
-#endif
-#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
-#error "springstep needs arithmetic in the declared type: on 32-bit x86 compile with -msse2 -mfpmath=sse"
-#endif
-
-/* Those who drop src/ into a build of their own may forget -ffp-contract=off. gcc 12 ignores the standard pragma and
-   fuses in GNU mode. It also pairs x and v into one wide load, which then waits for the two narrow stores of the call
-   before: spring_advance() by one step took 15 ns instead of 9. */
-#if defined(__clang__)
-#pragma STDC FP_CONTRACT OFF
-#elif defined(__GNUC__)
-#pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
-#endif
 
 #if defined(__GNUC__)
 #define SPRING_INLINE static inline __attribute__((always_inline)) /* constant flags must vanish at -O1 too */
