@@ -48,9 +48,7 @@ skipped() {
     echo "ok $tap_count - $1 # SKIP $2"
 }
 
-# The last line of a script. A complete plan and status 0, as TAP wants, unless $1 is "status".
+# Last in a script: status 0 after a complete plan, as TAP wants.
 tap_done() {
     echo "1..$tap_count"
-    if [ "${1-}" = status ] && [ $tap_failed -gt 0 ]; then exit 1; fi
-    exit 0
 }
