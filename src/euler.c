@@ -17,7 +17,7 @@ typedef struct coefficients {
 
 SPRING_INLINE coefficients prepare(spring_rates r, double h)
 {
-    return (coefficients){.h = h, .hw = h * r.w, .hg = h * r.g, .ha = h * r.a + 0.0};
+    return (coefficients){.h = h, .hw = h * r.w, .hg = h * r.g + 0.0, .ha = h * r.a + 0.0};
 }
 
 SPRING_INLINE void step(double *x, double *v, const coefficients *c, bool damped, bool loaded)

@@ -16,7 +16,7 @@
  *           Every exponential is applied as two halves, so that a large start times a tiny factor is neither 0 nor
  *           infinite before it has to be. 1 - F cancels for short times and for stiffness 0: there P has its own forms.
  * Special   w = 0 is a free particle; n dt that overflows gives NaN.
- * Accuracy  see spring.h; largest error seen 0.3 of that bound (tests/test_exact.c). Without the rounding errors in D
+ * Accuracy  see spring.h; largest error seen 0.62 of that bound (tests/test_exact.c). Without the rounding errors in D
  *           (roots.c) it would be 12 times the bound near critical damping.
  * Source    textbook; entire functions of s as in Higham, Functions of Matrices (2008), section 12.4 (matrix cosine)
  */

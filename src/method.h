@@ -22,8 +22,8 @@
 
 bool spring_params_valid(const spring_params *p); /* by the rules of SPRING_EINVAL; NULL is not */
 
-/* What a stepper works from. Adding 0.0 turns -0.0 into 0.0: a zero feature then has one sign, and the long formulas
-   of the steppers give the bits of the short ones. */
+/* What a stepper works from. Here and in the coefficients made of them, adding 0.0 turns -0.0 into 0.0: a zero feature
+   then has one sign, and the long formulas of the steppers give the bits of the short ones (tests/test_shapes.c). */
 typedef struct spring_rates {
     double w; /* [1/s^2] stiffness/mass */
     double g; /* [1/s]   damping/mass   */

@@ -37,7 +37,7 @@ SPRING_INLINE coefficients prepare(spring_rates r, double h)
     return (coefficients){
         .h = h,
         .hw = hw,
-        .hg = G,
+        .hg = G + 0.0,
         .ha = h * r.a + 0.0,
         .xx = -W * E,
         .xv = h * F,

@@ -18,12 +18,12 @@ spring_roots spring_roots_of(const spring_params *p)
     const double g = p->damping / p->mass, g_rest = fma(-g, p->mass, p->damping) / p->mass;
     const double omega = sqrt(w), omega_rest = omega > 0 ? (fma(-omega, omega, w) + w_rest) / (2 * omega) : 0;
     const double b = g / 2;
-    const double difference = (omega - b) + (omega_rest - g_rest / 2);
+    const double sum = omega + b, difference = (omega - b) + (omega_rest - g_rest / 2);
     return (spring_roots){
         .w = w,
         .omega = omega,
         .b = b,
-        .split = sqrt(fabs(difference)) * sqrt(omega + b),
+        .split = sum > 0 ? sqrt(fabs(difference) / sum) * sum : 0, /* the product of both might overflow */
         .overdamped = difference < 0,
     };
 }

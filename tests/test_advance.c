@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/* spring_advance(): n kernel calls bit for bit, every error path, and no change of state after an error. */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+
+static const spring_method steppers[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
+static void (*const kernels[])(spring_state *, const spring_params *, double) = {
+    spring_step_euler,
+    spring_step_leapfrog,
+    spring_step_rk4,
+};
+
+static const double bad_numbers[] = {NAN, INFINITY, -INFINITY};
+
+static spring_params random_params(void)
+{
+    spring_params p = {.mass = random_log(1e-3, 1e3), .stiffness = random_log(1e-3, 1e3)};
+    if (random_bits() % 2)
+        p.damping = random_log(1e-4, 1) * sqrt(p.mass * p.stiffness);
+    if (random_bits() % 2)
+        p.load = p.stiffness * random_uniform(-1, 1);
+    return p;
+}
+
+static void equals_kernel_calls(void)
+{
+    static const uint64_t counts[] = {1, 2, 7, 4095, 4096, 4097, 10000};
+    for (size_t i = 0; i < 3 * 7 * 20; i++) {
+        const size_t m = i % 3;
+        const uint64_t n = counts[i / 3 % 7];
+        const spring_params p = random_params();
+        const double dt = (i % 2 ? -0.001 : 0.01) * sqrt(p.mass / p.stiffness);
+        const spring_state start = {random_uniform(-1, 1), random_uniform(-1, 1)};
+        spring_state all = start, ones = start, kernel = start;
+        CHECK(spring_advance(&all, &p, steppers[m], dt, n) == SPRING_OK, "good input");
+        for (uint64_t j = 0; j < n; j++) {
+            spring_advance(&ones, &p, steppers[m], dt, 1);
+            kernels[m](&kernel, &p, dt);
+        }
+        CHECK_STATE(all, kernel, "n steps are n kernel calls");
+        CHECK_STATE(all, ones, "n steps are n times one step");
+    }
+}
+
+static void exact_is_one_evaluation(void)
+{
+    for (int i = 0; i < 100; i++) {
+        const spring_params p = random_params();
+        const spring_state start = {random_uniform(-1, 1), random_uniform(-1, 1)};
+        const uint64_t n = random_bits() % 1000000;
+        spring_state all = start, one = start;
+        CHECK(spring_advance(&all, &p, SPRING_EXACT, 1e-3, n) == SPRING_OK, "good input");
+        if (n > 0)
+            spring_step_exact(&one, &p, 1e-3 * (double)n);
+        CHECK_STATE(all, one, "one evaluation over n dt");
+    }
+}
+
+static void nothing_to_do(void)
+{
+    const spring_params p = {1.3, 2.7, 0.6, 0.4};
+    const spring_state start = {-0.0, 5e-324};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        spring_state s = start;
+        CHECK(spring_advance(&s, &p, (spring_method)m, 0.1, 0) == SPRING_OK, "n = 0");
+        CHECK(spring_advance(&s, &p, (spring_method)m, 0.0, 5) == SPRING_OK, "dt = 0");
+        CHECK(spring_advance(&s, &p, (spring_method)m, -0.0, UINT64_MAX) == SPRING_OK, "dt = -0");
+        CHECK_STATE(s, start, "changes nothing");
+    }
+}
+
+static void refuse(spring_state start, spring_params p, spring_method m, double dt, uint64_t n,
+                   const char *why)
+{
+    spring_state s = start;
+    CHECK(spring_advance(&s, &p, m, dt, n) == SPRING_EINVAL, why);
+    CHECK(memcmp(&s, &start, sizeof s) == 0, "an error leaves the state as it was");
+}
+
+static void refuses_bad_input(void)
+{
+    const spring_params good = {1.3, 2.7, 0.6, 0.4};
+    const spring_state start = {0.3, -0.7};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        const spring_method method = (spring_method)m;
+        spring_state s = start;
+        CHECK(spring_advance(NULL, &good, method, 0.1, 1) == SPRING_EINVAL, "no state");
+        CHECK(spring_advance(&s, NULL, method, 0.1, 1) == SPRING_EINVAL, "no parameters");
+        CHECK_STATE(s, start, "an error leaves the state as it was");
+        for (size_t i = 0; i < 3; i++) {
+            const double bad = bad_numbers[i];
+            refuse((spring_state){bad, 1}, good, method, 0.1, 1, "x not finite");
+            refuse((spring_state){1, bad}, good, method, 0.1, 1, "v not finite");
+            refuse(start, good, method, bad, 1, "dt not finite");
+            refuse(start, good, method, bad, 0, "dt not finite, even for no steps");
+            refuse(start, (spring_params){bad, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass not finite");
+            refuse(start, (spring_params){1.3, bad, 0.6, 0.4}, method, 0.1, 1, "stiffness not finite");
+            refuse(start, (spring_params){1.3, 2.7, bad, 0.4}, method, 0.1, 1, "damping not finite");
+            refuse(start, (spring_params){1.3, 2.7, 0.6, bad}, method, 0.1, 1, "load not finite");
+        }
+        refuse(start, (spring_params){0, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass 0");
+        refuse(start, (spring_params){-0.0, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass -0");
+        refuse(start, (spring_params){-1.3, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass negative");
+        refuse(start, (spring_params){1.3, -2.7, 0.6, 0.4}, method, 0.1, 1, "stiffness negative");
+        refuse(start, (spring_params){1.3, 2.7, -5e-324, 0.4}, method, 0.1, 1, "damping negative");
+        refuse(start, (spring_params){1e-200, 1e200, 0.6, 0.4}, method, 0.1, 1, "stiffness/mass overflows");
+        refuse(start, (spring_params){1e-200, 2.7, 1e200, 0.4}, method, 0.1, 1, "damping/mass overflows");
+        refuse(start, (spring_params){1e-200, 2.7, 0.6, -1e200}, method, 0.1, 1, "load/mass overflows");
+    }
+    for (int m = -2; m < 100; m++)
+        if (m < SPRING_EULER || m > SPRING_EXACT)
+            refuse(start, good, (spring_method)m, 0.1, 1, "no such method");
+}
+
+static void accepts_the_edges(void)
+{
+    spring_state s = {1, 2};
+    const spring_params negative_zeros = {1.3, -0.0, -0.0, -0.0};
+    CHECK(spring_advance(&s, &negative_zeros, SPRING_LEAPFROG, 0.5, 3) == SPRING_OK, "-0 is not negative");
+    CHECK_CLOSE(s.x, 4, 8 * DBL_EPSILON, "a free particle");
+    CHECK_BITS(s.v, 2, "a free particle keeps its velocity");
+    s = (spring_state){5e-324, -5e-324};
+    const spring_params p = {1e-300, 1e-300, 0, 0};
+    CHECK(spring_advance(&s, &p, SPRING_RK4, 0.1, 100) == SPRING_OK, "denormal state, tiny mass");
+    CHECK(spring_advance(&s, &p, SPRING_EXACT, 1e-3, UINT64_MAX) == SPRING_OK,
+          "2^64 - 1 steps in closed form");
+}
+
+/* Overflow is reported, the state kept; 2^64 - 1 steps end soon because it is noticed. */
+static void overflow(void)
+{
+    const spring_state start = {1, 0.5};
+    const spring_params p = {1.3, 2.7, 0.1, 0.2};
+    for (size_t m = 0; m < 3; m++) {
+        spring_state s = start;
+        CHECK(spring_advance(&s, &p, steppers[m], 10, UINT64_MAX) == SPRING_ENONFINITE,
+              "far beyond the stable step");
+        CHECK_STATE(s, start, "an overflow leaves the state as it was");
+        s = start;
+        CHECK(spring_advance(&s, &p, steppers[m], 1.7e308, 1) == SPRING_ENONFINITE, "coefficients overflow");
+        CHECK_STATE(s, start, "an overflow leaves the state as it was");
+    }
+    /* overflows in the last step of a call, and in the first after a look */
+    const spring_params free_fall = {1.3, 0, 0, 0};
+    for (uint64_t n = 4090; n < 4100; n++) {
+        const spring_state fast = {0, 1.7e308 / (double)n * 1.0625};
+        spring_state s = fast;
+        CHECK(spring_advance(&s, &free_fall, SPRING_EULER, 1, n) == SPRING_ENONFINITE,
+              "x passes the largest double");
+        CHECK_STATE(s, fast, "an overflow leaves the state as it was");
+        CHECK(spring_advance(&s, &free_fall, SPRING_EULER, 1, n * 9 / 10) == SPRING_OK, "just before");
+    }
+    spring_state s = start;
+    const spring_params growing = {1.3, 2.7, 1.0, 0};
+    CHECK(spring_advance(&s, &growing, SPRING_EXACT, -1e6, 1) == SPRING_ENONFINITE,
+          "backwards damping overflows");
+    CHECK(spring_advance(&s, &growing, SPRING_EXACT, 1e300, UINT64_MAX) == SPRING_ENONFINITE,
+          "n dt overflows");
+    CHECK_STATE(s, start, "an overflow leaves the state as it was");
+}
+
+/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. */
+static void golden_bits(void)
+{
+    static const double want[][2] = {
+        {-0x1.c22e5860eee3p-6, 0x1.7db45eb12fd5fp-3},
+        {-0x1.03323afb9c126p-6, 0x1.539531f94a59ap-3},
+        {-0x1.0368ba1574829p-6, 0x1.53842b8aeac52p-3},
+    };
+    const spring_params p = {1.3, 2.7, 0.6, 0.4};
+    for (size_t m = 0; m < 3; m++) {
+        spring_state s = {0.8, -0.9};
+        spring_advance(&s, &p, steppers[m], 0.013, 500);
+        CHECK_STATE(s, ((spring_state){want[m][0], want[m][1]}), "pinned when the version was released");
+    }
+}
+
+static void names(void)
+{
+    static const char *const want[] = {"euler", "leapfrog", "rk4", "exact"};
+    for (int m = 0; m < 4; m++)
+        CHECK(strcmp(spring_method_name((spring_method)m), want[m]) == 0, "the names of the command line");
+    CHECK(spring_method_name((spring_method)4) == NULL && spring_method_name((spring_method)-1) == NULL,
+          "no method");
+    for (int i = SPRING_OK; i <= SPRING_EUNSUPPORTED; i++)
+        for (int j = SPRING_OK; j < i; j++)
+            CHECK(strcmp(spring_status_string((spring_status)i), spring_status_string((spring_status)j)) != 0,
+                  "each status has its own words");
+    CHECK(strcmp(spring_status_string((spring_status)99), "unknown status") == 0, "never NULL");
+    CHECK(strcmp(spring_version(), SPRING_VERSION) == 0, "header and library agree");
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"n steps are n kernel calls, bit for bit", equals_kernel_calls},
+        {"the closed form is one evaluation", exact_is_one_evaluation},
+        {"no steps, no change", nothing_to_do},
+        {"bad input is refused", refuses_bad_input},
+        {"zeros, denormals and 2^64 - 1 steps", accepts_the_edges},
+        {"overflow", overflow},
+        {"pinned bits", golden_bits},
+        {"names", names},
+    };
+    return RUN_TESTS("advance", tests);
+}

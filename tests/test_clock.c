@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+/* The frame clock: every frame's time becomes steps, waits, or is counted as dropped. */
+#include <math.h>
+#include <springstep/clock.h>
+#include <string.h>
+
+#include "check.h"
+
+static void whole_frames(void)
+{
+    spring_clock clock = {0};
+    double alpha = -1;
+    CHECK(spring_clock_tick(&clock, 0.25, 0.125, 100, &alpha) == 2, "two eighths in a quarter");
+    CHECK_BITS(alpha, 0, "nothing left over");
+    CHECK(spring_clock_tick(&clock, 0.1875, 0.125, 100, &alpha) == 1, "one and a half");
+    CHECK_BITS(alpha, 0.5, "half a step left over");
+    CHECK(spring_clock_tick(&clock, 0.0625, 0.125, 100, &alpha) == 1, "the two halves");
+    CHECK_BITS(clock.pending, 0, "nothing left over");
+    CHECK(spring_clock_tick(&clock, 0, 0.125, 100, NULL) == 0, "a frame of no time; alpha is optional");
+}
+
+static void dropped_time(void)
+{
+    spring_clock clock = {0};
+    double alpha = -1;
+    CHECK(spring_clock_tick(&clock, 2.0625, 0.125, 8, &alpha) == 8,
+          "sixteen steps and a half, eight allowed");
+    CHECK_BITS(clock.dropped, 1, "eight steps dropped");
+    CHECK_BITS(alpha, 0.5, "the fraction is kept");
+    CHECK(spring_clock_tick(&clock, 0.25, 0.125, 0, &alpha) == 0, "no steps allowed");
+    CHECK_BITS(clock.dropped, 1.25, "dropped time adds up");
+    CHECK(spring_clock_tick(&clock, 1e300, 1e-300, UINT64_MAX, &alpha) == UINT64_MAX, "more than 2^64 steps");
+    CHECK(isfinite(clock.dropped) && clock.pending < 1e-300, "a long frame and a short step stay finite");
+}
+
+/* Steps dt + pending + dropped is the sum of all frames, over a million frames of any length. */
+static void nothing_is_lost(void)
+{
+    spring_clock clock = {0};
+    const double dt = 1.0 / 240;
+    double frames = 0, lost = 0; /* Kahan's sum */
+    uint64_t steps = 0;
+    const int count = 1000000;
+    for (int i = 0; i < count; i++) {
+        const double frame = random_uniform(0, i % 100 == 0 ? 0.2 : 1.0 / 30);
+        double alpha = -1;
+        steps += spring_clock_tick(&clock, frame, dt, 12, &alpha);
+        CHECK(alpha >= 0 && alpha < 1, "a fraction of a step");
+        CHECK(clock.pending >= 0 && clock.pending < dt, "less than a step is pending");
+        const double term = frame - lost, sum = frames + term;
+        lost = (sum - frames) - term;
+        frames = sum;
+    }
+    /* a frame rounds pending + frame (half an ulp of 0.25 s at most) and, when it drops, the dropped sum */
+    const double per_frame = 0x1p-55, per_drop = clock.dropped * DBL_EPSILON;
+    CHECK(clock.dropped > 0, "some frames were too long");
+    CHECK_CLOSE((double)steps * dt + clock.pending + clock.dropped, frames,
+                count * per_frame + count / 100 * per_drop + frames * DBL_EPSILON,
+                "rounding of each addition");
+}
+
+static void refuse(spring_clock start, double frame_dt, double dt, const char *why)
+{
+    spring_clock clock = start;
+    double alpha = -1;
+    CHECK(spring_clock_tick(&clock, frame_dt, dt, 10, &alpha) == 0, why);
+    CHECK(memcmp(&clock, &start, sizeof clock) == 0, "bad input leaves the clock as it was");
+    CHECK_BITS(alpha, 0, "alpha is always safe to draw with");
+}
+
+static void bad_input(void)
+{
+    const spring_clock start = {0.01, 0.5};
+    refuse(start, NAN, 0.1, "frame not a number");
+    refuse(start, INFINITY, 0.1, "frame infinite");
+    refuse(start, -0.1, 0.1, "frame negative");
+    refuse(start, 0.1, NAN, "step not a number");
+    refuse(start, 0.1, 0, "step 0");
+    refuse(start, 0.1, -0.1, "step negative");
+    refuse(start, 0.1, INFINITY, "step infinite");
+    refuse((spring_clock){1.7e308, 0}, 1.7e308, 0.1, "the sum overflows");
+    refuse((spring_clock){-1, 0}, 0.1, 0.1, "a clock nobody started");
+    double alpha = -1;
+    CHECK(spring_clock_tick(NULL, 0.1, 0.1, 10, &alpha) == 0, "no clock");
+    CHECK_BITS(alpha, 0, "alpha is always safe to draw with");
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"whole frames", whole_frames},
+        {"dropped time", dropped_time},
+        {"nothing is lost", nothing_is_lost},
+        {"bad input", bad_input},
+    };
+    return RUN_TESTS("clock", tests);
+}

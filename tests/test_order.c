@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+/* Order and error constant of each method, in position and velocity, undamped, damped, overdamped and loaded. */
+#include <math.h>
+
+#include "check.h"
+
+typedef struct matrix {
+    double a[2][2];
+} matrix;
+
+static matrix sum(matrix p, double factor, matrix q) /* p + factor q */
+{
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            p.a[i][j] += factor * q.a[i][j];
+    return p;
+}
+
+static matrix product(matrix p, matrix q)
+{
+    matrix r;
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            r.a[i][j] = p.a[i][0] * q.a[0][j] + p.a[i][1] * q.a[1][j];
+    return r;
+}
+
+static matrix power(matrix p, int n)
+{
+    matrix r = {{{1, 0}, {0, 1}}};
+    for (; n > 0; n--)
+        r = product(r, p);
+    return r;
+}
+
+typedef struct problem {
+    spring_params p;
+    spring_state start;
+    double duration; /* [s] */
+} problem;
+
+static const problem problems[] = {
+    {{1.3, 2.7, 0, 0}, {0.8, -0.9}, 2.3},    {{1.3, 2.7, 0.6, 0}, {0.8, -0.9}, 2.3},
+    {{1.3, 2.7, 9.1, 0}, {-0.8, 1.9}, 1.7},  {{0.7, 1.9, 0.6, 1.4}, {0.8, 0.9}, 2.3},
+    {{0.7, 1.9, 0, -0.8}, {-0.3, 0.9}, 1.1},
+};
+static const size_t problem_count = sizeof problems / sizeof problems[0];
+
+static const int order_of[] = {[SPRING_EULER] = 1, [SPRING_LEAPFROG] = 2, [SPRING_RK4] = 4};
+
+/* What one step's matrix lacks of exp(h A), divided by h^(order+1), as h -> 0. */
+static matrix local_error(spring_method m, double w, double g)
+{
+    const matrix A = {{{0, 1}, {-w, -g}}};
+    const matrix zero = {{{0, 0}, {0, 0}}};
+    if (m == SPRING_EULER)
+        return sum(zero, -1.0 / 2, power(A, 2));
+    if (m == SPRING_RK4)
+        return sum(zero, -1.0 / 120, power(A, 5));
+    /* kick (I - h/2 G)^-1 (I + h/2 B), drift I + h N, kick I + h/2 (B + G): collect h^3 */
+    const matrix N = {{{0, 1}, {0, 0}}}, B = {{{0, 0}, {-w, 0}}}, G = {{{0, 0}, {0, -g}}};
+    const matrix first = sum(sum(zero, 0.5, B), 0.5, G);
+    const matrix last2 = sum(sum(zero, 0.25, power(G, 2)), 0.25, product(G, B));
+    const matrix last3 = sum(sum(zero, 0.125, power(G, 3)), 0.125, product(power(G, 2), B));
+    const matrix third =
+        sum(sum(last3, 1, product(last2, sum(N, 1, first))), 1, product(first, product(N, first)));
+    return sum(third, -1.0 / 6, power(A, 3));
+}
+
+/* Phi(t) as a matrix, from the closed form of two unloaded basis states. */
+static matrix propagator(const spring_params *p, double t)
+{
+    const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};
+    spring_state x = {1, 0}, v = {0, 1};
+    spring_step_exact(&x, &unloaded, t);
+    spring_step_exact(&v, &unloaded, t);
+    return (matrix){{{x.x, v.x}, {x.v, v.v}}};
+}
+
+/* The leading error h^order times this: the integral over s of Phi(T - s) L Phi(s) (y0 - rest), by Simpson's rule. */
+static spring_state error_constant(const problem *q, spring_method m)
+{
+    const int panels = 200; /* relative error 1e-9 for these smooth integrands */
+    const matrix L = local_error(m, q->p.stiffness / q->p.mass, q->p.damping / q->p.mass);
+    matrix all = {{{0, 0}, {0, 0}}};
+    for (int i = 0; i <= panels; i++) {
+        const double s = q->duration * i / panels;
+        const double weight = (i == 0 || i == panels ? 1 : 2 + 2 * (i % 2)) * q->duration / panels / 3;
+        all = sum(all, weight, product(propagator(&q->p, q->duration - s), product(L, propagator(&q->p, s))));
+    }
+    const double x = q->start.x - q->p.load / q->p.stiffness, v = q->start.v;
+    return (spring_state){all.a[0][0] * x + all.a[0][1] * v, all.a[1][0] * x + all.a[1][1] * v};
+}
+
+static spring_state measured_error(const problem *q, spring_method m, uint64_t n)
+{
+    spring_state got = q->start, want = q->start;
+    spring_advance(&got, &q->p, m, q->duration / (double)n, n);
+    spring_step_exact(&want, &q->p, q->duration);
+    return (spring_state){got.x - want.x, got.v - want.v};
+}
+
+static void constants(void)
+{
+    for (size_t i = 0; i < problem_count; i++)
+        for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+            const problem *q = &problems[i];
+            const uint64_t n = m == SPRING_EULER ? 100000 : m == SPRING_LEAPFROG ? 4000 : 800;
+            const double h = q->duration / (double)n, scale = pow(h, order_of[m]);
+            const spring_state want = error_constant(q, (spring_method)m);
+            const spring_state got = measured_error(q, (spring_method)m, n);
+            const double size = hypot(want.x, want.v);
+            CHECK_CLOSE(got.x / scale, want.x, 0.02 * size, "the next order is O(h), below 2 % here");
+            CHECK_CLOSE(got.v / scale, want.v, 0.02 * size, "the next order is O(h), below 2 % here");
+        }
+}
+
+static void slopes(void)
+{
+    for (size_t i = 0; i < problem_count; i++)
+        for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+            const uint64_t coarse = m == SPRING_EULER ? 20000 : m == SPRING_LEAPFROG ? 1000 : 400;
+            double sx = 0, sy = 0, sxx = 0, sxy = 0;
+            const int points = 5;
+            for (int j = 0; j < points; j++) {
+                const uint64_t n = coarse + coarse * (uint64_t)j / 2;
+                const spring_state e = measured_error(&problems[i], (spring_method)m, n);
+                const double lx = log((double)n), ly = log(hypot(e.x, e.v));
+                sx += lx, sy += ly, sxx += lx * lx, sxy += lx * ly;
+            }
+            const double slope = (points * sxy - sx * sy) / (points * sxx - sx * sx);
+            CHECK_CLOSE(slope, -order_of[m], 0.02, "least squares over a factor of 3 in n");
+        }
+}
+
+/* The study's spring: cos(1)/2, sin(1)/24, sin(1)/120. */
+static void textbook_constants(void)
+{
+    const problem seed = {{1, 1, 0, 0}, {1, 0}, 1};
+    const double want[] = {cos(1) / 2, sin(1) / 24, sin(1) / 120};
+    for (int m = SPRING_EULER; m <= SPRING_RK4; m++)
+        CHECK_CLOSE(fabs(error_constant(&seed, (spring_method)m).x), want[m], 1e-8 * want[m],
+                    "textbook value");
+}
+
+/* The closed form has no order: its error does not fall with the step because there is none. */
+static void exact_composes(void)
+{
+    for (size_t i = 0; i < problem_count; i++) {
+        const problem *q = &problems[i];
+        spring_state many = q->start;
+        for (int j = 0; j < 1000; j++)
+            spring_step_exact(&many, &q->p, q->duration / 1000);
+        spring_state one = q->start;
+        spring_step_exact(&one, &q->p, q->duration);
+        CHECK_CLOSE(many.x, one.x, 1000 * 4 * DBL_EPSILON, "a thousand steps, each within its bound");
+        CHECK_CLOSE(many.v, one.v, 1000 * 4 * 2 * DBL_EPSILON,
+                    "a thousand steps, each within its bound; omega < 2/s");
+    }
+}
+
+/* A drive cos(2 t) sampled once a step: at the start of the step order 1, in the middle order 2, for every method. */
+static void sampled_load(void)
+{
+    const spring_params p = {.mass = 1.3, .stiffness = 2.7};
+    const double drive = 2.0, amplitude = 0.7, duration = 3, w = p.stiffness / p.mass, omega = sqrt(w);
+    /* x'' + w x = (F/m) cos(drive t) from (x0, v0) = (0.4, 0.3) */
+    const double A = amplitude / p.mass / (w - drive * drive);
+    const double want =
+        A * cos(drive * duration) + (0.4 - A) * cos(omega * duration) + 0.3 / omega * sin(omega * duration);
+    for (int m = SPRING_LEAPFROG; m <= SPRING_EXACT; m++)
+        for (int middle = 0; middle <= 1; middle++) {
+            double error[2];
+            for (int j = 0; j < 2; j++) {
+                const int n = j == 0 ? 2000 : 4000;
+                const double dt = duration / n;
+                spring_state s = {0.4, 0.3};
+                for (int i = 0; i < n; i++) {
+                    spring_params now = p;
+                    now.load = amplitude * cos(drive * ((i + 0.5 * middle) * dt));
+                    spring_advance(&s, &now, (spring_method)m, dt, 1);
+                }
+                error[j] = s.x - want;
+            }
+            CHECK_CLOSE(log2(error[0] / error[1]), 1 + middle, 0.02, "the load is constant over each step");
+        }
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"error constants", constants},
+        {"slopes", slopes},
+        {"textbook constants", textbook_constants},
+        {"the closed form composes", exact_composes},
+        {"a load sampled once a step", sampled_load},
+    };
+    return RUN_TESTS("order", tests);
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/* Rest: the time to get there against sampling the motion, the question whether it is there, and the two constructors. */
+#include <math.h>
+
+#include "check.h"
+
+static const double pi = 3.141592653589793;
+
+static double distance_at(const spring_params *p, spring_state s, double rest, double t)
+{
+    spring_step_exact(&s, p, t);
+    return fabs(s.x - rest);
+}
+
+/* After T no sample is outside the band; right before T the spring is. */
+static void rest_time_by_sampling(void)
+{
+    for (int i = 0; i < 4000; i++) {
+        spring_params p = {.mass = random_log(1e-2, 1e2), .stiffness = random_log(1e-2, 1e2)};
+        const double omega = sqrt(p.stiffness / p.mass), zeta = i % 5 == 0 ? 1 : random_log(0.02, 50);
+        p.damping = 2 * zeta * omega * p.mass;
+        if (i % 2)
+            p.load = p.stiffness * random_uniform(-1, 1);
+        const double rest = p.load / p.stiffness;
+        spring_state s = {rest + random_uniform(-1, 1),
+                          random_uniform(-1, 1) * omega * (i % 7 == 0 ? 20 : 1)};
+        if (i % 11 == 0)
+            s.v = 0;
+        const double tol = random_log(1e-6, 1);
+        const double T = spring_rest_time(&s, &p, tol);
+        CHECK(T >= 0 && isfinite(T), "a damped spring comes to rest");
+        const double slow = zeta <= 1 ? omega * zeta : omega / (2 * zeta), edge = 1e-9 * tol;
+        for (int j = 0; j <= 400; j++) {
+            const double t = T + 8 * (2 * pi / omega + 1 / slow) * j / 400;
+            CHECK(distance_at(&p, s, rest, t) <= tol + edge, "it stays within the tolerance");
+        }
+        if (T > 0) {
+            CHECK(distance_at(&p, s, rest, T * (1 - 1e-7)) > tol - edge * 100, "and is outside right before");
+            CHECK_CLOSE(distance_at(&p, s, rest, T), tol, edge * 100, "at the edge of the band");
+        } else {
+            for (int j = 0; j <= 400; j++)
+                CHECK(distance_at(&p, s, rest, 2 * pi / omega * j / 400) <= tol + edge, "never left");
+        }
+    }
+}
+
+/* exp(-b t) cos: the last turning point beyond the tolerance is known. A long, lightly damped run. */
+static void rest_time_lightly_damped(void)
+{
+    const spring_params p = {1.3, 2.7, 1e-9, 0};
+    const spring_state s = {0.8, 0};
+    const double omega = sqrt(2.7 / 1.3), b = 1e-9 / 2.6;
+    const double want = log(0.8 / 1e-3) / b; /* the envelope; the crossing is within half a period of it */
+    CHECK_CLOSE(spring_rest_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
+}
+
+static void rest_time_special(void)
+{
+    const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0.54}, drag = {2, 0, 0.5, 0};
+    const spring_params pushed = {2, 0, 0.5, 0.1}, nothing = {2, 0, 0, 0};
+    const spring_state s = {0.5, 0.3}, still = {0.5, 0}, rest = {0.2, 0};
+    const double amplitude = hypot(0.5, 0.3 / sqrt(2.7 / 1.3));
+    CHECK_BITS(spring_rest_time(&s, &undamped, amplitude * 1.001), 0, "never leaves");
+    CHECK_BITS(spring_rest_time(&s, &undamped, amplitude * 0.999), INFINITY, "swings for ever");
+    CHECK_CLOSE(spring_rest_time(&rest, &damped, 1e-15), 0, 0, "at rest under its load");
+    CHECK_BITS(spring_rest_time(&s, &damped, 0), INFINITY, "zero is never reached for good");
+    CHECK_BITS(spring_rest_time(&s, &damped, INFINITY), 0, "anything is near enough");
+    CHECK_BITS(spring_rest_time(&s, &pushed, 0.1), INFINITY, "pushed without a spring: never");
+    CHECK_BITS(spring_rest_time(&s, &nothing, 0.1), INFINITY, "nothing stops it");
+    CHECK_BITS(spring_rest_time(&still, &nothing, 0), 0, "nothing moves it");
+    CHECK_CLOSE(spring_rest_time(&s, &drag, 0.01), 4 * log(1.2 / 0.01), 1e-14 * 20, "1.2 m to go, 1/g = 4 s");
+    CHECK_BITS(spring_rest_time(&s, &drag, 1.3), 0, "less than the tolerance to go");
+    const spring_params creeping = {1, 1e-300, 1, 0};
+    CHECK(spring_rest_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
+}
+
+static void rest_time_bad_input(void)
+{
+    const spring_params p = {1.3, 2.7, 0.6, 0.4}, bad = {1.3, -2.7, 0.6, 0.4};
+    const spring_state s = {0.5, 0.3}, lost = {NAN, 0.3}, far = {0.5, INFINITY};
+    CHECK(isnan(spring_rest_time(NULL, &p, 0.1)), "no state");
+    CHECK(isnan(spring_rest_time(&s, NULL, 0.1)), "no parameters");
+    CHECK(isnan(spring_rest_time(&s, &bad, 0.1)), "negative stiffness");
+    CHECK(isnan(spring_rest_time(&lost, &p, 0.1)), "x not a number");
+    CHECK(isnan(spring_rest_time(&far, &p, 0.1)), "v infinite");
+    CHECK(isnan(spring_rest_time(&s, &p, -0.1)), "negative tolerance");
+    CHECK(isnan(spring_rest_time(&s, &p, NAN)), "tolerance not a number");
+}
+
+static void at_rest(void)
+{
+    const spring_params p = {1.3, 2.5, 0.6, 0.5}; /* rests at 0.2 */
+    const spring_params free_mass = {1.3, 0, 0, 0}, pushed = {1.3, 0, 0.6, 0.5}, bad = {1.3, NAN, 0.6, 0.5};
+    const spring_state s = {0.25, -0.0625};
+    CHECK(spring_at_rest(&s, &p, 0.0501, 0.0625), "within both");
+    CHECK(!spring_at_rest(&s, &p, 0.0499, 0.0625), "too far");
+    CHECK(!spring_at_rest(&s, &p, 0.0501, 0.0624), "too fast");
+    CHECK(spring_at_rest(&(spring_state){1e9, 0}, &free_mass, 0, 0), "no stiffness: rest is anywhere");
+    CHECK(!spring_at_rest(&(spring_state){1e9, 0.1}, &free_mass, 1, 0.05), "but not while moving");
+    CHECK(!spring_at_rest(&(spring_state){0, 0}, &pushed, 1, 1), "nowhere under a load");
+    CHECK(!spring_at_rest(NULL, &p, 1, 1) && !spring_at_rest(&s, NULL, 1, 1), "NULL");
+    CHECK(!spring_at_rest(&s, &bad, 1, 1), "bad parameters");
+    CHECK(!spring_at_rest(&s, &p, NAN, 1) && !spring_at_rest(&s, &p, 1, NAN), "no tolerance");
+    CHECK(!spring_at_rest(&s, &p, -1, 1) && !spring_at_rest(&s, &p, 1, -1), "negative tolerance");
+    CHECK(!spring_at_rest(&(spring_state){1, 0}, &free_mass, -1, 1), "negative tolerance");
+    CHECK(!spring_at_rest(&(spring_state){NAN, 0}, &p, 1, 1), "a lost state");
+    CHECK(!spring_at_rest(&(spring_state){NAN, 0}, &free_mass, 1, 1), "a lost state");
+}
+
+static void params_from_frequency(void)
+{
+    for (int i = 0; i < 1000; i++) {
+        const double hertz = random_log(1e-3, 1e3), zeta = i % 3 ? random_log(1e-3, 1e2) : 0;
+        const spring_params p = spring_params_hertz(hertz, zeta);
+        CHECK_BITS(p.mass, 1, "a kilogram");
+        CHECK_BITS(p.load, 0, "no load");
+        CHECK_CLOSE(sqrt(p.stiffness) / (2 * pi), hertz, 4 * DBL_EPSILON * hertz, "the undamped frequency");
+        CHECK_CLOSE(p.damping / (2 * sqrt(p.stiffness)), zeta, 4 * DBL_EPSILON * zeta, "the damping ratio");
+    }
+    const spring_params still = spring_params_hertz(0, 0.5);
+    CHECK(still.mass == 1 && still.stiffness == 0 && still.damping == 0, "0 Hz is a free particle");
+}
+
+/* The ratio of two states one half-life apart, late enough that only the envelope is left. */
+static void params_from_half_life(void)
+{
+    for (int i = 0; i < 1000; i++) {
+        const double half_life = random_log(1e-2, 1e2), zeta = i % 5 ? random_log(1e-2, 1e2) : 1;
+        const spring_params p = spring_params_half_life(half_life, zeta);
+        CHECK_BITS(p.mass, 1, "a kilogram");
+        CHECK_CLOSE(p.damping / (2 * sqrt(p.stiffness)), zeta, 4 * DBL_EPSILON * zeta, "the damping ratio");
+        const double omega = sqrt(p.stiffness), b = p.damping / 2;
+        if (zeta < 0.9) {
+            /* x^2 + ((v + b x)/omega_d)^2 is the envelope squared */
+            const double omega_d = sqrt(p.stiffness - b * b);
+            spring_state s = {0.3, 0.8 * omega};
+            const double before = hypot(s.x, (s.v + b * s.x) / omega_d);
+            spring_step_exact(&s, &p, half_life);
+            CHECK_CLOSE(hypot(s.x, (s.v + b * s.x) / omega_d), before / 2, 1e-13 * before,
+                        "half of the envelope");
+        } else if (zeta > 1.1) {
+            spring_state s = {1, 0};
+            spring_step_exact(&s, &p, 40 * half_life); /* the fast root is gone: 2^-40 and faster */
+            const double before = s.x;
+            spring_step_exact(&s, &p, half_life);
+            CHECK_CLOSE(s.x, before / 2, 1e-6 * before, "half of the slow exponential");
+        }
+        const double slow = zeta <= 1 ? b : b - omega * sqrt(zeta * zeta - 1);
+        CHECK_CLOSE(slow * half_life, log(2), 8 * DBL_EPSILON * fmax(1, 4 * zeta * zeta),
+                    "b - sqrt(...) cancels");
+    }
+}
+
+static void refused(spring_params p, const char *why)
+{
+    spring_state s = {0, 1};
+    CHECK(isnan(p.mass) && isnan(p.stiffness) && isnan(p.damping) && isnan(p.load), why);
+    CHECK(spring_advance(&s, &p, SPRING_LEAPFROG, 0.1, 1) == SPRING_EINVAL,
+          "and spring_advance() refuses it");
+}
+
+static void constructors_refuse(void)
+{
+    refused(spring_params_hertz(-1, 0.5), "negative frequency");
+    refused(spring_params_hertz(NAN, 0.5), "no frequency");
+    refused(spring_params_hertz(INFINITY, 0.5), "infinite frequency");
+    refused(spring_params_hertz(1e160, 0.5), "stiffness overflows");
+    refused(spring_params_hertz(1, -0.5), "negative damping ratio");
+    refused(spring_params_hertz(1, NAN), "no damping ratio");
+    refused(spring_params_half_life(0, 0.5), "half-life 0");
+    refused(spring_params_half_life(-1, 0.5), "negative half-life");
+    refused(spring_params_half_life(NAN, 0.5), "no half-life");
+    refused(spring_params_half_life(1, 0), "no damping never halves");
+    refused(spring_params_half_life(1, -0.5), "negative damping ratio");
+    refused(spring_params_half_life(1, NAN), "no damping ratio");
+    refused(spring_params_half_life(1, INFINITY), "infinite damping ratio");
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"rest time against sampling", rest_time_by_sampling},
+        {"rest time, lightly damped", rest_time_lightly_damped},
+        {"rest time, special springs", rest_time_special},
+        {"rest time, bad input", rest_time_bad_input},
+        {"at rest", at_rest},
+        {"parameters from a frequency", params_from_frequency},
+        {"parameters from a half-life", params_from_half_life},
+        {"constructors refuse bad input", constructors_refuse},
+    };
+    return RUN_TESTS("rest", tests);
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+/* The stable step against its definition in 107 digits, and against real steps just inside and just outside. */
+#include <math.h>
+
+#include "check.h"
+#include "harness/reference.h"
+
+static spring_params spring_of(double omega, double zeta, double mass)
+{
+    return (spring_params){
+        .mass = mass, .stiffness = mass * omega * omega, .damping = 2 * zeta * mass * omega};
+}
+
+static void against_definition(void)
+{
+    for (int i = 0; i < 600; i++) {
+        double zeta = random_log(1e-6, 1e4);
+        if (i % 3 == 1)
+            zeta = 1 + (random_bits() % 2 ? 1 : -1) * random_log(1e-16, 1e-2);
+        const spring_params p = spring_of(random_log(1e-6, 1e6), zeta, random_log(1e-6, 1e6));
+        for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+            const double want = reference_stable_step(&p, (spring_method)m);
+            CHECK_CLOSE(spring_stable_step(&p, (spring_method)m), want, 4 * DBL_EPSILON * want, "8 ulp");
+        }
+    }
+}
+
+static void special_springs(void)
+{
+    const spring_params undamped = spring_of(1.7, 0, 1.3), dragged = {1.3, 0, 0.6, 0.2},
+                        free_mass = {1.3, 0, 0, 0.2};
+    const double omega = sqrt(undamped.stiffness / 1.3), g = 0.6 / 1.3;
+    CHECK_BITS(spring_stable_step(&undamped, SPRING_EULER), 0, "Euler without damping: never");
+    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_LEAPFROG), 2 / omega, 4 * DBL_EPSILON / omega,
+                "2/omega");
+    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_RK4), sqrt(8) / omega, 8 * DBL_EPSILON / omega,
+                "2 sqrt 2/omega");
+    CHECK_CLOSE(spring_stable_step(&dragged, SPRING_EULER), 2 / g, 4 * DBL_EPSILON * 2 / g, "2/g");
+    CHECK_CLOSE(spring_stable_step(&dragged, SPRING_RK4), 2.785293563405282 / g, 4 * DBL_EPSILON * 3 / g,
+                "2.785.../g");
+    CHECK_BITS(spring_stable_step(&dragged, SPRING_LEAPFROG), INFINITY, "leapfrog without stiffness: always");
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        CHECK_BITS(spring_stable_step(&free_mass, (spring_method)m), INFINITY, "no force at all: always");
+    CHECK_BITS(spring_stable_step(&undamped, SPRING_EXACT), INFINITY, "the closed form: always");
+    const spring_params thick = {1, 1, 1e200, 0};
+    CHECK_CLOSE(spring_stable_step(&thick, SPRING_EULER), 2e-200, 2e-215, "b^2 must not be formed");
+}
+
+static void bad_input(void)
+{
+    const spring_params good = {1.3, 2.7, 0.6, 0.4}, bad = {-1.3, 2.7, 0.6, 0.4};
+    CHECK(isnan(spring_stable_step(NULL, SPRING_RK4)), "no parameters");
+    CHECK(isnan(spring_stable_step(&bad, SPRING_RK4)), "negative mass");
+    CHECK(isnan(spring_stable_step(&good, (spring_method)4)), "no such method");
+    CHECK(isnan(spring_stable_step(&good, (spring_method)-1)), "no such method");
+}
+
+/* The larger modulus of the eigenvalues of one step of the library, from two basis states. */
+static double spectral_radius(const spring_params *p, spring_method m, double dt)
+{
+    spring_state e = {1, 0}, f = {0, 1};
+    CHECK(spring_advance(&e, p, m, dt, 1) == SPRING_OK && spring_advance(&f, p, m, dt, 1) == SPRING_OK,
+          "one step");
+    const double half_trace = (e.x + f.v) / 2, det = e.x * f.v - e.v * f.x;
+    const double under_root = half_trace * half_trace - det;
+    return under_root < 0 ? sqrt(det) : fabs(half_trace) + sqrt(under_root);
+}
+
+static void inside_and_outside(void)
+{
+    for (int i = 0; i < 3000; i++) {
+        const double zeta = i % 10 == 0 ? 0 : random_log(0.01, 100);
+        const spring_params p = spring_of(random_log(0.1, 10), zeta, random_log(0.1, 10));
+        for (int m = zeta > 0 ? SPRING_EULER : SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
+            const double limit = spring_stable_step(&p, (spring_method)m);
+            CHECK(spectral_radius(&p, (spring_method)m, limit * (1 - 1e-6)) <= 1 + 4 * DBL_EPSILON,
+                  "just inside");
+            CHECK(spectral_radius(&p, (spring_method)m, limit * (1 + 1e-6)) > 1 + 1e-11,
+                  "just outside: Euler grows by 2e-6 zeta^2 there");
+        }
+        if (zeta == 0) {
+            const double z = random_log(1e-3, 2), omega = sqrt(p.stiffness / p.mass);
+            CHECK_CLOSE(log(spectral_radius(&p, SPRING_EULER, z / omega)), log1p(z * z) / 2, 8 * DBL_EPSILON,
+                        "Euler grows at every step size");
+        }
+    }
+}
+
+/* Real steps: a thousandth outside the spring ends at infinity or far out, a thousandth inside it stays. */
+static void real_steps(void)
+{
+    for (int i = 0; i < 60; i++) {
+        const double zeta = i % 10 == 0 ? 0 : random_log(0.1, 10);
+        const spring_params p = spring_of(random_log(0.1, 10), zeta, random_log(0.1, 10));
+        const double omega = sqrt(p.stiffness / p.mass);
+        for (int m = zeta > 0 ? SPRING_EULER : SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
+            const double limit = spring_stable_step(&p, (spring_method)m);
+            spring_state in = {0.8, -0.9 * omega}, out = in;
+            CHECK(spring_advance(&in, &p, (spring_method)m, limit * 0.999, 500000) == SPRING_OK, "stable");
+            CHECK(hypot(in.x, in.v / omega) < 50 * (1 + zeta), "bounded: 1/sqrt(1 - z^2/4) is 22 here");
+            const spring_status status = spring_advance(&out, &p, (spring_method)m, limit * 1.001, 500000);
+            CHECK(status == SPRING_ENONFINITE || hypot(out.x, out.v / omega) > 1000,
+                  "unstable: Euler grows by exp(2e-3 zeta^2 n)");
+        }
+    }
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"the definition, in 107 digits", against_definition},
+        {"special springs", special_springs},
+        {"bad input", bad_input},
+        {"a millionth inside and outside", inside_and_outside},
+        {"a thousandth inside and outside, in real steps", real_steps},
+    };
+    return RUN_TESTS("stable_step", tests);
+}
