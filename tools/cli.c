@@ -1,0 +1,513 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the command-line tools share: see cli.h.
+ *
+ * Options are read here and not by getopt_long(), which accepts abbreviations of long options and cannot be told not
+ * to: a script that says --step would change its meaning with the next option that begins so.
+ */
+#define _XOPEN_SOURCE 700 /* POSIX 2008 with realpath() */
+#include "cli.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <springstep/spring.h>
+
+const char *const cli_methods[] = {
+    [SPRING_EULER] = "euler",
+    [SPRING_LEAPFROG] = "leapfrog",
+    [SPRING_RK4] = "rk4",
+    [SPRING_EXACT] = "exact",
+    NULL,
+};
+
+struct cli_table {
+    FILE *stream;
+    const char *name; /* for messages */
+    char *path;       /* the name the file will have; NULL: it is written directly */
+    char *temporary;  /* the name it has until then */
+};
+
+/* One tool is one process: what it was asked and what it has open. The signal handler needs the tables. */
+static const cli_program *program;
+static const char *output_path;
+static char *command; /* for the stamp: the options as they were understood */
+static cli_table tables[4];
+static size_t table_count;
+static bool progress_shown;
+
+/* ---------------------------------------------------------------------------------------------------- messages */
+
+static void erase_progress(void)
+{
+    if (progress_shown)
+        fprintf(stderr, "\r%*s\r", (int)strlen(program->name) + 10, "");
+    progress_shown = false;
+}
+
+void cli_progress(double fraction)
+{
+    static time_t last;
+    const time_t now = time(NULL);
+    if (now == last || !isatty(STDERR_FILENO))
+        return;
+    last = now;
+    fprintf(stderr, "\r%s: %5.1f %%", program->name, 100 * fraction);
+    progress_shown = true;
+}
+
+_Noreturn void cli_fail(cli_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    erase_progress();
+    fprintf(stderr, "%s: ", program->name);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    exit(status);
+}
+
+/* ------------------------------------------------------------------------------------------------------ output */
+
+static void remove_temporaries(void)
+{
+    for (size_t i = 0; i < table_count; i++)
+        if (tables[i].temporary != NULL)
+            unlink(tables[i].temporary);
+}
+
+static void on_signal(int number)
+{
+    remove_temporaries();
+    raise(number); /* SA_RESETHAND: this time it ends the process */
+}
+
+/* A closed pipe or a file size limit becomes a failed write, with its message; an interrupt cleans up. */
+static void handle_signals(void)
+{
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    static const int ending[] = {SIGHUP, SIGINT, SIGTERM};
+    for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++) {
+        struct sigaction action;
+        sigaction(ending[i], NULL, &action);
+        if (action.sa_handler == SIG_IGN) /* started in the background, or by nohup */
+            continue;
+        action.sa_handler = on_signal;
+        action.sa_flags = (int)SA_RESETHAND | SA_NODEFER;
+        sigaction(ending[i], &action, NULL);
+    }
+}
+
+/* A standard stream that the caller has closed would lend its number to the next file that is opened, and messages
+   would end up among the data. The wrong access mode makes using it fail, as it should. */
+static void occupy_standard_streams(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
+            exit(CLI_IO);
+}
+
+static _Noreturn void fail_to_write(const char *name)
+{
+    cli_fail(CLI_IO, "cannot write %s: %s", name, strerror(errno));
+}
+
+static void close_stream(FILE *stream, const char *name)
+{
+    if (fflush(stream) != 0 || fclose(stream) != 0)
+        fail_to_write(name);
+}
+
+static char *copy(const char *text, size_t length)
+{
+    char *result = strndup(text, length);
+    if (result == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    return result;
+}
+
+/* A temporary file in the same directory, so that a rename can put it in place at once. */
+static FILE *open_temporary(cli_table *table, mode_t mode)
+{
+    static const char pattern[] = ".springstep-XXXXXX";
+    const char *slash = strrchr(table->path, '/');
+    const size_t folder = slash != NULL ? (size_t)(slash + 1 - table->path) : 0;
+    char *name = malloc(folder + sizeof pattern);
+    if (name == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    memcpy(name, table->path, folder);
+    memcpy(name + folder, pattern, sizeof pattern);
+    table->temporary = name;
+    const int fd = mkstemp(name);
+    if (fd < 0) {
+        table->temporary = NULL;
+        fail_to_write(table->name);
+    }
+    if (fchmod(fd, mode) != 0)
+        fail_to_write(table->name);
+    return fdopen(fd, "w");
+}
+
+static void open_stream(cli_table *table, const char *path)
+{
+    struct stat status;
+    const bool exists = stat(path, &status) == 0;
+    table->name = path;
+    if (strncmp(path, "/dev/", 5) == 0 || (exists && !S_ISREG(status.st_mode))) {
+        table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
+    } else if (exists) {
+        if (access(path, W_OK) != 0)
+            fail_to_write(path);
+        table->path = realpath(path, NULL); /* a link stays a link to what it points to */
+        if (table->path != NULL)
+            table->stream = open_temporary(table, status.st_mode & 0777);
+    } else if (lstat(path, &status) != 0) { /* else a link that leads nowhere: errno is that of stat() */
+        const mode_t mask = umask(0);
+        umask(mask);
+        table->path = copy(path, strlen(path));
+        table->stream = open_temporary(table, 0666 & ~mask);
+    }
+    if (table->stream == NULL)
+        fail_to_write(path);
+}
+
+static cli_table *open_table(const char *path)
+{
+    if (table_count == sizeof tables / sizeof tables[0])
+        cli_fail(CLI_FAILED, "too many tables");
+    cli_table *table = &tables[table_count++];
+    if (path != NULL)
+        open_stream(table, path);
+    else
+        *table = (cli_table){.stream = stdout, .name = "standard output"};
+    cli_comment(table, "springstep %s, %s", spring_version(), program->name);
+    cli_comment(table, "command: %s", command);
+#if defined(__clang__)
+    cli_comment(table, "compiler: clang %d.%d.%d", __clang_major__, __clang_minor__, __clang_patchlevel__);
+#elif defined(__GNUC__)
+    cli_comment(table, "compiler: gcc %d.%d.%d", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
+#else
+    cli_comment(table, "compiler: unknown");
+#endif
+    return table;
+}
+
+cli_table *cli_open_output(void)
+{
+    return open_table(output_path);
+}
+
+cli_table *cli_open_file(const char *path)
+{
+    return open_table(path);
+}
+
+static void print_line(cli_table *table, const char *start, const char *format, va_list arguments)
+{
+    if (table->stream == stdout)
+        erase_progress();
+    if (fputs(start, table->stream) == EOF || vfprintf(table->stream, format, arguments) < 0 ||
+        fputc('\n', table->stream) == EOF)
+        fail_to_write(table->name);
+}
+
+void cli_comment(cli_table *table, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_line(table, "# ", format, arguments);
+    va_end(arguments);
+}
+
+void cli_row(cli_table *table, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_line(table, "", format, arguments);
+    va_end(arguments);
+}
+
+void cli_columns(cli_table *table, const char *names)
+{
+    char *line = copy(names, strlen(names));
+    for (char *space = line; (space = strchr(space, ' ')) != NULL;)
+        *space = '\t';
+    cli_row(table, "%s", line);
+    free(line);
+}
+
+void cli_finish(void)
+{
+    erase_progress();
+    for (size_t i = 0; i < table_count; i++)
+        close_stream(tables[i].stream, tables[i].name);
+    for (size_t i = 0; i < table_count; i++) {
+        if (tables[i].path == NULL)
+            continue;
+        if (rename(tables[i].temporary, tables[i].path) != 0)
+            fail_to_write(tables[i].name);
+        tables[i].temporary = NULL;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ numbers */
+
+static bool parse_count(const char *text, uint64_t *value)
+{
+    if (!isdigit((unsigned char)text[0]))
+        return false;
+    char *end;
+    errno = 0;
+    const unsigned long long mantissa = strtoull(text, &end, 10);
+    unsigned long long exponent = 0;
+    if (*end == 'e' && isdigit((unsigned char)end[1]))
+        exponent = strtoull(end + 1, &end, 10);
+    if (errno != 0 || *end != '\0' || exponent > 19)
+        return false;
+    uint64_t result = mantissa;
+    for (; exponent > 0; exponent--) {
+        if (result > UINT64_MAX / 10)
+            return false;
+        result *= 10;
+    }
+    *value = result;
+    return true;
+}
+
+static bool parse_real(const char *text, double *value)
+{
+    if (isspace((unsigned char)text[0]))
+        return false;
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    const bool vanished = errno == ERANGE && *value == 0;
+    return end != text && *end == '\0' && isfinite(*value) && !vanished;
+}
+
+static bool parse_choice(const char *text, const char *const *choices, int *value)
+{
+    for (int i = 0; choices[i] != NULL; i++) {
+        if (strcmp(text, choices[i]) == 0) {
+            *value = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------------ options */
+
+static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
+{
+    for (const cli_option *o = options; o->name != NULL; o++)
+        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
+            return o;
+    return NULL;
+}
+
+static void print_expectation(FILE *out, const cli_option *o)
+{
+    switch (o->kind) {
+    case CLI_FLAG:
+        break;
+    case CLI_COUNT:
+        if (o->most > 0)
+            fprintf(out, "a whole number from %" PRIu64 " to %" PRIu64, o->least, o->most);
+        else
+            fprintf(out, "a whole number of at least %" PRIu64, o->least);
+        break;
+    case CLI_REAL:
+        fputs("a finite number", out);
+        break;
+    case CLI_NOT_NEGATIVE:
+        fputs("a finite number of at least 0", out);
+        break;
+    case CLI_POSITIVE:
+        fputs("a finite number greater than 0", out);
+        break;
+    case CLI_CHOICE:
+        fputs("one of", out);
+        for (int i = 0; o->choices[i] != NULL; i++)
+            fprintf(out, "%s %s", i > 0 ? "," : "", o->choices[i]);
+        break;
+    case CLI_FILE:
+        fputs("the name of a file", out);
+        break;
+    }
+}
+
+/* "program: --option: problem what it should be" */
+static _Noreturn void fail_at(const cli_option *o, const char *value, const char *problem)
+{
+    fprintf(stderr, "%s: --%s: ", program->name, o->name);
+    if (value != NULL)
+        fprintf(stderr, "\"%s\" ", value);
+    fputs(problem, stderr);
+    print_expectation(stderr, o);
+    fputc('\n', stderr);
+    exit(CLI_USAGE);
+}
+
+static bool store(const cli_option *o, const char *value)
+{
+    switch (o->kind) {
+    case CLI_FLAG:
+        break;
+    case CLI_COUNT:
+        return parse_count(value, o->count) && *o->count >= o->least &&
+               (o->most == 0 || *o->count <= o->most);
+    case CLI_REAL:
+        return parse_real(value, o->real);
+    case CLI_NOT_NEGATIVE:
+        return parse_real(value, o->real) && *o->real >= 0;
+    case CLI_POSITIVE:
+        return parse_real(value, o->real) && *o->real > 0;
+    case CLI_CHOICE:
+        return parse_choice(value, o->choices, o->choice);
+    case CLI_FILE:
+        *o->file = value;
+        return value[0] != '\0';
+    }
+    return false;
+}
+
+static bool want_help, want_version;
+
+static const cli_option common_options[] = {
+    {"output", CLI_FILE, .file = &output_path, .value = "FILE",
+     .help = "write to FILE instead of standard output; short: -o FILE.\n"
+             "FILE appears, or is replaced, when it is complete"},
+    {"help", CLI_FLAG, .flag = &want_help, .help = "print this text and exit"},
+    {"version", CLI_FLAG, .flag = &want_version, .help = "print the version and exit"},
+    {.name = NULL},
+};
+
+static void print_options(const cli_option *options)
+{
+    enum { column = 26 };
+    for (const cli_option *o = options; o->name != NULL; o++) {
+        int width =
+            printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+        for (const char *line = o->help; line != NULL; width = 0) {
+            const char *end = strchr(line, '\n');
+            printf("%*s%.*s\n", width < column ? column - width : 2, "",
+                   end != NULL ? (int)(end - line) : (int)strlen(line), line);
+            line = end != NULL ? end + 1 : NULL;
+        }
+    }
+}
+
+static void print_usage(void)
+{
+    printf("Usage: %s", program->name);
+    for (const cli_option *o = program->options; o->name != NULL; o++)
+        if (o->required)
+            printf(" --%s %s", o->name, o->value);
+    printf(" [OPTION]...\n%s\n\n", program->summary);
+    print_options(program->options);
+    print_options(common_options);
+    printf("\n%s\n"
+           "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an "
+           "option given\n"
+           "several times the last one counts. The output is tab-separated values: lines that start with "
+           "\"#\" say how\n"
+           "they were made, then come the names of the columns, then the rows.\n\n"
+           "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot "
+           "read or write.\n",
+           program->details);
+}
+
+static const cli_option *option_of(const char *word, const char **value)
+{
+    *value = NULL;
+    if (word[0] == '-' && word[1] == 'o') {
+        if (word[2] != '\0')
+            *value = word + 2;
+        return &common_options[0];
+    }
+    if (word[0] != '-' || word[1] != '-')
+        return NULL;
+    const size_t length = strcspn(word + 2, "=");
+    if (word[2 + length] == '=')
+        *value = word + 2 + length + 1;
+    const cli_option *o = find_option(program->options, word + 2, length);
+    return o != NULL ? o : find_option(common_options, word + 2, length);
+}
+
+/* Where the output goes is no part of how it was made: it is not stamped, and of other files only that there are. */
+static void stamp(FILE *words, const cli_option *o, const char *value)
+{
+    if (o == &common_options[0])
+        return;
+    fprintf(words, " --%s", o->name);
+    if (o->kind != CLI_FLAG)
+        fprintf(words, " %s", o->kind == CLI_FILE ? o->value : value);
+}
+
+static void print_and_exit_if_wanted(void)
+{
+    if (!want_help && !want_version)
+        return;
+    if (want_help)
+        print_usage();
+    else
+        printf("%s (springstep) %s\n", program->name, spring_version());
+    close_stream(stdout, "standard output");
+    exit(0);
+}
+
+void cli_parse(const cli_program *p, int argc, char **argv)
+{
+    program = p;
+    occupy_standard_streams();
+    handle_signals();
+    atexit(remove_temporaries);
+    uint64_t given = 0; /* bit i: option i of the table */
+    size_t length;
+    FILE *words = open_memstream(&command, &length);
+    if (words == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    fputs(program->name, words);
+    for (int i = 1; i < argc; i++) {
+        const char *value;
+        const cli_option *o = option_of(argv[i], &value);
+        if (o == NULL)
+            cli_fail(CLI_USAGE, "\"%s\": unknown option; see %s --help", argv[i], program->name);
+        if (o->kind == CLI_FLAG) {
+            if (value != NULL)
+                cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name,
+                         value);
+            *o->flag = true;
+            print_and_exit_if_wanted();
+        } else {
+            if (value == NULL && i + 1 < argc)
+                value = argv[++i];
+            if (value == NULL)
+                fail_at(o, NULL, "the value is missing; it should be ");
+            if (!store(o, value))
+                fail_at(o, value, "is not ");
+        }
+        stamp(words, o, value);
+        for (int k = 0; program->options[k].name != NULL; k++)
+            if (o == &program->options[k])
+                given |= UINT64_C(1) << k;
+    }
+    if (fclose(words) != 0)
+        cli_fail(CLI_FAILED, "out of memory");
+    for (int k = 0; program->options[k].name != NULL; k++)
+        if (program->options[k].required && (given >> k & 1) == 0)
+            fail_at(&program->options[k], NULL, "is missing; it should be ");
+}

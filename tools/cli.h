@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the command-line tools share: options from a table, strict numbers, tables of results, progress, exit statuses.
+ *
+ * A tool calls cli_parse() once, opens its tables, writes rows, and ends with cli_finish(). Whatever goes wrong on the
+ * way ends in cli_fail(): a message on standard error, an exit status, and no half-written file.
+ */
+#ifndef SPRINGSTEP_CLI_H
+#define SPRINGSTEP_CLI_H
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum cli_status {
+    CLI_FAILED = 1, /* the computation failed, or a check did not hold */
+    CLI_USAGE = 2,  /* bad usage */
+    CLI_IO = 3      /* cannot read or write */
+} cli_status;
+
+typedef enum cli_kind {
+    CLI_FLAG,         /* takes no value */
+    CLI_COUNT,        /* a whole number: 10000000 or 1e7 */
+    CLI_REAL,         /* a finite number */
+    CLI_NOT_NEGATIVE, /* a finite number >= 0 */
+    CLI_POSITIVE,     /* a finite number > 0 */
+    CLI_CHOICE,       /* one of a list of words */
+    CLI_FILE          /* the name of a file to write */
+} cli_kind;
+
+/* One row of a tool's table of options. What the pointer points to holds the default. Of an option that is given
+   several times the last one counts. */
+typedef struct cli_option {
+    const char *name; /* without the dashes; NULL ends the table */
+    cli_kind kind;
+    union {
+        bool *flag;
+        uint64_t *count;
+        double *real;
+        int *choice; /* index into choices */
+        const char **file;
+    };
+    const char *value; /* what --help calls the value */
+    const char *help;
+    const char *const *choices; /* CLI_CHOICE: ended by NULL */
+    uint64_t least, most;       /* CLI_COUNT: limits; most = 0 is no limit */
+    bool required;
+} cli_option;
+
+typedef struct cli_program {
+    const char *name;
+    const char *summary;       /* one line */
+    const char *details;       /* what the columns are, what else there is to know; whole lines */
+    const cli_option *options; /* besides --output, --help and --version, which every tool has */
+} cli_program;
+
+/* The words for --method, in the order of spring_method. */
+extern const char *const cli_methods[];
+
+/** Read the command line. Prints --help or --version and exits; exits with CLI_USAGE if anything is wrong. */
+void cli_parse(const cli_program *program, int argc, char **argv);
+
+#if defined(__GNUC__)
+#define CLI_PRINTF __attribute__((format(printf, 2, 3)))
+#else
+#define CLI_PRINTF
+#endif
+
+/** Print "program: message", remove the files that are not finished, and exit. */
+_Noreturn void cli_fail(cli_status status, const char *format, ...) CLI_PRINTF;
+
+/* A table of tab-separated values with its stamp: tool, version, command line and compiler, in lines that start with
+   "#". The bytes depend on nothing else, so two runs give the same file. */
+typedef struct cli_table cli_table;
+
+/** Open the table for the rows: the file of --output, or standard output. */
+cli_table *cli_open_output(void);
+
+/**
+ * Open a further table.
+ *
+ * The rows go to a temporary file beside the one that is asked for, which takes its name in cli_finish() and not
+ * before: an older file survives a failure, and a file under that name is complete. Devices and pipes are written
+ * directly.
+ */
+cli_table *cli_open_file(const char *path);
+
+void cli_comment(cli_table *table, const char *format, ...) CLI_PRINTF; /* one line, "# " is added */
+void cli_columns(cli_table *table, const char *names);                  /* separated by spaces */
+void cli_row(cli_table *table, const char *format, ...) CLI_PRINTF;     /* one line, "\n" is added */
+
+/** Close every table and give the files their names. */
+void cli_finish(void);
+
+/** Show on a terminal how much is done; costs a look at the clock per call. */
+void cli_progress(double fraction);
+
+#endif

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+/* A method together with the arithmetic it is computed in: see stepper.h. */
+#include "stepper.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "harness/stages.h"
+
+enum { LIBRARY, STAGES };
+
+const char *const stepper_arithmetics[] = {[LIBRARY] = "library", [STAGES] = "stages", NULL};
+
+void stepper_check(const stepper *m)
+{
+    if (m->arithmetic == STAGES && m->method != SPRING_RK4)
+        cli_fail(CLI_USAGE, "--arithmetic: \"stages\" is for rk4 only; with --method %s it should be library",
+                 cli_methods[m->method]);
+}
+
+void stepper_comment(const stepper *m, cli_table *table)
+{
+    cli_comment(table, "method: %s, arithmetic: %s", cli_methods[m->method],
+                stepper_arithmetics[m->arithmetic]);
+}
+
+/* As spring_advance() does it: the state is kept if it would overflow, and that is noticed within 4096 steps. */
+static spring_status advance_by_stages(spring_state *s, const spring_params *p, double dt, uint64_t n)
+{
+    spring_state now = *s;
+    while (n > 0) {
+        const uint64_t some = n < 4096 ? n : 4096;
+        stages_advance(&now, p, dt, some);
+        if (!isfinite(now.x) || !isfinite(now.v))
+            return SPRING_ENONFINITE;
+        n -= some;
+    }
+    *s = now;
+    return SPRING_OK;
+}
+
+spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt,
+                              uint64_t n)
+{
+    if (m->arithmetic == STAGES)
+        return advance_by_stages(s, p, dt, n);
+    return spring_advance(s, p, (spring_method)m->method, dt, n);
+}

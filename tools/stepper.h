@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* A method together with the arithmetic it is computed in: what --method and --arithmetic choose. */
+#ifndef SPRINGSTEP_STEPPER_H
+#define SPRINGSTEP_STEPPER_H
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+
+typedef struct stepper {
+    int method;     /* spring_method; int, as the target of an option */
+    int arithmetic; /* index into stepper_arithmetics: 0 the library's */
+} stepper;
+
+extern const char *const stepper_arithmetics[];
+
+/** Exit with CLI_USAGE if the method does not come in that arithmetic. */
+void stepper_check(const stepper *m);
+
+/** Stamp a table with the method. */
+void stepper_comment(const stepper *m, cli_table *table);
+
+/** spring_advance() in the chosen arithmetic. */
+spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt,
+                              uint64_t n);
+
+#endif
