@@ -33,9 +33,10 @@ const char *const cli_methods[] = {
 
 struct cli_table {
     FILE *stream;
-    const char *name; /* for messages */
-    char *path;       /* the name the file will have; NULL: it is written directly */
-    char *temporary;  /* the name it has until then */
+    const char *option; /* that names the file; NULL: standard output */
+    const char *name;   /* as it was given */
+    char *path;         /* what the file will be called; NULL: it is written directly */
+    char *temporary;    /* what it is called until then */
 };
 
 /* One tool is one process: what it was asked and what it has open. The signal handler needs the tables. */
@@ -119,15 +120,18 @@ static void occupy_standard_streams(void)
             exit(CLI_IO);
 }
 
-static _Noreturn void fail_to_write(const char *name)
+static _Noreturn void fail_to_write(const cli_table *table)
 {
-    cli_fail(CLI_IO, "cannot write %s: %s", name, strerror(errno));
+    if (table->option == NULL)
+        cli_fail(CLI_IO, "cannot write standard output: %s", strerror(errno));
+    cli_fail(CLI_IO, "--%s: cannot write \"%s\": %s; it should be a file that can be created or replaced",
+             table->option, table->name, strerror(errno));
 }
 
-static void close_stream(FILE *stream, const char *name)
+static void close_stream(const cli_table *table)
 {
-    if (fflush(stream) != 0 || fclose(stream) != 0)
-        fail_to_write(name);
+    if (fflush(table->stream) != 0 || fclose(table->stream) != 0)
+        fail_to_write(table);
 }
 
 static char *copy(const char *text, size_t length)
@@ -153,23 +157,23 @@ static FILE *open_temporary(cli_table *table, mode_t mode)
     const int fd = mkstemp(name);
     if (fd < 0) {
         table->temporary = NULL;
-        fail_to_write(table->name);
+        fail_to_write(table);
     }
     if (fchmod(fd, mode) != 0)
-        fail_to_write(table->name);
+        fail_to_write(table);
     return fdopen(fd, "w");
 }
 
-static void open_stream(cli_table *table, const char *path)
+static void open_stream(cli_table *table)
 {
+    const char *path = table->name;
     struct stat status;
     const bool exists = stat(path, &status) == 0;
-    table->name = path;
     if (strncmp(path, "/dev/", 5) == 0 || (exists && !S_ISREG(status.st_mode))) {
         table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
     } else if (exists) {
         if (access(path, W_OK) != 0)
-            fail_to_write(path);
+            fail_to_write(table);
         table->path = realpath(path, NULL); /* a link stays a link to what it points to */
         if (table->path != NULL)
             table->stream = open_temporary(table, status.st_mode & 0777);
@@ -180,18 +184,19 @@ static void open_stream(cli_table *table, const char *path)
         table->stream = open_temporary(table, 0666 & ~mask);
     }
     if (table->stream == NULL)
-        fail_to_write(path);
+        fail_to_write(table);
 }
 
-static cli_table *open_table(const char *path)
+cli_table *cli_open_file(const char *option, const char *path)
 {
     if (table_count == sizeof tables / sizeof tables[0])
         cli_fail(CLI_FAILED, "too many tables");
     cli_table *table = &tables[table_count++];
-    if (path != NULL)
-        open_stream(table, path);
-    else
-        *table = (cli_table){.stream = stdout, .name = "standard output"};
+    *table = (cli_table){.stream = stdout};
+    if (path != NULL && strcmp(path, "/dev/stdout") != 0) { /* opening that would truncate a file behind it */
+        *table = (cli_table){.option = option, .name = path};
+        open_stream(table);
+    }
     cli_comment(table, "springstep %s, %s", spring_version(), program->name);
     cli_comment(table, "command: %s", command);
 #if defined(__clang__)
@@ -206,12 +211,7 @@ static cli_table *open_table(const char *path)
 
 cli_table *cli_open_output(void)
 {
-    return open_table(output_path);
-}
-
-cli_table *cli_open_file(const char *path)
-{
-    return open_table(path);
+    return cli_open_file("output", output_path);
 }
 
 static void print_line(cli_table *table, const char *start, const char *format, va_list arguments)
@@ -220,7 +220,7 @@ static void print_line(cli_table *table, const char *start, const char *format, 
         erase_progress();
     if (fputs(start, table->stream) == EOF || vfprintf(table->stream, format, arguments) < 0 ||
         fputc('\n', table->stream) == EOF)
-        fail_to_write(table->name);
+        fail_to_write(table);
 }
 
 void cli_comment(cli_table *table, const char *format, ...)
@@ -252,12 +252,12 @@ void cli_finish(void)
 {
     erase_progress();
     for (size_t i = 0; i < table_count; i++)
-        close_stream(tables[i].stream, tables[i].name);
+        close_stream(&tables[i]);
     for (size_t i = 0; i < table_count; i++) {
         if (tables[i].path == NULL)
             continue;
         if (rename(tables[i].temporary, tables[i].path) != 0)
-            fail_to_write(tables[i].name);
+            fail_to_write(&tables[i]);
         tables[i].temporary = NULL;
     }
 }
@@ -465,7 +465,7 @@ static void print_and_exit_if_wanted(void)
         print_usage();
     else
         printf("%s (springstep) %s\n", program->name, spring_version());
-    close_stream(stdout, "standard output");
+    close_stream(&(cli_table){.stream = stdout});
     exit(0);
 }
 
@@ -485,7 +485,7 @@ void cli_parse(const cli_program *p, int argc, char **argv)
         const char *value;
         const cli_option *o = option_of(argv[i], &value);
         if (o == NULL)
-            cli_fail(CLI_USAGE, "\"%s\": unknown option; see %s --help", argv[i], program->name);
+            cli_fail(CLI_USAGE, "\"%s\" is not an option; see %s --help", argv[i], program->name);
         if (o->kind == CLI_FLAG) {
             if (value != NULL)
                 cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name,

@@ -77,13 +77,13 @@ typedef struct cli_table cli_table;
 cli_table *cli_open_output(void);
 
 /**
- * Open a further table.
+ * Open a further table, in the file that an option names; NULL: standard output.
  *
  * The rows go to a temporary file beside the one that is asked for, which takes its name in cli_finish() and not
  * before: an older file survives a failure, and a file under that name is complete. Devices and pipes are written
  * directly.
  */
-cli_table *cli_open_file(const char *path);
+cli_table *cli_open_file(const char *option, const char *path);
 
 void cli_comment(cli_table *table, const char *format, ...) CLI_PRINTF; /* one line, "# " is added */
 void cli_columns(cli_table *table, const char *names);                  /* separated by spaces */

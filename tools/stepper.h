@@ -14,6 +14,9 @@ typedef struct stepper {
 
 extern const char *const stepper_arithmetics[];
 
+/* Steps to take between two looks at the clock: a fraction of a second. */
+static const uint64_t stepper_leap = UINT64_C(1) << 24;
+
 /** Exit with CLI_USAGE if the method does not come in that arithmetic. */
 void stepper_check(const stepper *m);
 

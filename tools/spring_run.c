@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-run: one spring through time beside its exact solution.
+ *
+ * Time is i dt from the start, and so is the exact solution: neither is accumulated from row to row.
+ */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+#include "stepper.h"
+
+static stepper chosen;
+static double duration;
+static uint64_t steps, every;
+static double from;
+static const char *envelope_path;
+static uint64_t envelope_columns = 600;
+static spring_params spring = {.mass = 1, .stiffness = 1};
+static spring_state start = {.x = 1};
+
+static const cli_option options[] = {
+    {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
+     .help = "euler, leapfrog, rk4 or exact"},
+    {"duration", CLI_POSITIVE, .real = &duration, .required = true, .value = "H", .help = "time to run [s]"},
+    {"steps", CLI_COUNT, .count = &steps, .least = 1, .required = true, .value = "N",
+     .help = "number of steps; each is H/N long"},
+    {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
+     .help = "a row for every K-th step, the start included; without it only\n"
+             "the final state"},
+    {"from", CLI_REAL, .real = &from, .value = "T",
+     .help = "no rows for times before T [s], but for the final state; 0"},
+    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]; 1"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]; 1"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]; 0"},
+    {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N]; 0"},
+    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m]; 1"},
+    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s]; 0"},
+    {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
+     .help = "library (the default), or, for rk4, stages: k1, k2, k3, k4 one by one"},
+    {"envelope", CLI_FILE, .file = &envelope_path, .value = "FILE",
+     .help = "in the same pass, write to FILE between what limits the error moves:\n"
+             "its minimum and maximum over all steps, for each of --columns equal\n"
+             "parts of the run"},
+    {"columns", CLI_COUNT, .count = &envelope_columns, .least = 1, .most = 1000000, .value = "N",
+     .help = "number of these parts; 600"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-run",
+    .summary = "Moves one spring through time and compares it with its exact solution.",
+    .details =
+        "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m and "
+        "error_m,\n"
+        "the distance |x_m - exact_x_m|; exact_x_m is computed from the start. The last row is the final "
+        "state. With\n"
+        "--method exact one evaluation covers the steps from row to row, 2^24 of them at most (with "
+        "--envelope: each\n"
+        "step has its own), and the error is what rounding adds up to.\n"
+        "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m, with "
+        "the sign of\n"
+        "x_m - exact_x_m. Parts without a step have no row.\n"
+        "A state that becomes infinite ends the run with a message and status 1, after the rows before it.",
+    .options = options,
+};
+
+static double dt;
+
+static double exact_x(uint64_t step)
+{
+    spring_state s = start;
+    spring_step_exact(&s, &spring, (double)step * dt);
+    return s.x;
+}
+
+static void write_state(cli_table *table, uint64_t step, const spring_state *s)
+{
+    const double exact = exact_x(step);
+    cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
+            step, (double)step * dt, s->x, s->v, spring_energy(s, &spring), exact, fabs(s->x - exact));
+}
+
+/* ------------------------------------------------------------------------------------------------- the envelope */
+
+typedef struct envelope {
+    cli_table *table; /* NULL: not wanted */
+    uint64_t part;    /* the one we are in */
+    double min, max;  /* of the error so far in this part [m] */
+} envelope;
+
+static void write_part(const envelope *e)
+{
+    if (e->min <= e->max)
+        cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
+                ((double)e->part + 0.5) / (double)envelope_columns * duration, e->min, e->max);
+}
+
+static void add_to_envelope(envelope *e, uint64_t step, const spring_state *s)
+{
+    const double error = s->x - exact_x(step);
+    uint64_t part = (uint64_t)((double)step / (double)steps * (double)envelope_columns);
+    if (part == envelope_columns) /* the last step belongs to the last part */
+        part--;
+    if (part != e->part) {
+        write_part(e);
+        *e = (envelope){e->table, part, INFINITY, -INFINITY};
+    }
+    e->min = fmin(e->min, error);
+    e->max = fmax(e->max, error);
+}
+
+/* -------------------------------------------------------------------------------------------------------- the run */
+
+/* Until something is to be written, measured, or shown as progress. */
+static uint64_t steps_at_once(uint64_t step)
+{
+    uint64_t n = stepper_leap;
+    if (envelope_path != NULL)
+        n = 1;
+    if (every > 0 && n > every - step % every)
+        n = every - step % every;
+    return n < steps - step ? n : steps - step;
+}
+
+/* Advancing n steps from here fails: say where. */
+static _Noreturn void fail_at_overflow(spring_state *s, uint64_t step, uint64_t n)
+{
+    for (; n > 0; n /= 2)
+        while (stepper_advance(&chosen, s, &spring, dt, n) == SPRING_OK)
+            step += n;
+    cli_fail(CLI_FAILED,
+             "step %" PRIu64 ", to t = %.17g s, makes the state infinite: it was x = %g m, v = %g m/s",
+             step + 1, (double)(step + 1) * dt, s->x, s->v);
+}
+
+static void run(cli_table *table, envelope *e)
+{
+    spring_state s = start;
+    for (uint64_t step = 0;;) {
+        const bool row_due = every > 0 && step % every == 0 && (double)step * dt >= from;
+        if (row_due || step == steps)
+            write_state(table, step, &s);
+        if (envelope_path != NULL)
+            add_to_envelope(e, step, &s);
+        if (step == steps)
+            return;
+        const uint64_t n = steps_at_once(step);
+        if (stepper_advance(&chosen, &s, &spring, dt, n) != SPRING_OK)
+            fail_at_overflow(&s, step, n);
+        step += n;
+        cli_progress((double)step / (double)steps);
+    }
+}
+
+static void check_options(void)
+{
+    stepper_check(&chosen);
+    if (!(dt > 0))
+        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger",
+                 duration, steps);
+    if (spring_advance(&start, &spring, SPRING_EXACT, dt, 0) != SPRING_OK)
+        cli_fail(CLI_USAGE,
+                 "--mass: \"%g\" is too small: stiffness/mass, damping/mass and load/mass should be finite "
+                 "numbers",
+                 spring.mass);
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    dt = duration / (double)steps;
+    check_options();
+
+    cli_table *table = cli_open_output();
+    stepper_comment(&chosen, table);
+    cli_columns(table, "method step t_s x_m v_m_per_s energy_J exact_x_m error_m");
+    envelope e = {.min = INFINITY, .max = -INFINITY};
+    if (envelope_path != NULL) {
+        e.table = cli_open_file("envelope", envelope_path);
+        stepper_comment(&chosen, e.table);
+        cli_columns(e.table, "method t_s error_min_m error_max_m");
+    }
+    run(table, &e);
+    if (envelope_path != NULL)
+        write_part(&e);
+    cli_finish();
+    return 0;
+}
