@@ -1,0 +1,83 @@
+# shellcheck shell=bash
+# SPDX-License-Identifier: MIT
+# What tools/report and tools/test have in common: install what is missing, configure, compile. Sourced by both.
+
+set -euo pipefail
+
+me=tools/$(basename "$0")
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+build=$root/build
+
+say() {
+    printf '%s: %s\n' "$me" "$*" >&2
+}
+
+# Is it there? Asked of the thing itself and not of a package manager, so it works on every system.
+present() {
+    local kind=$1 name=$2 python
+    case $kind in
+    command) command -v "$name" >/dev/null ;;
+    header) printf '#include <%s>\n' "$name" | cc -E - >/dev/null 2>&1 ;;
+    pkgconfig) pkg-config --exists "$name" 2>/dev/null ;;
+    python) # the Python that runs meson, from its first line, is the one that makes the page
+        python=$(sed -n '1s/^#! *//p;q' "$(command -v meson)" 2>/dev/null) || return 1
+        # shellcheck disable=SC2086 # "/usr/bin/env python3" is two words
+        ${python:-python3} -c "import $name" 2>/dev/null
+        ;;
+    *)
+        say "packages.txt: unknown kind \"$kind\""
+        exit 1
+        ;;
+    esac
+}
+
+missing_packages() {
+    local kind name package
+    while read -r kind name package; do
+        if [[ -n $kind && $kind != '#'* ]] && ! present "$kind" "$name"; then
+            echo "$package"
+        fi
+    done <"$root/tools/packages.txt"
+}
+
+give_up() {
+    say "$1; these Debian packages, or their like, are missing:" "${@:2}"
+    exit 3
+}
+
+install_missing() {
+    local -a missing as_root=()
+    mapfile -t missing < <(missing_packages)
+    ((${#missing[@]})) || return 0
+    command -v apt-get >/dev/null || give_up 'packages can be installed here only by you' "${missing[@]}"
+    if ((EUID)); then
+        command -v sudo >/dev/null || give_up 'installing packages takes root or sudo' "${missing[@]}"
+        as_root=(sudo)
+    fi
+    say "installing ${missing[*]}"
+    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+    if ! { "${as_root[@]}" update && "${as_root[@]}" install --no-install-recommends "${missing[@]}"; } >&2 </dev/null; then
+        give_up 'apt-get failed' "${missing[@]}"
+    fi
+    mapfile -t missing < <(missing_packages)
+    ((${#missing[@]} == 0)) || give_up 'apt-get succeeded and yet something is not found' "${missing[@]}"
+}
+
+# Under sudo, in somebody's own checkout: only the packages needed root. What is built stays theirs.
+return_to_owner() {
+    local owner
+    owner=$(stat -c %u "$root")
+    if ((EUID == 0 && owner != 0)) && [[ ${SUDO_UID:-} == "$owner" ]]; then
+        exec sudo -u "#$owner" -- "$root/$me" "$@"
+    fi
+}
+
+# prepare ARGUMENTS...: what the script itself was called with
+prepare() {
+    install_missing
+    return_to_owner "$@"
+    local -a how=()
+    [[ ! -e $build/build.ninja ]] || how=(--reconfigure) # there may be more to find than when it was configured
+    meson setup "${how[@]}" -Dtools=enabled -Dtests=enabled -Dreport=enabled "$build" "$root" >&2
+    meson compile -C "$build" >&2
+}
