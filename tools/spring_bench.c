@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-bench: what a step costs, beside the plain loop that anybody would write.
+ *
+ * Method    A sample is the time of a fixed number of steps, from the same start. Samples of the library and of the
+ *           plain loop alternate, so that what slows the machine down for a while slows both; each figure is the median
+ *           of its samples. Start and parameters come out of volatile objects and the end goes into one: nothing can
+ *           be computed by the compiler, or left out.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+
+static bool quick;
+
+static const cli_option options[] = {
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a second in all"},
+    {.name = NULL},
+};
+
+static const double noisy_spread = 0.05; /* --help says it, too */
+
+static const cli_program program = {
+    .name = "spring-bench",
+    .summary = "What a step of a spring costs, beside a plain loop in the same run.",
+    .details =
+        "Columns: kernel, precision, count (springs), ns_per_spring_step, limit_ns (the plain loop),\n"
+        "ratio (of the two), spread, verdict, goal_ratio and goal_ns (what the library promises; inf:\n"
+        "nothing).\n\n"
+        "Kernels: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of the kernel,\n"
+        "METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with damping, with load.\n"
+        "Limits: the same steps written out in a loop, in registers: Euler; kick, drift, kick; the four\n"
+        "stages of rk4; for exact the textbook formula of an underdamped spring, exp, cos and sin.\n\n"
+        "Figures are medians of samples that alternate with those of the limit. spread is the distance\n"
+        "between the quartiles over the median, the larger one of kernel and limit. verdict is ok, noisy\n"
+        "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal; a row above its\n"
+        "goal makes the exit status 1.",
+    .options = options,
+};
+
+/* Light damping and short steps: over the few hundred seconds that a sample lasts for the spring,
+   nothing overflows, dies out or becomes denormal. */
+static volatile const double mass = 1.3, stiffness = 2.7, damping = 0.06, load = 0.9, x0 = 0.83, v0 = -0.59;
+static volatile const double dt = 1e-4;
+static volatile double sink;
+
+/* ------------------------------------------------------------------------------------------------- the plain loop */
+
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline)) /* constant arguments shape the loops */
+#else
+#define INLINE static inline
+#endif
+
+typedef struct model {
+    double w, g, a; /* stiffness/mass [1/s^2], damping/mass [1/s], load/mass [m/s^2] */
+    bool damped, loaded;
+} model;
+
+INLINE double acceleration(double x, double v, model m)
+{
+    double result = -(m.w * x);
+    if (m.loaded)
+        result += m.a;
+    if (m.damped)
+        result -= m.g * v;
+    return result;
+}
+
+INLINE spring_state plain_euler(spring_state s, model m, double h)
+{
+    return (spring_state){s.x + h * s.v, s.v + h * acceleration(s.x, s.v, m)};
+}
+
+INLINE spring_state plain_leapfrog(spring_state s, model m, double h)
+{
+    s.v += h / 2 * acceleration(s.x, s.v, m);
+    s.x += h * s.v;
+    s.v += h / 2 * acceleration(s.x, 0, m);
+    if (m.damped)
+        s.v *= 1 / (1 + h / 2 * m.g); /* computed once, before the loop */
+    return s;
+}
+
+INLINE spring_state plain_rk4(spring_state s, model m, double h)
+{
+    const spring_state k1 = {s.v, acceleration(s.x, s.v, m)};
+    const spring_state y2 = {s.x + h / 2 * k1.x, s.v + h / 2 * k1.v};
+    const spring_state k2 = {y2.v, acceleration(y2.x, y2.v, m)};
+    const spring_state y3 = {s.x + h / 2 * k2.x, s.v + h / 2 * k2.v};
+    const spring_state k3 = {y3.v, acceleration(y3.x, y3.v, m)};
+    const spring_state y4 = {s.x + h * k3.x, s.v + h * k3.v};
+    const spring_state k4 = {y4.v, acceleration(y4.x, y4.v, m)};
+    return (spring_state){
+        s.x + h / 6 * (k1.x + 2 * k2.x + 2 * k3.x + k4.x),
+        s.v + h / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v),
+    };
+}
+
+INLINE spring_state plain_exact(spring_state s, model m, double t)
+{
+    const double b = m.g / 2, split = sqrt(m.w - b * b);
+    const double E = m.damped ? exp(-b * t) : 1, C = cos(split * t), S = sin(split * t) / split;
+    const double rest = m.loaded ? m.a / m.w : 0, y = s.x - rest;
+    return (spring_state){rest + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (m.w * y + b * s.v))};
+}
+
+typedef spring_state plain_step(spring_state s, model m, double h);
+
+INLINE spring_state plain_loop(plain_step *step, spring_state s, model m, double h, uint64_t n)
+{
+    for (; n > 0; n--)
+        s = step(s, m, h);
+    return s;
+}
+
+INLINE spring_state plain_steps(plain_step *step, spring_state s, model m, double h, uint64_t n)
+{
+    const double w = m.w, g = m.g, a = m.a;
+    if (m.damped && m.loaded)
+        return plain_loop(step, s, (model){w, g, a, true, true}, h, n);
+    if (m.damped)
+        return plain_loop(step, s, (model){w, g, 0, true, false}, h, n);
+    if (m.loaded)
+        return plain_loop(step, s, (model){w, 0, a, false, true}, h, n);
+    return plain_loop(step, s, (model){w, 0, 0, false, false}, h, n);
+}
+
+static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
+                              uint64_t n)
+{
+    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
+                     p->load != 0};
+    switch (method) {
+    case SPRING_EULER:
+        return plain_steps(plain_euler, s, m, h, n);
+    case SPRING_LEAPFROG:
+        return plain_steps(plain_leapfrog, s, m, h, n);
+    case SPRING_RK4:
+        return plain_steps(plain_rk4, s, m, h, n);
+    case SPRING_EXACT:
+        for (; n > 0; n--)
+            s = plain_exact(s, m, dt); /* volatile: evaluated anew at every step, as the library does */
+    }
+    return s;
+}
+
+/* --------------------------------------------------------------------------------------------------- the library */
+
+typedef enum form { ADVANCE, CALL, ADVANCE_1 } form;
+
+static const char *const form_names[] = {[ADVANCE] = "", [CALL] = "_call", [ADVANCE_1] = "_advance_1"};
+
+static void (*const kernels[])(spring_state *s, const spring_params *p, double dt) = {
+    [SPRING_EULER] = spring_step_euler,
+    [SPRING_LEAPFROG] = spring_step_leapfrog,
+    [SPRING_RK4] = spring_step_rk4,
+    [SPRING_EXACT] = spring_step_exact,
+};
+
+static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p,
+                                double h, uint64_t n)
+{
+    switch (f) {
+    case ADVANCE:
+        spring_advance(&s, p, method, h, n);
+        break;
+    case CALL:
+        for (; n > 0; n--)
+            kernels[method](&s, p, h);
+        break;
+    case ADVANCE_1:
+        for (; n > 0; n--)
+            spring_advance(&s, p, method, h, 1);
+        break;
+    }
+    return s;
+}
+
+/* ---------------------------------------------------------------------------------------------------- the samples */
+
+enum { most_samples = 101 };
+
+typedef struct row {
+    spring_method method;
+    form form;
+    bool damped, loaded;
+    double goal_ratio, goal_ns; /* [1], [ns] */
+} row;
+
+static double now_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+/* Time of a step [ns]. */
+static double sample(const row *r, bool plain, uint64_t n)
+{
+    const spring_params p = {mass, stiffness, r->damped ? damping : 0, r->loaded ? load : 0};
+    spring_state s = {x0, v0};
+    const double h = dt, start = now_ns();
+    s = plain ? run_plain(r->method, s, &p, h, n) : run_library(r->method, r->form, s, &p, h, n);
+    const double elapsed = now_ns() - start;
+    sink = s.x + s.v;
+    return elapsed / (double)n;
+}
+
+/* As many steps as fill the time. */
+static uint64_t steps_for(const row *r, bool plain, double time_ns)
+{
+    uint64_t n = 1024;
+    while (sample(r, plain, n) * (double)n < time_ns)
+        n *= 2;
+    return n;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+typedef struct figure {
+    double median, spread;
+} figure;
+
+static figure summarise(double *samples, size_t count)
+{
+    qsort(samples, count, sizeof *samples, ascending);
+    const double median = samples[count / 2];
+    return (figure){median, (samples[count - 1 - count / 4] - samples[count / 4]) / median};
+}
+
+/* Measures and writes one row; false where it is above its goal. */
+static bool measure(cli_table *table, const row *r)
+{
+    const size_t count = quick ? 15 : most_samples;
+    const double sample_ns = quick ? 1e6 : 4e6;
+    double library[most_samples], plain[most_samples];
+    const uint64_t n = steps_for(r, false, sample_ns), n_plain = steps_for(r, true, sample_ns);
+    for (size_t i = 0; i < count; i++) {
+        library[i] = sample(r, false, n);
+        plain[i] = sample(r, true, n_plain);
+    }
+    const figure ours = summarise(library, count), limit = summarise(plain, count);
+    const double ratio = ours.median / limit.median, spread = fmax(ours.spread, limit.spread);
+    const bool noisy = !(spread <= noisy_spread);
+    const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns;
+    cli_row(table, "%s%s%s%s\tdouble\t1\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%g\t%g", spring_method_name(r->method),
+            r->damped ? "_damped" : "", r->loaded ? "_loaded" : "", form_names[r->form], ours.median,
+            limit.median, ratio, spread,
+            noisy   ? "noisy"
+            : holds ? "ok"
+                    : "above_goal",
+            r->goal_ratio, r->goal_ns);
+    return noisy || holds;
+}
+
+/* ------------------------------------------------------------------------------------------------------ the table */
+
+static const row rows[] = {
+    {SPRING_EULER, ADVANCE, false, false, INFINITY, INFINITY},
+    {SPRING_EULER, ADVANCE, true, false, INFINITY, INFINITY},
+    {SPRING_EULER, ADVANCE, false, true, INFINITY, INFINITY},
+    {SPRING_EULER, ADVANCE, true, true, INFINITY, INFINITY},
+    {SPRING_LEAPFROG, ADVANCE, false, false, 0.95, INFINITY},
+    {SPRING_LEAPFROG, ADVANCE, true, false, INFINITY, INFINITY},
+    {SPRING_LEAPFROG, ADVANCE, false, true, INFINITY, INFINITY},
+    {SPRING_LEAPFROG, ADVANCE, true, true, INFINITY, INFINITY},
+    {SPRING_RK4, ADVANCE, false, false, 0.45, INFINITY},
+    {SPRING_RK4, ADVANCE, true, false, INFINITY, INFINITY},
+    {SPRING_RK4, ADVANCE, false, true, INFINITY, INFINITY},
+    {SPRING_RK4, ADVANCE, true, true, INFINITY, INFINITY},
+    {SPRING_EULER, CALL, false, false, INFINITY, 12},
+    {SPRING_EULER, ADVANCE_1, false, false, INFINITY, 12},
+    {SPRING_LEAPFROG, CALL, false, false, INFINITY, 12},
+    {SPRING_LEAPFROG, ADVANCE_1, false, false, INFINITY, 12},
+    {SPRING_RK4, CALL, false, false, INFINITY, 12},
+    {SPRING_RK4, ADVANCE_1, false, false, INFINITY, 12},
+    {SPRING_EXACT, CALL, false, false, INFINITY, INFINITY},
+    {SPRING_EXACT, CALL, true, false, INFINITY, INFINITY},
+    {SPRING_EXACT, CALL, true, true, INFINITY, INFINITY},
+    {SPRING_EXACT, ADVANCE_1, true, true, INFINITY, INFINITY},
+};
+
+/* The model of the processor as Linux knows it; elsewhere its architecture. */
+static void stamp_processor(cli_table *table)
+{
+    char line[256];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
+        const char *colon = strchr(line, ':');
+        if (colon != NULL && strncmp(line, "model name", strlen("model name")) == 0) {
+            cli_comment(table, "processor:%.*s", (int)strcspn(colon + 1, "\n"), colon + 1);
+            fclose(file);
+            return;
+        }
+    }
+    if (file != NULL)
+        fclose(file);
+    struct utsname system;
+    cli_comment(table, "processor: %s", uname(&system) >= 0 ? system.machine : "unknown");
+}
+
+static void stamp(cli_table *table)
+{
+    cli_comment(table, "flags: %s", SPRING_BENCH_FLAGS);
+    stamp_processor(table);
+    char date[32];
+    const time_t now = time(NULL);
+    if (strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now)) > 0)
+        cli_comment(table, "date: %s", date);
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    cli_table *table = cli_open_output();
+    stamp(table);
+    cli_columns(table,
+                "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns");
+    const size_t count = sizeof rows / sizeof rows[0];
+    bool all_hold = true;
+    for (size_t i = 0; i < count; i++) {
+        cli_progress((double)i / (double)count);
+        all_hold &= measure(table, &rows[i]);
+    }
+    cli_finish();
+    return all_hold ? 0 : CLI_FAILED;
+}
