@@ -13,12 +13,12 @@ static const mpfr_rnd_t nearest = MPFR_RNDN;
 
 void reference_init(reference *r)
 {
-    mpfr_inits2(precision, r->x, r->v, r->omega, r->scale, (mpfr_ptr)NULL);
+    mpfr_inits2(precision, r->x, r->v, r->omega, r->size, (mpfr_ptr)NULL);
 }
 
 void reference_clear(reference *r)
 {
-    mpfr_clears(r->x, r->v, r->omega, r->scale, (mpfr_ptr)NULL);
+    mpfr_clears(r->x, r->v, r->omega, r->size, (mpfr_ptr)NULL);
 }
 
 static void set_omega(mpfr_t omega, const spring_params *p)
@@ -46,79 +46,7 @@ static void spectral_norm(mpfr_t norm, const mpfr_t a, const mpfr_t b, const mpf
     mpfr_clears(s, t, (mpfr_ptr)NULL);
 }
 
-/* ------------------------------------------------------------------------------------------- the true solution */
-
-/* By eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for the cancellation that the
-   library avoids. */
-void reference_exact(reference *ref, const spring_params *p, spring_state start, double t)
-{
-    mpfr_t w, b, r, C, S, E, F, G, H, P, x0, v0, u;
-    mpfr_inits2(precision, w, b, r, C, S, E, F, G, H, P, x0, v0, u, (mpfr_ptr)NULL);
-    set_omega(ref->omega, p);
-    mpfr_set_d(w, p->stiffness, nearest);
-    mpfr_div_d(w, w, p->mass, nearest);
-    mpfr_set_d(b, p->damping, nearest);
-    mpfr_div_d(b, b, p->mass, nearest);
-    mpfr_div_ui(b, b, 2, nearest);
-    mpfr_sqr(r, b, nearest);
-    mpfr_sub(r, w, r, nearest);
-    const int oscillates = mpfr_sgn(r);
-    mpfr_abs(r, r, nearest);
-    mpfr_sqrt(r, r, nearest);
-
-    mpfr_mul_d(u, r, t, nearest);
-    if (oscillates > 0)
-        mpfr_sin_cos(S, C, u, nearest);
-    else
-        mpfr_sinh_cosh(S, C, u, nearest);
-    if (oscillates == 0)
-        mpfr_set_d(S, t, nearest);
-    else
-        mpfr_div(S, S, r, nearest);
-    mpfr_mul_d(E, b, -t, nearest);
-    mpfr_exp(E, E, nearest);
-    mpfr_mul(H, E, S, nearest);
-    mpfr_mul(u, b, S, nearest);
-    mpfr_add(F, C, u, nearest);
-    mpfr_mul(F, F, E, nearest);
-    mpfr_sub(G, C, u, nearest);
-    mpfr_mul(G, G, E, nearest);
-
-    /* the response to unit acceleration from rest: (1 - F)/w, or without stiffness (t - H)/(2 b), or t^2/2 */
-    if (mpfr_sgn(w) > 0) {
-        mpfr_ui_sub(P, 1, F, nearest);
-        mpfr_div(P, P, w, nearest);
-    } else if (mpfr_sgn(b) > 0) {
-        mpfr_d_sub(P, t, H, nearest);
-        mpfr_div(P, P, b, nearest);
-        mpfr_div_ui(P, P, 2, nearest);
-    } else {
-        mpfr_set_d(P, t, nearest);
-        mpfr_sqr(P, P, nearest);
-        mpfr_div_ui(P, P, 2, nearest);
-    }
-
-    mpfr_set_d(x0, start.x, nearest);
-    mpfr_set_d(v0, start.v, nearest);
-    mpfr_fmma(ref->x, F, x0, H, v0, nearest);
-    mpfr_mul(u, w, H, nearest);
-    mpfr_fmms(ref->v, G, v0, u, x0, nearest);
-    mpfr_set_d(C, p->load, nearest);
-    mpfr_div_d(C, C, p->mass, nearest);
-    mpfr_fma(ref->x, C, P, ref->x, nearest);
-    mpfr_fma(ref->v, C, H, ref->v, nearest);
-
-    mpfr_mul(S, H, ref->omega, nearest); /* the propagator in (x, v/omega): (F S; -w H/omega G) */
-    mpfr_div(u, u, ref->omega, nearest);
-    mpfr_neg(u, u, nearest);
-    spectral_norm(ref->scale, F, S, u, G);
-    mpfr_div(v0, v0, ref->omega, nearest);
-    mpfr_hypot(u, x0, v0, nearest);
-    mpfr_mul(ref->scale, ref->scale, u, nearest);
-    mpfr_clears(w, b, r, C, S, E, F, G, H, P, x0, v0, u, (mpfr_ptr)NULL);
-}
-
-/* --------------------------------------------------------------------------------------- the numerical solution */
+/* -------------------------------------------------------------------------------------------------- affine maps */
 
 /* y -> M y + q on y = (x, v) */
 typedef struct affine {
@@ -160,6 +88,113 @@ static void affine_compose(affine *to, const affine *after, const affine *before
     affine_set(to, &f);
     affine_clear(&f);
 }
+
+/* The norm of the linear part in (x, v/omega). */
+static void affine_norm(mpfr_t norm, const affine *f, const mpfr_t omega)
+{
+    mpfr_t b, c;
+    mpfr_inits2(precision, b, c, (mpfr_ptr)NULL);
+    mpfr_mul(b, f->m[0][1], omega, nearest);
+    mpfr_div(c, f->m[1][0], omega, nearest);
+    spectral_norm(norm, f->m[0][0], b, c, f->m[1][1]);
+    mpfr_clears(b, c, (mpfr_ptr)NULL);
+}
+
+static void apply(reference *ref, const affine *f)
+{
+    mpfr_t x, norm;
+    mpfr_inits2(precision, x, norm, (mpfr_ptr)NULL);
+    affine_norm(norm, f, ref->omega);
+    mpfr_mul(ref->size, ref->size, norm, nearest);
+    mpfr_fmma(x, f->m[0][0], ref->x, f->m[0][1], ref->v, nearest);
+    mpfr_fmma(ref->v, f->m[1][0], ref->x, f->m[1][1], ref->v, nearest);
+    mpfr_add(ref->x, x, f->q[0], nearest);
+    mpfr_add(ref->v, ref->v, f->q[1], nearest);
+    mpfr_clears(x, norm, (mpfr_ptr)NULL);
+}
+
+void reference_start(reference *ref, const spring_params *p, spring_state start)
+{
+    mpfr_t u;
+    mpfr_init2(u, precision);
+    set_omega(ref->omega, p);
+    mpfr_set_d(ref->x, start.x, nearest);
+    mpfr_set_d(ref->v, start.v, nearest);
+    mpfr_div(u, ref->v, ref->omega, nearest);
+    mpfr_hypot(ref->size, ref->x, u, nearest);
+    mpfr_clear(u);
+}
+
+/* ------------------------------------------------------------------------------------------- the true solution */
+
+/* The solution over t as a map: eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for the
+   cancellation that the library avoids. */
+static void solution_map(affine *f, const spring_params *p, double t)
+{
+    mpfr_t w, b, r, C, S, E, H, P, a;
+    mpfr_inits2(precision, w, b, r, C, S, E, H, P, a, (mpfr_ptr)NULL);
+    mpfr_set_d(w, p->stiffness, nearest);
+    mpfr_div_d(w, w, p->mass, nearest);
+    mpfr_set_d(b, p->damping, nearest);
+    mpfr_div_d(b, b, p->mass, nearest);
+    mpfr_div_ui(b, b, 2, nearest);
+    mpfr_set_d(a, p->load, nearest);
+    mpfr_div_d(a, a, p->mass, nearest);
+    mpfr_sqr(r, b, nearest);
+    mpfr_sub(r, w, r, nearest);
+    const int oscillates = mpfr_sgn(r);
+    mpfr_abs(r, r, nearest);
+    mpfr_sqrt(r, r, nearest);
+
+    mpfr_mul_d(E, r, t, nearest);
+    if (oscillates > 0)
+        mpfr_sin_cos(S, C, E, nearest);
+    else
+        mpfr_sinh_cosh(S, C, E, nearest);
+    if (oscillates == 0)
+        mpfr_set_d(S, t, nearest);
+    else
+        mpfr_div(S, S, r, nearest);
+    mpfr_mul_d(E, b, -t, nearest);
+    mpfr_exp(E, E, nearest);
+    mpfr_mul(H, E, S, nearest);
+    mpfr_mul(S, b, S, nearest);
+    mpfr_add(f->m[0][0], C, S, nearest);
+    mpfr_mul(f->m[0][0], f->m[0][0], E, nearest);
+    mpfr_sub(f->m[1][1], C, S, nearest);
+    mpfr_mul(f->m[1][1], f->m[1][1], E, nearest);
+    mpfr_set(f->m[0][1], H, nearest);
+    mpfr_mul(f->m[1][0], w, H, nearest);
+    mpfr_neg(f->m[1][0], f->m[1][0], nearest);
+
+    /* the response to unit acceleration from rest: (1 - F)/w, or without stiffness (t - H)/(2 b), or t^2/2 */
+    if (mpfr_sgn(w) > 0) {
+        mpfr_ui_sub(P, 1, f->m[0][0], nearest);
+        mpfr_div(P, P, w, nearest);
+    } else if (mpfr_sgn(b) > 0) {
+        mpfr_d_sub(P, t, H, nearest);
+        mpfr_div(P, P, b, nearest);
+        mpfr_div_ui(P, P, 2, nearest);
+    } else {
+        mpfr_set_d(P, t, nearest);
+        mpfr_sqr(P, P, nearest);
+        mpfr_div_ui(P, P, 2, nearest);
+    }
+    mpfr_mul(f->q[0], a, P, nearest);
+    mpfr_mul(f->q[1], a, H, nearest);
+    mpfr_clears(w, b, r, C, S, E, H, P, a, (mpfr_ptr)NULL);
+}
+
+void reference_exact(reference *ref, const spring_params *p, double t)
+{
+    affine f;
+    affine_init(&f);
+    solution_map(&f, p, t);
+    apply(ref, &f);
+    affine_clear(&f);
+}
+
+/* --------------------------------------------------------------------------------------- the numerical solution */
 
 typedef struct rates {
     mpfr_t w, g, a;
@@ -252,32 +287,25 @@ static void step_map(affine *f, spring_method m, const rates *r, const mpfr_t h)
     }
 }
 
-static void rates_init_rounded(rates *r, const spring_params *p)
-{
-    mpfr_inits2(precision, r->w, r->g, r->a, (mpfr_ptr)NULL);
-    mpfr_set_d(r->w, p->stiffness / p->mass, nearest);
-    mpfr_set_d(r->g, p->damping / p->mass, nearest);
-    mpfr_set_d(r->a, p->load / p->mass, nearest);
-}
-
-static void rates_clear(rates *r)
-{
-    mpfr_clears(r->w, r->g, r->a, (mpfr_ptr)NULL);
-}
-
-void reference_iterate(reference *ref, const spring_params *p, spring_method m, double dt, uint64_t n,
-                       spring_state start)
+static void rounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
 {
     rates r;
+    mpfr_t h;
+    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+    mpfr_set_d(r.w, p->stiffness / p->mass, nearest);
+    mpfr_set_d(r.g, p->damping / p->mass, nearest);
+    mpfr_set_d(r.a, p->load / p->mass, nearest);
+    mpfr_set_d(h, dt, nearest);
+    step_map(f, m, &r, h);
+    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+}
+
+void reference_iterate(reference *ref, const spring_params *p, spring_method m, double dt, uint64_t n)
+{
     affine power, all;
-    mpfr_t h, x, v;
-    rates_init_rounded(&r, p);
-    mpfr_inits2(precision, h, x, v, (mpfr_ptr)NULL);
     affine_init(&power);
     affine_init(&all);
-    set_omega(ref->omega, p);
-    mpfr_set_d(h, dt, nearest);
-    step_map(&power, m, &r, h);
+    rounded_step_map(&power, p, m, dt);
     for (int i = 0; i < 2; i++) {
         mpfr_set_zero(all.q[i], 1);
         for (int j = 0; j < 2; j++)
@@ -286,20 +314,12 @@ void reference_iterate(reference *ref, const spring_params *p, spring_method m, 
     for (; n > 0; n /= 2) {
         if (n % 2 == 1)
             affine_compose(&all, &power, &all);
-        affine_compose(&power, &power, &power);
+        if (n > 1)
+            affine_compose(&power, &power, &power);
     }
-    mpfr_set_d(x, start.x, nearest);
-    mpfr_set_d(v, start.v, nearest);
-    mpfr_fmma(ref->x, all.m[0][0], x, all.m[0][1], v, nearest);
-    mpfr_add(ref->x, ref->x, all.q[0], nearest);
-    mpfr_fmma(ref->v, all.m[1][0], x, all.m[1][1], v, nearest);
-    mpfr_add(ref->v, ref->v, all.q[1], nearest);
-    mpfr_div(v, v, ref->omega, nearest);
-    mpfr_hypot(ref->scale, x, v, nearest);
+    apply(ref, &all);
     affine_clear(&power);
     affine_clear(&all);
-    mpfr_clears(h, x, v, (mpfr_ptr)NULL);
-    rates_clear(&r);
 }
 
 double reference_distance(const reference *ref, spring_state got)
@@ -317,43 +337,97 @@ double reference_distance(const reference *ref, spring_state got)
 
 /* -------------------------------------------------------------------------------------------- rounding, stability */
 
-double reference_rounding(const spring_params *p, spring_method m, double dt, uint64_t n, spring_state start)
-{
-    rates r;
-    affine f;
-    mpfr_t h;
-    rates_init_rounded(&r, p);
-    mpfr_init2(h, precision);
-    affine_init(&f);
-    mpfr_set_d(h, dt, nearest);
-    step_map(&f, m, &r, h);
-    const double w = mpfr_get_d(r.w, nearest), omega = w > 0 ? sqrt(w) : 1;
-    /* the map in (x, v/omega) */
-    const double a = mpfr_get_d(f.m[0][0], nearest), b = mpfr_get_d(f.m[0][1], nearest) * omega;
-    const double c = mpfr_get_d(f.m[1][0], nearest) / omega, d = mpfr_get_d(f.m[1][1], nearest);
-    const double qx = mpfr_get_d(f.q[0], nearest), qv = mpfr_get_d(f.q[1], nearest) / omega;
-    const double z = fmax(omega, mpfr_get_d(r.g, nearest)) * fabs(dt);
-    const double local = 2 * DBL_EPSILON * pow(1 + z * z, 1.5);
-    const double push = fabs(mpfr_get_d(r.a, nearest) * dt) / omega;
-    affine_clear(&f);
-    mpfr_clear(h);
-    rates_clear(&r);
+typedef struct plane_map { /* an affine map in (x, v/omega), in doubles */
+    double a, b, c, d, x, v;
+} plane_map;
 
-    /* sum over j of |M^(n-1-j)| |y_j|, with the largest power for all */
-    double x = start.x, v = start.v / omega, sum = 0;
-    double P[4] = {1, 0, 0, 1}, growth = 1; /* powers of M and the largest norm among them so far */
-    for (uint64_t j = 0; j < n; j++) {
-        sum += hypot(x, v) + push;
-        const double x1 = a * x + b * v + qx;
-        v = c * x + d * v + qv;
-        x = x1;
-        const double p0 = a * P[0] + b * P[2], p1 = a * P[1] + b * P[3];
-        const double p2 = c * P[0] + d * P[2], p3 = c * P[1] + d * P[3];
-        P[0] = p0, P[1] = p1, P[2] = p2, P[3] = p3;
-        if (j + 1 < n)
-            growth = fmax(growth, (hypot(p0 + p3, p1 - p2) + hypot(p0 - p3, p1 + p2)) / 2);
+static plane_map plane_of(const affine *f, double omega)
+{
+    return (plane_map){
+        mpfr_get_d(f->m[0][0], nearest),
+        mpfr_get_d(f->m[0][1], nearest) * omega,
+        mpfr_get_d(f->m[1][0], nearest) / omega,
+        mpfr_get_d(f->m[1][1], nearest),
+        mpfr_get_d(f->q[0], nearest),
+        mpfr_get_d(f->q[1], nearest) / omega,
+    };
+}
+
+static spring_state plane_apply(const plane_map *f, spring_state y)
+{
+    return (spring_state){f->a * y.x + f->b * y.v + f->x, f->c * y.x + f->d * y.v + f->v};
+}
+
+static plane_map plane_after(const plane_map *f, const plane_map *g) /* the linear parts */
+{
+    return (plane_map){f->a * g->a + f->b * g->c,
+                       f->a * g->b + f->b * g->d,
+                       f->c * g->a + f->d * g->c,
+                       f->c * g->b + f->d * g->d,
+                       0,
+                       0};
+}
+
+static double plane_norm(const plane_map *f)
+{
+    return (hypot(f->a + f->d, f->b - f->c) + hypot(f->a - f->d, f->b + f->c)) / 2;
+}
+
+/* step - solution, subtracted before it is rounded */
+static plane_map plane_difference(affine *step, const affine *solution, double omega)
+{
+    for (int i = 0; i < 2; i++) {
+        mpfr_sub(step->q[i], step->q[i], solution->q[i], nearest);
+        for (int j = 0; j < 2; j++)
+            mpfr_sub(step->m[i][j], step->m[i][j], solution->m[i][j], nearest);
     }
-    return local * sum * growth;
+    return plane_of(step, omega);
+}
+
+reference_bounds reference_bounds_of(const spring_params *p, spring_method m, double dt, uint64_t n,
+                                     spring_state start)
+{
+    const uint64_t most_walked = 1000000;
+    const double w = p->stiffness / p->mass, g = p->damping / p->mass, omega = w > 0 ? sqrt(w) : 1;
+    const double z = fmax(omega, g) * fabs(dt), local = 2 * DBL_EPSILON * pow(1 + z * z, 1.5);
+    const double push = fabs(p->load / p->mass * dt) / omega,
+                 smallest = 8 * DBL_TRUE_MIN * fmax(1, 1 / omega);
+    affine step, solution;
+    affine_init(&step);
+    affine_init(&solution);
+    rounded_step_map(&step, p, m, dt);
+    solution_map(&solution, p, dt);
+    const plane_map M = plane_of(&step, omega), truth = plane_of(&solution, omega);
+    const plane_map defect = plane_difference(&step, &solution, omega);
+    affine_clear(&step);
+    affine_clear(&solution);
+
+    reference_bounds bounds = {.growth = 1};
+    spring_state y = {start.x, start.v / omega}, exact = y;
+    if (n > most_walked) {
+        if (m == SPRING_LEAPFROG)
+            bounds.growth = 1 / sqrt(1 - z * z / 4);
+        else if (m == SPRING_EULER)
+            bounds.growth = exp((double)n / 2 * log1p(z * z));
+        const double sum = (double)n * hypot(y.x, y.v) * bounds.growth;
+        bounds.rounding = bounds.growth * sum * local;
+        bounds.truncation = sum * plane_norm(&defect);
+        return bounds;
+    }
+    plane_map power = {1, 0, 0, 1, 0, 0};
+    for (uint64_t j = 0; j < n; j++) {
+        const spring_state miss = plane_apply(&defect, exact);
+        bounds.growth = fmax(bounds.growth, plane_norm(&power));
+        bounds.rounding += local * (hypot(y.x, y.v) + push) + smallest;
+        bounds.truncation += hypot(miss.x, miss.v);
+        y = plane_apply(&M, y);
+        exact = plane_apply(&truth, exact);
+        power = plane_after(&M, &power);
+    }
+    bounds.rounding *= bounds.growth;
+    bounds.truncation *= bounds.growth;
+    bounds.growth = fmax(bounds.growth, plane_norm(&power));
+    return bounds;
 }
 
 /* Jury's conditions for both eigenvalues in the closed unit circle, |det| <= 1 and |trace| <= 1 + det. Leapfrog

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Other people's solvers behind one small interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE.
+ *
+ * Each takes the state y at t = 0 to its end in place. NULL means done; anything else is a message, and y is unspecified.
+ */
+#ifndef HARNESS_ODE_H
+#define HARNESS_ODE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <springstep/spring.h>
+
+typedef struct ode {
+    size_t size;
+    void (*derivative)(double t, const double *y, double *dy, const void *data);
+    const void *data;
+    const double *scale;  /* [size] the magnitude of each component: tolerances are relative to it */
+    uint64_t evaluations; /* counted by every solver below */
+} ode;
+
+/* y = (x, v) of one spring, from w, g, a each rounded once; data is a spring_params */
+void ode_spring_derivative(double t, const double *y, double *dy, const void *data);
+
+/* n calls of apply(h). Each is two RK4 steps of h/2 in GSL 2.7, which doubles its step. */
+const char *ode_gsl_rk4(ode *o, double *y, double h, uint64_t n);
+
+/* Prince-Dormand 8(9), adaptive, local tolerance relative to scale. */
+const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance);
+
+/* CVODE: variable order, variable step, local tolerance relative to scale; no limit on the number of steps. */
+typedef enum ode_cvode_method {
+    ODE_ADAMS, /* fixed-point iteration */
+    ODE_BDF    /* Newton iteration, dense matrix */
+} ode_cvode_method;
+const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance);
+
+/* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
+const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
+
+/* The same as ERKStep, which SUNDIALS before 6.7.0 integrates wrongly from the second step on: it treats the table as
+   first-same-as-last. Here for the test that knows. */
+const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n);
+
+#endif

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+/* SUNDIALS CVODE and ARKODE, 6.4 and 7.x; see ode.h. */
+#include <sundials/sundials_config.h>
+
+#if SUNDIALS_VERSION_MAJOR >= 7 && SUNDIALS_MPI_ENABLED
+#include <mpi.h>
+#endif
+
+#include <arkode/arkode_arkstep.h>
+#include <arkode/arkode_erkstep.h>
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include "harness/ode.h"
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+#define NO_COMMUNICATOR SUN_COMM_NULL
+#else
+#define NO_COMMUNICATOR NULL
+#endif
+
+static int derivative(sunrealtype t, N_Vector y, N_Vector dy, void *user)
+{
+    ode *o = user;
+    o->evaluations++;
+    o->derivative(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dy), o->data);
+    return 0;
+}
+
+/* What every integration needs; freed in one place whatever fails. */
+typedef struct session {
+    SUNContext context;
+    N_Vector y, tolerance;
+    SUNMatrix matrix;
+    SUNLinearSolver linear;
+    SUNNonlinearSolver nonlinear;
+    void *memory;
+} session;
+
+static const char *open_session(session *s, const ode *o, double *y, double tolerance)
+{
+    *s = (session){0};
+    if (SUNContext_Create(NO_COMMUNICATOR, &s->context) != 0)
+        return "SUNDIALS: no context";
+    s->y = N_VMake_Serial((sunindextype)o->size, y, s->context);
+    s->tolerance = N_VNew_Serial((sunindextype)o->size, s->context);
+    if (s->y == NULL || s->tolerance == NULL)
+        return "SUNDIALS: no vector";
+    for (size_t i = 0; i < o->size; i++)
+        N_VGetArrayPointer(s->tolerance)[i] = tolerance * o->scale[i];
+    return NULL;
+}
+
+static void close_session(session *s)
+{
+    if (s->nonlinear != NULL)
+        SUNNonlinSolFree(s->nonlinear);
+    if (s->linear != NULL)
+        SUNLinSolFree(s->linear);
+    if (s->matrix != NULL)
+        SUNMatDestroy(s->matrix);
+    if (s->y != NULL)
+        N_VDestroy(s->y);
+    if (s->tolerance != NULL)
+        N_VDestroy(s->tolerance);
+    if (s->context != NULL)
+        SUNContext_Free(&s->context);
+}
+
+static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_method method,
+                                double tolerance)
+{
+    s->memory = CVodeCreate(method == ODE_ADAMS ? CV_ADAMS : CV_BDF, s->context);
+    if (s->memory == NULL || CVodeInit(s->memory, derivative, 0, s->y) != CV_SUCCESS)
+        return "CVODE: cannot start";
+    if (CVodeSVtolerances(s->memory, tolerance, s->tolerance) != CV_SUCCESS ||
+        CVodeSetUserData(s->memory, o) != CV_SUCCESS || CVodeSetMaxNumSteps(s->memory, -1) != CV_SUCCESS ||
+        CVodeSetStopTime(s->memory, duration) != CV_SUCCESS)
+        return "CVODE: refuses its settings";
+    if (method == ODE_ADAMS) {
+        s->nonlinear = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
+        if (s->nonlinear == NULL || CVodeSetNonlinearSolver(s->memory, s->nonlinear) != CV_SUCCESS)
+            return "CVODE: no fixed-point solver";
+    } else {
+        s->matrix = SUNDenseMatrix((sunindextype)o->size, (sunindextype)o->size, s->context);
+        s->linear = s->matrix != NULL ? SUNLinSol_Dense(s->y, s->matrix, s->context) : NULL;
+        if (s->linear == NULL || CVodeSetLinearSolver(s->memory, s->linear, s->matrix) != CV_SUCCESS)
+            return "CVODE: no dense solver";
+    }
+    return NULL;
+}
+
+const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance)
+{
+    session s;
+    const char *message = open_session(&s, o, y, tolerance);
+    if (message == NULL)
+        message = set_up_cvode(&s, o, duration, method, tolerance);
+    double reached = 0;
+    if (message == NULL && CVode(s.memory, duration, s.y, &reached, CV_NORMAL) < 0)
+        message = "CVODE: the integration failed";
+    if (s.memory != NULL)
+        CVodeFree(&s.memory);
+    close_session(&s);
+    return message;
+}
+
+static ARKodeButcherTable classical_table(void)
+{
+    sunrealtype c[] = {0, 0.5, 0.5, 1};
+    sunrealtype A[] = {0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0};
+    sunrealtype b[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+    return ARKodeButcherTable_Create(4, 4, 0, c, A, b, NULL);
+}
+
+/* ARKODE adds no error control here: n steps of exactly h, one at a time. */
+const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
+{
+    session s;
+    const char *message = open_session(&s, o, y, 1);
+    const ARKodeButcherTable table = classical_table();
+    double t = 0;
+    if (message == NULL) {
+        s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
+        if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
+            ARKStepSetTables(s.memory, 4, 0, NULL, table) != ARK_SUCCESS ||
+            ARKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
+            message = "ARKStep: cannot start";
+    }
+    for (uint64_t i = 0; i < n && message == NULL; i++)
+        if (ARKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
+            message = "ARKStep: the integration failed";
+    if (s.memory != NULL)
+        ARKStepFree(&s.memory);
+    ARKodeButcherTable_Free(table);
+    close_session(&s);
+    return message;
+}
+
+const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
+{
+    session s;
+    const char *message = open_session(&s, o, y, 1);
+    const ARKodeButcherTable table = classical_table();
+    double t = 0;
+    if (message == NULL) {
+        s.memory = ERKStepCreate(derivative, 0, s.y, s.context);
+        if (s.memory == NULL || ERKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
+            ERKStepSetTable(s.memory, table) != ARK_SUCCESS ||
+            ERKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
+            message = "ERKStep: cannot start";
+    }
+    for (uint64_t i = 0; i < n && message == NULL; i++)
+        if (ERKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
+            message = "ERKStep: the integration failed";
+    if (s.memory != NULL)
+        ERKStepFree(&s.memory);
+    ARKodeButcherTable_Free(table);
+    close_session(&s);
+    return message;
+}
