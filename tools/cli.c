@@ -33,10 +33,11 @@ const char *const cli_methods[] = {
 
 struct cli_table {
     FILE *stream;
-    const char *option; /* that names the file; NULL: standard output */
+    const char *option; /* that names the file */
     const char *name;   /* as it was given */
     char *path;         /* what the file will be called; NULL: it is written directly */
     char *temporary;    /* what it is called until then */
+    bool stamped;
 };
 
 /* One tool is one process: what it was asked and what it has open. The signal handler needs the tables. */
@@ -60,11 +61,13 @@ void cli_progress(double fraction)
 {
     static time_t last;
     const time_t now = time(NULL);
-    if (now == last || !isatty(STDERR_FILENO))
+    if (now == last)
         return;
     last = now;
-    fprintf(stderr, "\r%s: %5.1f %%", program->name, 100 * fraction);
-    progress_shown = true;
+    if (isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r%s: %5.1f %%", program->name, 100 * fraction);
+        progress_shown = true;
+    }
 }
 
 _Noreturn void cli_fail(cli_status status, const char *format, ...)
@@ -122,7 +125,7 @@ static void occupy_standard_streams(void)
 
 static _Noreturn void fail_to_write(const cli_table *table)
 {
-    if (table->option == NULL)
+    if (table->stream == stdout)
         cli_fail(CLI_IO, "cannot write standard output: %s", strerror(errno));
     cli_fail(CLI_IO, "--%s: cannot write \"%s\": %s; it should be a file that can be created or replaced",
              table->option, table->name, strerror(errno));
@@ -134,12 +137,9 @@ static void close_stream(const cli_table *table)
         fail_to_write(table);
 }
 
-static char *copy(const char *text, size_t length)
+static _Noreturn void fail_without_memory(void)
 {
-    char *result = strndup(text, length);
-    if (result == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    return result;
+    cli_fail(CLI_FAILED, "out of memory");
 }
 
 /* A temporary file in the same directory, so that a rename can put it in place at once. */
@@ -150,7 +150,7 @@ static FILE *open_temporary(cli_table *table, mode_t mode)
     const size_t folder = slash != NULL ? (size_t)(slash + 1 - table->path) : 0;
     char *name = malloc(folder + sizeof pattern);
     if (name == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
+        fail_without_memory();
     memcpy(name, table->path, folder);
     memcpy(name + folder, pattern, sizeof pattern);
     table->temporary = name;
@@ -180,7 +180,9 @@ static void open_stream(cli_table *table)
     } else if (lstat(path, &status) != 0) { /* else a link that leads nowhere: errno is that of stat() */
         const mode_t mask = umask(0);
         umask(mask);
-        table->path = copy(path, strlen(path));
+        table->path = strdup(path);
+        if (table->path == NULL)
+            fail_without_memory();
         table->stream = open_temporary(table, 0666 & ~mask);
     }
     if (table->stream == NULL)
@@ -189,14 +191,31 @@ static void open_stream(cli_table *table)
 
 cli_table *cli_open_file(const char *option, const char *path)
 {
+    const char *name = path != NULL ? path : "/dev/stdout";
+    for (size_t i = 0; i < table_count; i++)
+        if (strcmp(tables[i].name, name) == 0)
+            cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", option, name);
     if (table_count == sizeof tables / sizeof tables[0])
         cli_fail(CLI_FAILED, "too many tables");
-    cli_table *table = &tables[table_count++];
-    *table = (cli_table){.stream = stdout};
-    if (path != NULL && strcmp(path, "/dev/stdout") != 0) { /* opening that would truncate a file behind it */
-        *table = (cli_table){.option = option, .name = path};
+    cli_table *table = &tables[table_count];
+    *table = (cli_table){.option = option, .name = name};
+    table_count++;
+    if (strcmp(name, "/dev/stdout") == 0) /* not opened anew: that would truncate a file behind it */
+        table->stream = stdout;
+    else
         open_stream(table);
-    }
+    return table;
+}
+
+cli_table *cli_open_output(void)
+{
+    return cli_open_file("output", output_path);
+}
+
+/* With the first line and not before: a tool may open several tables, and fail at the last. */
+static void stamp(cli_table *table)
+{
+    table->stamped = true;
     cli_comment(table, "springstep %s, %s", spring_version(), program->name);
     cli_comment(table, "command: %s", command);
 #if defined(__clang__)
@@ -206,18 +225,14 @@ cli_table *cli_open_file(const char *option, const char *path)
 #else
     cli_comment(table, "compiler: unknown");
 #endif
-    return table;
-}
-
-cli_table *cli_open_output(void)
-{
-    return cli_open_file("output", output_path);
 }
 
 static void print_line(cli_table *table, const char *start, const char *format, va_list arguments)
 {
     if (table->stream == stdout)
         erase_progress();
+    if (!table->stamped)
+        stamp(table);
     if (fputs(start, table->stream) == EOF || vfprintf(table->stream, format, arguments) < 0 ||
         fputc('\n', table->stream) == EOF)
         fail_to_write(table);
@@ -241,7 +256,9 @@ void cli_row(cli_table *table, const char *format, ...)
 
 void cli_columns(cli_table *table, const char *names)
 {
-    char *line = copy(names, strlen(names));
+    char *line = strdup(names);
+    if (line == NULL)
+        fail_without_memory();
     for (char *space = line; (space = strchr(space, ' ')) != NULL;)
         *space = '\t';
     cli_row(table, "%s", line);
@@ -448,7 +465,7 @@ static const cli_option *option_of(const char *word, const char **value)
 }
 
 /* Where the output goes is no part of how it was made: it is not stamped, and of other files only that there are. */
-static void stamp(FILE *words, const cli_option *o, const char *value)
+static void record(FILE *words, const cli_option *o, const char *value)
 {
     if (o == &common_options[0])
         return;
@@ -479,7 +496,7 @@ void cli_parse(const cli_program *p, int argc, char **argv)
     size_t length;
     FILE *words = open_memstream(&command, &length);
     if (words == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
+        fail_without_memory();
     fputs(program->name, words);
     for (int i = 1; i < argc; i++) {
         const char *value;
@@ -500,13 +517,13 @@ void cli_parse(const cli_program *p, int argc, char **argv)
             if (!store(o, value))
                 fail_at(o, value, "is not ");
         }
-        stamp(words, o, value);
+        record(words, o, value);
         for (int k = 0; program->options[k].name != NULL; k++)
             if (o == &program->options[k])
                 given |= UINT64_C(1) << k;
     }
     if (fclose(words) != 0)
-        cli_fail(CLI_FAILED, "out of memory");
+        fail_without_memory();
     for (int k = 0; program->options[k].name != NULL; k++)
         if (program->options[k].required && (given >> k & 1) == 0)
             fail_at(&program->options[k], NULL, "is missing; it should be ");

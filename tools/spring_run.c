@@ -144,7 +144,7 @@ static void run(cli_table *table, envelope *e)
         const bool row_due = every > 0 && step % every == 0 && (double)step * dt >= from;
         if (row_due || step == steps)
             write_state(table, step, &s);
-        if (envelope_path != NULL)
+        if (e->table != NULL)
             add_to_envelope(e, step, &s);
         if (step == steps)
             return;
@@ -176,16 +176,17 @@ int main(int argc, char **argv)
     check_options();
 
     cli_table *table = cli_open_output();
+    envelope e = {.min = INFINITY, .max = -INFINITY};
+    if (envelope_path != NULL)
+        e.table = cli_open_file("envelope", envelope_path);
     stepper_comment(&chosen, table);
     cli_columns(table, "method step t_s x_m v_m_per_s energy_J exact_x_m error_m");
-    envelope e = {.min = INFINITY, .max = -INFINITY};
-    if (envelope_path != NULL) {
-        e.table = cli_open_file("envelope", envelope_path);
+    if (e.table != NULL) {
         stepper_comment(&chosen, e.table);
         cli_columns(e.table, "method t_s error_min_m error_max_m");
     }
     run(table, &e);
-    if (envelope_path != NULL)
+    if (e.table != NULL)
         write_part(&e);
     cli_finish();
     return 0;

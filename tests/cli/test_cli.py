@@ -1,0 +1,541 @@
+# SPDX-License-Identifier: MIT
+"""The command-line tools as their users see them: numbers, columns, messages, exit statuses, files. Prints TAP.
+
+Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy
+"""
+import math
+import os
+import pty
+import re
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+
+TOOLS = {os.path.basename(path): os.path.abspath(path) for path in sys.argv[1:]}
+ORDER, RUN, ENERGY = 'spring-order', 'spring-run', 'spring-energy'
+SEED_RUN = ['--duration', '1000', '--steps', '1e7']
+SHORT = {  # for every tool a run that takes no time
+    ORDER: ['--method', 'euler', '--n-max', '50'],
+    RUN: ['--method', 'rk4', '--duration', '3', '--steps', '30', '--every', '1'],
+    ENERGY: ['--method', 'leapfrog', '--duration', '10'],
+}
+COLUMNS = {  # the fixed ones, in their order; others may follow
+    ORDER: 'method n dt_s error_m',
+    RUN: 'method step t_s x_m v_m_per_s energy_J exact_x_m error_m',
+    ENERGY: 'method velocity duration_s steps energy_error_J',
+}
+
+count = failures = 0
+
+
+def check(passed, name, detail=''):
+    global count, failures
+    count += 1
+    failures += not passed
+    print(f'{"ok" if passed else "not ok"} {count} - {name.replace("#", "")}')
+    if not passed and detail:
+        print('\n'.join('# ' + line for line in str(detail).splitlines()), flush=True)
+
+
+def equal(got, want, name):
+    check(got == want, name, f'got  {got!r}\nwant {want!r}')
+
+
+def run(tool, *args, **how):
+    how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
+    return subprocess.run([TOOLS[tool], *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
+
+
+def in_shell(script, tool, *args):
+    """Run a script in which "$@" is the tool with its arguments."""
+    return subprocess.run(['sh', '-c', script, 'sh', TOOLS[tool], *args], capture_output=True, text=True, timeout=60,
+                          check=False)
+
+
+def parse(text):
+    """The rows of a table as dictionaries of strings."""
+    lines = [line for line in text.splitlines() if not line.startswith('#')]
+    names = lines[0].split('\t')
+    return [dict(zip(names, line.split('\t'), strict=True)) for line in lines[1:]]
+
+
+def table(tool, *args):
+    result = run(tool, *args)
+    if result.returncode != 0 or result.stderr != '':
+        check(False, f'{tool} {" ".join(args)} runs silently', f'status {result.returncode}\n{result.stderr}')
+    return parse(result.stdout)
+
+
+def column(rows, name):
+    return [float(row[name]) for row in rows]
+
+
+def describe(tool, args):
+    return ' '.join([tool, *(argument or "''" for argument in args)])
+
+
+# --- usage ----------------------------------------------------------------------------------------------------------
+
+def test_bad_usage():
+    methods = 'one of euler, leapfrog, rk4, exact'
+    count_1, positive = 'a whole number of at least 1', 'a finite number greater than 0'
+    run_3 = ['--method', 'euler', '--duration', '1', '--steps', '10']
+    cases = [  # tool, arguments, what the message has to say
+        *[(tool, ['--method', word], ['--method', f'"{word}"', methods])
+          for tool in TOOLS for word in ('foo', '', 'Euler', 'eul', 'euler ')],
+        *[(tool, [], ['--method', 'missing', methods]) for tool in TOOLS],
+        *[(tool, ['--method'], ['--method', 'value is missing', methods]) for tool in TOOLS],
+        *[(tool, [*SHORT[tool], word], [f'"{word}"', 'not an option', f'{tool} --help'])
+          for tool in TOOLS for word in ('foo', '', '-', '--', '-x', '--bogus', '--bogus=1', '--meth', '--outpu', '--vers',
+                                         '-help')],
+        *[(tool, [*SHORT[tool], '--output', ''], ['--output', '""', 'the name of a file']) for tool in TOOLS],
+        *[(tool, [*SHORT[tool], '-o'], ['--output', 'value is missing', 'the name of a file']) for tool in TOOLS],
+        *[(tool, [*SHORT[tool], '--help=1'], ['--help', '"1"', 'takes no value']) for tool in TOOLS],
+        *[(RUN, [*run_3, '--steps', n], ['--steps', f'"{n}"', count_1])
+          for n in ('0', '-1', '+1', '', ' 1', '1 ', '1.5', '0x10', 'ten', '1e', '1e-1', '1e20', '18446744073709551616',
+                    '1e99999999999999999999', 'nan', 'inf')],
+        *[(RUN, [*run_3, '--duration', t], ['--duration', f'"{t}"', positive])
+          for t in ('0', '-1', '', ' 1', '1 ', '1s', '1e999', '-1e999', '1e-999', 'nan', 'inf', '1,5', '1e', '.')],
+        *[(RUN, [*run_3, '--mass', m], ['--mass', f'"{m}"', positive]) for m in ('-1', '0', '-0', 'nan', '1e999')],
+        *[(RUN, [*run_3, option, value], [option, f'"{value}"', 'a finite number of at least 0'])
+          for option in ('--stiffness', '--damping') for value in ('-1', 'nan', 'infinity', '1e999')],
+        *[(RUN, [*run_3, option, value], [option, f'"{value}"', 'a finite number'])
+          for option in ('--load', '--x0', '--v0', '--from') for value in ('nan', '-inf', '1e999', '1..2', '1m')],
+        *[(RUN, [*run_3, '--every', k], ['--every', f'"{k}"', count_1]) for k in ('0', '-5', '2.5')],
+        (RUN, [*run_3, '--columns', '0'], ['--columns', '"0"', 'from 1 to 1000000']),
+        (RUN, [*run_3, '--columns', '1000001'], ['--columns', '"1000001"', 'from 1 to 1000000']),
+        (RUN, [*run_3, '--mass', '1e-300', '--stiffness', '1e300'], ['--mass', '"1e-300"', 'finite']),
+        (RUN, [*run_3, '--duration', '1e-320', '--steps', '1e10'], ['--duration', 'larger']),
+        (RUN, [*run_3, '--arithmetic', 'fast'], ['--arithmetic', '"fast"', 'one of library, stages']),
+        *[(tool, [*SHORT[tool], '--method', 'euler', '--arithmetic', 'stages'],
+           ['--arithmetic', '"stages"', 'rk4', 'should be library']) for tool in TOOLS],
+        (RUN, ['--method', 'euler', '--duration', '1'], ['--steps', 'missing', count_1]),
+        (RUN, ['--method', 'euler', '--steps', '1'], ['--duration', 'missing', positive]),
+        (RUN, [*run_3, '--envelope', 'x', '-o', 'x'], ['--envelope', '"x"', 'another file']),
+        (RUN, [*run_3, '--envelope', '/dev/stdout'], ['--envelope', '"/dev/stdout"', 'another file']),
+        *[(ENERGY, ['--method', 'rk4', '--dt', dt], ['--dt', f'"{dt}"', positive]) for dt in ('nan', '0', '-0.01')],
+        (ENERGY, ['--method', 'rk4', '--duration', '0.5'], ['--duration', '"0.5"', 'at least 1 s']),
+        (ENERGY, ['--method', 'rk4', '--duration', '1e30'], ['--duration', '"1e+30"', 'at most']),
+        (ENERGY, ['--method', 'rk4', '--half-step-velocity'], ['--half-step-velocity', 'rk4', 'should be leapfrog']),
+        (ENERGY, ['--method', 'leapfrog', '--half-step-velocity=1'], ['--half-step-velocity', '"1"', 'no value']),
+        (ORDER, ['--method', 'exact', '--fit'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
+        (ORDER, ['--method', 'exact', '--match-error', '1'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
+        (ORDER, ['--method', 'rk4', '--fit', '--match-error', '1'], ['--fit', '--match-error']),
+        (ORDER, ['--method', 'rk4', '--n-max', '4'], ['--n-max', '"4"', 'at least --n-min', '5']),
+        (ORDER, ['--method', 'rk4', '--fit', '--n-max', '9'], ['--fit', '--n-max']),
+        (ORDER, ['--method', 'rk4', '--match-error', '0'], ['--match-error', '"0"', positive]),
+    ]
+    for tool, args, needles in cases:
+        result = run(tool, *args)
+        lines = result.stderr.splitlines()
+        check(result.returncode == 2 and result.stdout == '' and len(lines) == 1 and lines[0].startswith(f'{tool}: ')
+              and all(needle in lines[0] for needle in needles),
+              f'refused: {describe(tool, args)}', f'status {result.returncode}\n{result.stdout}{result.stderr}{needles}')
+
+
+def test_spellings():
+    base = ['--method', 'leapfrog', '--duration', '2']
+    want = table(RUN, *base, '--steps', '1000', '--x0', '-0.25')
+    for name, args in {
+        '1e3 for 1000': [*base, '--steps', '1e3', '--x0', '-0.25'],
+        'hexadecimal numbers': [*base, '--steps', '1000', '--x0', '-0x1p-2'],
+        '--option=value': ['--method=leapfrog', '--duration=2', '--steps=1000', '--x0=-.25e0'],
+        'the last of several counts': [*base, '--steps', '7', '--x0', '3', '--x0', '-0.25', '--steps', '1000'],
+    }.items():
+        equal(table(RUN, *args), want, f'accepted: {name}')
+    equal(run(RUN, *base, '--steps', '0', '--steps', '10').returncode, 2, 'every one of several is checked')
+
+
+def test_help_and_version():
+    for tool in TOOLS:
+        result = run(tool, '--help')
+        check(result.returncode == 0 and result.stderr == '' and result.stdout.startswith(f'Usage: {tool} --method M'),
+              f'{tool} --help', result)
+        for word in ['--method', '--arithmetic', '--output', '-o', '--help', '--version', 'Exit status',
+                     *COLUMNS[tool].split()]:
+            check(word in result.stdout, f'{tool} --help explains {word}')
+        equal(run(tool, '--bogus', '--help').returncode, 2, f'{tool}: an error before --help is an error')
+        equal(run(tool, '--help', '--bogus').returncode, 0, f'{tool}: --help acts at once')
+        result = run(tool, '--version')
+        check(result.returncode == 0 and result.stderr == ''
+              and re.fullmatch(re.escape(tool) + r' \(springstep\) \d+\.\d+\.\d+\n', result.stdout) is not None,
+              f'{tool} --version', result)
+
+
+# --- files ----------------------------------------------------------------------------------------------------------
+
+def test_cannot_write(folder):
+    target = os.path.join(folder, 'old.tsv')
+    gone, under_file = os.path.join(folder, 'no', 'such'), os.path.join(target, 'x')
+    dangling = os.path.join(folder, 'dangling')
+    os.symlink(gone, dangling)
+    for tool in TOOLS:
+        with open(target, 'w', encoding='ascii') as file:
+            file.write('older\n')
+        for script, what in {'"$@" > /dev/full': 'a full disk', '"$@" >&-': 'a closed output'}.items():
+            for args in (SHORT[tool], ['--help'], ['--version']):
+                result = in_shell(script, tool, *args)
+                check(result.returncode == 3 and result.stderr.startswith(f'{tool}: cannot write standard output: '),
+                      f'{what}: {describe(tool, args)}', result)
+        for args in (SHORT[tool], ['--help'], ['--version']):
+            reader, writer = os.pipe()
+            os.close(reader)
+            result = run(tool, *args, stdout=writer)
+            os.close(writer)
+            check(result.returncode == 3 and result.stderr.startswith(f'{tool}: cannot write standard output: '),
+                  f'a closed pipe: {describe(tool, args)}', result)
+        for path in ('/dev/full', gone, under_file, folder, dangling):
+            result = run(tool, *SHORT[tool], '-o', path)
+            check(result.returncode == 3 and result.stdout == ''
+                  and result.stderr.startswith(f'{tool}: --output: cannot write "{path}": ')
+                  and 'should be a file that can be' in result.stderr, f'{tool} cannot write {path}', result)
+        result = in_shell('ulimit -f 0; exec "$@"', tool, *SHORT[tool], '-o', target)
+        check(result.returncode == 3 and result.stderr.startswith(f'{tool}: --output: '), f'{tool}: a file size limit',
+              result)
+        with open(target, encoding='ascii') as file:
+            equal(file.read(), 'older\n', f'{tool}: the older file survives')
+        equal(sorted(os.listdir(folder)), ['dangling', 'old.tsv'], f'{tool}: nothing is left behind')
+
+
+def test_failed_run_leaves_the_older_file(folder):
+    target = os.path.join(folder, 'rows.tsv')
+    with open(target, 'w', encoding='ascii') as file:
+        file.write('older\n')
+    overflow = ['--method', 'euler', '--duration', '1e6', '--steps', '1000', '--every', '1']
+    result = run(RUN, *overflow, '-o', target, '--envelope', os.path.join(folder, 'new.tsv'))
+    equal(result.returncode, 1, 'a run that overflows has status 1')
+    with open(target, encoding='ascii') as file:
+        equal(file.read(), 'older\n', 'a run that overflows leaves the older file')
+    equal(os.listdir(folder), ['rows.tsv'], 'and no partial file')
+    result = run(RUN, *SHORT[RUN], '-o', target, '--envelope', '/dev/full')
+    check(result.returncode == 3 and '--envelope' in result.stderr, 'an envelope that cannot be written', result)
+    with open(target, encoding='ascii') as file:
+        equal(file.read(), 'older\n', 'keeps the rows from their place, too')
+
+
+def test_signals(folder):
+    target = os.path.join(folder, 'rows.tsv')
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        with open(target, 'w', encoding='ascii') as file:
+            file.write('older\n')
+        with subprocess.Popen([TOOLS[ENERGY], '--method', 'rk4', '--duration', '1e9', '-o', target],
+                              preexec_fn=lambda n=number: signal.signal(n, signal.SIG_DFL)) as process:
+            patience = time.monotonic() + 20
+            while len(os.listdir(folder)) < 2 and time.monotonic() < patience:
+                time.sleep(0.01)
+            begun = len(os.listdir(folder))
+            process.send_signal(number)
+            equal((begun, process.wait(20)), (2, -number), f'{number.name} ends a run')
+        with open(target, encoding='ascii') as file:
+            equal((file.read(), os.listdir(folder)), ('older\n', ['rows.tsv']), f'{number.name} leaves the older file alone')
+
+
+def test_output(folder):
+    target, link = os.path.join(folder, 'rows.tsv'), os.path.join(folder, 'link.tsv')
+    for tool in TOOLS:
+        want = run(tool, *SHORT[tool]).stdout
+        equal(run(tool, *SHORT[tool]).stdout, want, f'{tool}: two runs, the same bytes')
+        equal(run(tool, *SHORT[tool], executable=TOOLS[tool], cwd='/', env={}).stdout, want,
+              f'{tool}: the same bytes from another place')
+        renamed = subprocess.run(['/elsewhere/other-name', *SHORT[tool]], executable=TOOLS[tool], capture_output=True,
+                                 text=True, check=False)
+        equal(renamed.stdout, want, f'{tool}: the same bytes under another name')
+        equal(run(tool, *SHORT[tool], '-o', '/dev/stdout').stdout, want, f'{tool} -o /dev/stdout')
+        for spelling in (['-o', target], ['-o' + target], ['--output', target], ['--output=' + target]):
+            if os.path.exists(target):
+                os.remove(target)
+            result = run(tool, *SHORT[tool], *spelling)
+            with open(target, encoding='ascii') as file:
+                equal((result.returncode, result.stdout, file.read()), (0, '', want), f'{tool} {spelling[0][:8]}: the same bytes')
+        os.chmod(target, 0o640)
+        if not os.path.islink(link):
+            os.symlink('rows.tsv', link)
+        with open(target, 'w', encoding='ascii') as file:
+            file.write('older\n')
+        run(tool, *SHORT[tool], '-o', link)
+        with open(target, encoding='ascii') as file:
+            equal((os.path.islink(link), file.read()), (True, want), f'{tool}: a link is followed and stays a link')
+        equal(stat.S_IMODE(os.stat(target).st_mode), 0o640, f'{tool}: a replaced file keeps its mode')
+        equal(sorted(os.listdir(folder)), ['link.tsv', 'rows.tsv'], f'{tool}: nothing is left behind')
+        os.remove(target)
+        result = in_shell('umask 027; exec "$@"', tool, *SHORT[tool], '-o', target)
+        equal((result.returncode, stat.S_IMODE(os.stat(target).st_mode)), (0, 0o640), f'{tool}: a new file follows the umask')
+        result = in_shell('exec "$@" 2>&-', tool, *SHORT[tool], '-o', target)
+        with open(target, encoding='ascii') as file:
+            equal((result.returncode, file.read()), (0, want), f'{tool}: a closed standard error does no harm')
+    fifo = os.path.join(folder, 'fifo')
+    os.mkfifo(fifo)
+    with subprocess.Popen(['cat', fifo], stdout=subprocess.PIPE, text=True) as reader:
+        run(ORDER, *SHORT[ORDER], '-o', fifo)
+        equal(reader.communicate(timeout=20)[0], run(ORDER, *SHORT[ORDER]).stdout, 'a fifo is written directly')
+    log = os.path.join(folder, 'log')
+    with open(log, 'w', encoding='ascii') as file:
+        file.write('older\n')
+    in_shell(f'exec "$@" >> "{log}"', ORDER, *SHORT[ORDER], '-o', '/dev/stdout')
+    with open(log, encoding='ascii') as file:
+        equal(file.read(), 'older\n' + run(ORDER, *SHORT[ORDER]).stdout, '/dev/stdout appends where standard output does')
+
+
+def test_format():
+    for tool in TOOLS:
+        lines = run(tool, *SHORT[tool]).stdout.splitlines()
+        comments = [line for line in lines if line.startswith('#')]
+        equal(lines[:len(comments)], comments, f'{tool}: comments come first')
+        check(re.fullmatch(rf'# springstep \d+\.\d+\.\d+, {tool}', lines[0]) is not None, f'{tool}: stamp', lines[0])
+        equal(lines[1], f'# command: {tool} {" ".join(SHORT[tool])}', f'{tool}: command line')
+        check(re.fullmatch(r'# compiler: (gcc|clang) \d+\.\d+\.\d+', lines[2]) is not None, f'{tool}: compiler', lines[2])
+        check(lines[3].startswith('# method: '), f'{tool}: method', lines[3])
+        fixed = COLUMNS[tool].split()
+        equal(lines[len(comments)].split('\t')[:len(fixed)], fixed, f'{tool}: fixed columns')
+        check(all('%.17g' % float(field) == field for line in lines[len(comments) + 1:] for field in line.split('\t')
+                  if field[0] in '-.0123456789'), f'{tool}: numbers have all their digits')
+
+
+def test_progress():
+    """Silent but on a terminal."""
+    args = ['--method', 'rk4', '--duration', '1e5']
+    equal(run(ENERGY, *args).stderr, '', 'no progress into a file')
+    terminal, other_end = pty.openpty()
+    result = run(ENERGY, *args, stderr=other_end)
+    os.close(other_end)
+    shown = os.read(terminal, 4096).decode()
+    os.close(terminal)
+    check(result.returncode == 0 and re.search(r'\rspring-energy: +\d+\.\d %', shown) is not None, 'progress on a terminal',
+          repr(shown))
+    equal(result.stdout, run(ENERGY, *args).stdout, 'progress leaves the rows alone')
+
+
+# --- numbers: spring-order --------------------------------------------------------------------------------------------
+
+def fit_line(rows):
+    x, y = [math.log(n) for n in column(rows, 'n')], [math.log(e) for e in column(rows, 'error_m')]
+    mx, my = math.fsum(x) / len(x), math.fsum(y) / len(y)
+    slope = math.fsum((a - mx) * (b - my) for a, b in zip(x, y)) / math.fsum((a - mx) ** 2 for a in x)
+    return math.exp(my - slope * mx), slope
+
+
+def test_order():
+    seed = {  # first row and number of rows of the study, its fits, and the error for n = 10
+        'euler': (10, 1000, '0.2764 n^-1.0026', '3.048814e-02', math.cos(1) / 2, 1),
+        'leapfrog': (10, 1000, '0.03506 n^-2.0000', '3.510549e-04', math.sin(1) / 24, 1),
+        'rk4': (5, 200, '0.006763 n^-3.9949', '6.612487e-07', math.sin(1) / 120, 4),
+    }
+    for method, (first, points, law, error_10, coefficient, cost) in seed.items():
+        how = ['--method', method] + (['--arithmetic', 'stages'] if method == 'rk4' else [])
+        rows = table(ORDER, *how)
+        equal([row['n'] for row in rows], [str(first * (i + 1)) for i in range(points)], f'{method}: n of the study')
+        check(all(row['method'] == method and float(row['dt_s']) == 1 / int(row['n'])
+                  and int(row['force_evaluations']) == cost * int(row['n']) for row in rows), f'{method}: dt and cost')
+        equal(['%.6e' % float(row['error_m']) for row in rows if row['n'] == '10'], [error_10], f'{method}: error for n = 10')
+        fit, = table(ORDER, *how, '--fit')
+        equal('%.4g n^%.4f' % (float(fit['coefficient_m']), float(fit['exponent'])), law, f'{method}: power law')
+        by_hand = fit_line(rows)
+        check(abs(float(fit['coefficient_m']) / by_hand[0] - 1) <= 1e-10 and abs(float(fit['exponent']) - by_hand[1]) <= 1e-11,
+              f'{method}: least squares', (fit, by_hand))
+        check(0.9998 < float(fit['r_squared']) <= 1 and fit['points'] == str(points), f'{method}: R squared and points', fit)
+        check(abs(float(fit['theory_coefficient_m']) - coefficient) <= 1e-16, f'{method}: theory', fit)
+    library = table(ORDER, '--method', 'rk4')
+    stages = table(ORDER, '--method', 'rk4', '--arithmetic', 'stages')
+    difference = max(abs(a - b) for a, b in zip(column(library, 'error_m'), column(stages, 'error_m')))
+    check(0 < difference <= 1e-14, 'rk4: the two arithmetics differ by rounding', difference)
+    exact = table(ORDER, '--method', 'exact')
+    check(len(exact) == 1000 and max(column(exact, 'error_m')) <= 1e-15, 'exact: no error but rounding')
+    for method, H, law in (('euler', 2, abs(math.cos(2)) * 2), ('leapfrog', 2, math.sin(2) * 8 / 24),
+                           ('rk4', 2, math.sin(2) * 32 / 120)):
+        fit, = table(ORDER, '--method', method, '--duration', str(H), '--fit', '--n-min', '100', '--n-max', '400')
+        check(abs(float(fit['theory_coefficient_m']) / law - 1) <= 1e-15
+              and abs(float(fit['coefficient_m']) / law - 1) <= 0.1, f'{method}: theory for another duration', fit)
+
+
+def test_match_error():
+    for method, n, first in (('leapfrog', '34766', '630'), ('rk4', '3719', '1605')):
+        row, = table(ORDER, '--method', method, '--duration', '1000', '--match-error', '2.88367e-2')
+        equal((row['n'], row['first_n']), (n, first), f"{method}: as accurate as Euler's 1e7 steps")
+    for method, error, most in (('euler', 0.3, 3000), ('leapfrog', 1e-3, 4000), ('rk4', 1e-6, 1500), ('leapfrog', 0.5, 400)):
+        row, = table(ORDER, '--method', method, '--duration', '10', '--match-error', str(error))
+        errors = {int(r['n']): float(r['error_m']) for r in table(
+            ORDER, '--method', method, '--duration', '10', '--n-min', '1', '--n-step', '1', '--n-max', str(most))}
+        beyond = max(n for n, e in errors.items() if e > error)
+        first = min(n for n, e in errors.items() if e <= error)
+        equal((int(row['n']), int(row['first_n'])), (beyond + 1, first), f'{method}: every error up to n = {most} looked at')
+        check(float(row['error_m']) == errors[beyond + 1] <= error < errors[beyond] == float(row['previous_error_m'])
+              and float(row['match_error_m']) == error, f'{method}: the two errors', row)
+    result = run(ORDER, '--method', 'rk4', '--match-error', '1e-17')
+    check(result.returncode == 1 and 'rounding' in result.stderr, 'an error below rounding cannot be matched', result)
+
+
+# --- numbers: spring-run ------------------------------------------------------------------------------------------------
+
+def test_long_run():
+    for how, error in ((['euler'], '2.88367e-02'), (['leapfrog'], '3.44533e-07'), (['rk4'], '9.76996e-15'),
+                       (['rk4', '--arithmetic', 'stages'], '2.39808e-14')):
+        row, = table(RUN, '--method', *how, *SEED_RUN)
+        equal(('%.5e' % float(row['error_m']), row['step'], row['t_s']), (error, '10000000', '1000'),
+              f'{" ".join(how)}: error after 1e7 steps')
+
+
+M, K, C, F, X0, V0 = 1.3, 2.7, 0.6, 0.9, 0.4, -1.1  # a spring with everything, nothing 1
+SPRING = ['--mass', '1.3', '--stiffness', '2.7', '--damping', '0.6', '--load', '0.9', '--x0', '0.4', '--v0', '-1.1']
+
+
+def true_x(t):
+    """Textbook solution of the underdamped spring."""
+    b, rest = C / (2 * M), F / K
+    nu = math.sqrt(K / M - b * b)
+    y = X0 - rest
+    return rest + math.exp(-b * t) * (y * math.cos(nu * t) + (V0 + b * y) / nu * math.sin(nu * t))
+
+
+def euler_step(x, v, h):
+    w, g, a = K / M, C / M, F / M
+    return x + h * v, v - (h * w * x - h * a + h * g * v)
+
+
+def rk4_step(x, v, h):
+    w, g, a = K / M, C / M, F / M
+    def slope(x, v):
+        return v, a - w * x - g * v
+    k1 = slope(x, v)
+    k2 = slope(x + h / 2 * k1[0], v + h / 2 * k1[1])
+    k3 = slope(x + h / 2 * k2[0], v + h / 2 * k2[1])
+    k4 = slope(x + h * k3[0], v + h * k3[1])
+    return (x + h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0]), v + h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1]))
+
+
+def test_run():
+    time_and_steps = ['--duration', '7', '--steps', '700']
+    dt = 7 / 700
+    for how, order in ((['euler'], 1), (['leapfrog'], 2), (['rk4'], 4), (['rk4', '--arithmetic', 'stages'], 4),
+                       (['exact'], None)):
+        name = ' '.join(how)
+        rows = table(RUN, '--method', *how, *SPRING, *time_and_steps, '--every', '1')
+        equal([row['step'] for row in rows], [str(i) for i in range(701)], f'{name}: --every 1')
+        check(all(float(row['t_s']) == i * dt for i, row in enumerate(rows)), f'{name}: times are not accumulated')
+        check(all(abs(e - true_x(i * dt)) <= 1e-14 for i, e in enumerate(column(rows, 'exact_x_m'))), f'{name}: exact_x_m')
+        check(all(float(r['error_m']) == abs(float(r['x_m']) - float(r['exact_x_m'])) for r in rows), f'{name}: error_m')
+        check(all(abs(float(r['energy_J']) - (M * v * v / 2 + K * x * x / 2 - F * x)) <= 1e-15 for r in rows
+                  for x, v in [(float(r['x_m']), float(r['v_m_per_s']))]), f'{name}: energy_J')
+        equal(table(RUN, '--method', *how, *SPRING, *time_and_steps)[-1]['step'], '700', f'{name}: the last row is the end')
+        largest = max(column(rows, 'error_m'))
+        if order is None:
+            check(largest <= 700 * 4 * sys.float_info.epsilon, 'exact: at most 4 epsilon a step, of about 1', largest)
+            continue
+        equal(table(RUN, '--method', *how, *SPRING, *time_and_steps), rows[-1:], f'{name}: without --every only the final state')
+        finer = max(column(table(RUN, '--method', *how, *SPRING, '--duration', '7', '--steps', '1400', '--every', '2'), 'error_m'))
+        check(abs(math.log2(largest / finer) - order) <= 0.05, f'{name}: order {order}', largest / finer)
+    for how, step in ((['euler'], euler_step), (['rk4', '--arithmetic', 'stages'], rk4_step)):
+        state, want = (X0, V0), []
+        for _ in range(701):
+            want.append(state)
+            state = step(*state, dt)
+        rows = table(RUN, '--method', *how, *SPRING, *time_and_steps, '--every', '1')
+        equal(list(zip(column(rows, 'x_m'), column(rows, 'v_m_per_s'))), want, f'{" ".join(how)}: every bit')
+
+
+def test_rows():
+    base = ['--method', 'leapfrog', *SPRING, '--duration', '7', '--steps', '700']
+    rows = table(RUN, *base, '--every', '1')
+    equal(table(RUN, *base, '--every', '300'), [rows[i] for i in (0, 300, 600, 700)], '--every 300 and the final state')
+    equal(table(RUN, *base, '--every', '350'), [rows[i] for i in (0, 350, 700)], '--every 350, the final state once')
+    equal(table(RUN, *base, '--every', '1e6'), [rows[0], rows[700]], '--every beyond the end')
+    equal(table(RUN, *base, '--every', '1', '--from', '6.5'), rows[650:], '--from')
+    equal(table(RUN, *base, '--every', '1', '--from', '-1'), rows, '--from before the start')
+    equal(table(RUN, *base, '--every', '1', '--from', '8'), rows[-1:], '--from beyond the end')
+    defaults, = table(RUN, '--method', 'euler', '--duration', '1', '--steps', '10')
+    given, = table(RUN, '--method', 'euler', '--duration', '1', '--steps', '10', '--mass', '1', '--stiffness', '1',
+                   '--damping', '0', '--load', '0', '--x0', '1', '--v0', '0', '--arithmetic', 'library')
+    equal(defaults, given, 'defaults')
+
+
+def test_envelope(folder):
+    path = os.path.join(folder, 'envelope.tsv')
+    for steps, parts in ((700, 60), (701, 60), (60, 60), (59, 60), (7, 60), (1, 1)):
+        base = ['--method', 'euler', *SPRING, '--duration', '7', '--steps', str(steps), '--every', '1']
+        plain = table(RUN, *base)
+        rows = table(RUN, *base, '--envelope', path, '--columns', str(parts))
+        equal(rows, plain, f'{steps} steps: the envelope leaves the rows alone')
+        errors = {}
+        for row in plain:
+            part = min(int(row['step']) * parts // steps, parts - 1)
+            errors.setdefault(part, []).append(float(row['x_m']) - float(row['exact_x_m']))
+        with open(path, encoding='ascii') as file:
+            text = file.read()
+        equal(text.splitlines()[4], 'method\tt_s\terror_min_m\terror_max_m', f'{steps} steps: columns of the envelope')
+        got = parse(text)
+        equal([(float(r['error_min_m']), float(r['error_max_m'])) for r in got], [(min(e), max(e)) for e in errors.values()],
+              f'{steps} steps in {parts} parts: minima and maxima')
+        check(all(abs(float(r['t_s']) - (part + 0.5) * 7 / parts) <= 1e-14 for r, part in zip(got, errors, strict=True)),
+              f'{steps} steps in {parts} parts: times')
+
+
+def test_overflow():
+    h, state, step = 1e6 / 1000, (1.0, 0.0), 0
+    while all(map(math.isfinite, state)):
+        last = state
+        state = (state[0] + h * state[1], state[1] - h * state[0])
+        step += 1
+    for every in ('1', '7', '1000'):
+        result = run(RUN, '--method', 'euler', '--duration', '1e6', '--steps', '1000', '--every', every)
+        rows = parse(result.stdout)
+        equal((result.returncode, [row['step'] for row in rows]), (1, [str(i) for i in range(0, step, int(every))]),
+              f'overflow: rows up to there, --every {every}')
+        check(result.stderr.startswith('spring-run: ') and f'step {step},' in result.stderr and f't = {step}000 s' in result.stderr,
+              f'overflow: the message names step and time, --every {every}', result.stderr)
+    rows = parse(run(RUN, '--method', 'euler', '--duration', '1e6', '--steps', '1000', '--every', '1').stdout)
+    equal((float(rows[-1]['x_m']), float(rows[-1]['v_m_per_s'])), last, 'overflow: the last finite state')
+    result = run(RUN, '--method', 'rk4', '--arithmetic', 'stages', '--duration', '1e6', '--steps', '1000', '--every', '1')
+    check(result.returncode == 1 and len(parse(result.stdout)) > 1, 'overflow by stages', result.returncode)
+    result = run(ORDER, '--method', 'rk4', '--duration', '1e9', '--n-max', '5000')
+    check(result.returncode == 1 and 'steps of' in result.stderr, 'overflow in spring-order', result.stderr)
+
+
+# --- numbers: spring-energy ---------------------------------------------------------------------------------------------
+
+def test_energy():
+    seed = {
+        ('euler',): ('5.024831e-03', '5.258270e-02', '8.590730e-01', '1.100723e+04', '1.337355e+43'),
+        ('leapfrog', '--half-step-velocity'): ('2.268005e-03', '2.287520e-03', '2.176101e-03', '2.312644e-03', '1.628639e-03'),
+        ('leapfrog',): ('8.850965e-06', '3.699963e-06', '3.200530e-06', '8.594982e-06', '1.487909e-06'),
+        ('rk4', '--arithmetic', 'stages'): ('6.939449e-13', '6.943834e-12', '6.944789e-11', '6.944327e-10', '6.944331e-09'),
+    }
+    for how, errors in seed.items():
+        rows = table(ENERGY, '--method', *how, '--duration', '1e4')
+        equal(tuple('%.6e' % e for e in column(rows, 'energy_error_J')), errors, f'{" ".join(how)}: energy of the study')
+        equal([(r['method'], r['duration_s'], r['steps']) for r in rows], [(how[0], str(10 ** i), str(10 ** (i + 2))) for i in range(5)],
+              f'{" ".join(how)}: rows')
+        velocity = 'half_step_ahead' if '--half-step-velocity' in how else 'synchronised'
+        equal({r['velocity'] for r in rows}, {velocity}, f'{" ".join(how)}: velocity')
+    equal([r['energy_error_J'] for r in table(ENERGY, '--method', 'euler', '--duration', '1e6')][5:], ['inf', 'inf'],
+          'an energy that overflows is inf, with status 0')
+    equal([r['duration_s'] for r in table(ENERGY, '--method', 'leapfrog', '--duration', '9999')], ['1', '10', '100', '1000'],
+          'powers of ten up to the duration')
+    equal([r['steps'] for r in table(ENERGY, '--method', 'leapfrog', '--duration', '100', '--dt', '0.03')], ['33', '333', '3333'],
+          'steps to the nearest whole number')
+    for dt in (0.3, 0.0078125):
+        for row in table(ENERGY, '--method', 'leapfrog', '--duration', '1e3', '--dt', str(dt)):
+            error = float(row['energy_error_J'])
+            x = math.cos(int(row['steps']) * 2 * math.asin(dt / 2))  # v^2 + (1 - z^2/4) x^2 is constant
+            check(abs(error - dt * dt / 8 * (1 - x * x)) <= 1e-13, f'leapfrog, dt = {dt}: energy after {row["duration_s"]} s', row)
+        for row in table(ENERGY, '--method', 'euler', '--duration', '10', '--dt', str(dt)):
+            law = (math.exp(int(row['steps']) * math.log1p(dt * dt)) - 1) / 2
+            check(abs(float(row['energy_error_J']) / law - 1) <= 1e-12, f'euler, dt = {dt}: growth up to {row["duration_s"]} s', row)
+    check(max(column(table(ENERGY, '--method', 'exact', '--duration', '1e8'), 'energy_error_J')) <= 1e-12,
+          'exact: no error but rounding')
+    check(float(table(ENERGY, '--method', 'rk4', '--duration', '1e4')[4]['energy_error_J']) < 7e-9, 'rk4: the library, too')
+
+
+def main():
+    for name, test in list(globals().items()):
+        if name.startswith('test_') and test.__code__.co_argcount == 0:
+            test()
+        elif name.startswith('test_'):
+            with tempfile.TemporaryDirectory() as folder:
+                test(folder)
+    print(f'1..{count}')
+    return 1 if failures else 0
+
+
+sys.exit(main())
