@@ -11,6 +11,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -33,10 +34,10 @@ const char *const cli_methods[] = {
 
 struct cli_table {
     FILE *stream;
-    const char *option; /* that names the file */
-    const char *name;   /* as it was given */
-    char *path;         /* what the file will be called; NULL: it is written directly */
-    char *temporary;    /* what it is called until then */
+    const char *option;       /* that names the file */
+    const char *name;         /* as it was given */
+    char path[PATH_MAX];      /* what the file will be called; empty: it is written directly */
+    char temporary[PATH_MAX]; /* what it is called until then; empty: there is none */
     bool stamped;
 };
 
@@ -79,7 +80,7 @@ _Noreturn void cli_fail(cli_status status, const char *format, ...)
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     va_end(arguments);
-    exit(status);
+    exit((int)status);
 }
 
 /* ------------------------------------------------------------------------------------------------------ output */
@@ -87,7 +88,7 @@ _Noreturn void cli_fail(cli_status status, const char *format, ...)
 static void remove_temporaries(void)
 {
     for (size_t i = 0; i < table_count; i++)
-        if (tables[i].temporary != NULL)
+        if (tables[i].temporary[0] != '\0')
             unlink(tables[i].temporary);
 }
 
@@ -137,26 +138,16 @@ static void close_stream(const cli_table *table)
         fail_to_write(table);
 }
 
-static _Noreturn void fail_without_memory(void)
-{
-    cli_fail(CLI_FAILED, "out of memory");
-}
-
 /* A temporary file in the same directory, so that a rename can put it in place at once. */
 static FILE *open_temporary(cli_table *table, mode_t mode)
 {
-    static const char pattern[] = ".springstep-XXXXXX";
     const char *slash = strrchr(table->path, '/');
-    const size_t folder = slash != NULL ? (size_t)(slash + 1 - table->path) : 0;
-    char *name = malloc(folder + sizeof pattern);
-    if (name == NULL)
-        fail_without_memory();
-    memcpy(name, table->path, folder);
-    memcpy(name + folder, pattern, sizeof pattern);
-    table->temporary = name;
-    const int fd = mkstemp(name);
+    const int folder = slash != NULL ? (int)(slash + 1 - table->path) : 0;
+    const int length = snprintf(table->temporary, PATH_MAX, "%.*s.springstep-XXXXXX", folder, table->path);
+    errno = ENAMETOOLONG;
+    const int fd = length < PATH_MAX ? mkstemp(table->temporary) : -1;
     if (fd < 0) {
-        table->temporary = NULL;
+        table->temporary[0] = '\0';
         fail_to_write(table);
     }
     if (fchmod(fd, mode) != 0)
@@ -174,15 +165,13 @@ static void open_stream(cli_table *table)
     } else if (exists) {
         if (access(path, W_OK) != 0)
             fail_to_write(table);
-        table->path = realpath(path, NULL); /* a link stays a link to what it points to */
-        if (table->path != NULL)
+        if (realpath(path, table->path) != NULL) /* a link stays a link to what it points to */
             table->stream = open_temporary(table, status.st_mode & 0777);
-    } else if (lstat(path, &status) != 0) { /* else a link that leads nowhere: errno is that of stat() */
+    } else if (errno == ENOENT && lstat(path, &status) != 0 &&
+               strlen(path) < PATH_MAX) { /* no link to nowhere */
         const mode_t mask = umask(0);
         umask(mask);
-        table->path = strdup(path);
-        if (table->path == NULL)
-            fail_without_memory();
+        strcpy(table->path, path);
         table->stream = open_temporary(table, 0666 & ~mask);
     }
     if (table->stream == NULL)
@@ -258,7 +247,7 @@ void cli_columns(cli_table *table, const char *names)
 {
     char *line = strdup(names);
     if (line == NULL)
-        fail_without_memory();
+        cli_fail(CLI_FAILED, "out of memory");
     for (char *space = line; (space = strchr(space, ' ')) != NULL;)
         *space = '\t';
     cli_row(table, "%s", line);
@@ -271,11 +260,11 @@ void cli_finish(void)
     for (size_t i = 0; i < table_count; i++)
         close_stream(&tables[i]);
     for (size_t i = 0; i < table_count; i++) {
-        if (tables[i].path == NULL)
+        if (tables[i].path[0] == '\0')
             continue;
         if (rename(tables[i].temporary, tables[i].path) != 0)
             fail_to_write(&tables[i]);
-        tables[i].temporary = NULL;
+        tables[i].temporary[0] = '\0';
     }
 }
 
@@ -496,7 +485,7 @@ void cli_parse(const cli_program *p, int argc, char **argv)
     size_t length;
     FILE *words = open_memstream(&command, &length);
     if (words == NULL)
-        fail_without_memory();
+        cli_fail(CLI_FAILED, "out of memory");
     fputs(program->name, words);
     for (int i = 1; i < argc; i++) {
         const char *value;
@@ -523,7 +512,7 @@ void cli_parse(const cli_program *p, int argc, char **argv)
                 given |= UINT64_C(1) << k;
     }
     if (fclose(words) != 0)
-        fail_without_memory();
+        cli_fail(CLI_FAILED, "out of memory");
     for (int k = 0; program->options[k].name != NULL; k++)
         if (program->options[k].required && (given >> k & 1) == 0)
             fail_at(&program->options[k], NULL, "is missing; it should be ");
