@@ -6,7 +6,7 @@
  * Order     1. Undamped error after time T: about (w h T/2) times the amplitude.
  * Limit     (1 + h r) over the roots r of the spring must lie in the unit circle: h < g/w for complex roots,
  *           h < 2/(fast root) for real ones. Undamped never: E grows by 1 + w h^2 a step, exactly.
- * Accuracy  rounding below 1.5 eps of |(x, v/omega)| a step for h omega <= 1 (tests/test_iterate.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section I.7
  */
 #include "method.h"

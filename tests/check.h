@@ -27,6 +27,9 @@ void check_bits(double got, double want, const char *why, const char *what, cons
 void check_state(spring_state got, spring_state want, const char *why, const char *what, const char *file,
                  unsigned line);
 
+/* Say loudly that this test cannot be run here; it counts as skipped, unless a check fails. */
+void skip(const char *why);
+
 /* splitmix64 (Steele, Lea, Flood 2014), started anew for every test */
 uint64_t random_bits(void);
 double random_uniform(double low, double high);

@@ -14,7 +14,8 @@ static const unsigned most_printed = 5; /* failures a test; the rest only count 
 
 static uint64_t generator;
 static unsigned printed, number;
-static double closest; /* largest error/bound in this test: how near to failing it came */
+static const char *skipped; /* why */
+static double closest;      /* largest error/bound in this test: how near to failing it came */
 
 static bool report(bool ok, const char *what, const char *file, unsigned line)
 {
@@ -37,6 +38,11 @@ void check_close(double got, double want, double bound, const char *why, const c
     if (report(error <= bound, what, file, line))
         printf("# %s:%u: %s\n#   got %.17g, want %.17g, error %.3g, bound %.3g (%s)\n", file, line, what, got,
                want, error, bound, why);
+}
+
+void skip(const char *why)
+{
+    skipped = why;
 }
 
 static uint64_t bits_of(double x)
@@ -86,12 +92,14 @@ static void on_start(const CU_pTest case_started, const CU_pSuite suite)
     generator = seed;
     printed = 0;
     closest = 0;
+    skipped = NULL;
 }
 
 static void on_complete(const CU_pTest case_done, const CU_pSuite suite, const CU_pFailureRecord failure)
 {
     (void)suite;
-    printf("%s %u - %s\n", failure == NULL ? "ok" : "not ok", ++number, case_done->pName);
+    printf("%s %u - %s", failure == NULL ? "ok" : "not ok", ++number, case_done->pName);
+    printf(skipped != NULL ? " # SKIP %s\n" : "\n", skipped);
     if (closest > 0)
         printf("# largest error %.3g of its bound\n", closest);
     fflush(stdout);

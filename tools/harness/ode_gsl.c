@@ -3,6 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
+#include <stdlib.h>
 
 #include "harness/ode.h"
 
@@ -26,11 +27,12 @@ const char *ode_gsl_rk4(ode *o, double *y, double h, uint64_t n)
 {
     gsl_odeiv2_system system = {gsl_derivative, NULL, o->size, o};
     gsl_odeiv2_step *step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk4, o->size);
-    double error[o->size];
-    int status = step != NULL ? GSL_SUCCESS : GSL_ENOMEM;
+    double *error = calloc(o->size, sizeof *error);
+    int status = step != NULL && error != NULL ? GSL_SUCCESS : GSL_ENOMEM;
     for (uint64_t i = 0; i < n && status == GSL_SUCCESS; i++)
         status = gsl_odeiv2_step_apply(step, (double)i * h, h, y, error, NULL, NULL, &system);
     gsl_odeiv2_step_free(step);
+    free(error);
     return status == GSL_SUCCESS ? NULL : gsl_strerror(status);
 }
 

@@ -5,6 +5,8 @@
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 /* 107 digits: n = 2^64 steps and damping ratios of 1e8 still leave more than 30. */
 static const mpfr_prec_t precision = 384;
@@ -358,7 +360,7 @@ static spring_state plane_apply(const plane_map *f, spring_state y)
     return (spring_state){f->a * y.x + f->b * y.v + f->x, f->c * y.x + f->d * y.v + f->v};
 }
 
-static plane_map plane_after(const plane_map *f, const plane_map *g) /* the linear parts */
+static plane_map plane_product(const plane_map *f, const plane_map *g) /* of the linear parts */
 {
     return (plane_map){f->a * g->a + f->b * g->c,
                        f->a * g->b + f->b * g->d,
@@ -384,12 +386,54 @@ static plane_map plane_difference(affine *step, const affine *solution, double o
     return plane_of(step, omega);
 }
 
-reference_bounds reference_bounds_of(const spring_params *p, spring_method m, double dt, uint64_t n,
-                                     spring_state start)
+typedef struct added {
+    double rounding, truncation; /* [m] by one step, or by all steps that are not walked */
+} added;
+
+typedef struct walk {
+    plane_map step;
+    uint64_t n;
+} walk;
+
+struct reference_bounds {
+    double omega;
+    spring_state y, exact; /* (x, v/omega) by the method, and the true one */
+    added *steps;
+    walk *walks;
+    uint64_t step_count, walk_count;
+};
+
+static void *grown(void *array, uint64_t count, size_t size)
+{
+    void *larger = realloc(array, count * size);
+    if (larger == NULL) {
+        fputs("reference: out of memory\n", stderr);
+        exit(EXIT_FAILURE);
+    }
+    return larger;
+}
+
+reference_bounds *reference_bounds_new(const spring_params *p, spring_state start)
+{
+    const double w = p->stiffness / p->mass, omega = w > 0 ? sqrt(w) : 1;
+    const spring_state y = {start.x, start.v / omega};
+    reference_bounds *b = grown(NULL, 1, sizeof *b);
+    *b = (reference_bounds){.omega = omega, .y = y, .exact = y};
+    return b;
+}
+
+static double carried_by_many(spring_method m, double z, uint64_t n)
+{
+    if (m == SPRING_LEAPFROG)
+        return 1 / sqrt(1 - z * z / 4);
+    return m == SPRING_EULER ? exp((double)n / 2 * log1p(z * z)) : 1;
+}
+
+void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     const uint64_t most_walked = 1000000;
-    const double w = p->stiffness / p->mass, g = p->damping / p->mass, omega = w > 0 ? sqrt(w) : 1;
-    const double z = fmax(omega, g) * fabs(dt), local = 2 * DBL_EPSILON * pow(1 + z * z, 1.5);
+    const double omega = b->omega, z = fmax(sqrt(p->stiffness / p->mass), p->damping / p->mass) * fabs(dt);
+    const double local = 2 * DBL_EPSILON * pow(1 + z * z, 2);
     const double push = fabs(p->load / p->mass * dt) / omega,
                  smallest = 8 * DBL_TRUE_MIN * fmax(1, 1 / omega);
     affine step, solution;
@@ -402,32 +446,40 @@ reference_bounds reference_bounds_of(const spring_params *p, spring_method m, do
     affine_clear(&step);
     affine_clear(&solution);
 
-    reference_bounds bounds = {.growth = 1};
-    spring_state y = {start.x, start.v / omega}, exact = y;
-    if (n > most_walked) {
-        if (m == SPRING_LEAPFROG)
-            bounds.growth = 1 / sqrt(1 - z * z / 4);
-        else if (m == SPRING_EULER)
-            bounds.growth = exp((double)n / 2 * log1p(z * z));
-        const double sum = (double)n * hypot(y.x, y.v) * bounds.growth;
-        bounds.rounding = bounds.growth * sum * local;
-        bounds.truncation = sum * plane_norm(&defect);
-        return bounds;
+    const bool walked = n <= most_walked;
+    b->walks = grown(b->walks, b->walk_count + 1, sizeof *b->walks);
+    b->walks[b->walk_count++] = (walk){M, walked ? n : 1};
+    b->steps = grown(b->steps, b->step_count + (walked ? n : 1), sizeof *b->steps);
+    if (!walked) {
+        const double carried = carried_by_many(m, z, n), all = (double)n * hypot(b->y.x, b->y.v) * carried;
+        b->steps[b->step_count++] = (added){carried * all * local, all * plane_norm(&defect)};
+        return;
     }
-    plane_map power = {1, 0, 0, 1, 0, 0};
     for (uint64_t j = 0; j < n; j++) {
-        const spring_state miss = plane_apply(&defect, exact);
-        bounds.growth = fmax(bounds.growth, plane_norm(&power));
-        bounds.rounding += local * (hypot(y.x, y.v) + push) + smallest;
-        bounds.truncation += hypot(miss.x, miss.v);
-        y = plane_apply(&M, y);
-        exact = plane_apply(&truth, exact);
-        power = plane_after(&M, &power);
+        const spring_state miss = plane_apply(&defect, b->exact);
+        b->steps[b->step_count++] =
+            (added){local * (hypot(b->y.x, b->y.v) + push) + smallest, hypot(miss.x, miss.v)};
+        b->y = plane_apply(&M, b->y);
+        b->exact = plane_apply(&truth, b->exact);
     }
-    bounds.rounding *= bounds.growth;
-    bounds.truncation *= bounds.growth;
-    bounds.growth = fmax(bounds.growth, plane_norm(&power));
-    return bounds;
+}
+
+void reference_bounds_end(reference_bounds *b, double *rounding, double *truncation)
+{
+    plane_map rest = {1, 0, 0, 1, 0, 0}; /* the product of the steps that follow */
+    uint64_t j = b->step_count;
+    *rounding = *truncation = 0;
+    for (uint64_t i = b->walk_count; i-- > 0;)
+        for (uint64_t k = 0; k < b->walks[i].n; k++) {
+            const double norm = plane_norm(&rest);
+            j--;
+            *rounding += norm * b->steps[j].rounding;
+            *truncation += norm * b->steps[j].truncation;
+            rest = plane_product(&rest, &b->walks[i].step);
+        }
+    free(b->steps);
+    free(b->walks);
+    free(b);
 }
 
 /* Jury's conditions for both eigenvalues in the closed unit circle, |det| <= 1 and |trace| <= 1 + det. Leapfrog

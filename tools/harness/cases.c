@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT */
+/* The catalogue of hard cases; see cases.h. */
+#include "harness/cases.h"
+
+#include <math.h>
+
+static const unsigned no_euler = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_EXACT;
+
+segment case_segment(const validation_case *c, spring_method m, spring_state *start)
+{
+    segment s = {.p = {.mass = c->mass}, .dt = c->dt, .n = c->n};
+    if (c->omega > 0) {
+        s.p.stiffness = c->mass * c->omega * c->omega;
+        s.p.damping = 2 * c->damping_ratio * c->mass * c->omega;
+        s.p.load = s.p.stiffness * c->rest;
+        *start = (spring_state){c->x0, c->v0 * c->omega};
+    } else {
+        s.p.damping = c->mass * c->damping_ratio;
+        s.p.load = c->mass * c->rest;
+        *start = (spring_state){c->x0, c->v0};
+    }
+    if (c->stable_fraction > 0) {
+        const double limit = spring_stable_step(&s.p, m);
+        s.dt = limit > 0 && isfinite(limit) ? c->stable_fraction * limit : 0.01 / c->omega;
+    }
+    return s;
+}
+
+/* ------------------------------------------------------------------------------- what changes from step to step */
+
+/* A frame time within +-50 %, the same at every run: the fractional parts of multiples of the golden ratio. */
+static void jitter(uint64_t i, segment *s)
+{
+    const double golden = 0.6180339887498949, part = (double)(i + 1) * golden;
+    s->dt *= 0.5 + (part - floor(part));
+}
+
+/* Stiffness 40 % up and down every quarter period of 2 pi/omega = 64 steps: the case of the swing that is pumped. */
+static void pump(uint64_t i, segment *s)
+{
+    s->p.stiffness *= i / 16 % 2 == 0 ? 1.4 : 0.6;
+}
+
+/* Drives a(t) = A cos(d t), A = 0.7 m/s^2, at the resonance of the case's spring and 10 % above. */
+static const double drive_amplitude = 0.7, resonance = 1.7, beating = 1.87; /* [m/s^2], [1/s], [1/s] */
+
+static void set_drive(segment *s, double frequency, double t)
+{
+    s->p.load = s->p.mass * drive_amplitude * cos(frequency * t);
+}
+
+static void resonance_at_start(uint64_t i, segment *s)
+{
+    set_drive(s, resonance, (double)i * s->dt);
+}
+
+static void resonance_in_middle(uint64_t i, segment *s)
+{
+    set_drive(s, resonance, ((double)i + 0.5) * s->dt);
+}
+
+static void beating_at_start(uint64_t i, segment *s)
+{
+    set_drive(s, beating, (double)i * s->dt);
+}
+
+static void beating_in_middle(uint64_t i, segment *s)
+{
+    set_drive(s, beating, ((double)i + 0.5) * s->dt);
+}
+
+/* x = A t sin(w t)/(2 w) added to the free motion at resonance, A (cos d t - cos w t)/(w^2 - d^2) beside it. */
+static void driven(const validation_case *c, double frequency, double t, spring_state *s)
+{
+    const double w = c->omega, A = drive_amplitude;
+    *s = (spring_state){c->x0 * cos(w * t) + c->v0 * sin(w * t),
+                        w * (c->v0 * cos(w * t) - c->x0 * sin(w * t))};
+    if (frequency == w) {
+        s->x += A * t * sin(w * t) / (2 * w);
+        s->v += A / 2 * (t * cos(w * t) + sin(w * t) / w);
+    } else {
+        const double factor = A / (w * w - frequency * frequency);
+        s->x += factor * (cos(frequency * t) - cos(w * t));
+        s->v += factor * (w * sin(w * t) - frequency * sin(frequency * t));
+    }
+}
+
+/* The load's error over a step, against the Green's function H(t) = sin(w t)/w, |H| <= 1/w, |H'| <= 1, in (x, v/w):
+   sampled at the start at most dt/2 |a'|/w a second; in the middle dt^2 (|a'|/12 + |a''|/(24 w)). */
+static double cost_at_start(const validation_case *c, double frequency, double dt, double duration)
+{
+    return duration * dt / 2 * drive_amplitude * frequency / c->omega;
+}
+
+static double cost_in_middle(const validation_case *c, double frequency, double dt, double duration)
+{
+    return duration * dt * dt * drive_amplitude * frequency * (1.0 / 12 + frequency / (24 * c->omega));
+}
+
+static double truth_resonance_start(const validation_case *c, double dt, double duration, spring_state *s)
+{
+    driven(c, resonance, duration, s);
+    return cost_at_start(c, resonance, dt, duration);
+}
+
+static double truth_resonance_middle(const validation_case *c, double dt, double duration, spring_state *s)
+{
+    driven(c, resonance, duration, s);
+    return cost_in_middle(c, resonance, dt, duration);
+}
+
+static double truth_beating_start(const validation_case *c, double dt, double duration, spring_state *s)
+{
+    driven(c, beating, duration, s);
+    return cost_at_start(c, beating, dt, duration);
+}
+
+static double truth_beating_middle(const validation_case *c, double dt, double duration, spring_state *s)
+{
+    driven(c, beating, duration, s);
+    return cost_in_middle(c, beating, dt, duration);
+}
+
+/* ------------------------------------------------------------------------------------------------- the catalogue */
+
+#define FRAME(hertz) .dt = 1.0 / (hertz)
+#define START        .x0 = 0.8, .v0 = -0.9
+
+const validation_case cases[] = {
+    /* stiffness at frame steps */
+    {"soft-30", "a spring that hardly moves", 1.3, 1e-6, 0, 0, START, FRAME(30), .n = 3000},
+    {"slow-30", "a slow spring at a coarse frame", 1.3, 5, 0, 0, START, FRAME(30), .n = 3000, .peers = true},
+    {"brisk-60", "a brisk spring at a common frame", 0.7, 25, 0, 0, START, FRAME(60), .n = 300,
+     .peers = true},
+    {"brisk-240", "the same at a fine frame", 0.7, 25, 0, 0, START, FRAME(240), .n = 1200, .peers = true},
+    {"stiff-240", "steps just above the leapfrog limit", 1.3, 481, 0.02, 0, START, FRAME(240), .n = 40},
+    {"rigid-60", "omega dt = 1.7e7: every stepper explodes, and must do it exactly", 1.3, 1e9, 0, 0, START,
+     FRAME(60), .n = 5},
+    /* damping */
+    {"damped-1e-12", "damping below the rounding of 1 + g dt", 1.3, 1.7, 1e-12, 0, START, .dt = 0.03,
+     .n = 200000, .methods = no_euler},
+    {"damped-0.1", "light damping", 1.3, 1.7, 0.1, 0, START, .stable_fraction = 0.5, .n = 40, .peers = true},
+    {"damped-below-1", "critical damping from below", 1.3, 1.7, 1 - 1e-12, 0, START, .stable_fraction = 0.5,
+     .n = 8, .peers = true},
+    {"damped-1", "critical damping", 1.3, 1.7, 1, 0, START, .stable_fraction = 0.5, .n = 8, .peers = true},
+    {"damped-above-1", "critical damping from above", 1.3, 1.7, 1 + 1e-12, 0, START, .stable_fraction = 0.5,
+     .n = 8, .peers = true},
+    {"damped-10", "a heavily damped spring", 1.3, 1.7, 10, 0, START, .stable_fraction = 0.5, .n = 60,
+     .peers = true},
+    {"damped-1e4", "two time scales 4e8 apart", 1.3, 1.7, 1e4, 0, START, .stable_fraction = 0.5, .n = 10000},
+    /* the stability limit */
+    {"limit-0.5", "half of the stable step", 1.3, 2.7, 0.3, 0, START, .stable_fraction = 0.5, .n = 20},
+    {"limit-0.99", "close to the stable step", 1.3, 2.7, 0, 0, START, .stable_fraction = 0.99, .n = 1000,
+     .methods = no_euler},
+    {"limit-0.999999", "a millionth inside: errors grow a thousandfold", 1.3, 2.7, 0, 0, START,
+     .stable_fraction = 0.999999, .n = 1000, .methods = no_euler},
+    {"limit-1.000001", "a millionth outside", 1.3, 2.7, 0, 0, START, .stable_fraction = 1.000001, .n = 1000,
+     .methods = no_euler},
+    {"limit-damped", "a millionth inside, damped", 1.3, 2.7, 0.7, 0, START, .stable_fraction = 0.999999,
+     .n = 300},
+    {"limit-3", "far beyond", 1.3, 2.7, 0.2, 0, START, .stable_fraction = 3, .n = 60},
+    /* magnitudes */
+    {"mass-1e-12", "a tiny mass", 1e-12, 2.7, 0.2, 0.3, START, .dt = 0.02, .n = 500},
+    {"mass-1e12", "a huge mass", 1e12, 2.7, 0.2, 0.3, START, .dt = 0.02, .n = 500},
+    {"amplitude-1e-300", "squares underflow", 1.3, 2.7, 0.01, 0, .x0 = 0.8e-300, .v0 = -0.9e-300, .dt = 0.02,
+     .n = 500},
+    {"amplitude-1e300", "squares overflow", 1.3, 2.7, 0.01, 0, .x0 = 0.8e300, .v0 = -0.9e300, .dt = 0.02,
+     .n = 500},
+    {"denormal", "a settling spring among the denormals", 1.3, 2.7, 0.3, 0, .x0 = 0.8e-307, .v0 = -0.9e-307,
+     .dt = 0.02, .n = 2000},
+    /* starts */
+    {"turning-point", "v = 0", 0.7, 2.7, 0, 0, .x0 = 0.8, .v0 = 0, .dt = 0.05, .n = 2000, .peers = true},
+    {"middle", "x = 0", 0.7, 2.7, 0, 0, .x0 = 0, .v0 = 0.8, .dt = 0.05, .n = 2000},
+    {"at-rest", "at rest under load: it must stay", 0.7, 2.7, 0.1, -0.4, .x0 = -0.4, .v0 = 0, .dt = 0.05,
+     .n = 2000},
+    {"loaded", "a load from a start at the unloaded rest position", 0.7, 2.7, 0.1, -0.4, .x0 = 0, .v0 = 0,
+     .dt = 0.05, .n = 500, .peers = true},
+    {"fast-root", "along the fast root of an overdamped spring", 0.7, 1.6, 1.25, 0, .x0 = 0.8, .v0 = -1.6,
+     .dt = 0.05, .n = 200, .peers = true},
+    /* without stiffness */
+    {"free-fall", "no stiffness, no damping", 1.3, 0, 0, -9.81, .x0 = 2, .v0 = 3, .dt = 0.05, .n = 100},
+    {"drag-only", "no stiffness", 1.3, 0, 0.4, 0.3, .x0 = 2, .v0 = 3, .dt = 0.05, .n = 400},
+    /* time */
+    {"backwards", "dt < 0", 1.3, 2.7, 0, 0, START, .dt = -0.03, .n = 1000},
+    {"backwards-damped", "dt < 0: damping is growth", 1.3, 2.7, 0.05, 0, START, .dt = -0.03, .n = 500},
+    {"decimal-step", "dt = 1e-4 is not a binary fraction", 1.3, 2.7, 0, 0, START, .dt = 1e-4, .n = 1000000},
+    {"binary-step", "dt = 2^-13 is", 1.3, 2.7, 0, 0, START, .dt = 0x1p-13, .n = 1000000},
+    {"billion-steps", "10^9 steps: a biased rounding would show", 1.3, 1.7, 0, 0, START, .dt = 0.01,
+     .n = 1000000000, .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4, .slow = true},
+    /* what changes from step to step */
+    {"jitter", "frame times that vary by 50 %", 1.3, 1.7, 0, 0, START, .dt = 0.1, .n = 2000, .vary = jitter},
+    {"pumped", "stiffness switched every quarter period", 1.3, 1.7, 0, 0, START,
+     .dt = 6.283185307179586 / 1.7 / 64, .n = 640, .vary = pump},
+    {"resonance-start", "driven at resonance, load sampled at the start of each step: order 1", 1.3, 1.7, 0,
+     0, START, .dt = 0.01, .n = 2000, .vary = resonance_at_start, .truth = truth_resonance_start},
+    {"resonance-middle", "the same sampled in the middle: order 2", 1.3, 1.7, 0, 0, START, .dt = 0.01,
+     .n = 2000, .vary = resonance_in_middle, .truth = truth_resonance_middle},
+    {"beating-start", "driven 10 % above resonance, sampled at the start", 1.3, 1.7, 0, 0, START, .dt = 0.01,
+     .n = 5000, .vary = beating_at_start, .truth = truth_beating_start},
+    {"beating-middle", "the same sampled in the middle", 1.3, 1.7, 0, 0, START, .dt = 0.01, .n = 5000,
+     .vary = beating_in_middle, .truth = truth_beating_middle},
+};
+
+const size_t case_count = sizeof cases / sizeof cases[0];

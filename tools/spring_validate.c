@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-validate: every method on every hard case, against independent witnesses.
+ *
+ * For each case and method: the same method in exact arithmetic (what differs is rounding), the true solution (what
+ * differs is rounding and truncation), and other people's solvers. Every bound is derived, and says from what.
+ */
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+#include "harness/cases.h"
+#include "harness/ode.h"
+#include "harness/reference.h"
+
+static const char **case_names; /* ended by NULL */
+static int only_case = -1;
+static bool list_only, quick;
+
+static cli_option options[] = {
+    {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "only this case; --list names them"},
+    {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and what each is there to break"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out the cases that take more than a second"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-validate",
+    .summary = "Check every method on a catalogue of hard cases against independent witnesses.",
+    .details = "Columns: case, method, witness, dt_s, steps, error and bound (both [m], distances in (x, "
+               "v/omega)), verdict\n"
+               "(pass, fail, skip), reason (what the bound is made of), uncertainty (of the witness [m]: the "
+               "difference to a\n"
+               "ten times coarser run of its own; 0 for closed forms in multiple precision) and "
+               "force_evaluations (of the\n"
+               "witness; 0 where it has none). Witnesses: iterate, the same method in 107-digit arithmetic; "
+               "solution, the\n"
+               "true solution in 107 digits; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Status "
+               "1 if any check\n"
+               "fails.",
+    .options = options,
+};
+
+static cli_table *table;
+static unsigned failures;
+
+typedef struct finding {
+    const validation_case *of;
+    const char *method, *witness, *reason;
+    double dt;
+    uint64_t steps;
+    double error, bound, uncertainty;
+    uint64_t evaluations;
+} finding;
+
+static void judge(const finding *f)
+{
+    const bool pass = f->error <= f->bound; /* false for NaN */
+    failures += !pass;
+    cli_row(table, "%s\t%s\t%s\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%s\t%s\t%.17g\t%" PRIu64, f->of->name,
+            f->method, f->witness, f->dt, f->steps, f->error, f->bound, pass ? "pass" : "fail", f->reason,
+            f->uncertainty, f->evaluations);
+}
+
+/* ------------------------------------------------------------------------ multiple precision, segment by segment */
+
+/* What the closed form itself may lose (spring.h), and what the response to a load adds. */
+static double closed_form_bound(const reference *truth, const segment *s, double t)
+{
+    const double omega = sqrt(s->p.stiffness / s->p.mass), g = s->p.damping / s->p.mass;
+    const double zeta = omega > 0 ? g / (2 * omega) : 0;
+    const double relative = 4 * DBL_EPSILON * (1 + omega * fabs(t) * fmax(1, zeta));
+    const double load = fabs(s->p.load / s->p.mass);
+    const double response = load * (omega > 0 ? fmin(t * t, 2 / (omega * omega)) : t * t);
+    return relative * (mpfr_get_d(truth->size, MPFR_RNDU) + 2 * response) + DBL_MIN;
+}
+
+static void against_references(const validation_case *c, spring_method m)
+{
+    spring_state got;
+    const segment first = case_segment(c, m, &got);
+    const uint64_t segments = c->vary != NULL ? first.n : 1;
+    reference iterate, truth;
+    reference_init(&iterate);
+    reference_init(&truth);
+    reference_start(&iterate, &first.p, got);
+    reference_start(&truth, &first.p, got);
+    reference_bounds *bounds = reference_bounds_new(&first.p, got);
+    bool done = true;
+    double duration = 0, closed_form = 0;
+    for (uint64_t i = 0; i < segments; i++) {
+        segment s = first;
+        if (c->vary != NULL) {
+            s.n = 1;
+            c->vary(i, &s);
+        }
+        done = done && spring_advance(&got, &s.p, m, s.dt, s.n) == SPRING_OK;
+        const double t = s.dt * (double)s.n;
+        duration += t;
+        reference_exact(&truth, &s.p, t);
+        if (m == SPRING_EXACT) {
+            closed_form += closed_form_bound(&truth, &s, t);
+        } else {
+            reference_iterate(&iterate, &s.p, m, s.dt, s.n);
+            reference_bounds_add(bounds, &s.p, m, s.dt, s.n);
+        }
+    }
+    if (!done)
+        got = (spring_state){NAN, NAN};
+    double rounding, truncation;
+    reference_bounds_end(bounds, &rounding, &truncation);
+
+    finding f = {.of = c, .method = spring_method_name(m), .dt = first.dt, .steps = first.n};
+    if (m != SPRING_EXACT) {
+        f.witness = "iterate";
+        f.error = reference_distance(&iterate, got);
+        f.bound = rounding;
+        f.reason = "rounding";
+        judge(&f);
+    }
+    f.witness = "solution";
+    f.error = reference_distance(&truth, got);
+    f.bound = m == SPRING_EXACT ? closed_form : rounding + truncation;
+    f.reason = m == SPRING_EXACT ? "closed form" : "truncation + rounding";
+    judge(&f);
+    if (c->truth != NULL) {
+        spring_state drive;
+        const double sampling = c->truth(c, first.dt, first.dt * (double)first.n, &drive);
+        const double omega = sqrt(first.p.stiffness / first.p.mass);
+        f.witness = "drive";
+        f.error = hypot(got.x - drive.x, (got.v - drive.v) / omega);
+        f.bound += sampling;
+        f.reason = m == SPRING_EXACT ? "load sampled once a step"
+                                     : "load sampled once a step + truncation + rounding";
+        judge(&f);
+    }
+    reference_clear(&iterate);
+    reference_clear(&truth);
+}
+
+/* -------------------------------------------------------------------------------------- other people's solvers */
+
+/* RK4 with the same step in another implementation: what differs is rounding, on both sides. */
+static void against_rk4(const validation_case *c, const char *witness,
+                        const char *(*solve)(ode *, double *, double, uint64_t), unsigned our_steps_a_step)
+{
+    spring_state start;
+    const segment s = case_segment(c, SPRING_RK4, &start);
+    const double omega = sqrt(s.p.stiffness / s.p.mass), scale[] = {1, omega};
+    const uint64_t n = s.n / our_steps_a_step;
+    ode o = {.size = 2, .derivative = ode_spring_derivative, .data = &s.p, .scale = scale};
+    double y[] = {start.x, start.v};
+    double rounding, truncation;
+    reference_bounds *bounds = reference_bounds_new(&s.p, start);
+    reference_bounds_add(bounds, &s.p, SPRING_RK4, s.dt, n * our_steps_a_step);
+    reference_bounds_end(bounds, &rounding, &truncation);
+    finding f = {.of = c, .method = "rk4", .witness = witness, .dt = s.dt, .steps = n * our_steps_a_step};
+    const char *message = solve(&o, y, s.dt * our_steps_a_step, n);
+    if (message != NULL)
+        cli_fail(CLI_FAILED, "%s: %s: %s", c->name, witness, message);
+    spring_state got = start;
+    spring_advance(&got, &s.p, SPRING_RK4, s.dt, f.steps);
+    f.error = hypot(got.x - y[0], (got.v - y[1]) / omega);
+    f.bound = 2 * rounding;
+    f.reason = "rounding on both sides";
+    f.evaluations = o.evaluations;
+    judge(&f);
+}
+
+typedef const char *adaptive_solver(ode *o, double *y, double duration, double tolerance);
+
+static const char *adams(ode *o, double *y, double duration, double tolerance)
+{
+    return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
+}
+
+static const char *bdf(ode *o, double *y, double duration, double tolerance)
+{
+    return ode_cvode(o, y, duration, ODE_BDF, tolerance);
+}
+
+/* The closed form against a solver that knows nothing of springs. Its error is not known, only estimated, by a run with
+   ten times its tolerance: if the error of this one is at most two thirds of that one's, it is at most twice the
+   difference. The last step may be off by the local tolerance whatever the difference. */
+static void against_adaptive(const validation_case *c, const char *witness, adaptive_solver *solve)
+{
+    const double tolerance =
+        1e-11; /* above the 5e-11 and 1e-9 over 100 periods where CVODE's errors stop falling */
+    spring_state start;
+    const segment s = case_segment(c, SPRING_LEAPFROG, &start);
+    const double omega = sqrt(s.p.stiffness / s.p.mass), duration = s.dt * (double)s.n;
+    const double size = hypot(start.x, start.v / omega) + fabs(c->rest), scale[] = {size, size * omega};
+    double y[2][2];
+    ode o = {.size = 2, .derivative = ode_spring_derivative, .data = &s.p, .scale = scale};
+    for (int i = 0; i < 2; i++) {
+        o.evaluations = 0;
+        y[i][0] = start.x;
+        y[i][1] = start.v;
+        const char *message = solve(&o, y[i], duration, i == 0 ? 10 * tolerance : tolerance);
+        if (message != NULL)
+            cli_fail(CLI_FAILED, "%s: %s: %s", c->name, witness, message);
+    }
+    reference truth;
+    reference_init(&truth);
+    reference_start(&truth, &s.p, start);
+    reference_exact(&truth, &s.p, duration);
+    spring_state got = start;
+    spring_advance(&got, &s.p, SPRING_EXACT, s.dt, s.n);
+    finding f = {.of = c, .method = "exact", .witness = witness, .dt = s.dt, .steps = s.n};
+    f.error = hypot(got.x - y[1][0], (got.v - y[1][1]) / omega);
+    f.uncertainty = hypot(y[0][0] - y[1][0], (y[0][1] - y[1][1]) / omega);
+    f.bound = 2 * f.uncertainty + tolerance * size + closed_form_bound(&truth, &s, duration);
+    f.reason = "twice the uncertainty of the witness + its local tolerance";
+    f.evaluations = o.evaluations;
+    judge(&f);
+    reference_clear(&truth);
+}
+
+static void run_case(const validation_case *c)
+{
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        if (c->methods == 0 || (c->methods & 1u << m))
+            against_references(c, (spring_method)m);
+    if (!c->peers)
+        return;
+    against_rk4(c, "gsl-rk4", ode_gsl_rk4, 2);
+    against_rk4(c, "arkode-rk4", ode_arkstep_rk4, 1);
+    against_adaptive(c, "gsl-rk8pd", ode_gsl_rk8pd);
+    against_adaptive(c, "cvode-adams", adams);
+    against_adaptive(c, "cvode-bdf", bdf);
+}
+
+static void name_cases(void)
+{
+    case_names = calloc(case_count + 1, sizeof *case_names);
+    if (case_names == NULL)
+        exit(CLI_FAILED);
+    for (size_t i = 0; i < case_count; i++)
+        case_names[i] = cases[i].name;
+    options[0].choices = case_names;
+}
+
+int main(int argc, char **argv)
+{
+    name_cases();
+    cli_parse(&program, argc, argv);
+    table = cli_open_output();
+    cli_columns(table, list_only ? "case purpose"
+                                 : "case method witness dt_s steps error bound verdict reason uncertainty "
+                                   "force_evaluations");
+    for (size_t i = 0; i < case_count; i++) {
+        if (only_case >= 0 && i != (size_t)only_case)
+            continue;
+        if (list_only)
+            cli_row(table, "%s\t%s", cases[i].name, cases[i].purpose);
+        else if (!quick || !cases[i].slow)
+            run_case(&cases[i]);
+        cli_progress((double)(i + 1) / (double)case_count);
+    }
+    cli_finish();
+    free(case_names);
+    mpfr_free_cache();
+    return failures > 0 ? CLI_FAILED : 0;
+}
