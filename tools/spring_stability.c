@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-stability: where each method breaks, found by taking steps and knowing no formula.
+ *
+ * A step is unstable if a generic start grows: ln(max |y| over steps N/2 ... N / max |y| over steps N/4 ... N/2) > 1e-3
+ * with N = 10^6. Below a damping ratio of 0.1 growth near the limit is too slow for that (one part in 10^4 outside,
+ * Euler at 0.01 grows by 2 % in 10^6 steps), so there the growth of the step's own map is measured instead: stepping two
+ * basis states gives its matrix, and that its eigenvalues. The limit is then bisected.
+ */
+#include <math.h>
+#include <stddef.h>
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+
+static uint64_t points = 64;
+
+static const cli_option options[] = {
+    {"points", CLI_COUNT, .count = &points, .least = 1, .most = 10000, .value = "N",
+     .help = "damping ratios from 0.01 to 100, besides 0; 64"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-stability",
+    .summary = "Measure the stable step of each method over the damping ratio.",
+    .details =
+        "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
+        "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.",
+    .options = options,
+};
+
+static const double mass = 1.3, omega = 2.7; /* [kg], [1/s] */
+
+static const uint64_t N = 1000000;        /* steps of a trial */
+static const double growth_seen = 1e-3;   /* of the logarithm from one window to the next */
+static const double least_by_trial = 0.1; /* damping ratio */
+static const double width = 1e-6;         /* relative, of the bisection: the goal is 1e-4 */
+static const double negligible = 1e-200;  /* size at which a spring that started at 1 has decayed */
+
+static void (*const kernels[])(spring_state *, const spring_params *, double) = {
+    [SPRING_EULER] = spring_step_euler,
+    [SPRING_LEAPFROG] = spring_step_leapfrog,
+    [SPRING_RK4] = spring_step_rk4,
+};
+
+static spring_params spring_of(double damping_ratio)
+{
+    return (spring_params){mass, mass * omega * omega, 2 * damping_ratio * mass * omega, 0};
+}
+
+static double largest(spring_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)
+{
+    double most = 0;
+    for (; n > 0; n--) {
+        kernels[m](s, p, dt);
+        const double size = fabs(s->x) + fabs(s->v) * (1 / omega);
+        if (size > most)
+            most = size;
+    }
+    return isfinite(s->x) && isfinite(s->v) ? most : INFINITY;
+}
+
+static bool grows_by_trial(const spring_params *p, spring_method m, double dt)
+{
+    spring_state s = {0.8, -0.9 * omega};
+    for (uint64_t n = 0; n < N / 4; n += 1000) {
+        const double size = largest(&s, p, m, dt, 1000);
+        if (!isfinite(size) || size < negligible)
+            return !isfinite(size);
+    }
+    const double early = largest(&s, p, m, dt, N / 4);
+    if (!isfinite(early) || early < negligible)
+        return !isfinite(early);
+    const double late = largest(&s, p, m, dt, N / 2);
+    return !isfinite(late) || log(late / early) > growth_seen;
+}
+
+/* ln of the larger eigenvalue of the step's matrix, by modulus. */
+static double growth_of_map(const spring_params *p, spring_method m, double dt)
+{
+    spring_state e = {1, 0}, f = {0, omega};
+    kernels[m](&e, p, dt);
+    kernels[m](&f, p, dt);
+    const double half_trace = (e.x + f.v / omega) / 2, det = (e.x * f.v - e.v * f.x) / omega;
+    const double under_root = half_trace * half_trace - det;
+    return under_root < 0 ? log(det) / 2 : log(fabs(half_trace) + sqrt(under_root));
+}
+
+/* The growth of a map that keeps its size comes out as the rounding of its entries. */
+static const double growth_of_rounding = 1e-14;
+
+static bool grows(const spring_params *p, double damping_ratio, spring_method m, double dt)
+{
+    if (damping_ratio >= least_by_trial)
+        return grows_by_trial(p, m, dt);
+    return growth_of_map(p, m, dt) > growth_of_rounding;
+}
+
+/* Undamped Euler has no stable step to bisect for: at every size its growth must be that of the theory. */
+static bool euler_always_grows(void)
+{
+    const spring_params p = spring_of(0);
+    for (double z = 1e-5; z < 10; z *= 1.1) {
+        const double theory = log1p(z * z) / 2;
+        if (!(fabs(growth_of_map(&p, SPRING_EULER, z / omega) - theory) <= 1e-15 + 1e-12 * theory))
+            return false;
+    }
+    return true;
+}
+
+static double measured_limit(double damping_ratio, spring_method m)
+{
+    const spring_params p = spring_of(damping_ratio);
+    if (m == SPRING_EULER && damping_ratio == 0)
+        return euler_always_grows() ? 0 : NAN;
+    double high = 1e-3;
+    while (!grows(&p, damping_ratio, m, high / omega) && high < 1e6)
+        high *= 2;
+    double low = high / 2;
+    while (high - low > width * high) {
+        const double middle = (low + high) / 2;
+        if (grows(&p, damping_ratio, m, middle / omega))
+            high = middle;
+        else
+            low = middle;
+    }
+    return low;
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    cli_table *table = cli_open_output();
+    cli_columns(table, "method damping_ratio limit_measured limit_theory relative_error");
+    for (int m = SPRING_EULER; m <= SPRING_RK4; m++)
+        for (uint64_t i = 0; i <= points; i++) {
+            const double part = points > 1 ? (double)(i - 1) / (double)(points - 1) : 0;
+            const double damping_ratio = i == 0 ? 0 : 0.01 * pow(1e4, part);
+            const spring_params p = spring_of(damping_ratio);
+            const double measured = measured_limit(damping_ratio, (spring_method)m);
+            const double theory = spring_stable_step(&p, (spring_method)m) * omega;
+            const double error = theory > 0 ? fabs(measured - theory) / theory : fabs(measured - theory);
+            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g", cli_methods[m], damping_ratio, measured, theory,
+                    error);
+            cli_progress(((double)m * (double)(points + 1) + (double)(i + 1)) / (3 * (double)(points + 1)));
+        }
+    cli_finish();
+    return 0;
+}
