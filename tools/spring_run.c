@@ -94,9 +94,8 @@ typedef struct envelope {
 
 static void write_part(const envelope *e)
 {
-    if (e->min <= e->max)
-        cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
-                ((double)e->part + 0.5) / (double)envelope_columns * duration, e->min, e->max);
+    cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
+            ((double)e->part + 0.5) / (double)envelope_columns * duration, e->min, e->max);
 }
 
 static void add_to_envelope(envelope *e, uint64_t step, const spring_state *s)
