@@ -425,15 +425,14 @@ static void print_usage(void)
     printf(" [OPTION]...\n%s\n\n", program->summary);
     print_options(program->options);
     print_options(common_options);
-    printf("\n%s\n"
-           "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an "
-           "option given\n"
-           "several times the last one counts. The output is tab-separated values: lines that start with "
-           "\"#\" say how\n"
-           "they were made, then come the names of the columns, then the rows.\n\n"
-           "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot "
-           "read or write.\n",
-           program->details);
+    printf(
+        "\n%s\n\n"
+        "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an\n"
+        "option given several times the last one counts. The output is tab-separated values: lines that\n"
+        "start with \"#\" say how they were made, then come the names of the columns, then the rows.\n\n"
+        "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot read\n"
+        "or write.\n",
+        program->details);
 }
 
 static const cli_option *option_of(const char *word, const char **value)

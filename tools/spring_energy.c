@@ -23,31 +23,30 @@ static bool half_step_velocity;
 static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
      .help = "euler, leapfrog, rk4 or exact"},
-    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s]; 0.01"},
+    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s] (default: 0.01)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
-     .help = "the last power of ten is the last one up to H [s]; 1e8"},
+     .help = "a row for each power of ten from 1 s to H [s] (default: 1e8)"},
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
      .help = "leapfrog only: measure the kinetic energy with the velocity at\n"
              "t + dt/2, half a step ahead of the position"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library (the default), or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-energy",
     .summary = "The error in the energy of an undamped spring after 1, 10, 100 ... seconds.",
-    .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m, with an energy "
-               "of 1/2 J.\n\n"
-               "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity), "
-               "duration_s, steps\n"
-               "(duration/dt to the nearest whole number, at least 1) and energy_error_J, the distance |E - "
-               "1/2 J|. An energy\n"
-               "that overflows has the error inf; that is a result, with status 0. Every step is taken: H = "
-               "1e8 s are 1e10\n"
-               "steps, one to three minutes; progress is shown on a terminal. With --method exact one "
-               "evaluation covers the\n"
-               "steps from row to row, 2^24 of them at most.",
+    .details =
+        "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
+        "1/2 J.\n\n"
+        "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity),\n"
+        "duration_s, steps (duration/dt to the nearest whole number, at least 1) and energy_error_J,\n"
+        "the distance |E - 1/2 J|. An energy that overflows has the error inf; that is a result, with\n"
+        "status 0.\n\n"
+        "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
+        "terminal.\n"
+        "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.",
     .options = options,
 };
 

@@ -26,27 +26,27 @@ static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
      .help = "euler, leapfrog, rk4 or exact"},
     {"duration", CLI_POSITIVE, .real = &duration, .required = true, .value = "H", .help = "time to run [s]"},
-    {"steps", CLI_COUNT, .count = &steps, .least = 1, .required = true, .value = "N",
-     .help = "number of steps; each is H/N long"},
+    {"steps", CLI_COUNT, .count = &steps, .least = 1, .most = UINT64_C(1) << 53, .required = true,
+     .value = "N", .help = "number of steps; each is H/N long"},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
      .help = "a row for every K-th step, the start included; without it only\n"
              "the final state"},
     {"from", CLI_REAL, .real = &from, .value = "T",
-     .help = "no rows for times before T [s], but for the final state; 0"},
-    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]; 1"},
-    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]; 1"},
-    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]; 0"},
-    {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N]; 0"},
-    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m]; 1"},
-    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s]; 0"},
+     .help = "no rows for times before T [s], but for the final state"},
+    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg] (default: 1)"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m] (default: 1)"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m] (default: 0)"},
+    {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N] (default: 0)"},
+    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m] (default: 1)"},
+    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s] (default: 0)"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library (the default), or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {"envelope", CLI_FILE, .file = &envelope_path, .value = "FILE",
-     .help = "in the same pass, write to FILE between what limits the error moves:\n"
-             "its minimum and maximum over all steps, for each of --columns equal\n"
+     .help = "in the same pass, write the envelope of the error to FILE: its\n"
+             "minimum and maximum over all steps, for each of --columns equal\n"
              "parts of the run"},
     {"columns", CLI_COUNT, .count = &envelope_columns, .least = 1, .most = 1000000, .value = "N",
-     .help = "number of these parts; 600"},
+     .help = "number of these parts (default: 600)"},
     {.name = NULL},
 };
 
@@ -54,17 +54,15 @@ static const cli_program program = {
     .name = "spring-run",
     .summary = "Moves one spring through time and compares it with its exact solution.",
     .details =
-        "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m and "
-        "error_m,\n"
-        "the distance |x_m - exact_x_m|; exact_x_m is computed from the start. The last row is the final "
-        "state. With\n"
-        "--method exact one evaluation covers the steps from row to row, 2^24 of them at most (with "
-        "--envelope: each\n"
-        "step has its own), and the error is what rounding adds up to.\n"
-        "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m, with "
-        "the sign of\n"
-        "x_m - exact_x_m. Parts without a step have no row.\n"
-        "A state that becomes infinite ends the run with a message and status 1, after the rows before it.",
+        "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m\n"
+        "and error_m, the distance |x_m - exact_x_m|. Times are step H/N, and exact_x_m is computed\n"
+        "from the start in one evaluation. The last row is the final state. With --method exact one\n"
+        "evaluation covers the steps from row to row, 2^24 of them at most (with --envelope each step\n"
+        "has its own), and the error is what rounding adds up to.\n\n"
+        "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
+        "these with the sign of x_m - exact_x_m. Parts without a step have no row.\n\n"
+        "A state that becomes infinite ends the run with a message and status 1, after the rows before\n"
+        "it.",
     .options = options,
 };
 
@@ -163,8 +161,7 @@ static void check_options(void)
                  duration, steps);
     if (spring_advance(&start, &spring, SPRING_EXACT, dt, 0) != SPRING_OK)
         cli_fail(CLI_USAGE,
-                 "--mass: \"%g\" is too small: stiffness/mass, damping/mass and load/mass should be finite "
-                 "numbers",
+                 "--mass: \"%g\" is too small: stiffness/mass, damping/mass, load/mass should be finite",
                  spring.mass);
 }
 

@@ -81,7 +81,8 @@ def describe(tool, args):
 
 def test_bad_usage():
     methods = 'one of euler, leapfrog, rk4, exact'
-    count_1, positive = 'a whole number of at least 1', 'a finite number greater than 0'
+    count_1, count_53 = 'a whole number of at least 1', 'a whole number from 1 to 9007199254740992'
+    positive = 'a finite number greater than 0'
     run_3 = ['--method', 'euler', '--duration', '1', '--steps', '10']
     cases = [  # tool, arguments, what the message has to say
         *[(tool, ['--method', word], ['--method', f'"{word}"', methods])
@@ -94,8 +95,8 @@ def test_bad_usage():
         *[(tool, [*SHORT[tool], '--output', ''], ['--output', '""', 'the name of a file']) for tool in TOOLS],
         *[(tool, [*SHORT[tool], '-o'], ['--output', 'value is missing', 'the name of a file']) for tool in TOOLS],
         *[(tool, [*SHORT[tool], '--help=1'], ['--help', '"1"', 'takes no value']) for tool in TOOLS],
-        *[(RUN, [*run_3, '--steps', n], ['--steps', f'"{n}"', count_1])
-          for n in ('0', '-1', '+1', '', ' 1', '1 ', '1.5', '0x10', 'ten', '1e', '1e-1', '1e20', '2e19', '18446744073709551616',
+        *[(RUN, [*run_3, '--steps', n], ['--steps', f'"{n}"', count_53])
+          for n in ('0', '9007199254740993', '-1', '+1', '', ' 1', '1 ', '1.5', '0x10', 'ten', '1e', '1e-1', '1e20', '2e19', '18446744073709551616',
                     '1e99999999999999999999', 'nan', 'inf')],
         *[(RUN, [*run_3, '--duration', t], ['--duration', f'"{t}"', positive])
           for t in ('0', '-1', '', ' 1', '1 ', '1s', '1e999', '-1e999', '1e-999', 'nan', 'inf', '1,5', '1e', '.')],
@@ -112,7 +113,7 @@ def test_bad_usage():
         (RUN, [*run_3, '--arithmetic', 'fast'], ['--arithmetic', '"fast"', 'one of library, stages']),
         *[(tool, [*SHORT[tool], '--method', 'euler', '--arithmetic', 'stages'],
            ['--arithmetic', '"stages"', 'rk4', 'should be library']) for tool in TOOLS],
-        (RUN, ['--method', 'euler', '--duration', '1'], ['--steps', 'missing', count_1]),
+        (RUN, ['--method', 'euler', '--duration', '1'], ['--steps', 'missing', count_53]),
         (RUN, ['--method', 'euler', '--steps', '1'], ['--duration', 'missing', positive]),
         (RUN, [*run_3, '--envelope', 'x', '-o', 'x'], ['--envelope', '"x"', 'another file']),
         (RUN, [*run_3, '--envelope', '/dev/stdout'], ['--envelope', '"/dev/stdout"', 'another file']),
@@ -121,9 +122,11 @@ def test_bad_usage():
         (ENERGY, ['--method', 'rk4', '--duration', '1e30'], ['--duration', '"1e+30"', 'at most']),
         (ENERGY, ['--method', 'rk4', '--half-step-velocity'], ['--half-step-velocity', 'rk4', 'should be leapfrog']),
         (ENERGY, ['--method', 'leapfrog', '--half-step-velocity=1'], ['--half-step-velocity', '"1"', 'no value']),
-        (ORDER, ['--method', 'exact', '--fit'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
-        (ORDER, ['--method', 'exact', '--match-error', '1'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
+        (ORDER, ['--method', 'exact', '--fit'], ['--method', '"exact"', 'euler, leapfrog or rk4']),
+        (ORDER, ['--method', 'exact', '--match-error', '1'], ['--method', '"exact"', 'euler, leapfrog or rk4']),
         (ORDER, ['--method', 'rk4', '--fit', '--match-error', '1'], ['--fit', '--match-error']),
+        *[(ORDER, ['--method', 'rk4', option, n], [option, f'"{n}"', count_53])
+          for option in ('--n-min', '--n-max', '--n-step') for n in ('0', '9007199254740993')],
         (ORDER, ['--method', 'rk4', '--n-max', '4'], ['--n-max', '"4"', 'at least --n-min', '5']),
         (ORDER, ['--method', 'rk4', '--fit', '--n-max', '9'], ['--fit', '--n-max']),
         (ORDER, ['--method', 'rk4', '--match-error', '0'], ['--match-error', '"0"', positive]),
@@ -402,6 +405,8 @@ def test_match_error():
     for method, error in (('rk4', '1e-17'), ('leapfrog', '1e-13')):
         result = run(ORDER, '--method', method, '--match-error', error)
         check(result.returncode == 1 and 'rounding' in result.stderr, f'{method}: an error below rounding cannot be matched', result)
+    result = run(ORDER, '--method', 'rk4', '--match-error', '1', '--duration', '1e300')
+    check(result.returncode == 1 and 'rounding' in result.stderr, 'nor can one after a time beyond all phases', result)
 
 
 # --- numbers: spring-run ------------------------------------------------------------------------------------------------
