@@ -91,7 +91,7 @@ static void against_references(const validation_case *c, spring_method m)
     reference_start(&truth, &first.p, got);
     reference_bounds *bounds = reference_bounds_new(&first.p, got);
     bool done = true;
-    double duration = 0, closed_form = 0;
+    double closed_form = 0;
     for (uint64_t i = 0; i < segments; i++) {
         segment s = first;
         if (c->vary != NULL) {
@@ -100,7 +100,6 @@ static void against_references(const validation_case *c, spring_method m)
         }
         done = done && spring_advance(&got, &s.p, m, s.dt, s.n) == SPRING_OK;
         const double t = s.dt * (double)s.n;
-        duration += t;
         reference_exact(&truth, &s.p, t);
         if (m == SPRING_EXACT) {
             closed_form += closed_form_bound(&truth, &s, t);
