@@ -188,10 +188,15 @@ static iterate iterate_after(uint64_t n)
     return (iterate){(double)n * log_rho2 / 2, (double)n * phi};
 }
 
+static double rounding_bound(uint64_t n)
+{
+    return 2.5 * DBL_EPSILON * (double)n;
+}
+
 static double error_bound(uint64_t n)
 {
     const iterate u = iterate_after(n);
-    return fabs(expm1(u.log_growth)) + fabs(u.phase - duration) + 2.5 * DBL_EPSILON * (double)n;
+    return fabs(expm1(u.log_growth)) + fabs(u.phase - duration) + rounding_bound(n);
 }
 
 static double iterate_error(uint64_t n)
@@ -213,7 +218,7 @@ static uint64_t settled_from(void)
         fail_for_rounding();
     uint64_t low = (uint64_t)duration, high = low + 1; /* z <= 1 from high on */
     while (!(error_bound(high) <= match_error)) {
-        if (2.5 * DBL_EPSILON * (double)high > match_error)
+        if (rounding_bound(high) > match_error)
             fail_for_rounding();
         low = high;
         high *= 2;
