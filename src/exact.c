@@ -17,7 +17,7 @@
  *           infinite before it has to be. 1 - F cancels for short times and for stiffness 0: there P has its own forms.
  * Special   w = 0 is a free particle; n dt that overflows gives NaN.
  * Accuracy  see spring.h; largest error seen 0.62 of that bound (tests/test_exact.c). Without the rounding errors in D
- *           (roots.c) it would be 12 times the bound near critical damping.
+ *           (roots.c) it would be hundreds of times the bound near critical damping.
  * Source    textbook; entire functions of s as in Higham, Functions of Matrices (2008), section 12.4 (matrix cosine)
  */
 #include <stddef.h>
@@ -29,31 +29,19 @@ typedef struct propagator {
     double F, G, H; /* H [s] */
 } propagator;
 
+/* 1/(2k)! and 1/(2k+1)! */
+/* clang-format off */
+static const double even[] = {1, 1. / 2, 1. / 24, 1. / 720, 1. / 40320, 1. / 3628800, 1. / 479001600,
+                              1. / 87178291200, 1. / 20922789888000, 1. / 6402373705728000};
+static const double odd[] = {1, 1. / 6, 1. / 120, 1. / 5040, 1. / 362880, 1. / 39916800, 1. / 6227020800,
+                             1. / 1307674368000, 1. / 355687428096000, 1. / 121645100408832000};
+/* clang-format on */
+
 /* cos(sqrt(s)) and sin(sqrt(s))/sqrt(s) for |s| <= 1: the first omitted terms are 4e-19 and 2e-20. */
 static void entire(double s, double *C, double *S)
 {
     double c = 0, d = 0;
-    for (int k = 9; k >= 0; k--) {
-        static const double even[] = {1.0,
-                                      1.0 / 2,
-                                      1.0 / 24,
-                                      1.0 / 720,
-                                      1.0 / 40320,
-                                      1.0 / 3628800,
-                                      1.0 / 479001600,
-                                      1.0 / 87178291200.,
-                                      1.0 / 20922789888000.,
-                                      1.0 / 6402373705728000.};
-        static const double odd[] = {1.0,
-                                     1.0 / 6,
-                                     1.0 / 120,
-                                     1.0 / 5040,
-                                     1.0 / 362880,
-                                     1.0 / 39916800,
-                                     1.0 / 6227020800.,
-                                     1.0 / 1307674368000.,
-                                     1.0 / 355687428096000.,
-                                     1.0 / 121645100408832000.};
+    for (size_t k = sizeof even / sizeof even[0]; k-- > 0;) {
         c = even[k] - s * c;
         d = odd[k] - s * d;
     }

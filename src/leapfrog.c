@@ -7,7 +7,8 @@
  *           kick   v1 = (v' - (K x1 - A)) / (1 + q)
  *           Kick and drift are shears: they keep the phase-space area whatever the rounding of K, so the energy error
  *           of an undamped spring stays bounded over any number of steps.
- * Order     2. Undamped phase error after time T: w^(3/2) h^2 T/24; energy error at most w h^2/4 of E.
+ * Order     2. Undamped phase error after time T: w^(3/2) h^2 T/24; energy error at most z^2/4 of E,
+ *           z^2 = w h^2, from a start at rest, and z^2/4/(1 - z^2/4) of E from any.
  * Limit     h sqrt(w) < 2 at every damping: the step has trace 2 (1 - w h^2/2)/(1 + q), determinant (1 - q)/(1 + q).
  * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
  * Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
