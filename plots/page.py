@@ -5,7 +5,8 @@ usage: page.py [--quick] --into FOLDER --cmark PROGRAM FILE.tsv... FILE.svg...
 
 report.md.in is Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by the names of
 their columns, and a figure from its picture and the comment that opens its script. Whatever is not there - a file, a row,
-a column, a name - is an error that names it. The data files are copied to FOLDER/data.
+a column, a name - is an error that names it; so is a claim that the template has checked and that does not hold. The data
+files are copied to FOLDER/data.
 """
 
 import argparse
@@ -26,18 +27,22 @@ class DataError(Exception):
 
 
 class Row:
-    """A row of a table; its cells are attributes: row.error_m."""
+    """A row of a table. Its cells are attributes, row.error_m, numbers where they can be."""
 
     def __init__(self, table, cells):
         self._table = table
         self._cells = dict(zip(table.columns, cells))
 
+    def raw(self, column):
+        """A cell as it is written in the file."""
+        if column not in self._cells:
+            raise DataError(f'{self._table.name}: no column "{column}"')
+        return self._cells[column]
+
     def __getattr__(self, column):
         if column.startswith("__"):  # Jinja asks what kind of object this is
             raise AttributeError(column)
-        if column not in self._cells:
-            raise DataError(f'{self._table.name}: no column "{column}"')
-        return number(self._cells[column])
+        return number(self.raw(column))
 
 
 class Table:
@@ -95,6 +100,13 @@ def scientific(x, digits):
 def count(n):
     """34 766, with narrow spaces that do not break."""
     return f"{n:,}".replace(",", "\u202f")
+
+
+def check(condition, claim):
+    """Nothing, if what the text is about to claim is so."""
+    if not condition:
+        raise DataError(f"the data do not bear out: {claim}")
+    return ""
 
 
 def stem_of(path):
@@ -163,7 +175,7 @@ def make(arguments):
         loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     jinja.filters.update(scientific=scientific, count=count)
-    jinja.globals.update(data=data, figure=figure, tables=tables, quick=arguments.quick)
+    jinja.globals.update(check=check, data=data, figure=figure, quick=arguments.quick, stems=sorted(tables))
 
     body = to_html(arguments.cmark, jinja.get_template("report.md.in").render())
     body = body.replace("<table>", '<div class="table"><table>').replace("</table>", "</table></div>")

@@ -2,6 +2,6 @@
 # What a method costs and what it gives: the error after one second against the work, counted in force evaluations. RK4
 # makes four of them a step, the others one. Grey: theory, not fitted.
 call system("dirname '".ARG0."'")."/style.gp" ARG1
-set object rectangle from screen 0,0 to screen 1,1 behind fillcolor rgb "#FFFFFF" fillstyle solid noborder
+set object rectangle from screen 0,0 to screen 1,1 behind fillcolor linetype page fillstyle solid noborder
 set xlabel "force evaluations in 1 s"
 call plots."order-all.gp" ARG1 "force_evaluations" ARG2 ARG3 ARG4 ARG5 ARG6 ARG7
