@@ -6,6 +6,8 @@
  * with N = 10^6. Below a damping ratio of 0.1 growth near the limit is too slow for that (one part in 10^4 outside,
  * Euler at 0.01 grows by 2 % in 10^6 steps), so there the growth of the step's own map is measured instead: stepping two
  * basis states gives its matrix, and that its eigenvalues. The limit is then bisected.
+ *
+ * With --map: how wrong each method is after ten periods, over the step and the damping ratio, stable or not.
  */
 #include <math.h>
 #include <stddef.h>
@@ -15,10 +17,14 @@
 #include "cli.h"
 
 static uint64_t points = 64;
+static bool map;
 
 static const cli_option options[] = {
     {"points", CLI_COUNT, .count = &points, .least = 1, .most = 10000, .value = "N",
      .help = "damping ratios from 0.01 to 100, besides 0; 64"},
+    {"map", CLI_FLAG, .flag = &map,
+     .help = "the error after ten periods instead, on a grid of N damping ratios from\n"
+             "0.01 to 100 by N steps omega dt from 0.001 to 10"},
     {.name = NULL},
 };
 
@@ -27,7 +33,12 @@ static const cli_program program = {
     .summary = "Measure the stable step of each method over the damping ratio.",
     .details =
         "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
-        "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.",
+        "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.\n\n"
+        "With --map: method, omega_dt, damping_ratio, error: the distance from the true state in (x, "
+        "v/omega)\n"
+        "over that of the start from rest, after the whole number of steps that comes nearest to ten "
+        "undamped\n"
+        "undamped periods; inf where the state overflows.",
     .options = options,
 };
 
@@ -50,6 +61,11 @@ static spring_params spring_of(double damping_ratio)
     return (spring_params){mass, mass * omega * omega, 2 * damping_ratio * mass * omega, 0};
 }
 
+static spring_state generic_start(void)
+{
+    return (spring_state){0.8, -0.9 * omega};
+}
+
 static double largest(spring_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     double most = 0;
@@ -64,7 +80,7 @@ static double largest(spring_state *s, const spring_params *p, spring_method m, 
 
 static bool grows_by_trial(const spring_params *p, spring_method m, double dt)
 {
-    spring_state s = {0.8, -0.9 * omega};
+    spring_state s = generic_start();
     for (uint64_t n = 0; n < N / 4; n += 1000) {
         const double size = largest(&s, p, m, dt, 1000);
         if (!isfinite(size) || size < negligible)
@@ -129,22 +145,69 @@ static double measured_limit(double damping_ratio, spring_method m)
     return low;
 }
 
+/* ---------------------------------------------------------------------------------------------------------- rows */
+
+/* The i-th of N values that divide a range evenly on a logarithmic axis. */
+static double spaced(double first, double last, uint64_t i)
+{
+    const double part = points > 1 ? (double)i / (double)(points - 1) : 0;
+    return first * pow(last / first, part);
+}
+
+static double damping_ratio_of(uint64_t i)
+{
+    return spaced(0.01, 100, i);
+}
+
+static void write_limit(cli_table *table, spring_method m, double damping_ratio)
+{
+    const spring_params p = spring_of(damping_ratio);
+    const double measured = measured_limit(damping_ratio, m);
+    const double theory = spring_stable_step(&p, m) * omega;
+    const double error = theory > 0 ? fabs(measured - theory) / theory : fabs(measured - theory);
+    cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g", cli_methods[m], damping_ratio, measured, theory, error);
+}
+
+static void write_limits(cli_table *table, spring_method m, uint64_t i)
+{
+    if (i == 0)
+        write_limit(table, m, 0);
+    write_limit(table, m, damping_ratio_of(i));
+}
+
+static double error_after_ten_periods(const spring_params *p, spring_method m, double dt)
+{
+    const double duration = 10 * 6.283185307179586 / omega;
+    const uint64_t n = (uint64_t)rint(duration / dt);
+    const spring_state start = generic_start();
+    spring_state got = start, truth = start;
+    if (spring_advance(&got, p, m, dt, n) != SPRING_OK)
+        return INFINITY;
+    spring_advance(&truth, p, SPRING_EXACT, dt, n);
+    return hypot(got.x - truth.x, (got.v - truth.v) / omega) / hypot(start.x, start.v / omega);
+}
+
+static void write_errors(cli_table *table, spring_method m, uint64_t i)
+{
+    const double damping_ratio = damping_ratio_of(i);
+    const spring_params p = spring_of(damping_ratio);
+    for (uint64_t j = 0; j < points; j++) {
+        const double omega_dt = spaced(0.001, 10, j);
+        cli_row(table, "%s\t%.17g\t%.17g\t%.17g", cli_methods[m], omega_dt, damping_ratio,
+                error_after_ten_periods(&p, m, omega_dt / omega));
+    }
+}
+
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
-    cli_columns(table, "method damping_ratio limit_measured limit_theory relative_error");
+    cli_columns(table, map ? "method omega_dt damping_ratio error"
+                           : "method damping_ratio limit_measured limit_theory relative_error");
     for (int m = SPRING_EULER; m <= SPRING_RK4; m++)
-        for (uint64_t i = 0; i <= points; i++) {
-            const double part = points > 1 ? (double)(i - 1) / (double)(points - 1) : 0;
-            const double damping_ratio = i == 0 ? 0 : 0.01 * pow(1e4, part);
-            const spring_params p = spring_of(damping_ratio);
-            const double measured = measured_limit(damping_ratio, (spring_method)m);
-            const double theory = spring_stable_step(&p, (spring_method)m) * omega;
-            const double error = theory > 0 ? fabs(measured - theory) / theory : fabs(measured - theory);
-            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g", cli_methods[m], damping_ratio, measured, theory,
-                    error);
-            cli_progress(((double)m * (double)(points + 1) + (double)(i + 1)) / (3 * (double)(points + 1)));
+        for (uint64_t i = 0; i < points; i++) {
+            (map ? write_errors : write_limits)(table, (spring_method)m, i);
+            cli_progress(((double)m * (double)points + (double)(i + 1)) / (3 * (double)points));
         }
     cli_finish();
     return 0;

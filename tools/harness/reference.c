@@ -337,6 +337,27 @@ double reference_distance(const reference *ref, spring_state got)
     return distance;
 }
 
+/* 2/k times the energy; out is none of the others */
+static void square(mpfr_t out, const mpfr_t x, const mpfr_t v, const mpfr_t omega)
+{
+    mpfr_div(out, v, omega, nearest);
+    mpfr_fmma(out, x, x, out, out, nearest);
+}
+
+double reference_energy_error(const reference *ref, spring_state got)
+{
+    mpfr_t x, v, energy, want;
+    mpfr_inits2(precision, x, v, energy, want, (mpfr_ptr)NULL);
+    mpfr_set_d(x, got.x, nearest);
+    mpfr_set_d(v, got.v, nearest);
+    square(energy, x, v, ref->omega);
+    square(want, ref->x, ref->v, ref->omega);
+    mpfr_reldiff(energy, want, energy, nearest);
+    const double error = fabs(mpfr_get_d(energy, nearest));
+    mpfr_clears(x, v, energy, want, (mpfr_ptr)NULL);
+    return error;
+}
+
 /* -------------------------------------------------------------------------------------------- rounding, stability */
 
 typedef struct plane_map { /* an affine map in (x, v/omega), in doubles */

@@ -35,6 +35,9 @@ void reference_iterate(reference *r, const spring_params *p, spring_method m, do
 /* |got - reference| [m] */
 double reference_distance(const reference *r, spring_state got);
 
+/* |E - E_reference|/E_reference, of the energy without load, m v^2/2 + k x^2/2; k > 0 */
+double reference_energy_error(const reference *r, spring_state got);
+
 /* What the steps of a method can add, in [m], the distances of reference_distance():
  *
  *     rounding    between the computed steps and reference_iterate(). A step adds at most

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-rounding: how the rounding errors of a long run grow, from several starts, with and without compensated sums.
+ *
+ * The computed state is compared with the same method in exact arithmetic, so all that differs is rounding.
+ */
+#include <math.h>
+#include <stddef.h>
+
+#include <springstep/spring.h>
+
+#include "cli.h"
+#include "harness/compensated.h"
+#include "harness/reference.h"
+
+static const char *const methods[] = {"leapfrog", "rk4", NULL};
+static const spring_method method_of[] = {SPRING_LEAPFROG, SPRING_RK4};
+static const char *const sums[] = {"plain", "compensated", NULL};
+enum { PLAIN, COMPENSATED };
+
+static int method, sum;
+static uint64_t most = 10000000;
+static double dt = 0.01; /* [s] */
+
+static const cli_option options[] = {
+    {"method", CLI_CHOICE, .choice = &method, .choices = methods, .required = true, .value = "M",
+     .help = "leapfrog or rk4"},
+    {"sum", CLI_CHOICE, .choice = &sum, .choices = sums, .required = true, .value = "S",
+     .help = "plain, as the library, or compensated"},
+    {"steps", CLI_COUNT, .count = &most, .least = 10000, .most = UINT64_C(1) << 53, .value = "N",
+     .help = "rows up to N steps; 1e7"},
+    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s]; 0.01"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-rounding",
+    .summary = "How the rounding errors of an undamped spring grow with the number of steps.",
+    .details =
+        "Columns: method, sum, start (0 to 7: phases spread evenly over a period), steps (two rows for each\n"
+        "power of ten from 1e4 to N), dt_s, state_error and energy_error: what differs from the same method\n"
+        "in 107-digit arithmetic, relative to the amplitude, in (x, v/omega), and to the energy. 1e9 steps\n"
+        "take about half a minute.",
+    .options = options,
+};
+
+static const spring_params spring = {.mass = 1.3, .stiffness = 2.7};
+
+static void advance(compensated_state *s, uint64_t n)
+{
+    const spring_method m = method_of[method];
+    if (sum == COMPENSATED) {
+        compensated_advance(s, &spring, m, dt, n);
+        return;
+    }
+    for (int i = 0; i < compensated_springs; i++) {
+        spring_state one = {s->x[i], s->v[i]};
+        spring_advance(&one, &spring, m, dt, n);
+        s->x[i] = one.x;
+        s->v[i] = one.v;
+    }
+}
+
+static compensated_state starts(void)
+{
+    const double two_pi = 6.283185307179586, omega = sqrt(spring.stiffness / spring.mass);
+    compensated_state s = {.x = {0}};
+    for (int i = 0; i < compensated_springs; i++) {
+        const double phase = two_pi * (i + 0.3) / compensated_springs; /* no start on an axis */
+        s.x[i] = cos(phase);
+        s.v[i] = omega * sin(phase);
+    }
+    return s;
+}
+
+static void compare(cli_table *table, const compensated_state *from, const compensated_state *s, uint64_t n)
+{
+    reference iterate;
+    reference_init(&iterate);
+    for (int i = 0; i < compensated_springs; i++) {
+        const spring_state start = {from->x[i], from->v[i]}, got = {s->x[i], s->v[i]};
+        reference_start(&iterate, &spring, start);
+        reference_iterate(&iterate, &spring, method_of[method], dt, n);
+        cli_row(table, "%s\t%s\t%d\t%" PRIu64 "\t%.17g\t%.17g\t%.17g", methods[method], sums[sum], i, n, dt,
+                reference_distance(&iterate, got), reference_energy_error(&iterate, got));
+    }
+    reference_clear(&iterate);
+}
+
+int main(int argc, char **argv)
+{
+    const uint64_t leap = UINT64_C(1) << 22; /* steps between two looks at the clock */
+    cli_parse(&program, argc, argv);
+    cli_table *table = cli_open_output();
+    cli_columns(table, "method sum start steps dt_s state_error energy_error");
+    const compensated_state from = starts();
+    compensated_state s = from;
+    uint64_t done = 0;
+    for (uint64_t n = 10000; n <= most; n = n % 3 == 0 ? n / 3 * 10 : n * 3) {
+        while (done < n) {
+            const uint64_t some = n - done < leap ? n - done : leap;
+            advance(&s, some);
+            done += some;
+            cli_progress((double)done / (double)most);
+        }
+        compare(table, &from, &s, n);
+    }
+    cli_finish();
+    mpfr_free_cache();
+    return 0;
+}
