@@ -7,17 +7,15 @@
  *           of its samples. Start and parameters come out of volatile objects and the end goes into one: nothing can
  *           be computed by the compiler, or left out.
  */
-#define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/utsname.h>
-#include <time.h>
 
 #include <springstep/spring.h>
 
 #include "cli.h"
+#include "timing.h"
 
 static bool quick;
 
@@ -196,21 +194,14 @@ typedef struct row {
     double goal_ratio, goal_ns; /* [1], [ns] */
 } row;
 
-static double now_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
-}
-
 /* Time of a step [ns]. */
 static double sample(const row *r, bool plain, uint64_t n)
 {
     const spring_params p = {mass, stiffness, r->damped ? damping : 0, r->loaded ? load : 0};
     spring_state s = {x0, v0};
-    const double h = dt, start = now_ns();
+    const double h = dt, start = timing_now();
     s = plain ? run_plain(r->method, s, &p, h, n) : run_library(r->method, r->form, s, &p, h, n);
-    const double elapsed = now_ns() - start;
+    const double elapsed = timing_now() - start;
     sink = s.x + s.v;
     return elapsed / (double)n;
 }
@@ -293,40 +284,11 @@ static const row rows[] = {
     {SPRING_EXACT, ADVANCE_1, true, true, INFINITY, INFINITY},
 };
 
-/* The model of the processor as Linux knows it; elsewhere its architecture. */
-static void stamp_processor(cli_table *table)
-{
-    char line[256];
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
-        const char *colon = strchr(line, ':');
-        if (colon != NULL && strncmp(line, "model name", strlen("model name")) == 0) {
-            cli_comment(table, "processor:%.*s", (int)strcspn(colon + 1, "\n"), colon + 1);
-            fclose(file);
-            return;
-        }
-    }
-    if (file != NULL)
-        fclose(file);
-    struct utsname system;
-    cli_comment(table, "processor: %s", uname(&system) >= 0 ? system.machine : "unknown");
-}
-
-static void stamp(cli_table *table)
-{
-    cli_comment(table, "flags: %s", SPRING_BENCH_FLAGS);
-    stamp_processor(table);
-    char date[32];
-    const time_t now = time(NULL);
-    if (strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", gmtime(&now)) > 0)
-        cli_comment(table, "date: %s", date);
-}
-
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
-    stamp(table);
+    timing_stamp(table);
     cli_columns(table,
                 "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns");
     const size_t count = sizeof rows / sizeof rows[0];

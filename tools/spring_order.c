@@ -9,13 +9,13 @@
  *     leapfrog  |sin H| H^3/(24 n^2)     phase advances by z^3/24 a step
  *     RK4       |sin H| H^5/(120 n^4)    phase lags by z^5/120 a step
  */
-#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
 #include <springstep/spring.h>
 
 #include "cli.h"
+#include "equal_error.h"
 #include "stepper.h"
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};
@@ -144,112 +144,18 @@ static void write_fit(cli_table *table)
             exp(mean_y - exponent * mean_x), exponent, xy * xy / (xx * yy), points, theory_coefficient());
 }
 
-/* -------------------------------------------------------------------------------------------------- equal error */
-/*
- * The smallest n from which on the error never exceeds E.
- *
- * In exact arithmetic n steps of z = H/n give x_n = rho^n cos(n phi), with growth rho and phase phi a step. Hence
- *
- *     |x_n - cos H| <= |rho^n - 1| + |n phi - H|,
- *
- * and both terms fall as n grows, at least while z <= 1: log(rho)/z and (phi - z)/z are monotone in z there.
- *
- *     Euler     rho^2 = 1 + z^2                 phi = atan z             (log(1 + z^2)/z rises up to z = 1.98)
- *     leapfrog  rho = 1                         phi = 2 asin(z/2)
- *     RK4       rho^2 = 1 - z^6/72 + z^8/576    tan phi = (z - z^3/6)/(1 - z^2/2 + z^4/24)
- *               (z^5/72 - z^7/576 rises up to z = 2.39; 1 - dphi/dz = z^4 (1 - z^2/2 + z^4/24)/(24 rho^2) up to 1.27)
- *
- * So where this bound comes down to E, found by bisection, everything above is settled; below, x_n itself is looked at
- * for one n after the other until its error exceeds E. The answer is confirmed by the method itself.
- * Rounding adds at most 2.5 eps a step (src/leapfrog.c; less for the others), which the bound includes; it grows with n
- * and would in the end exceed any E, so "never" is meant up to that.
- */
-typedef struct iterate {
-    double log_growth, phase; /* after all n steps: n log(rho), n phi */
-} iterate;
-
-static iterate iterate_after(uint64_t n)
-{
-    const double z = duration / (double)n, z2 = z * z;
-    double log_rho2 = 0, phi = 0; /* of one step */
-    switch (chosen.method) {
-    case SPRING_EULER:
-        log_rho2 = log1p(z2);
-        phi = atan(z);
-        break;
-    case SPRING_LEAPFROG:
-        phi = 2 * asin(z / 2); /* NaN where unstable */
-        break;
-    default:
-        log_rho2 = log1p(z2 * z2 * z2 * (z2 / 576 - 1.0 / 72));
-        phi = atan2(z - z * z2 / 6, 1 - z2 / 2 + z2 * z2 / 24);
-        break;
-    }
-    return (iterate){(double)n * log_rho2 / 2, (double)n * phi};
-}
-
-static double rounding_bound(uint64_t n)
-{
-    return 2.5 * DBL_EPSILON * (double)n;
-}
-
-static double error_bound(uint64_t n)
-{
-    const iterate u = iterate_after(n);
-    return fabs(expm1(u.log_growth)) + fabs(u.phase - duration) + rounding_bound(n);
-}
-
-static double iterate_error(uint64_t n)
-{
-    const iterate u = iterate_after(n);
-    return fabs(exp(u.log_growth) * cos(u.phase) - cos(duration));
-}
-
-static _Noreturn void fail_for_rounding(void)
-{
-    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m: rounding is of that size",
-             cli_methods[chosen.method], match_error);
-}
-
-static uint64_t settled_from(void)
-{
-    const double largest = 1e9; /* [s]; the phase at the end is then known to 1e-7 */
-    if (match_error < 100 * DBL_EPSILON * duration || duration > largest)
-        fail_for_rounding();
-    uint64_t low = (uint64_t)duration, high = low + 1; /* z <= 1 from high on */
-    while (!(error_bound(high) <= match_error)) {
-        if (rounding_bound(high) > match_error)
-            fail_for_rounding();
-        low = high;
-        high *= 2;
-    }
-    while (high - low > 1) {
-        const uint64_t middle = low + (high - low) / 2;
-        if (error_bound(middle) <= match_error)
-            high = middle;
-        else
-            low = middle;
-    }
-    return high;
-}
-
 static void write_match(cli_table *table)
 {
-    uint64_t n = settled_from();
-    while (n > 1 && iterate_error(n - 1) <= match_error)
-        n--;
+    const uint64_t n = equal_error_steps((spring_method)chosen.method, duration, match_error);
     const double error = measured_error(n), previous = n > 1 ? measured_error(n - 1) : INFINITY;
     if (!(error <= match_error && previous > match_error))
         cli_fail(CLI_FAILED,
                  "theory says %" PRIu64 " steps, but with them the error is %.17g m, with one less %.17g m",
                  n, error, previous);
-    uint64_t first = 1;
-    while (!(iterate_error(first) <= match_error))
-        first++;
     cli_columns(table, "method n dt_s error_m force_evaluations match_error_m previous_error_m first_n");
     cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64,
             cli_methods[chosen.method], n, duration / (double)n, error, force_evaluations(n), match_error,
-            previous, first);
+            previous, equal_error_first_steps((spring_method)chosen.method, duration, match_error));
 }
 
 /* --------------------------------------------------------------------------------------------------------------- */
