@@ -18,7 +18,7 @@ static const spring_state start = {.x = 1, .v = 0};
 
 static stepper chosen;
 static double dt = 0.01, duration = 1e8;
-static bool half_step_velocity;
+static bool half_step_velocity, jitter;
 
 static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
@@ -29,6 +29,8 @@ static const cli_option options[] = {
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
      .help = "leapfrog only: measure the kinetic energy with the velocity at\n"
              "t + dt/2, half a step ahead of the position"},
+    {"jitter", CLI_FLAG, .flag = &jitter,
+     .help = "draw every step from DT/2 to 3 DT/2, the same ones at every run"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
      .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {.name = NULL},
@@ -46,7 +48,8 @@ static const cli_program program = {
         "status 0.\n\n"
         "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
         "terminal.\n"
-        "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.",
+        "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
+        "With --jitter the time run is the duration only on average.",
     .options = options,
 };
 
@@ -55,6 +58,26 @@ static double energy_error(spring_state s)
     if (half_step_velocity)
         s.v -= dt / 2 * s.x; /* the first kick of the next step */
     return fabs(spring_energy(&s, &spring) - spring_energy(&start, &spring));
+}
+
+/* Uniform in [0, 1). Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014. */
+static double uniform(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+    z = (z ^ z >> 27) * 0x94d049bb133111eb;
+    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
+}
+
+static bool advance(spring_state *s, uint64_t n)
+{
+    static uint64_t random = 0;
+    if (!jitter)
+        return stepper_advance(&chosen, s, &spring, dt, n) == SPRING_OK;
+    bool finite = true;
+    for (; finite && n > 0; n--)
+        finite = stepper_advance(&chosen, s, &spring, dt * (0.5 + uniform(&random)), 1) == SPRING_OK;
+    return finite;
 }
 
 static void write_energies(cli_table *table)
@@ -66,7 +89,7 @@ static void write_energies(cli_table *table)
         const uint64_t steps = (uint64_t)fmax(rint(H / dt), 1);
         while (finite && step < steps) {
             const uint64_t left = steps - step, n = left < stepper_leap ? left : stepper_leap;
-            finite = stepper_advance(&chosen, &s, &spring, dt, n) == SPRING_OK;
+            finite = advance(&s, n);
             step += n;
             cli_progress((double)step * dt / duration);
         }
