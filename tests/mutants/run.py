@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Applies mutants one at a time to a copy of the tree and runs the quick suite until a program fails.
+
+usage: run.py [--sample] [-o FILE] [PATTERN]...
+
+  --sample   all mutants written by hand and a fixed eighth of the generated ones
+  -o FILE    write the table to FILE instead of standard output
+  PATTERN    only mutants whose names contain one of these
+
+The mutants are those of generate.py and of by_hand.toml. Columns: mutant, killed_by (program and test point), verdict
+(killed, equivalent, survived), reason (why it is equivalent, or what was meant to break), caught_by_validate (does
+spring-validate --quick see it? yes or no for mutants that change a trajectory, "-" for others), line (of source).
+Those known to be equivalent, and why, are in equivalent.tsv.
+
+Status 1 if a mutant survives, if one that is listed as equivalent is killed, if spring-validate misses a trajectory
+mutant written by hand, or if a list names a mutant or a line that there is not. The last line on standard error is
+"N passed, N failed, N skipped".
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import queue
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+import zlib
+from typing import NamedTuple
+
+import generate
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+VALIDATE = "validate"
+SAMPLE = 8
+
+# Where a generated mutant changes a trajectory: the steps, and not the limits of stability.
+STEPPERS = ("euler.c", "leapfrog.c", "rk4.c", "exact.c", "loops.h")
+NOT_STEPS = ("stable_step", "exact_stable_step", "ray_limit", "real_limit")
+
+
+class Mutant(NamedTuple):
+    name: str
+    file: str
+    text: str  # of the whole file
+    line: str
+    reason: str
+    trajectory: bool
+    by_hand: bool
+
+
+class Program(NamedTuple):
+    name: str
+    command: list  # words; those that lie in the build directory are relative to it
+    targets: list  # to build first
+    tap: bool
+    limit: float  # [s]
+
+
+def generated():
+    for mutant in generate.generate(ROOT / "src"):
+        text = (ROOT / mutant.file).read_text(encoding="utf-8")
+        name, owner = mutant.name.split(":")[:2]
+        yield Mutant(
+            mutant.name, mutant.file, mutant.apply(text), mutant.line(text), "",
+            name in STEPPERS and owner not in NOT_STEPS, False,
+        )
+
+
+def written_by_hand():
+    for entry in tomllib.loads((HERE / "by_hand.toml").read_text(encoding="utf-8"))["mutant"]:
+        text = (ROOT / entry["file"]).read_text(encoding="utf-8")
+        if text.count(entry["old"]) != 1:
+            sys.exit(f"by_hand.toml: {entry['name']}: the text to replace occurs {text.count(entry['old'])} times "
+                     f"in {entry['file']}; it should occur once")
+        yield Mutant(
+            entry["name"], entry["file"], text.replace(entry["old"], entry["new"]),
+            " ".join(entry["old"].split()), entry["purpose"], entry.get("trajectory", False), True,
+        )
+
+
+def known_equivalents(mutants):
+    """From equivalent.tsv: name, line of source, reason. A name that no longer means that line is an error."""
+    lines = {mutant.name: mutant.line for mutant in mutants}
+    reasons = {}
+    with open(HERE / "equivalent.tsv", encoding="utf-8", newline="") as file:
+        rows = csv.DictReader((row for row in file if not row.startswith("#")), delimiter="\t",
+                              quoting=csv.QUOTE_NONE)
+        for row in rows:
+            if lines.get(row["mutant"]) != row["line"]:
+                sys.exit(f"equivalent.tsv: there is no {row['mutant']} in the line: {row['line']}")
+            reasons[row["mutant"]] = row["reason"]
+    return reasons
+
+
+def execute(program, build):
+    """What failed in a program, or "" if all is well."""
+    def stop():
+        stopped.append(True)
+        process.kill()
+
+    stopped = []
+    points, plan = 0, None
+    with subprocess.Popen(program.command, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        timer = threading.Timer(program.limit, stop)
+        timer.start()
+        for line in process.stdout:
+            if program.tap and line.startswith("not ok"):
+                process.kill()
+                timer.cancel()
+                return line.strip().partition(" - ")[2]
+            points += line.startswith("ok ")
+            if line.startswith("1.."):
+                plan = int(line[3:].split()[0])
+        process.wait()
+        timer.cancel()
+    if stopped:
+        return "time limit"
+    if process.returncode != 0:
+        return f"status {process.returncode}"
+    return "broke off" if program.tap and points != plan else ""
+
+
+def make(build, targets):
+    return subprocess.run(["ninja", "-j1", *targets], cwd=build, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, check=False)
+
+
+def programs_of(build):
+    """The quick suite: every test whose program is built here, fastest first. All must pass on the tree as it is."""
+    tests = json.loads(subprocess.run(["meson", "introspect", "--tests", str(build)], check=True,
+                                      capture_output=True, text=True).stdout)
+    outputs = {output for target in json.loads(
+        subprocess.run(["meson", "introspect", "--targets", str(build)], check=True, capture_output=True,
+                       text=True).stdout) for output in target["filename"]}
+    timed = []
+    for test in tests:
+        if test["cmd"][0] not in outputs or "springstep:mutants" in test["suite"]:
+            continue
+        def inside(word):
+            path = pathlib.Path(word)
+            return f"./{path.relative_to(build)}" if build in path.parents else word
+        program = Program(test["name"], [inside(word) for word in test["cmd"]],
+                          [str(pathlib.Path(word).relative_to(build)) for word in test["cmd"] if word in outputs],
+                          test["protocol"] == "tap", 600)
+        start = time.monotonic()
+        failure = execute(program, build)
+        if failure:
+            sys.exit(f"{program.name} fails without any mutant: {failure}")
+        duration = time.monotonic() - start
+        timed.append((round(4 * duration), program._replace(limit=max(5, 10 * duration))))
+    return [program for _, program in sorted(timed, key=lambda pair: (pair[0], pair[1].name))]
+
+
+def build_with_flags(tree):
+    build = tree / "build"
+    for command in (["meson", "setup", str(build), str(tree), "-Dtests=enabled", "-Dreport=disabled", "-Ddebug=false"],
+                    ["ninja", "-C", str(build)]):
+        done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+        if done.returncode != 0:
+            sys.exit(done.stdout + done.stderr)
+    return build
+
+
+def try_mutant(mutant, tree, programs):
+    """(killed by, caught by validate) of one mutant in a private tree."""
+    build, path = tree / "build", tree / mutant.file
+    original = path.read_text(encoding="utf-8")
+    path.write_text(mutant.text, encoding="utf-8")
+    killed_by, caught = "", "-"
+    try:
+        for program in programs:
+            wanted = mutant.trajectory and program.name == VALIDATE
+            if killed_by and not wanted:
+                continue
+            built = make(build, program.targets)
+            failure = "does not compile" if built.returncode != 0 else execute(program, build)
+            if failure and not killed_by:
+                killed_by = f"{program.name}: {failure}"
+            if wanted:
+                caught = "yes" if failure else "no"
+    finally:
+        path.write_text(original, encoding="utf-8")
+    return killed_by, caught
+
+
+def run(mutants, equivalent, table):
+    failures = []
+    with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
+        first = pathlib.Path(scratch).resolve() / "0"
+        shutil.copytree(ROOT, first, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
+        programs = programs_of(build_with_flags(first))
+        trees = queue.SimpleQueue()
+        trees.put(first)
+        for i in range(1, os.cpu_count()):
+            trees.put(pathlib.Path(shutil.copytree(first, first.with_name(str(i)), symlinks=True)))
+
+        def work(mutant):
+            tree = trees.get()
+            try:
+                return mutant, *try_mutant(mutant, tree, programs)
+            finally:
+                trees.put(tree)
+
+        counts = {"killed": 0, "equivalent": 0, "survived": 0}
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for mutant, killed_by, caught in pool.map(work, mutants):
+                reason = equivalent.get(mutant.name, mutant.reason)
+                verdict = "killed" if killed_by else "equivalent" if mutant.name in equivalent else "survived"
+                counts[verdict] += 1
+                print(mutant.name, killed_by or "-", verdict, reason, caught, mutant.line, sep="\t", file=table,
+                      flush=True)
+                if verdict == "survived":
+                    failures.append(f"{mutant.name} survived: {mutant.line}")
+                elif killed_by and mutant.name in equivalent:
+                    failures.append(f"{mutant.name} is listed as equivalent, and killed by {killed_by}")
+                elif mutant.by_hand and caught == "no":
+                    failures.append(f"{mutant.name}: spring-validate misses it")
+    for failure in failures:
+        print("FAILED:", failure, file=sys.stderr)
+    print("{killed} killed, {equivalent} equivalent, {survived} survived".format(**counts), file=sys.stderr)
+    print(f"{sum(counts.values()) - len(failures)} passed, {len(failures)} failed, 0 skipped", file=sys.stderr)
+    return 1 if failures or sum(counts.values()) == 0 else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(add_help=True, usage=__doc__)
+    parser.add_argument("--sample", action="store_true")
+    parser.add_argument("-o", dest="output")
+    parser.add_argument("patterns", nargs="*")
+    options = parser.parse_args()
+    mutants = [*written_by_hand(), *generated()]
+    equivalent = known_equivalents(mutants)
+    chosen = [
+        mutant for mutant in mutants
+        if (not options.sample or mutant.by_hand or zlib.crc32(mutant.name.encode()) % SAMPLE == 0)
+        and (not options.patterns or any(pattern in mutant.name for pattern in options.patterns))
+    ]
+    table = open(options.output, "w", encoding="utf-8") if options.output else sys.stdout
+    with table:
+        print("mutant\tkilled_by\tverdict\treason\tcaught_by_validate\tline", file=table)
+        return run(chosen, equivalent, table)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What can be believed of spring-validate: it runs its whole catalogue, its bounds are not so wide that nothing could
+ * miss them, and with a wrong library (wrong_advance.c) it fails. The paths of both programs are the arguments.
+ */
+#define _POSIX_C_SOURCE 200809L /* popen(), setenv() */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+#include "check.h"
+#include "harness/cases.h"
+
+typedef struct row {
+    char of[40], method[20], witness[20], verdict[10];
+    double error, bound;
+} row;
+
+static const char *right_program, *wrong_program;
+static row rows[1000];
+static size_t row_count;
+
+/* Fills rows[], returns the exit status. */
+static int validate(const char *program, const char *options)
+{
+    char command[4096], line[1000];
+    snprintf(command, sizeof command, "'%s' %s", program, options);
+    FILE *output = popen(command, "r");
+    CHECK(output != NULL, "it starts");
+    row_count = 0;
+    while (output != NULL && fgets(line, sizeof line, output) != NULL) {
+        row *r = &rows[row_count];
+        if (sscanf(line, "%39[^\t]\t%19s\t%19s\t%*s\t%*s\t%lf\t%lf\t%9s", r->of, r->method, r->witness,
+                   &r->error, &r->bound, r->verdict) == 6 &&
+            row_count + 1 < sizeof rows / sizeof rows[0])
+            row_count++;
+    }
+    const int status = output != NULL ? pclose(output) : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static unsigned count(const char *of, const char *method, const char *witness, const char *verdict)
+{
+    unsigned found = 0;
+    for (const row *r = rows; r < rows + row_count; r++)
+        if ((of == NULL || strcmp(r->of, of) == 0) && (method == NULL || strcmp(r->method, method) == 0) &&
+            (witness == NULL || strcmp(r->witness, witness) == 0) &&
+            (verdict == NULL || strcmp(r->verdict, verdict) == 0))
+            found++;
+    return found;
+}
+
+/* Nothing is left out: every case that is not slow, with every method and every witness it asks for. */
+static void whole_catalogue(void)
+{
+    CHECK(validate(right_program, "--quick") == 0, "everything holds");
+    CHECK(count(NULL, NULL, NULL, "pass") == row_count, "no fail, no skip");
+    CHECK(case_count >= 25 && row_count >= 150, "as much as was promised");
+    unsigned expected = 0;
+    for (const validation_case *c = cases; c < cases + case_count; c++) {
+        if (c->slow)
+            continue;
+        for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+            if (c->methods != 0 && (c->methods & 1u << m) == 0)
+                continue;
+            const char *method = spring_method_name((spring_method)m);
+            CHECK(count(c->name, method, "solution", NULL) == 1, c->name);
+            CHECK(count(c->name, method, "iterate", NULL) == (m != SPRING_EXACT), c->name);
+            CHECK(count(c->name, method, "drive", NULL) == (c->truth != NULL), c->name);
+            expected += 1 + (m != SPRING_EXACT) + (c->truth != NULL);
+        }
+        static const char *const peers[][2] = {{"gsl-rk4", "rk4"},
+                                               {"arkode-rk4", "rk4"},
+                                               {"gsl-rk8pd", "exact"},
+                                               {"cvode-adams", "exact"},
+                                               {"cvode-bdf", "exact"}};
+        for (int i = 0; i < 5 && c->peers; i++) {
+            CHECK(count(c->name, peers[i][1], peers[i][0], NULL) == 1, c->name);
+            expected++;
+        }
+    }
+    CHECK(row_count == expected, "and nothing twice");
+}
+
+/* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100. */
+static void bounds_are_near(void)
+{
+    CHECK(validate(right_program, "--quick") == 0, "everything holds");
+    for (const row *r = rows; r < rows + row_count; r++) {
+        double nearest = 0;
+        for (const row *other = rows; other < rows + row_count; other++)
+            if (strcmp(other->method, r->method) == 0 && strcmp(other->witness, r->witness) == 0 &&
+                other->error > nearest * other->bound)
+                nearest = other->error / other->bound;
+        CHECK(nearest >= 0.01, r->witness);
+    }
+}
+
+/* Two cases that have every witness between them: status 1, each witness fails some row, and all rows of the one named
+   (NULL: of all) fail. */
+static void wrong(const char *way, const char *witness_that_sees_all)
+{
+    static const char *const wrong_cases[] = {"--case brisk-60", "--case beating-middle"};
+    setenv("WRONG", way, 1);
+    for (int i = 0; i < 2; i++) {
+        CHECK(validate(wrong_program, wrong_cases[i]) == 1, way);
+        CHECK(row_count > 0, way);
+        for (const row *r = rows; r < rows + row_count; r++) {
+            const bool blunt =
+                strcmp(r->witness, "drive") == 0; /* its bound is what sampling the drive costs */
+            CHECK(blunt || count(NULL, NULL, r->witness, "fail") > 0, r->witness);
+            if (witness_that_sees_all == NULL || strcmp(r->witness, witness_that_sees_all) == 0)
+                CHECK(strcmp(r->verdict, "fail") == 0, r->witness);
+        }
+    }
+}
+
+static void wrong_in_every_row(void)
+{
+    wrong("refused", NULL);
+    wrong("lost", NULL);
+}
+
+static void slightly_wrong(void)
+{
+    wrong("unmoved", "iterate");
+    wrong("x off", "iterate");
+    wrong("v off", "iterate");
+}
+
+int main(int argc, char **argv)
+{
+    static const test tests[] = {
+        {"the whole catalogue", whole_catalogue},
+        {"bounds that can be missed", bounds_are_near},
+        {"a library that does not work fails in every row", wrong_in_every_row},
+        {"a library that is slightly wrong is noticed by every witness", slightly_wrong},
+    };
+    if (argc != 3)
+        return EXIT_FAILURE;
+    right_program = argv[1];
+    wrong_program = argv[2];
+    return RUN_TESTS("validate", tests);
+}
