@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Euler: the error in energy against the time run. The line is the law E = E_0 (1 + z²)^n with z = ω dt, which Euler obeys
+# Euler: the error in energy against the time run. The line is the law E = E₀ (1 + z²)ⁿ with z = ω dt, which Euler obeys
 # exactly; beyond the last point the energy is greater than the largest double.
 call system("dirname '".ARG0."'")."/style.gp" ARG1
 call plots."need.gp" ARG2 "duration_s steps energy_error_J"

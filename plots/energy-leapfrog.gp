@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Leapfrog: the error in energy against the time run. With position and velocity at the same time it never exceeds
-# E_0 z²/4. With the velocity half a step ahead, as the seed study measured it, it is hundreds of times as large and
-# scatters up to about E_0 z/2: position and velocity then belong to two different times.
+# E₀ z²/4. With the velocity half a step ahead, as the seed study measured it, it is hundreds of times as large and
+# scatters up to about E₀ z/2: position and velocity then belong to two different times.
 call system("dirname '".ARG0."'")."/style.gp" ARG1
 call plots."need.gp" ARG2 "duration_s steps energy_error_J"
 call plots."need.gp" ARG3 "duration_s energy_error_J"

@@ -20,7 +20,7 @@ do for [half_periods = 316:318] {
     set arrow from half_periods*pi,graph 0 to half_periods*pi,graph 1 nohead linetype theory
 }
 set output ARG1
-set multiplot layout 4,1 margins 0.17,0.94,0.1,0.96 spacing 0.06
+set multiplot layout 4,1 margins 0.17,0.94,0.13,0.96 spacing 0.06
 set ylabel "position / m"
 set yrange [-1.5:1.5]
 set ytics 1

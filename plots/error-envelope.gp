@@ -23,7 +23,7 @@ set xrange [0:1000]
 set xtics 200
 unset key
 set output ARG1
-set multiplot layout 3,1 margins 0.17,0.94,0.12,0.98 spacing 0.05
+set multiplot layout 3,1 margins 0.17,0.94,0.14,0.98 spacing 0.05
 do for [m = 1:3] {
     unit = 10.0**exponents[m]
     set ylabel sprintf("error / 10^{%d} m", exponents[m])

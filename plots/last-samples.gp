@@ -13,7 +13,7 @@ picked(t) = t > first && t < last ? t : NaN
 set xlabel "time / s"
 set ylabel "position / m"
 set xrange [first:last]
-set xtics 999.94,0.01
+set xtics 999.94,0.02
 set format x "%.2f"
 set format y "%.2f"
 set yrange [0.56:0.68]
@@ -21,6 +21,6 @@ set ytics 0.02
 set key top right
 set output ARG1
 plot runs[euler] using (picked(column("t_s"))):"x_m" with points linetype euler title "Euler", \
-     runs[euler] using (picked(column("t_s"))):"exact_x_m" with points linetype exact pointtype 6 pointsize 2.8 title "exact", \
-     runs[leapfrog] using (picked(column("t_s"))):"x_m" with points linetype leapfrog pointtype 4 pointsize 1.6 title "leapfrog", \
-     runs[rk4] using (picked(column("t_s"))):"x_m" with points linetype rk4 pointsize 0.8 title "RK4"
+     runs[euler] using (picked(column("t_s"))):"exact_x_m" with points linetype exact pointtype 6 pointsize 2.3 title "exact", \
+     runs[leapfrog] using (picked(column("t_s"))):"x_m" with points linetype leapfrog pointtype 4 pointsize 1.3 title "leapfrog", \
+     runs[rk4] using (picked(column("t_s"))):"x_m" with points linetype rk4 pointsize 0.7 title "RK4"

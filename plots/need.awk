@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Says what a data file lacks: the first of the given columns that is not there or holds no number. Nothing if all is well.
+# Says what a data file lacks: the first of the given columns that is not there or holds no value. Nothing if all is well.
 
 BEGIN {
     FS = "\t"
@@ -19,14 +19,14 @@ BEGIN {
 
 {
     for (i = 1; i <= wanted; i++)
-        if (want[i] in at && $at[want[i]] ~ /[0-9]/)
+        if (want[i] in at && $at[want[i]] ~ /./)
             found[want[i]] = 1
 }
 
 END {
     for (i = 1; i <= wanted; i++)
         if (!(want[i] in found)) {
-            print (want[i] in at ? "no number in column " : "no column ") "\"" want[i] "\""
+            print (want[i] in at ? "no value in column " : "no column ") "\"" want[i] "\""
             exit
         }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Stops a figure with a message and status 1 unless a data file has a number in every column asked for.
+# Stops a figure with a message and status 1 unless a data file has a value in every column asked for.
 #
 #     call plots."need.gp" FILE "first_column second_column"
 #

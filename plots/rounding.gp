@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+# Rounding alone: the distance between the computed state and the same method in exact arithmetic, over the number of steps,
+# from eight starts. With a step of 2^{−7} s every coefficient of leapfrog is exact, and errors that point anywhere grow like
+# √n; with 0.01 s the one product dt ω²/2 is rounded, once for all steps, and errors that all point the same way grow like n.
+# Compensated sums take away the first kind, not the second.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 900
+array plain[3] = [ARG2, ARG4, ARG6]
+array compensated[3] = [ARG3, ARG5, ARG7]
+array titles[3] = ["leapfrog, dt = 2^{−7} s", "RK4, dt = 2^{−7} s", "leapfrog, dt = 0.01 s"]
+array colours[3] = [leapfrog, rk4, leapfrog]
+do for [i = 1:3] {
+    call plots."need.gp" plain[i] "steps state_error"
+    call plots."need.gp" compensated[i] "steps state_error"
+}
+epsilon = 2.0**-52
+
+set logscale xy
+set xrange [6e3:2e9]
+set yrange [5e-18:2e-8]
+set xtics 1e4,10
+set ytics 1e-16,1e2
+set mxtics 1
+set mytics 1
+set format y "10^{%T}"
+set ylabel "error / amplitude"
+set key at screen 0.18,0.99 left top Left reverse samplen 1
+set output ARG1
+set multiplot layout 3,1 margins 0.19,0.94,0.085,0.92 spacing 0.03
+do for [i = 1:3] {
+    set label 1 titles[i] at graph 0.97,0.08 right textcolor linetype colours[i]
+    set label 2 "√n ε" at 2.2e9,epsilon*sqrt(2e9) offset -3.2,-0.9 textcolor linetype theory
+    set label 3 "n ε" at 1e7,epsilon*1e7 offset -3.5,0.2 textcolor linetype theory
+    if (i < 3) {
+        set format x ""
+    } else {
+        set format x "10^{%T}"
+        set xlabel "steps n"
+    }
+    plot epsilon*sqrt(x) with lines linetype theory notitle, epsilon*x with lines linetype theory notitle, \
+         plain[i] using "steps":"state_error" with points linetype colours[i] pointsize 0.7 title "plain sums, as in the library", \
+         compensated[i] using "steps":"state_error" with points linetype exact pointtype 6 pointsize 0.9 title "compensated sums"
+    unset key
+}
+unset multiplot
