@@ -54,6 +54,33 @@ static void rest_time_lightly_damped(void)
     CHECK_CLOSE(spring_rest_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
 }
 
+/* Tolerances just beside a swing: it counts if it is larger, and not otherwise. A few ulp beside it rounding decides,
+   and the spring must stay inside all the same. */
+static void rest_time_at_a_swing(void)
+{
+    for (int i = 0; i < 4000; i++) {
+        const double mass = random_log(0.1, 10), k = random_log(0.1, 10), zeta = random_log(1e-3, 0.2);
+        const spring_params p = {mass, k, 2 * zeta * sqrt(k * mass), 0};
+        const double b = p.damping / mass / 2, spacing = pi / sqrt(k / mass - b * b);
+        const double turn = spacing * (double)(1 + random_bits() % 20); /* from a start with v = 0 */
+        const spring_state start = {0.8, 0};
+        const double off = (i % 7 - 3) * (i % 2 ? DBL_EPSILON : 1e-12);
+        const double tol = distance_at(&p, start, 0, turn) * (1 + off);
+        const double T = spring_rest_time(&start, &p, tol);
+        const double edge =
+            1e-5 * spacing; /* y is flat there: sqrt(2e-12) away in angle it has changed by 1e-12 */
+        if (off >= 1e-12)
+            CHECK(T > turn - spacing && T < turn + edge,
+                  "the swing before was beyond the tolerance, this is not");
+        if (off <= -1e-12)
+            CHECK(T > turn - edge && T < turn + spacing,
+                  "this swing is beyond the tolerance, the next is not");
+        CHECK(distance_at(&p, start, 0, T) <= tol, "inside");
+        CHECK(distance_at(&p, start, 0, turn + spacing) <= tol, "the next swing is smaller");
+        CHECK(T < turn + spacing, "and is not waited for");
+    }
+}
+
 static void rest_time_special(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0.54}, drag = {2, 0, 0.5, 0};
@@ -72,6 +99,16 @@ static void rest_time_special(void)
     CHECK_BITS(spring_rest_time(&s, &drag, 1.3), 0, "less than the tolerance to go");
     const spring_params creeping = {1, 1e-300, 1, 0};
     CHECK(spring_rest_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
+    CHECK_BITS(spring_rest_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
+    const spring_params slower = {1, 1e-308, 1, 0}, weak = {1, 1e-300, 1, 1e300};
+    CHECK_BITS(spring_rest_time(&s, &slower, 0.01), INFINITY, "4.4e308 s is more than a double holds");
+    CHECK_BITS(spring_rest_time(&s, &weak, 0.01), INFINITY, "and so is a rest position of 1e600 m");
+    const spring_params critical = {1, 1, 2, 0}, thick = {1, 1, 2.5, 0};
+    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1}, &critical, 0.1), 3.577152063957297, 1e-14,
+                "t exp(-t) = 0.1, the later time");
+    /* y = (4 exp(-2 t) - exp(-t/2))/3: through 0, but never below -0.1 */
+    CHECK_CLOSE(spring_rest_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14,
+                "y = 0.5");
 }
 
 static void rest_time_bad_input(void)
@@ -181,6 +218,7 @@ int main(void)
     static const test tests[] = {
         {"rest time against sampling", rest_time_by_sampling},
         {"rest time, lightly damped", rest_time_lightly_damped},
+        {"rest time, tolerance at a swing", rest_time_at_a_swing},
         {"rest time, special springs", rest_time_special},
         {"rest time, bad input", rest_time_bad_input},
         {"at rest", at_rest},

@@ -68,7 +68,7 @@ static void whole_catalogue(void)
             CHECK(count(c->name, method, "solution", NULL) == 1, c->name);
             CHECK(count(c->name, method, "iterate", NULL) == (m != SPRING_EXACT), c->name);
             CHECK(count(c->name, method, "drive", NULL) == (c->truth != NULL), c->name);
-            expected += 1 + (m != SPRING_EXACT) + (c->truth != NULL);
+            expected += 1u + (m != SPRING_EXACT) + (c->truth != NULL);
         }
         static const char *const peers[][2] = {{"gsl-rk4", "rk4"},
                                                {"arkode-rk4", "rk4"},
