@@ -14,8 +14,9 @@
 
 spring_roots spring_roots_of(const spring_params *p)
 {
-    const double w = p->stiffness / p->mass, w_rest = fma(-w, p->mass, p->stiffness) / p->mass;
-    const double g = p->damping / p->mass, g_rest = fma(-g, p->mass, p->damping) / p->mass;
+    /* + 0.0 as in spring_rates_of(): a stiffness or damping of -0.0 would give roots, and times, of -infinity */
+    const double w = p->stiffness / p->mass + 0.0, w_rest = fma(-w, p->mass, p->stiffness) / p->mass;
+    const double g = p->damping / p->mass + 0.0, g_rest = fma(-g, p->mass, p->damping) / p->mass;
     const double omega = sqrt(w), omega_rest = omega > 0 ? (fma(-omega, omega, w) + w_rest) / (2 * omega) : 0;
     const double b = g / 2;
     const double sum = omega + b, difference = (omega - b) + (omega_rest - g_rest / 2);

@@ -94,6 +94,7 @@ static void rest_time_special(void)
     CHECK_BITS(spring_rest_time(&s, &damped, INFINITY), 0, "anything is near enough");
     CHECK_BITS(spring_rest_time(&s, &pushed, 0.1), INFINITY, "pushed without a spring: never");
     CHECK_BITS(spring_rest_time(&s, &nothing, 0.1), INFINITY, "nothing stops it");
+    CHECK_BITS(spring_rest_time(&s, &(spring_params){2, -0.0, -0.0, 0}, 0.1), INFINITY, "-0 is 0");
     CHECK_BITS(spring_rest_time(&still, &nothing, 0), 0, "nothing moves it");
     CHECK_CLOSE(spring_rest_time(&s, &drag, 0.01), 4 * log(1.2 / 0.01), 1e-14 * 20, "1.2 m to go, 1/g = 4 s");
     CHECK_BITS(spring_rest_time(&s, &drag, 1.3), 0, "less than the tolerance to go");

@@ -42,6 +42,10 @@ static void special_springs(void)
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
         CHECK_BITS(spring_stable_step(&free_mass, (spring_method)m), INFINITY, "no force at all: always");
     CHECK_BITS(spring_stable_step(&undamped, SPRING_EXACT), INFINITY, "the closed form: always");
+    const spring_params negative_zeros = {1.3, -0.0, -0.0, -0.0}, one_zero = {1.3, 2.7, -0.0, 0};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        CHECK_BITS(spring_stable_step(&negative_zeros, (spring_method)m), INFINITY, "-0 is 0");
+    CHECK_BITS(spring_stable_step(&one_zero, SPRING_EULER), 0, "-0 is 0");
     const spring_params thick = {1, 1, 1e200, 0};
     CHECK_CLOSE(spring_stable_step(&thick, SPRING_EULER), 2e-200, 2e-215, "b^2 must not be formed");
 }
