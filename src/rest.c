@@ -34,6 +34,12 @@ static double bisect(spring_state start, const spring_params *p, double outside,
     }
 }
 
+static double log_ratio(double large, double small) /* small may be 0, of either sign */
+{
+    const double ratio = large / small;
+    return isinf(ratio) ? log(large) - log(small) : log(ratio);
+}
+
 static double rest_time_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
 {
     const double spacing = pi / r->split;
@@ -46,7 +52,7 @@ static double rest_time_oscillating(spring_state y, const spring_params *p, cons
         return fabs(y.x) > tol ? bisect(y, p, 0, first, tol) : 0;
     if (r->b == 0 || tol == 0)
         return INFINITY;
-    double last = first + floor(log(largest / tol) / (r->b * spacing)) * spacing;
+    double last = first + floor(log_ratio(largest, tol) / (r->b * spacing)) * spacing;
     if (!(swing(y, p, last) > tol) && last > first) /* rounding of the logarithm, either way */
         last -= spacing;
     else if (swing(y, p, last + spacing) > tol)
@@ -75,7 +81,7 @@ static double rest_time_free(double v, double g, double tol)
     if (v == 0)
         return 0;
     const double way = fabs(v / g); /* still to go; infinite without damping */
-    return way > tol ? log(way / tol) / g : 0;
+    return way > tol ? log_ratio(way, tol) / g : 0;
 }
 
 double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol)

@@ -98,6 +98,13 @@ static void rest_time_special(void)
     CHECK_BITS(spring_rest_time(&still, &nothing, 0), 0, "nothing moves it");
     CHECK_CLOSE(spring_rest_time(&s, &drag, 0.01), 4 * log(1.2 / 0.01), 1e-14 * 20, "1.2 m to go, 1/g = 4 s");
     CHECK_BITS(spring_rest_time(&s, &drag, 1.3), 0, "less than the tolerance to go");
+    CHECK_BITS(spring_rest_time(&s, &drag, -0.0), INFINITY, "zero is never reached, of either sign");
+    CHECK_BITS(spring_rest_time(&s, &nothing, -0.0), INFINITY, "zero is never reached, of either sign");
+    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1e200}, &drag, 1e-200), 4 * (log(4) + 400 * log(10)),
+                4000 * 4 * DBL_EPSILON, "a ratio of 4e400");
+    const double far = spring_rest_time(&(spring_state){1e200, 0}, &damped, 1e-200);
+    CHECK_CLOSE(far, 400 * log(10) / (0.6 / 2.6), 2 * pi / sqrt(2.7 / 1.3),
+                "the envelope, in a ratio of 1e400");
     const spring_params creeping = {1, 1e-300, 1, 0};
     CHECK(spring_rest_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
     CHECK_BITS(spring_rest_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
