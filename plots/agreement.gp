@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # How near every check came to failing: its error as a fraction of the bound it had to meet, a dot a row of the table. A
 # dot to the right of the line would be a failure, and would have stopped the report. Errors below a hundred-millionth of
-# their bound, most of them 0, are drawn on the left edge.
+# their bound, or of 0, are drawn on the left edge.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 620
 call plots."need.gp" ARG2 "method witness error bound"
 array witnesses[9] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf"]

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Position and error over the last ten seconds of the long run. Dotted lines stand at the turning points. Euler's error is
 # an amplitude that grew: it is greatest there, and zero where the spring passes its rest position. Leapfrog's is a clock
-# that runs fast: it is zero at the turning points and greatest where the spring is fastest. What RK4
-# shows is rounding, most of it that of the time: near 1000 s a double resolves no less than 1.1e-13 s.
+# that runs fast: it is zero at the turning points and greatest where the spring is fastest. What RK4 shows is rounding.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 700
 array runs[3] = [ARG2, ARG3, ARG4]
 array names[3] = ["Euler", "leapfrog", "RK4"]

@@ -139,7 +139,7 @@ def inline(path, label):
     svg = path.read_text(encoding="utf-8")
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<title>.*?</title>|<desc>.*?</desc>", "", svg, flags=re.DOTALL)
-    svg = re.sub(r"""(\bid=|href=)(["'])(#?)""", rf"\1\2\3{stem}-", svg)
+    svg = re.sub(r"""(\bid=["']|href=["']#)""", rf"\1{stem}-", svg)  # a href without # holds an image
     svg = svg.replace("url(#", f"url(#{stem}-")
     svg = re.sub(r"""(["'])black\1""", r"\1currentColor\1", svg)
     for name, rgb in palette().items():

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # Rounding alone: the distance between the computed state and the same method in exact arithmetic, over the number of steps,
-# from eight starts. With a step of 2^{−7} s every coefficient of leapfrog is exact, and errors that point anywhere grow like
-# √n; with 0.01 s the one product dt ω²/2 is rounded, once for all steps, and errors that all point the same way grow like n.
-# Compensated sums take away the first kind, not the second.
+# from eight starts. With a step of 1/128 s leapfrog's coefficient dt ω²/2 is exact, and errors that point anywhere grow
+# like √n; with 0.01 s it is rounded, once for all steps, and errors that all point the same way grow like n. Compensated
+# sums take away most of the first kind, and nothing of the second.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 900
 array plain[3] = [ARG2, ARG4, ARG6]
 array compensated[3] = [ARG3, ARG5, ARG7]
-array titles[3] = ["leapfrog, dt = 2^{−7} s", "RK4, dt = 2^{−7} s", "leapfrog, dt = 0.01 s"]
+array titles[3] = ["leapfrog, dt = 1/128 s", "RK4, dt = 1/128 s", "leapfrog, dt = 0.01 s"]
 array colours[3] = [leapfrog, rk4, leapfrog]
 do for [i = 1:3] {
     call plots."need.gp" plain[i] "steps state_error"

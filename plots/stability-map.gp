@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # The error after ten periods over step and damping ratio, as a fraction of the distance from rest at the start. Orange:
-# more than the whole of it. White: the largest stable step. A strongly damped spring has come to rest after ten periods,
-# so there even a coarse step ends with no error to speak of, if only it is stable.
+# more than the whole of it. White: the largest stable step. Around ζ = 1 a spring has come to rest after ten periods, so
+# there even a coarse step leaves no error to speak of, if only it is stable. Leapfrog is stable for every damping, and of
+# no use where damping is strong and the step coarse: its velocity changes sign at every step.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 1000
 call plots."need.gp" ARG2 "method omega_dt damping_ratio error"
 call plots."need.gp" ARG3 "method damping_ratio limit_theory"
@@ -23,6 +24,7 @@ set palette maxcolors 0 defined (-8 "#00224E", -7.1 "#123570", -6.2 "#3B496C", -
     -3.6 "#8A8678", -2.7 "#A59C74", -1.8 "#C3B369", -0.9 "#E1CC55", 0 "#FEE838", 0 "#D55E00", exploded "#D55E00")
 set cbrange [least:exploded]
 set cbtics ("≤10^{−8}" -8, "10^{−6}" -6, "10^{−4}" -4, "10^{−2}" -2, "1" 0) scale 0
+set cblabel "error after ten periods" offset 0,0.4
 set colorbox horizontal user origin 0.17,0.965 size 0.75,0.014
 
 set xrange [-3:1]
