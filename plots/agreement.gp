@@ -2,7 +2,7 @@
 # How near every check came to failing: its error as a fraction of the bound it had to meet, a dot a row of the table. A
 # dot to the right of the line would be a failure, and would have stopped the report. Errors below a hundred-millionth of
 # their bound, or of 0, are drawn on the left edge.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 620
+call system("dirname '".ARG0."'")."/style.gp" ARG1 720
 call plots."need.gp" ARG2 "method witness error bound"
 array witnesses[9] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf"]
 array names[9] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nclosed form", "solution,\ndriven", \
@@ -31,11 +31,13 @@ set ytics ()
 do for [i = 1:rows] {
     set ytics add (names[i] i)
 }
-set key at screen 0.6,0.995 center top horizontal maxrows 2 samplen 0.5
-set tmargin 3.2
+unset key
+set tmargin 4
+do for [m = 1:4] {
+    set label titles[m] at screen 0.12 + 0.5*((m - 1)%2),0.98 - 0.04*((m - 1)/2) point linetype m pointtype marks[m] offset 1,0
+}
 set lmargin 13
 set arrow from 1,0.5 to 1,rows + 0.5 nohead linetype theory dashtype solid
 set output ARG1
 plot for [m = 1:4] for [i = 1:rows] ARG2 using (strcol("method") eq methods[m] ? shown(i) : NaN):(i + height_in_row($0)) \
-         with points linetype m pointtype marks[m] pointsize 0.6 notitle, \
-     for [m = 1:4] keyentry with points linetype m pointtype marks[m] title titles[m]
+         with points linetype m pointtype marks[m] pointsize 0.6

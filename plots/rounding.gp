@@ -25,7 +25,7 @@ set format y "10^{%T}"
 set ylabel "error / amplitude"
 set key at screen 0.18,0.99 left top Left reverse samplen 1
 set output ARG1
-set multiplot layout 3,1 margins 0.19,0.94,0.085,0.92 spacing 0.03
+set multiplot layout 3,1 margins 0.23,0.95,0.095,0.92 spacing 0.03
 do for [i = 1:3] {
     set label 1 titles[i] at graph 0.97,0.08 right textcolor linetype colours[i]
     set label 2 "√n ε" at 2.2e9,epsilon*sqrt(2e9) offset -3.2,-0.9 textcolor linetype theory
