@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The command-line tools as their users see them: numbers, columns, messages, exit statuses, files. Prints TAP.
 
-Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy
+Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy PATH/spring-validate PATH/spring-stability
+                   PATH/spring-rounding
 """
 import math
 import os
@@ -15,17 +16,24 @@ import tempfile
 import time
 
 TOOLS = {os.path.basename(path): os.path.abspath(path) for path in sys.argv[1:]}
-ORDER, RUN, ENERGY = 'spring-order', 'spring-run', 'spring-energy'
+ORDER, RUN, ENERGY = BY_METHOD = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
+VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
 SEED_RUN = ['--duration', '1000', '--steps', '1e7']
 SHORT = {  # for every tool a run that takes no time
     ORDER: ['--method', 'euler', '--n-max', '50'],
     RUN: ['--method', 'rk4', '--duration', '3', '--steps', '30', '--every', '1'],
     ENERGY: ['--method', 'leapfrog', '--duration', '10'],
+    VALIDATE: ['--case', 'fast-root'],
+    STABILITY: ['--map', '--points', '2'],
+    ROUNDING: ['--method', 'rk4', '--sum', 'plain', '--steps', '1e4'],
 }
 COLUMNS = {  # the fixed ones, in their order; others may follow
     ORDER: 'method n dt_s error_m',
     RUN: 'method step t_s x_m v_m_per_s energy_J exact_x_m error_m',
     ENERGY: 'method velocity duration_s steps energy_error_J',
+    VALIDATE: 'case method witness dt_s steps error bound verdict',
+    STABILITY: 'method omega_dt damping_ratio error',  # of --map
+    ROUNDING: 'method sum start steps dt_s state_error energy_error',
 }
 
 count = failures = 0
@@ -86,9 +94,9 @@ def test_bad_usage():
     run_3 = ['--method', 'euler', '--duration', '1', '--steps', '10']
     cases = [  # tool, arguments, what the message has to say
         *[(tool, ['--method', word], ['--method', f'"{word}"', methods])
-          for tool in TOOLS for word in ('foo', '', 'Euler', 'eul', 'euler ')],
-        *[(tool, [], ['--method', 'missing', methods]) for tool in TOOLS],
-        *[(tool, ['--method'], ['--method', 'value is missing', methods]) for tool in TOOLS],
+          for tool in BY_METHOD for word in ('foo', '', 'Euler', 'eul', 'euler ')],
+        *[(tool, [], ['--method', 'missing', methods]) for tool in BY_METHOD],
+        *[(tool, ['--method'], ['--method', 'value is missing', methods]) for tool in BY_METHOD],
         *[(tool, [*SHORT[tool], word], [f'"{word}"', 'not an option', f'{tool} --help'])
           for tool in TOOLS for word in ('foo', '', '-', '--', '-x', '--bogus', '--bogus=1', '--meth', '--outpu', '--vers',
                                          '-help')],
@@ -112,7 +120,7 @@ def test_bad_usage():
         (RUN, [*run_3, '--duration', '1e-320', '--steps', '1e10'], ['--duration', 'larger']),
         (RUN, [*run_3, '--arithmetic', 'fast'], ['--arithmetic', '"fast"', 'one of library, stages']),
         *[(tool, [*SHORT[tool], '--method', 'euler', '--arithmetic', 'stages'],
-           ['--arithmetic', '"stages"', 'rk4', 'should be library']) for tool in TOOLS],
+           ['--arithmetic', '"stages"', 'rk4', 'should be library']) for tool in BY_METHOD],
         (RUN, ['--method', 'euler', '--duration', '1'], ['--steps', 'missing', count_53]),
         (RUN, ['--method', 'euler', '--steps', '1'], ['--duration', 'missing', positive]),
         (RUN, [*run_3, '--envelope', 'x', '-o', 'x'], ['--envelope', '"x"', 'another file']),
@@ -130,6 +138,13 @@ def test_bad_usage():
         (ORDER, ['--method', 'rk4', '--n-max', '4'], ['--n-max', '"4"', 'at least --n-min', '5']),
         (ORDER, ['--method', 'rk4', '--fit', '--n-max', '9'], ['--fit', '--n-max']),
         (ORDER, ['--method', 'rk4', '--match-error', '0'], ['--match-error', '"0"', positive]),
+        *[(VALIDATE, ['--case', name], ['--case', f'"{name}"', 'one of', 'turning-point', 'billion-steps'])
+          for name in ('nothing', '', 'middl', 'Middle')],
+        (VALIDATE, ['--case'], ['--case', 'value is missing', 'one of']),
+        *[(STABILITY, ['--points', n], ['--points', f'"{n}"', 'from 1 to 10000']) for n in ('0', '10001', '-3', 'x')],
+        (ROUNDING, ['--method', 'rk4'], ['--sum', 'missing', 'one of plain, compensated']),
+        (ROUNDING, ['--sum', 'plain', '--method', 'euler'], ['--method', '"euler"', 'one of leapfrog, rk4']),
+        (ROUNDING, [*SHORT[ROUNDING], '--steps', '9999'], ['--steps', '"9999"', 'from 10000']),
     ]
     for tool, args, needles in cases:
         result = run(tool, *args)
@@ -155,9 +170,9 @@ def test_spellings():
 def test_help_and_version():
     for tool in TOOLS:
         result = run(tool, '--help')
-        check(result.returncode == 0 and result.stderr == '' and result.stdout.startswith(f'Usage: {tool} --method M'),
+        check(result.returncode == 0 and result.stderr == '' and result.stdout.startswith(f'Usage: {tool} '),
               f'{tool} --help', result)
-        for word in ['--method', '--arithmetic', '--output', '-o', '--help', '--version', 'Exit status',
+        for word in [*(['--method M', '--arithmetic'] if tool in BY_METHOD else []), '--output', '-o', '--help', '--version', 'Exit status',
                      *COLUMNS[tool].split()]:
             check(word in result.stdout, f'{tool} --help explains {word}')
         equal(run(tool, '--bogus', '--help').returncode, 2, f'{tool}: an error before --help is an error')
@@ -320,7 +335,8 @@ def test_format():
         check(re.fullmatch(rf'# springstep \d+\.\d+\.\d+, {tool}', lines[0]) is not None, f'{tool}: stamp', lines[0])
         equal(lines[1], f'# command: {tool} {" ".join(SHORT[tool])}', f'{tool}: command line')
         check(re.fullmatch(r'# compiler: (gcc|clang) \d+\.\d+\.\d+', lines[2]) is not None, f'{tool}: compiler', lines[2])
-        check(lines[3].startswith('# method: '), f'{tool}: method', lines[3])
+        if tool in BY_METHOD:
+            check(lines[3].startswith('# method: '), f'{tool}: method', lines[3])
         fixed = COLUMNS[tool].split()
         equal(lines[len(comments)].split('\t')[:len(fixed)], fixed, f'{tool}: fixed columns')
         check(all('%.17g' % float(field) == field for line in lines[len(comments) + 1:] for field in line.split('\t')
@@ -579,6 +595,77 @@ def test_energy():
     check(max(column(table(ENERGY, '--method', 'exact', '--duration', '1e8'), 'energy_error_J')) <= 1e-12,
           'exact: no error but rounding')
     check(float(table(ENERGY, '--method', 'rk4', '--duration', '1e4')[4]['energy_error_J']) < 7e-9, 'rk4: the library, too')
+
+
+def test_energy_jitter():
+    how = ['--method', 'leapfrog', '--dt', '0.1', '--duration', '1e4']
+    fixed, varied = table(ENERGY, *how), table(ENERGY, *how, '--jitter')
+    equal([r['steps'] for r in varied], [r['steps'] for r in fixed], 'jitter: as many steps')
+    bound = 0.5 * 0.1 ** 2 / 4
+    check(max(column(fixed, 'energy_error_J')) <= bound < 10 * bound < float(varied[-1]['energy_error_J']) < 0.5,
+          'jitter: the bound of the energy error is gone', (fixed, varied))
+    equal(table(ENERGY, *how, '--jitter'), varied, 'jitter: the same at every run')
+    check(max(column(table(ENERGY, *how[2:], '--method', 'exact', '--jitter'), 'energy_error_J')) <= 1e-11,
+          'jitter: no matter to the closed form')
+
+
+# --- numbers: spring-validate, spring-stability, spring-rounding -----------------------------------------------------
+
+def test_validate():
+    listed = table(VALIDATE, '--list')
+    names = [row['case'] for row in listed]
+    check(len(names) >= 25 and len(set(names)) == len(names) and all(row['purpose'] for row in listed), '--list', names)
+    rows = table(VALIDATE, '--quick')
+    check(len(rows) >= 150 and len({row['case'] for row in rows}) >= 25, '--quick: 150 rows, 25 cases', len(rows))
+    equal([name for name in names if name not in {row['case'] for row in rows}], ['billion-steps'], '--quick leaves out the slow ones')
+    equal({row['verdict'] for row in rows}, {'pass'}, '--quick: every check holds, none is skipped')
+    check(all(0 <= float(r['error']) <= float(r['bound']) < math.inf for r in rows), '--quick: error <= bound')
+    check(all(float(r['error']) > 0 for r in rows if r['witness'] == 'solution' and r['method'] == 'euler'
+              and r['case'] != 'at-rest'), '--quick: Euler is never right by accident')
+    equal({row['witness'] for row in rows},
+          {'iterate', 'solution', 'drive', 'gsl-rk4', 'arkode-rk4', 'gsl-rk8pd', 'cvode-adams', 'cvode-bdf'}, 'all witnesses')
+    check(all(row['reason'] for row in rows), 'every bound says what it is made of')
+    equal(table(VALIDATE, '--case', 'middle'), [row for row in rows if row['case'] == 'middle'], '--case: that one and no other')
+    bdf = {row['case']: int(row['force_evaluations']) for row in rows if row['witness'] == 'cvode-bdf'}
+    check(bdf['settled-0.2'] > 3 * bdf['settled-0.4'] > 0, 'BDF is in trouble on light damping', bdf)
+
+
+def test_stability():
+    rows = table(STABILITY, '--points', '3')
+    equal(list(rows[0]), 'method damping_ratio limit_measured limit_theory relative_error'.split(), 'stability: columns')
+    zetas = [0, 0.01, 1, 100]
+    equal([(r['method'], float(r['damping_ratio'])) for r in rows], [(m, z) for m in ('euler', 'leapfrog', 'rk4') for z in zetas],
+          'stability: rows')
+    laws = [0, 0.02, 2, 2 / (100 + math.sqrt(9999)), 2, 2, 2, 2, 2 * math.sqrt(2), None, 2.785293563405282,
+            2.785293563405282 / (100 + math.sqrt(9999))]
+    for row, law in zip(rows, laws):
+        name = f'stability: {row["method"]} at damping ratio {row["damping_ratio"]}'
+        measured = float(row['limit_measured'])
+        check(law is None or abs(measured - law) <= 1e-4 * law, f'{name}: the formula', row)
+        check(float(row['relative_error']) <= 1e-4, f'{name}: the library', row)
+    cells = table(STABILITY, '--map', '--points', '9')
+    equal(len(cells), 3 * 9 * 9, 'map: rows')
+    errors = {(r['method'], round(math.log10(float(r['omega_dt'])), 3), round(math.log10(float(r['damping_ratio'])), 3)): float(r['error'])
+              for r in cells}
+    check(errors['rk4', -2, -1] < errors['leapfrog', -2, -1] < errors['euler', -2, -1] < 1, 'map: the better method', errors)
+    check(all(errors[m, 1, 2] > 1e3 for m in ('euler', 'leapfrog', 'rk4')), 'map: beyond the limit', errors)
+
+
+def test_rounding():
+    plain, better = (table(ROUNDING, '--method', 'leapfrog', '--dt', '0x1p-7', '--sum', s, '--steps', '1e5')
+                     for s in ('plain', 'compensated'))
+    for rows in (plain, better):
+        equal([(int(r['steps']), int(r['start'])) for r in rows], [(n, i) for n in (10000, 30000, 100000) for i in range(8)],
+              'rounding: rows')
+        equal({r['coefficient_error'] for r in rows}, {'0'}, 'rounding: a power of two rounds no coefficient')
+    for name in ('state_error', 'energy_error'):
+        check(all(e <= int(r['steps']) * 2 * sys.float_info.epsilon for r, e in zip(plain, column(plain, name))),
+              f'rounding: {name} within its bound')
+        check(max(column(better, name)) <= max(column(plain, name)) / 10, f'rounding: {name} with compensated sums')
+    for method in ('leapfrog', 'rk4'):
+        rows = table(ROUNDING, '--method', method, '--sum', 'compensated', '--steps', '1e6')[-8:]
+        check(all(abs(float(r['state_error']) / float(r['coefficient_error']) - 1) <= 0.05 for r in rows),
+              f'rounding: {method}, a decimal step: the coefficient it is', rows)
 
 
 def main():
