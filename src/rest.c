@@ -53,7 +53,7 @@ static double rest_time_oscillating(spring_state y, const spring_params *p, cons
     if (r->b == 0 || tol == 0)
         return INFINITY;
     double last = first + floor(log_ratio(largest, tol) / (r->b * spacing)) * spacing;
-    if (!(swing(y, p, last) > tol) && last > first) /* rounding of the logarithm, either way */
+    if (!(swing(y, p, last) > tol)) /* rounding of the logarithm, either way */
         last -= spacing;
     else if (swing(y, p, last + spacing) > tol)
         last += spacing;

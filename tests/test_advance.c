@@ -177,6 +177,39 @@ static void golden_bits(void)
     }
 }
 
+/* The same for damping that takes the other form of the last half kick: q = g dt/2 = 1.5 and -3. */
+static void golden_bits_of_heavy_damping(void)
+{
+    const spring_params heavy = {1.3, 2.7, 300, 0.4}, heavier = {1.3, 2.7, 600, 0.4};
+    spring_state s = {0.8, -0.9};
+    spring_advance(&s, &heavy, SPRING_LEAPFROG, 0.013, 3);
+    CHECK_STATE(s, ((spring_state){0x1.9bfb55360d702p-1, 0x1.46d822347f61dp-10}), "pinned");
+    s = (spring_state){0.8, -0.9};
+    spring_advance(&s, &heavier, SPRING_LEAPFROG, -0.013, 3);
+    CHECK_STATE(s, ((spring_state){0x1.e14cfad95d4ecp-1, 0x1.cafd4ca86415bp+2}), "pinned");
+}
+
+/* damping/mass = 1 or load/mass = 1 is like any other: the next double leads to nearly the same state. */
+static void one_is_not_special(void)
+{
+    const spring_state start = {0.8, -0.9};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        const spring_params at[] = {{2, 2.7, 2, 0}, {2, 2.7, 0, 2}, {2, 2.7, 2, 2}};
+        for (int i = 0; i < 3; i++) {
+            spring_params beside = at[i];
+            beside.damping *= 1 + DBL_EPSILON;
+            beside.load *= 1 + DBL_EPSILON;
+            spring_state a = start, b = start;
+            spring_advance(&a, &at[i], (spring_method)m, 0.013, 100);
+            spring_advance(&b, &beside, (spring_method)m, 0.013, 100);
+            CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON,
+                        "an ulp of the parameters, and rounding of 100 steps");
+            CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON,
+                        "an ulp of the parameters, and rounding of 100 steps");
+        }
+    }
+}
+
 static void names(void)
 {
     static const char *const want[] = {"euler", "leapfrog", "rk4", "exact"};
@@ -202,6 +235,8 @@ int main(void)
         {"zeros, denormals and 2^64 - 1 steps", accepts_the_edges},
         {"overflow", overflow},
         {"pinned bits", golden_bits},
+        {"pinned bits, heavy damping", golden_bits_of_heavy_damping},
+        {"rates of 1", one_is_not_special},
         {"names", names},
     };
     return RUN_TESTS("advance", tests);

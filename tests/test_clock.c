@@ -17,6 +17,9 @@ static void whole_frames(void)
     CHECK(spring_clock_tick(&clock, 0.0625, 0.125, 100, &alpha) == 1, "the two halves");
     CHECK_BITS(clock.pending, 0, "nothing left over");
     CHECK(spring_clock_tick(&clock, 0, 0.125, 100, NULL) == 0, "a frame of no time; alpha is optional");
+    CHECK(spring_clock_tick(&clock, 0.0625, 0.125, 100, &alpha) == 0, "half a step waits");
+    CHECK(spring_clock_tick(&clock, 0, 0.125, 100, &alpha) == 0, "a frame of no time");
+    CHECK_BITS(alpha, 0.5, "and still waits");
 }
 
 static void dropped_time(void)
@@ -29,6 +32,8 @@ static void dropped_time(void)
     CHECK_BITS(alpha, 0.5, "the fraction is kept");
     CHECK(spring_clock_tick(&clock, 0.25, 0.125, 0, &alpha) == 0, "no steps allowed");
     CHECK_BITS(clock.dropped, 1.25, "dropped time adds up");
+    CHECK(spring_clock_tick(&clock, 0x1p64 - clock.pending, 1, UINT64_MAX, &alpha) == UINT64_MAX,
+          "2^64 steps");
     CHECK(spring_clock_tick(&clock, 1e300, 1e-300, UINT64_MAX, &alpha) == UINT64_MAX, "more than 2^64 steps");
     CHECK(isfinite(clock.dropped) && clock.pending < 1e-300, "a long frame and a short step stay finite");
 }
@@ -57,6 +62,17 @@ static void nothing_is_lost(void)
     CHECK_CLOSE((double)steps * dt + clock.pending + clock.dropped, frames,
                 count * per_frame + count / 100 * per_drop + frames * DBL_EPSILON,
                 "rounding of each addition");
+}
+
+static void nothing_is_dropped_without_need(void)
+{
+    spring_clock clock = {0};
+    for (int i = 0; i < 10000; i++) {
+        const uint64_t needed =
+            (uint64_t)((clock.pending + 0.1) * 240); /* 24, or 25 with what was left over */
+        CHECK(spring_clock_tick(&clock, 0.1, 1.0 / 240, needed, NULL) == needed, "as many as allowed");
+        CHECK_BITS(clock.dropped, 0, "the rounding of so many steps is no dropped time");
+    }
 }
 
 static void refuse(spring_clock start, double frame_dt, double dt, const char *why)
@@ -91,6 +107,7 @@ int main(void)
         {"whole frames", whole_frames},
         {"dropped time", dropped_time},
         {"nothing is lost", nothing_is_lost},
+        {"nothing is dropped without need", nothing_is_dropped_without_need},
         {"bad input", bad_input},
     };
     return RUN_TESTS("clock", tests);

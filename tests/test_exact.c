@@ -111,6 +111,20 @@ static void stays_at_rest_under_load(void)
     }
 }
 
+/* cos and sin by their series, as far as t = 1 reaches into them: the last terms are a few eps. */
+static void series_to_the_last_term(void)
+{
+    const spring_params p = {1, 1, 0, 0};
+    for (int i = 1; i <= 1000; i++) {
+        const double t = i / 1000.0;
+        spring_state x = {1, 0}, v = {0, 1};
+        spring_step_exact(&x, &p, t);
+        spring_step_exact(&v, &p, t);
+        CHECK_CLOSE(x.x, cos(t), 0.75 * DBL_EPSILON, "1.5 ulp of numbers below 1: rounding of both");
+        CHECK_CLOSE(v.x, sin(t), 1.25 * DBL_EPSILON * sin(t), "rounding of S, of t S and of sin");
+    }
+}
+
 static void special_springs(void)
 {
     spring_state s = {1.5, -2};
@@ -150,6 +164,7 @@ int main(void)
         {"backwards", backwards},
         {"response to a load", loaded},
         {"at rest under load", stays_at_rest_under_load},
+        {"series to the last term", series_to_the_last_term},
         {"special springs", special_springs},
     };
     reference_init(&ref);

@@ -81,6 +81,48 @@ static void rest_time_at_a_swing(void)
     }
 }
 
+/* Distances that are exactly the tolerance are within it, and numbers that the code compares with are not special. */
+static void rest_time_at_the_tolerance(void)
+{
+    const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0}, thick = {1, 1, 2.5, 0};
+    const spring_params drag = {2, 0, 0.5, 0}, nothing = {2, 0, 0, 0}, b_is_1 = {1, 4, 2, 0};
+    CHECK_BITS(spring_rest_time(&(spring_state){0.5, 0}, &undamped, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_rest_time(&(spring_state){0.5, -0.1}, &damped, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_rest_time(&(spring_state){0.5, 0}, &thick, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_rest_time(&(spring_state){0.5, -1.25}, &thick, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_rest_time(&(spring_state){0, 1}, &nothing, INFINITY), 0, "never beyond it");
+    CHECK_CLOSE(spring_rest_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
+                "4 m to go");
+    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
+                "4 m to go");
+    CHECK_CLOSE(spring_rest_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15,
+                "along the fast root");
+    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
+    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
+    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
+    /* sqrt(w - b^2) is 1, to the bit: the turning points are the multiples of pi */
+    const spring_params p = {1, 1.5625, 1.5, 0};
+    const spring_state start = {0.8, 0};
+    for (int k = 1; k < 20; k++) {
+        const double T = spring_rest_time(&start, &p, distance_at(&p, start, 0, k * pi));
+        CHECK(T > (k - 1) * pi && T < k * pi, "a swing as large as the tolerance is within it");
+    }
+}
+
+/* T is the first double from which on the spring is inside, as far as doubles can tell. */
+static void rest_time_is_the_first(void)
+{
+    const spring_params p = {1.3, 2.7, 0.6, 0}, thick = {1.3, 2.7, 6, 0};
+    const spring_state start = {0.8, 0.9};
+    for (int i = 0; i < 1000; i++) {
+        const spring_params *q = i % 2 ? &p : &thick;
+        const double tol = distance_at(q, start, 0, random_uniform(1, 20));
+        const double T = spring_rest_time(&start, q, tol);
+        CHECK(distance_at(q, start, 0, T) <= tol, "inside");
+        CHECK(distance_at(q, start, 0, nextafter(T, 0)) > tol, "outside");
+    }
+}
+
 static void rest_time_special(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0.54}, drag = {2, 0, 0.5, 0};
@@ -227,6 +269,8 @@ int main(void)
         {"rest time against sampling", rest_time_by_sampling},
         {"rest time, lightly damped", rest_time_lightly_damped},
         {"rest time, tolerance at a swing", rest_time_at_a_swing},
+        {"rest time, distances equal to the tolerance", rest_time_at_the_tolerance},
+        {"rest time to the last bit", rest_time_is_the_first},
         {"rest time, special springs", rest_time_special},
         {"rest time, bad input", rest_time_bad_input},
         {"at rest", at_rest},
