@@ -4,7 +4,7 @@
 
 #include "check.h"
 
-static const int draws = 20000;
+static const int draws = 100000;
 
 typedef struct draw {
     spring_params p;
