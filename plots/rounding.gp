@@ -28,7 +28,7 @@ set output ARG1
 set multiplot layout 3,1 margins 0.23,0.95,0.095,0.92 spacing 0.03
 do for [i = 1:3] {
     set label 1 titles[i] at graph 0.97,0.08 right textcolor linetype colours[i]
-    set label 2 "√n ε" at 2.2e9,epsilon*sqrt(2e9) offset -3.2,-0.9 textcolor linetype theory
+    set label 2 "√n ε" at 3e4,epsilon*sqrt(3e4) offset 0,0.9 textcolor linetype theory
     set label 3 "n ε" at 1e7,epsilon*1e7 offset -3.5,0.2 textcolor linetype theory
     if (i < 3) {
         set format x ""

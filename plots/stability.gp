@@ -24,4 +24,4 @@ set label titles[leapfrog] at 12,2.18 textcolor linetype leapfrog
 set label titles[rk4] at 0.012,3.05 textcolor linetype rk4
 set output ARG1
 plot for [m = 1:3] ARG2 using "damping_ratio":(of(m, column("limit_theory"))) with lines linetype theory dashtype solid, \
-     for [m = 1:3] ARG2 using "damping_ratio":(of(m, column("limit_measured"))) with points linetype m pointsize 0.7
+     for [m = 1:3] ARG2 using "damping_ratio":(of(m, column("limit_measured"))) with points linetype m pointsize 0.45
