@@ -54,7 +54,6 @@ static unsigned count(const char *of, const char *method, const char *witness, c
 /* Nothing is left out: every case that is not slow, with every method and every witness it asks for. */
 static void whole_catalogue(void)
 {
-    CHECK(validate(right_program, "--quick") == 0, "everything holds");
     CHECK(count(NULL, NULL, NULL, "pass") == row_count, "no fail, no skip");
     CHECK(case_count >= 25 && row_count >= 150, "as much as was promised");
     unsigned expected = 0;
@@ -86,7 +85,6 @@ static void whole_catalogue(void)
 /* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100. */
 static void bounds_are_near(void)
 {
-    CHECK(validate(right_program, "--quick") == 0, "everything holds");
     for (const row *r = rows; r < rows + row_count; r++) {
         double nearest = 0;
         for (const row *other = rows; other < rows + row_count; other++)
@@ -95,6 +93,13 @@ static void bounds_are_near(void)
                 nearest = other->error / other->bound;
         CHECK(nearest >= 0.01, r->witness);
     }
+}
+
+static void right(void)
+{
+    CHECK(validate(right_program, "--quick") == 0, "everything holds");
+    whole_catalogue();
+    bounds_are_near();
 }
 
 /* Two cases that have every witness between them: status 1, each witness fails some row, and all rows of the one named
@@ -132,8 +137,7 @@ static void slightly_wrong(void)
 int main(int argc, char **argv)
 {
     static const test tests[] = {
-        {"the whole catalogue", whole_catalogue},
-        {"bounds that can be missed", bounds_are_near},
+        {"the whole catalogue, with bounds that can be missed", right},
         {"a library that does not work fails in every row", wrong_in_every_row},
         {"a library that is slightly wrong is noticed by every witness", slightly_wrong},
     };
