@@ -179,6 +179,10 @@ const validation_case cases[] = {
      .n = 2000},
     {"loaded", "a load from a start at the unloaded rest position", 0.7, 2.7, 0.1, -0.4, .x0 = 0, .v0 = 0,
      .dt = 0.05, .n = 500, .peers = true},
+    {"loaded-briefly", "so short a time that 1 - cos cancels", 1.3, 1.7, 0.3, -0.4, START, .dt = 0.01,
+     .n = 20},
+    {"loaded-heavily-damped", "the fast root is gone, the slow one has hardly begun", 1.3, 1.7, 30, -0.4,
+     START, .dt = 0.01, .n = 500},
     {"fast-root", "along the fast root of an overdamped spring", 0.7, 1.6, 1.25, 0, .x0 = 0.8, .v0 = -1.6,
      .dt = 0.05, .n = 200, .peers = true},
     /* without stiffness */
@@ -187,6 +191,8 @@ const validation_case cases[] = {
     /* time */
     {"backwards", "dt < 0", 1.3, 2.7, 0, 0, START, .dt = -0.03, .n = 1000},
     {"backwards-damped", "dt < 0: damping is growth", 1.3, 2.7, 0.05, 0, START, .dt = -0.03, .n = 500},
+    {"backwards-overdamped", "dt < 0: what grows is the fast root", 1.3, 2.7, 2, 0, START, .dt = -0.01,
+     .n = 200},
     {"decimal-step", "dt = 1e-4 is not a binary fraction", 1.3, 2.7, 0, 0, START, .dt = 1e-4, .n = 1000000},
     {"binary-step", "dt = 2^-13 is", 1.3, 2.7, 0, 0, START, .dt = 0x1p-13, .n = 1000000},
     {"billion-steps", "10^9 steps: a biased rounding would show", 1.3, 1.7, 0, 0, START, .dt = 0.01,
