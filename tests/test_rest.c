@@ -184,6 +184,10 @@ static void at_rest(void)
     CHECK(!spring_at_rest(&s, &p, 0.0501, 0.0624), "too fast");
     CHECK(spring_at_rest(&(spring_state){1e9, 0}, &free_mass, 0, 0), "no stiffness: rest is anywhere");
     CHECK(!spring_at_rest(&(spring_state){1e9, 0.1}, &free_mass, 1, 0.05), "but not while moving");
+    CHECK(!spring_at_rest(&(spring_state){1e9, -0.1}, &free_mass, 1, 0.05), "in either direction");
+    CHECK(!spring_at_rest(&(spring_state){-0.5, 0}, &p, 0.6, 1), "too far on the other side");
+    CHECK(spring_at_rest(&(spring_state){0.25, 0}, &(spring_params){1.3, 2.5, 0.6, 0}, 0.25, 0),
+          "at both tolerances");
     CHECK(!spring_at_rest(&(spring_state){0, 0}, &pushed, 1, 1), "nowhere under a load");
     CHECK(!spring_at_rest(NULL, &p, 1, 1) && !spring_at_rest(&s, NULL, 1, 1), "NULL");
     CHECK(!spring_at_rest(&s, &bad, 1, 1), "bad parameters");
