@@ -84,6 +84,7 @@ static const scenario scenarios[] = {
     {"true", truth, true, .got = 1},
     {"false", truth, false, .got = 0},
     {"at the bound", closeness, true, 1.5, 1, 0.5},
+    {"a hair beyond the bound", closeness, false, 1.5, 1, 0.5 - DBL_EPSILON},
     {"beyond the bound", closeness, false, 1.5, 1, 0.49},
     {"beyond the bound, below", closeness, false, 1, 1.5, 0.49},
     {"equal, bound 0", closeness, true, 0.3, 0.3, 0},

@@ -150,7 +150,7 @@ def programs_of(build):
             path = pathlib.Path(word)
             return f"./{path.relative_to(build)}" if build in path.parents else word
         program = Program(test["name"], [inside(word) for word in test["cmd"]],
-                          [str(pathlib.Path(word).relative_to(build)) for word in test["cmd"] if word in outputs],
+                          [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in outputs],
                           test["protocol"] == "tap", 600)
         start = time.monotonic()
         failure = execute(program, build)
