@@ -7,7 +7,8 @@
  *           points shrink by a fixed factor, so the last swing beyond x_tol is found by a logarithm; after it y enters
  *           the band for good, at a crossing found by bisection on the closed form.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
- * Accuracy  bisection ends at adjacent doubles
+ * Accuracy  bisection ends at adjacent doubles; what it bisects is the closed form, so a tolerance within its rounding
+ *           error of the state gives a time that means nothing
  */
 #include <stddef.h>
 
@@ -40,11 +41,20 @@ static double log_ratio(double large, double small) /* small may be 0, of either
     return isinf(ratio) ? log(large) - log(small) : log(ratio);
 }
 
+/* A state in the same direction, of a size that squares of frequencies cannot make overflow. */
+static spring_state direction(spring_state y)
+{
+    int exponent;
+    frexp(fmax(fabs(y.x), fabs(y.v)), &exponent);
+    return (spring_state){ldexp(y.x, -exponent), ldexp(y.v, -exponent)};
+}
+
 static double rest_time_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
 {
     const double spacing = pi / r->split;
-    double first =
-        atan2(y.v * r->split, r->w * y.x + r->b * y.v) / r->split; /* a zero of v in (-spacing, spacing] */
+    const spring_state u = direction(y);
+    /* a zero of v in (-spacing, spacing] */
+    double first = atan2(u.v * r->split, r->w * u.x + r->b * u.v) / r->split;
     if (first < 0)
         first += spacing;
     const double largest = swing(y, p, first);
@@ -62,7 +72,8 @@ static double rest_time_oscillating(spring_state y, const spring_params *p, cons
 
 static double rest_time_creeping(spring_state y, const spring_params *p, const spring_roots *r, double tol)
 {
-    const double T = y.v / (r->w * y.x + r->b * y.v); /* tanh(split t)/split at the turning point */
+    const spring_state u = direction(y);
+    const double T = u.v / (r->w * u.x + r->b * u.v); /* tanh(split t)/split at the turning point */
     double turn = 0;
     if (T > 0 && r->split * T < 1)
         turn = r->split > 0 ? atanh(r->split * T) / r->split : T;

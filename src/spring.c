@@ -79,7 +79,8 @@ double spring_stable_step(const spring_params *p, spring_method m)
 static spring_params params_of(double omega, double damping_ratio)
 {
     const spring_params p = {.mass = 1, .stiffness = omega * omega, .damping = 2 * damping_ratio * omega};
-    return spring_params_valid(&p) ? p : (spring_params){NAN, NAN, NAN, NAN};
+    const bool lost = omega > 0 && p.stiffness < DBL_MIN; /* by underflow */
+    return spring_params_valid(&p) && !lost ? p : (spring_params){NAN, NAN, NAN, NAN};
 }
 
 spring_params spring_params_hertz(double hertz, double damping_ratio)
@@ -94,16 +95,17 @@ spring_params spring_params_half_life(double half_life, double damping_ratio)
     const double z = damping_ratio;
     const double rate =
         z <= 1 ? z : 1 / (z + sqrt(z - 1) * sqrt(z + 1)); /* of the envelope, in units of omega */
-    return params_of(half_life > 0 && z > 0 ? ln2 / half_life / rate : NAN, z);
+    return params_of(half_life > 0 && isfinite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
 }
 
 bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol)
 {
-    if (s == NULL || !spring_params_valid(p))
+    if (s == NULL || !finite_state(*s) || !spring_params_valid(p) || !(x_tol >= 0))
         return false;
-    if (p->stiffness == 0)
-        return p->load == 0 && x_tol >= 0 && fabs(s->v) <= v_tol && isfinite(s->x);
-    return fabs(s->x - p->load / p->stiffness) <= x_tol && fabs(s->v) <= v_tol;
+    const bool slow = fabs(s->v) <= v_tol;
+    if (p->stiffness / p->mass == 0)
+        return slow && p->load == 0;
+    return slow && fabs(s->x - p->load / p->stiffness) <= x_tol;
 }
 
 const char *spring_method_name(spring_method m)

@@ -161,6 +161,20 @@ static void rest_time_special(void)
                 "y = 0.5");
 }
 
+/* Linear: from a start 2^k times as far, with 2^k times the tolerance, the same time to the bit. Squares of frequencies
+   times the largest states are beyond the range of a double. */
+static void rest_time_of_any_size(void)
+{
+    const spring_params stiff = {1, 1e10, 1e4, 0}, thick = {1, 1e18, 1e10, 0};
+    const spring_params *const springs[] = {&stiff, &thick};
+    for (int i = 0; i < 2; i++) {
+        const spring_state s = {1, -1e5}, far = {s.x * 0x1p996, s.v * 0x1p996};
+        const double T = spring_rest_time(&s, springs[i], 0.1);
+        CHECK(T > 0 && isfinite(T), "a damped spring comes to rest");
+        CHECK_BITS(spring_rest_time(&far, springs[i], 0.1 * 0x1p996), T, "length in other units");
+    }
+}
+
 static void rest_time_bad_input(void)
 {
     const spring_params p = {1.3, 2.7, 0.6, 0.4}, bad = {1.3, -2.7, 0.6, 0.4};
@@ -196,6 +210,11 @@ static void at_rest(void)
     CHECK(!spring_at_rest(&(spring_state){1, 0}, &free_mass, -1, 1), "negative tolerance");
     CHECK(!spring_at_rest(&(spring_state){NAN, 0}, &p, 1, 1), "a lost state");
     CHECK(!spring_at_rest(&(spring_state){NAN, 0}, &free_mass, 1, 1), "a lost state");
+    CHECK(!spring_at_rest(&(spring_state){INFINITY, 0}, &p, INFINITY, 1), "a lost state");
+    CHECK(!spring_at_rest(&(spring_state){0, INFINITY}, &p, 1, INFINITY), "a lost state");
+    const spring_params faint = {1e300, 1e-300, 0, 0};
+    CHECK(spring_at_rest(&(spring_state){5, 0}, &faint, 0.1, 0.1), "stiffness/mass is 0: rest is anywhere");
+    CHECK_BITS(spring_rest_time(&(spring_state){5, 0}, &faint, 0.1), 0, "and the same for the time");
 }
 
 static void params_from_frequency(void)
@@ -256,6 +275,9 @@ static void constructors_refuse(void)
     refused(spring_params_hertz(NAN, 0.5), "no frequency");
     refused(spring_params_hertz(INFINITY, 0.5), "infinite frequency");
     refused(spring_params_hertz(1e160, 0.5), "stiffness overflows");
+    refused(spring_params_hertz(1e-170, 0.5), "stiffness underflows");
+    refused(spring_params_half_life(1e170, 0.5), "stiffness underflows");
+    refused(spring_params_half_life(INFINITY, 0.5), "infinite half-life");
     refused(spring_params_hertz(1, -0.5), "negative damping ratio");
     refused(spring_params_hertz(1, NAN), "no damping ratio");
     refused(spring_params_half_life(0, 0.5), "half-life 0");
@@ -276,6 +298,7 @@ int main(void)
         {"rest time, distances equal to the tolerance", rest_time_at_the_tolerance},
         {"rest time to the last bit", rest_time_is_the_first},
         {"rest time, special springs", rest_time_special},
+        {"rest time of states of any size", rest_time_of_any_size},
         {"rest time, bad input", rest_time_bad_input},
         {"at rest", at_rest},
         {"parameters from a frequency", params_from_frequency},

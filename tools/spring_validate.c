@@ -24,7 +24,7 @@ static bool list_only, quick;
 static cli_option options[] = {
     {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "only this case; --list names them"},
     {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and what each is there to break"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out the cases that take more than a second"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out cases that take more than a second, unless named"},
     {.name = NULL},
 };
 
@@ -256,7 +256,7 @@ int main(int argc, char **argv)
             continue;
         if (list_only)
             cli_row(table, "%s\t%s", cases[i].name, cases[i].purpose);
-        else if (!quick || !cases[i].slow)
+        else if (!quick || !cases[i].slow || only_case >= 0)
             run_case(&cases[i]);
         cli_progress((double)(i + 1) / (double)case_count);
     }

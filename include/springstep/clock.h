@@ -35,7 +35,7 @@ typedef struct spring_clock {
  *                           may be NULL
  * @return steps to take now. Bad input (NULL clock, non-finite or negative times, dt <= 0): 0 steps, *alpha = 0 and
  *         the clock unchanged.
- * @par Accuracy  what is left over is the exact remainder of (pending + frame_dt) by dt: the clock does not drift
+ * @par Accuracy  a frame rounds pending + frame_dt once; what is left over is the exact remainder of that by dt
  * @par Threads   re-entrant; allocates nothing, keeps nothing but the clock
  */
 SPRING_API uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint64_t max_steps,

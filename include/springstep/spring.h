@@ -6,15 +6,16 @@
  *
  * by explicit Euler, leapfrog, Runge-Kutta 4, or the closed form.
  *
- *     spring_params p = { .mass = 1.3, .stiffness = 2.7 };
- *     spring_state  s = { .x = 1.0 };
+ *     spring_params p = {1.3, 2.7, 0, 0};                            // kg, N/m, no damping, no load
+ *     spring_state  s = {1.0, 0.0};
  *     spring_advance(&s, &p, SPRING_LEAPFROG, 1.0 / 240, 240);       // one second
  *
  * What holds for every function here:
  *  - Bits. Every stepper first forms w = stiffness/mass, g = damping/mass, a = load/mass, each rounded once, and works
  *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering: the
- *    same bits from every IEEE 754 compiler and processor. The closed form calls the C library's exp, sin, cos and
- *    expm1, and is as reproducible as they are.
+ *    same bits from every compiler and processor that follow IEEE 754 (options that do not, such as -ffast-math, are
+ *    refused where they can be seen). The closed form calls the C library's exp, sin, cos and expm1, and is as
+ *    reproducible as they are.
  *  - All or nothing. spring_advance() either happens or leaves the state as it was, and says why.
  *  - dt may be negative, and is never clamped or refused for being unstable: spring_stable_step() tells, you decide.
  *  - Nothing allocates, prints, aborts or keeps anything: every function is re-entrant.
@@ -33,7 +34,7 @@ extern "C" {
 
 /* What moves. Two numbers: copy it, send it, roll it back. */
 typedef struct spring_state {
-    double x; /* [m]   displacement from the unloaded rest position */
+    double x; /* [m]   displacement from the unloaded rest position; to follow a goal, x = position - goal */
     double v; /* [m/s] velocity, at the same time as x */
 } spring_state;
 
@@ -92,8 +93,9 @@ SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, doubl
  *     v' = v + dt/2 (a - w x - g v);   x1 = x + dt v';   v1 = (v' + dt/2 (a - w x1)) / (1 + g dt/2)
  *
  * Second order, time-reversible and symplectic without damping. Stable for 0 < dt sqrt(w) < 2, whatever the damping.
- * Solving the last kick for v keeps the order at 2. For g dt > 2 the velocity changes sign at every step: stable, but
- * it rings, so take spring_step_exact() there. For negative dt the solved kick has a pole at g |dt| = 2.
+ * Solving the last kick for v keeps the order at 2. For g dt > 2 it is stable, but it rings: a part of the velocity
+ * changes sign at every step and dies away slowly, so take spring_step_exact() there. For negative dt the solved kick
+ * has a pole at g |dt| = 2.
  *
  * @param[in,out] s   state, x and v at the same time
  * @param[in]     p   parameters, unchecked here
@@ -110,7 +112,7 @@ SPRING_API void spring_step_leapfrog(spring_state *s, const spring_params *p, do
  *     y1 = (1 + z + z^2/2 + z^3/6 + z^4/24) y,  z = dt times the matrix of the spring, plus the same for the load
  *
  * For a linear spring the four stages collapse exactly to this polynomial, and it is computed as Euler's step plus a
- * small correction. Fourth order. An undamped spring loses (w dt^2)^3/72 of its energy per step. Stable for
+ * small correction, without evaluating a force. Fourth order. An undamped spring loses about (w dt^2)^3/72 of its energy per step. Stable for
  * dt sqrt(w) < 2 sqrt(2) without damping; see spring_stable_step() for the rest.
  *
  * @param[in,out] s   state
@@ -127,10 +129,13 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters, unchecked here
- * @param[in]     dt  time [s], of any size; negative runs backwards
- * @par Accuracy  without load, (x, v/omega) is within 4 eps (1 + omega t max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN of
- *                the true solution, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
- *                (x, v/omega), all norms Euclidean; critical damping is no exception (tests/test_exact.c)
+ * @param[in]     dt  time [s]; of any size, as long as omega dt and dt damping/mass do not overflow; negative runs
+ *                    backwards
+ * @par Accuracy  without load, (x, v/omega) is within
+ *                    4 eps (1 + omega t max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
+ *                of the true solution, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
+ *                (x, v/omega), all norms Euclidean; critical damping is no exception. What a load a = load/mass adds to
+ *                x is within 8 eps (1 + omega t) of itself, or of a/omega^2 where it oscillates (tests/test_exact.c)
  * @par Source    src/exact.c derives the formula
  * @par Threads   re-entrant; allocates nothing, keeps nothing
  */
@@ -142,7 +147,8 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
  * Advance one spring by n steps, checked once.
  *
  * The same bits as n calls of the kernel, and faster: what depends only on the parameters is computed once.
- * SPRING_EXACT is one evaluation over n dt. dt = 0 or n = 0 changes nothing.
+ * SPRING_EXACT is one evaluation over n dt. dt = 0 or n = 0 changes nothing. Every step is taken: it is up to the
+ * caller to ask for a number of steps that ends in time.
  *
  * @param[in,out] s   finite state; unchanged unless SPRING_OK is returned
  * @param[in]     p   parameters
@@ -157,11 +163,11 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
 
 /* ------------------------------------------------------------------------------------------ questions to ask */
 
-/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the true solution when damping is 0. */
+/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the true solution when damping is 0. Unchecked, like the kernels. */
 SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 
 /**
- * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows without bound.
+ * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows faster than the true one.
  *
  * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the closed form; no force at
  *         all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
@@ -174,7 +180,7 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  *
  * @param[in] hertz          undamped frequency >= 0 [Hz]
  * @param[in] damping_ratio  >= 0; 1 is critical
- * @return parameters; all NaN for bad input, which spring_advance() then refuses
+ * @return parameters; all NaN for bad input or numbers out of range, which spring_advance() then refuses
  */
 SPRING_API spring_params spring_params_hertz(double hertz, double damping_ratio);
 
@@ -185,7 +191,7 @@ SPRING_API spring_params spring_params_hertz(double hertz, double damping_ratio)
  *
  * @param[in] half_life      time in which the envelope halves > 0 [s]
  * @param[in] damping_ratio  > 0; 1 is critical
- * @return parameters; all NaN for bad input, which spring_advance() then refuses
+ * @return parameters; all NaN for bad input or numbers out of range, which spring_advance() then refuses
  */
 SPRING_API spring_params spring_params_half_life(double half_life, double damping_ratio);
 
@@ -193,7 +199,8 @@ SPRING_API spring_params spring_params_half_life(double half_life, double dampin
  * Is the spring within x_tol [m] of its rest position load/stiffness, and slower than or at v_tol [m/s]?
  *
  * Without stiffness every position is a rest position as long as there is no load, and none is under load.
- * False for bad input (NULL, bad parameters, NaN or negative tolerance).
+ * A spring that has settled is best left alone: far below, its numbers become denormal, and steps slow.
+ * False for bad input (NULL, bad parameters, a state that is not finite, NaN or negative tolerance).
  */
 SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
 
@@ -204,7 +211,8 @@ SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, do
  *
  * @param[in] x_tol  >= 0 [m]
  * @return [s]; 0 if it never leaves, INFINITY if it never stays; NaN for bad input
- * @par Accuracy  the crossing of the closed form, to a few ulp of the time plus what rounding of x_tol moves it
+ * @par Accuracy  the crossing of the closed form. A tolerance of no more than about 10 eps of
+ *                |x| + |v|/omega + |load/stiffness| is within the rounding of the state, and its time means little
  */
 SPRING_API double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol);
 
