@@ -95,6 +95,24 @@ static void bounds_are_near(void)
     }
 }
 
+/* The extremes that the catalogue is there for. */
+static void extremes(void)
+{
+    static const double fractions[] = {0.5, 0.99, 0.999999, 1.000001, 3}; /* of the stable step */
+    static const double ratios[] = {0, 1e-12, 0.1, 1 - 1e-12, 1, 1 + 1e-12, 10, 1e4};
+    bool with_fraction[5] = {false}, with_ratio[8] = {false};
+    for (const validation_case *c = cases; c < cases + case_count; c++) {
+        for (int i = 0; i < 5; i++)
+            with_fraction[i] = with_fraction[i] || c->stable_fraction == fractions[i];
+        for (int i = 0; i < 8; i++)
+            with_ratio[i] = with_ratio[i] || c->damping_ratio == ratios[i];
+    }
+    for (int i = 0; i < 5; i++)
+        CHECK(with_fraction[i], "steps on both sides of the limit");
+    for (int i = 0; i < 8; i++)
+        CHECK(with_ratio[i], "damping of every kind");
+}
+
 static void right(void)
 {
     CHECK(validate(right_program, "--quick") == 0, "everything holds");
@@ -138,6 +156,7 @@ int main(int argc, char **argv)
 {
     static const test tests[] = {
         {"the whole catalogue, with bounds that can be missed", right},
+        {"the extremes of the catalogue", extremes},
         {"a library that does not work fails in every row", wrong_in_every_row},
         {"a library that is slightly wrong is noticed by every witness", slightly_wrong},
     };
