@@ -34,11 +34,9 @@ static const cli_program program = {
     .details =
         "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
         "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.\n\n"
-        "With --map: method, omega_dt, damping_ratio, error: the distance from the true state in (x, "
-        "v/omega)\n"
-        "over that of the start from rest, after the whole number of steps that comes nearest to ten "
-        "undamped\n"
-        "undamped periods; inf where the state overflows.",
+        "With --map: method, omega_dt, damping_ratio, error: the distance from the true state in\n"
+        "(x, v/omega) over that of the start from rest, after the whole number of steps that comes\n"
+        "nearest to ten undamped periods; inf where the state overflows.",
     .options = options,
 };
 
