@@ -100,12 +100,17 @@ static void rest_time_at_the_tolerance(void)
     CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
     CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
     CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
-    /* sqrt(w - b^2) is 1, to the bit: the turning points are the multiples of pi */
-    const spring_params p = {1, 1.5625, 1.5, 0};
-    const spring_state start = {0.8, 0};
-    for (int k = 1; k < 20; k++) {
-        const double T = spring_rest_time(&start, &p, distance_at(&p, start, 0, k * pi));
-        CHECK(T > (k - 1) * pi && T < k * pi, "a swing as large as the tolerance is within it");
+    /* omega, b and sqrt(w - b^2) are 13/8, 12/8 and 5/8, to the bit: so are the turning points. In some of these the
+       logarithm is rounded to the wrong side. */
+    const spring_params p = {1, 169.0 / 64, 3, 0};
+    for (int i = 0; i < 19 * 50; i++) {
+        const spring_state start = {0.3 + 0.0137 * (i % 50), 0};
+        const double spacing = pi / 0.625, turn = (1 + i / 50) * spacing,
+                     tol = distance_at(&p, start, 0, turn);
+        const double at = spring_rest_time(&start, &p, tol),
+                     below = spring_rest_time(&start, &p, nextafter(tol, 0));
+        CHECK(at > turn - spacing && at < turn, "a swing as large as the tolerance is within it");
+        CHECK(below > turn && below < turn + spacing, "a swing an ulp larger is not");
     }
 }
 
