@@ -2,7 +2,7 @@
 # The error after ten periods over step and damping ratio, as a fraction of the distance from rest at the start. Orange:
 # more than the whole of it. White: the largest stable step. Around ζ = 1 a spring has come to rest after ten periods, so
 # there even a coarse step leaves no error to speak of, if only it is stable. Leapfrog is stable for every damping, and of
-# no use where damping is strong and the step coarse: its velocity changes sign at every step.
+# no use where damping is strong and the step coarse: there a part of its velocity changes sign at every step.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 1000
 call plots."need.gp" ARG2 "method omega_dt damping_ratio error"
 call plots."need.gp" ARG3 "method damping_ratio limit_theory"
