@@ -114,6 +114,19 @@ static void rest_time_at_the_tolerance(void)
     }
 }
 
+/* Mirrored, the motion takes the same time, to the bit; however large one of x and v is beside the other. */
+static void rest_time_mirrored(void)
+{
+    static const double sizes[] = {1e-300, 1e-5, 1, 1e5, 1e300};
+    const spring_params springs[] = {{1.3, 2.7, 0.6, 0}, {1.3, 2.7, 6, 0}};
+    for (int i = 0; i < 100; i++) {
+        const spring_state s = {sizes[i % 5] * (i % 2 ? -1 : 1), sizes[i / 5 % 5]}, mirrored = {-s.x, -s.v};
+        const double T = spring_rest_time(&s, &springs[i / 50], 1e-3);
+        CHECK(isfinite(T), "a damped spring comes to rest");
+        CHECK_BITS(spring_rest_time(&mirrored, &springs[i / 50], 1e-3), T, "mirrored");
+    }
+}
+
 /* T is the first double from which on the spring is inside, as far as doubles can tell. */
 static void rest_time_is_the_first(void)
 {
@@ -232,6 +245,8 @@ static void params_from_frequency(void)
         CHECK_CLOSE(sqrt(p.stiffness) / (2 * pi), hertz, 4 * DBL_EPSILON * hertz, "the undamped frequency");
         CHECK_CLOSE(p.damping / (2 * sqrt(p.stiffness)), zeta, 4 * DBL_EPSILON * zeta, "the damping ratio");
     }
+    CHECK_BITS(spring_params_hertz(0x1.45f306dc9c883p-514, 0.5).stiffness, DBL_MIN,
+               "the smallest with all its digits");
     const spring_params still = spring_params_hertz(0, 0.5);
     CHECK(still.mass == 1 && still.stiffness == 0 && still.damping == 0, "0 Hz is a free particle");
 }
@@ -301,6 +316,7 @@ int main(void)
         {"rest time, lightly damped", rest_time_lightly_damped},
         {"rest time, tolerance at a swing", rest_time_at_a_swing},
         {"rest time, distances equal to the tolerance", rest_time_at_the_tolerance},
+        {"rest time, mirrored", rest_time_mirrored},
         {"rest time to the last bit", rest_time_is_the_first},
         {"rest time, special springs", rest_time_special},
         {"rest time of states of any size", rest_time_of_any_size},
