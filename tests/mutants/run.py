@@ -8,7 +8,8 @@ usage: run.py [--sample] [-o FILE] [PATTERN]...
   -o FILE    write the table to FILE instead of standard output
   PATTERN    only mutants whose names contain one of these
 
-The mutants are those of generate.py and of by_hand.toml. Columns: mutant, killed_by (program and test point), verdict
+The mutants are those of generate.py and of by_hand.toml. mutants.tsv beside this file is the table of the last full run,
+which the report shows. Columns: mutant, by (generator or hand), killed_by (program and test point), verdict
 (killed, equivalent, survived), reason (why it is equivalent, or what was meant to break), caught_by_validate (does
 spring-validate --quick see it? yes or no for mutants that change a trajectory, "-" for others), line (of source).
 Those known to be equivalent, and why, are in equivalent.tsv.
@@ -21,10 +22,12 @@ mutant written by hand, or if a list names a mutant or a line that there is not.
 import argparse
 import concurrent.futures
 import csv
+import datetime
 import json
 import os
 import pathlib
 import queue
+import re
 import shutil
 import subprocess
 import sys
@@ -227,7 +230,7 @@ def run(mutants, equivalent, table):
                 reason = equivalent.get(mutant.name, mutant.reason)
                 verdict = "killed" if killed_by else "equivalent" if mutant.name in equivalent else "survived"
                 counts[verdict] += 1
-                print(mutant.name, killed_by or "-", verdict, reason, caught, mutant.line, sep="\t", file=table,
+                print(mutant.name, "hand" if mutant.by_hand else "generator", killed_by or "-", verdict, reason, caught, mutant.line, sep="\t", file=table,
                       flush=True)
                 if verdict == "survived":
                     failures.append(f"{mutant.name} survived: {mutant.line}")
@@ -240,6 +243,11 @@ def run(mutants, equivalent, table):
     print("{killed} killed, {equivalent} equivalent, {survived} survived".format(**counts), file=sys.stderr)
     print(f"{sum(counts.values()) - len(failures)} passed, {len(failures)} failed, 0 skipped", file=sys.stderr)
     return 1 if failures or sum(counts.values()) == 0 else 0
+
+
+def version():
+    header = (ROOT / "include/springstep/version.h").read_text(encoding="utf-8")
+    return re.search('SPRING_VERSION "(.*)"', header).group(1)
 
 
 def main():
@@ -257,7 +265,8 @@ def main():
     ]
     table = open(options.output, "w", encoding="utf-8") if options.output else sys.stdout
     with table:
-        print("mutant\tkilled_by\tverdict\treason\tcaught_by_validate\tline", file=table)
+        print(f"# command: tests/mutants/run.py\n# version: {version()}\n# date: {datetime.date.today()}", file=table)
+        print("mutant\tby\tkilled_by\tverdict\treason\tcaught_by_validate\tline", file=table)
         return run(chosen, equivalent, table)
 
 

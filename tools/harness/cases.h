@@ -36,9 +36,8 @@ struct validation_case {
 
     unsigned methods; /* bits 1u << SPRING_...; 0: all four */
     bool peers;       /* compare with GSL and SUNDIALS as well */
-    double
-        tolerance; /* of their adaptive solvers, relative to the start; 0: the finest that can be trusted */
-    bool slow;     /* more than a second: not in the quick catalogue */
+    double tolerance; /* of their adaptive solvers, relative to the start; 0: the finest to be trusted */
+    bool slow;        /* more than a second: not in the quick catalogue */
 
     /* What changes from segment to segment; NULL: one segment of n steps. There are n segments otherwise, of one step
        each, and truth (if there is one) is the state that the continuous drive leads to after duration, with a bound on
