@@ -42,8 +42,8 @@ static const cli_program program = {
         "leapfrog_denormal starts from 1e-310 m; its limit is leapfrog from an ordinary start.\n\n"
         "Figures are medians of samples that alternate with those of the limit. spread is the distance\n"
         "between the quartiles over the median, the larger one of kernel and limit. verdict is ok, noisy\n"
-        "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal; a row above its\n"
-        "goal makes the exit status 1.",
+        "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal. No verdict changes\n"
+        "the exit status: time is for people to judge.",
     .options = options,
 };
 
@@ -237,8 +237,8 @@ static figure summarise(double *samples, size_t count)
     return (figure){median, (samples[count - 1 - count / 4] - samples[count / 4]) / median};
 }
 
-/* Measures and writes one row; false where it is above its goal. */
-static bool measure(cli_table *table, const row *r)
+/* Measures and writes one row. */
+static void measure(cli_table *table, const row *r)
 {
     const size_t count = quick ? 15 : most_samples;
     const double sample_ns = quick ? 1e6 : 4e6;
@@ -258,7 +258,6 @@ static bool measure(cli_table *table, const row *r)
             : holds ? "ok"
                     : "above_goal",
             r->goal_ratio, r->goal_ns);
-    return noisy || holds;
 }
 
 /* ------------------------------------------------------------------------------------------------------ the table */
@@ -307,12 +306,11 @@ int main(int argc, char **argv)
     timing_stamp(table);
     cli_columns(table,
                 "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns");
-    bool all_hold = true;
     for (size_t i = 0; i < row_count; i++) {
         cli_progress((double)i / row_count);
         if (only_kernel < 0 || i == (size_t)only_kernel)
-            all_hold &= measure(table, &rows[i]);
+            measure(table, &rows[i]);
     }
     cli_finish();
-    return all_hold ? 0 : CLI_FAILED;
+    return 0;
 }
