@@ -42,9 +42,8 @@ static const cli_program program = {
         "leapfrog_denormal starts from 1e-310 m; its limit is leapfrog from an ordinary start.\n\n"
         "Figures are medians of samples that alternate with those of the limit. spread is the distance\n"
         "between the quartiles over the median, the larger one of kernel and limit. verdict is ok, noisy\n"
-        "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal. No verdict "
-        "changes\n"
-        "the exit status: time is for people to judge.",
+        "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal. No verdict\n"
+        "changes the exit status: time is for people to judge.",
     .options = options,
 };
 
