@@ -12,11 +12,18 @@
  */
 #include "method.h"
 
+/* n/d - q, the rounding error of the quotient q. A denormal q is off by much more than eps of it, and is the spring that
+   the steppers move: there it counts as exact. */
+static double rest_of(double n, double d, double q)
+{
+    return q >= DBL_MIN ? fma(-q, d, n) / d : 0;
+}
+
 spring_roots spring_roots_of(const spring_params *p)
 {
     /* + 0.0 as in spring_rates_of(): a stiffness or damping of -0.0 would give roots, and times, of -infinity */
-    const double w = p->stiffness / p->mass + 0.0, w_rest = fma(-w, p->mass, p->stiffness) / p->mass;
-    const double g = p->damping / p->mass + 0.0, g_rest = fma(-g, p->mass, p->damping) / p->mass;
+    const double w = p->stiffness / p->mass + 0.0, w_rest = rest_of(p->stiffness, p->mass, w);
+    const double g = p->damping / p->mass + 0.0, g_rest = rest_of(p->damping, p->mass, g);
     const double omega = sqrt(w), omega_rest = omega > 0 ? (fma(-omega, omega, w) + w_rest) / (2 * omega) : 0;
     const double b = g / 2;
     const double sum = omega + b, difference = (omega - b) + (omega_rest - g_rest / 2);

@@ -46,6 +46,13 @@ static void special_springs(void)
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
         CHECK_BITS(spring_stable_step(&negative_zeros, (spring_method)m), INFINITY, "-0 is 0");
     CHECK_BITS(spring_stable_step(&one_zero, SPRING_EULER), 0, "-0 is 0");
+    /* 5e-324/1.8625 rounds to 5e-324 again: what the steppers move, and nearly twice the quotient */
+    const spring_params faint = {1.8625, 5e-324, 0, 0};
+    const double faint_omega = sqrt(5e-324);
+    CHECK_CLOSE(spring_stable_step(&faint, SPRING_RK4) * faint_omega, sqrt(8), 8 * DBL_EPSILON,
+                "denormal stiffness");
+    CHECK_CLOSE(spring_stable_step(&faint, SPRING_LEAPFROG) * faint_omega, 2, 8 * DBL_EPSILON,
+                "denormal stiffness");
     const spring_params thick = {1, 1, 1e200, 0};
     CHECK_CLOSE(spring_stable_step(&thick, SPRING_EULER), 2e-200, 2e-215, "b^2 must not be formed");
 }
