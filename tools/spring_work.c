@@ -50,48 +50,30 @@ typedef struct effort { /* what is varied: one of them */
     double tolerance;
 } effort;
 
-typedef struct solver {
+typedef struct solver solver;
+
+struct solver {
     const char *name;
-    const char *(*run)(const problem *q, effort e, ode *o, double *y); /* NULL or a message, as in ode.h */
+    const char *(*run)(const solver *s, const problem *q, effort e, ode *o, double *y); /* as in ode.h */
     bool adaptive, peer;
     uint64_t evaluations_a_step; /* of the library, which has no right-hand side to count */
-} solver;
+    spring_method method;        /* of by_advance() */
+};
 
-static const char *by_advance(const problem *q, effort e, double *y, spring_method m)
+static const char *by_advance(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
-    spring_state s = {y[0], y[1]};
-    const spring_status status = spring_advance(&s, &q->p, m, q->duration / (double)e.steps, e.steps);
-    y[0] = s.x;
-    y[1] = s.v;
+    (void)o;
+    spring_state state = {y[0], y[1]};
+    const spring_status status =
+        spring_advance(&state, &q->p, s->method, q->duration / (double)e.steps, e.steps);
+    y[0] = state.x;
+    y[1] = state.v;
     return status == SPRING_OK ? NULL : spring_status_string(status);
 }
 
-static const char *euler(const problem *q, effort e, ode *o, double *y)
+static const char *rk4_stages(const solver *self, const problem *q, effort e, ode *o, double *y)
 {
-    (void)o;
-    return by_advance(q, e, y, SPRING_EULER);
-}
-
-static const char *leapfrog(const problem *q, effort e, ode *o, double *y)
-{
-    (void)o;
-    return by_advance(q, e, y, SPRING_LEAPFROG);
-}
-
-static const char *rk4(const problem *q, effort e, ode *o, double *y)
-{
-    (void)o;
-    return by_advance(q, e, y, SPRING_RK4);
-}
-
-static const char *exact(const problem *q, effort e, ode *o, double *y)
-{
-    (void)o;
-    return by_advance(q, e, y, SPRING_EXACT);
-}
-
-static const char *rk4_stages(const problem *q, effort e, ode *o, double *y)
-{
+    (void)self;
     (void)o;
     spring_state s = {y[0], y[1]};
     stages_advance(&s, &q->p, q->duration / (double)e.steps, e.steps);
@@ -100,42 +82,48 @@ static const char *rk4_stages(const problem *q, effort e, ode *o, double *y)
     return isfinite(s.x) && isfinite(s.v) ? NULL : "overflow";
 }
 
-static const char *gsl_rk4(const problem *q, effort e, ode *o, double *y)
+static const char *gsl_rk4(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
+    (void)s;
     return ode_gsl_rk4(o, y, q->duration / (double)e.steps, e.steps);
 }
 
-static const char *gsl_rk8pd(const problem *q, effort e, ode *o, double *y)
+static const char *gsl_rk8pd(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
+    (void)s;
     return ode_gsl_rk8pd(o, y, q->duration, e.tolerance);
 }
 
-static const char *arkode_rk4(const problem *q, effort e, ode *o, double *y)
+static const char *arkode_rk4(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
+    (void)s;
     return ode_arkstep_rk4(o, y, q->duration / (double)e.steps, e.steps);
 }
 
-static const char *cvode_adams(const problem *q, effort e, ode *o, double *y)
+static const char *cvode_adams(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
+    (void)s;
     return ode_cvode(o, y, q->duration, ODE_ADAMS, e.tolerance);
 }
 
-static const char *cvode_bdf(const problem *q, effort e, ode *o, double *y)
+static const char *cvode_bdf(const solver *s, const problem *q, effort e, ode *o, double *y)
 {
+    (void)s;
     return ode_cvode(o, y, q->duration, ODE_BDF, e.tolerance);
 }
 
 static const solver solvers[] = {
-    {"euler", euler, false, false, 1},
-    {"leapfrog", leapfrog, false, false, 1},
-    {"rk4", rk4, false, false, 4},
-    {"rk4-stages", rk4_stages, false, false, 4},
-    {"exact", exact, false, false, 0},
-    {"gsl-rk4", gsl_rk4, false, true, 0},
-    {"gsl-rk8pd", gsl_rk8pd, true, true, 0},
-    {"arkode-rk4", arkode_rk4, false, true, 0},
-    {"cvode-adams", cvode_adams, true, true, 0},
-    {"cvode-bdf", cvode_bdf, true, true, 0},
+    /* the steppers first, in the order of spring_method */
+    {.name = "euler", .run = by_advance, .method = SPRING_EULER, .evaluations_a_step = 1},
+    {.name = "leapfrog", .run = by_advance, .method = SPRING_LEAPFROG, .evaluations_a_step = 1},
+    {.name = "rk4", .run = by_advance, .method = SPRING_RK4, .evaluations_a_step = 4},
+    {.name = "rk4-stages", .run = rk4_stages, .evaluations_a_step = 4},
+    {.name = "exact", .run = by_advance, .method = SPRING_EXACT},
+    {.name = "gsl-rk4", .run = gsl_rk4, .peer = true},
+    {.name = "gsl-rk8pd", .run = gsl_rk8pd, .peer = true, .adaptive = true},
+    {.name = "arkode-rk4", .run = arkode_rk4, .peer = true},
+    {.name = "cvode-adams", .run = cvode_adams, .peer = true, .adaptive = true},
+    {.name = "cvode-bdf", .run = cvode_bdf, .peer = true, .adaptive = true},
 };
 static const size_t solver_count = sizeof solvers / sizeof solvers[0];
 
@@ -177,7 +165,7 @@ static const char *run_once(const problem *q, const solver *s, effort e, ode *o,
     y[0] = q->start.x;
     y[1] = q->start.v;
     o->evaluations = 0;
-    return s->run(q, e, o, y);
+    return s->run(s, q, e, o, y);
 }
 
 /* Seconds a run takes: the shortest of five loops, or of two where one takes longer than a fifth of a second. */
@@ -261,7 +249,7 @@ static void work_on(cli_table *table, const problem *q)
         const solver *s = &solvers[i];
         if (s->peer && !q->peers)
             continue;
-        if (s->run == exact)
+        if (s->method == SPRING_EXACT)
             measure(table, q, s, (effort){.steps = 1}, "sweep");
         else if (s->adaptive)
             sweep_tolerances(table, q, s);
