@@ -22,4 +22,13 @@
 #pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
 #endif
 
+/* Where a file may be compiled for instructions that the rest does without. */
+#ifndef SPRING_X86_64
+#if defined(__GNUC__) && defined(__x86_64__)
+#define SPRING_X86_64 1
+#else
+#define SPRING_X86_64 0
+#endif
+#endif
+
 #endif

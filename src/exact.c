@@ -22,6 +22,7 @@
  */
 #include <stddef.h>
 
+#include "exact.h"
 #include "method.h"
 
 typedef struct propagator {
@@ -92,19 +93,27 @@ static double response(const spring_roots *r, const propagator *y, double t)
     return (1 - y->half * y->half * y->F) / r->w;
 }
 
-spring_state spring_exact(spring_state s, const spring_params *p, double t)
+spring_propagator spring_propagator_of(const spring_params *p, double t, bool loaded)
 {
     const spring_roots r = spring_roots_of(p);
     const propagator y = propagate(&r, t);
-    const double F = y.half * y.F, G = y.half * y.G, H = y.half * y.H;
+    return (spring_propagator){
+        .half = y.half,
+        .F = y.half * y.F,
+        .G = y.half * y.G,
+        .H = y.half * y.H,
+        .wH = r.w * (y.half * y.H),
+        .P = loaded ? response(&r, &y, t) : 0,
+    };
+}
+
+spring_state spring_exact(spring_state s, const spring_params *p, double t)
+{
     const double a = p->load / p->mass;
-    double x = y.half * (F * s.x + H * s.v);
-    double v = y.half * (G * s.v - r.w * H * s.x);
-    if (a != 0) {
-        x += a * response(&r, &y, t);
-        v += y.half * (H * a);
-    }
-    return (spring_state){x, v};
+    const spring_propagator y = spring_propagator_of(p, t, a != 0);
+    const exact_coefficients c = exact_prepare(&y);
+    exact_step(&s.x, &s.v, a, &c, a != 0);
+    return s;
 }
 
 void spring_step_exact(spring_state *s, const spring_params *p, double dt)

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The loops around a linear one-step method, for every shape of data; there is one copy of each.
+ * The loops of a method for one spring. Included by a method's file, once, with SPRING_METHOD its name.
  *
- * Included by a method's file after it has defined `coefficients`, prepare() and step(). step() takes two flags that
- * are constant in every loop, so a spring without damping or load pays for neither.
+ * The step takes two flags that are constant in every loop, so a spring without damping or load pays for neither.
  */
 SPRING_INLINE spring_state loop(spring_state s, const spring_rates *r, double dt, uint64_t n, bool damped,
                                 bool loaded)
 {
-    const coefficients c = prepare(*r, dt);
+    const METHOD(coefficients) c = METHOD(prepare)(*r, dt);
     for (; n > 0; n--)
-        step(&s.x, &s.v, &c, damped, loaded);
+        METHOD(step)(&s.x, &s.v, &c, damped, loaded);
     return s;
 }
 

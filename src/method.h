@@ -2,33 +2,17 @@
 /*
  * What a method is: its name, its stable step, and its forms, one for each shape of data.
  *
- * A method is one file (euler.c, leapfrog.c, rk4.c, exact.c) and one row of spring_methods[] in spring.c. The file
- * holds its formula once, as an inline step() on x and v, and wraps it in a loop for every shape of data.
+ * A method is a formula (euler.h, leapfrog.h, rk4.h, exact.h: an inline step on x and v, for one spring or a vector of
+ * them), a file for one spring (euler.c, ...), and one row of methods[] in spring.c.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H
 
-#include "arithmetic.h"
-
-#include <math.h>
+#include "real.h"
 
 #include <springstep/spring.h>
 
-#if defined(__GNUC__)
-#define SPRING_INLINE static inline __attribute__((always_inline)) /* constant flags must vanish at -O1 too */
-#else
-#define SPRING_INLINE static inline
-#endif
-
 bool spring_params_valid(const spring_params *p); /* by the rules of SPRING_EINVAL; NULL is not */
-
-/* What a stepper works from. Here and in the coefficients made of them, adding 0.0 turns -0.0 into 0.0: a zero feature
-   then has one sign, and the long formulas of the steppers give the bits of the short ones (tests/test_shapes.c). */
-typedef struct spring_rates {
-    double w; /* [1/s^2] stiffness/mass */
-    double g; /* [1/s]   damping/mass   */
-    double a; /* [m/s^2] load/mass      */
-} spring_rates;
 
 SPRING_INLINE spring_rates spring_rates_of(const spring_params *p)
 {

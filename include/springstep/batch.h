@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * springstep: many independent springs at once, as structures of arrays.
+ *
+ *     x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'
+ *
+ *     double x[1000], v[1000], omega2[1000];                         // yours, of any alignment
+ *     const double gamma = 0.3;
+ *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma, .shared = SPRING_SHARED_GAMMA};
+ *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
+ *
+ * What holds for every function here, beside what spring.h says:
+ *  - Bits. In double, spring i has bit for bit the life of the single spring {1, omega2[i], gamma[i], accel[i]}, in every
+ *    batch, at every place in it, with every instruction set. So a batch may be split by pointer, to use threads, and
+ *    put together anew. A float spring does the same arithmetic in float; its bits do not depend on its place either.
+ *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one element.
+ *    README.md says what each feature costs.
+ *  - Each call reads and writes the state once, however many steps it takes.
+ *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor has is used; elsewhere what the compiler makes of
+ *    16-byte vectors, or of plain loops.
+ */
+#ifndef SPRINGSTEP_BATCH_H
+#define SPRINGSTEP_BATCH_H
+
+#include <stddef.h>
+
+#include <springstep/spring.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* For spring_batch.shared: this array has one element, for all springs. */
+#define SPRING_SHARED_OMEGA2 UINT32_C(1)
+#define SPRING_SHARED_GAMMA  UINT32_C(2)
+#define SPRING_SHARED_ACCEL  UINT32_C(4)
+
+/* Zero-initialise what is not modelled. x and v overlap nothing; the others may be the same array. */
+typedef struct spring_batch {
+    size_t count;
+    double *x, *v;        /* [count] displacement from the unloaded rest position [m], velocity [m/s] */
+    const double *omega2; /* [count] stiffness/mass [1/s^2] >= 0; required */
+    const double *gamma;  /* [count] damping/mass [1/s] >= 0; NULL: not modelled, not paid for */
+    const double *accel;  /* [count] load/mass [m/s^2];       NULL: not modelled, not paid for */
+    uint32_t shared;      /* SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL */
+} spring_batch;
+
+typedef struct spring_batchf { /* the same in float: half the memory, half the time */
+    size_t count;
+    float *x, *v;
+    const float *omega2;
+    const float *gamma;
+    const float *accel;
+    uint32_t shared;
+} spring_batchf;
+
+/**
+ * Advance every spring of a batch by n steps.
+ *
+ * Each spring for itself: one that would become non-finite keeps its state, and all others advance. So does one that
+ * spring_advance() would refuse, because its state or one of its own parameters is not finite or a parameter is negative.
+ * What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0 change nothing.
+ *
+ * SPRING_EXACT is one evaluation over n dt. With omega2 shared and gamma shared or NULL its coefficients are computed
+ * once, and a spring costs six multiplications and two additions; otherwise each spring costs a spring_step_exact().
+ * In float the coefficients are computed in double and rounded once.
+ *
+ * Far below 1e-308 (1e-38 in float) numbers become denormal, as a damped spring's do when it has settled, and on many
+ * processors slow. Nothing is cut off here, since that would change bits: leave settled springs out, or let the
+ * processor flush denormals to zero in the threads that do this work.
+ *
+ * @param[in,out] b   the batch
+ * @param[in]     m   method
+ * @param[in]     dt  finite step [s]; negative runs backwards
+ * @param[in]     n   number of steps
+ * @return SPRING_OK: all springs advanced.
+ *         SPRING_EINVAL, nothing changed: b, x, v or omega2 NULL; x or v overlapping another array; an unknown method or
+ *         bit in shared; dt or a shared parameter not finite, or negative where it must not be.
+ *         SPRING_EINVAL, all others advanced: a spring's own state or parameters are not valid.
+ *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that have
+ *         all overflowed is given up within 4096 steps.
+ * @par Threads   re-entrant; allocates nothing, keeps nothing; distinct ranges of one batch may be advanced at once
+ */
+SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);
+
+/** The same in float. */
+SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, float dt, uint64_t n);
+
+/**
+ * The stable step of a batch: the least spring_stable_step() of its springs [s].
+ *
+ * Computed from scratch by looking at every spring that has parameters of its own, with square roots: call it when
+ * parameters change, not for every frame.
+ *
+ * @return INFINITY for a batch without springs; NaN for a batch, a method or a spring that is not valid
+ */
+SPRING_API double spring_batch_stable_step(const spring_batch *b, spring_method m);
+
+/** The same in float: computed in double, rounded once. */
+SPRING_API float spring_batchf_stable_step(const spring_batchf *b, spring_method m);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
