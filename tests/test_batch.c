@@ -1,0 +1,804 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Batches against single springs, for one instruction set: v128, v256 or v512 on the command line. Built twice: once
+ * with SPRING_FLOAT, for the twins in float.
+ *
+ * In double the witness is spring_advance(); in float the steps are written out here once more.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "batch_kernels.h"
+#include "check.h"
+
+static const batch_kernels *kernels;
+
+static spring_status advance(const batch *b, spring_method m, scalar dt, uint64_t n)
+{
+    return BATCH(advance_with)(kernels, b, m, dt, n);
+}
+
+/* ------------------------------------------------------------------------------------ what a spring's life should be */
+
+typedef struct spring {
+    scalar x, v, w, g, a;
+} spring;
+
+typedef struct outcome {
+    scalar x, v;
+    spring_status status;
+} outcome;
+
+static spring_params params_of(spring s)
+{
+    return (spring_params){.mass = 1, .stiffness = (double)s.w, .damping = (double)s.g, .load = (double)s.a};
+}
+
+static spring_status life_in_double(spring_state *state, spring s, spring_method m, scalar dt, uint64_t n)
+{
+    const spring_params p = params_of(s);
+    *state = (spring_state){(double)s.x, (double)s.v};
+    return spring_advance(state, &p, m, (double)dt, n);
+}
+
+#ifdef SPRING_FLOAT
+
+/* A feature that is zero is absent. */
+static void euler(float *x, float *v, const spring *s, float h)
+{
+    float pull = h * s->w * *x;
+    if (s->a != 0)
+        pull -= h * s->a;
+    if (s->g != 0)
+        pull += h * s->g * *v;
+    *x += h * *v;
+    *v -= pull;
+}
+
+static void leapfrog(float *x, float *v, const spring *s, float h)
+{
+    const float K = h / 2 * s->w, q = h / 2 * s->g, A = h / 2 * s->a;
+    const float force = s->a != 0 ? K * *x - A : K * *x;
+    *v -= s->g != 0 ? force + q * *v : force;
+    *x += h * *v;
+    *v -= s->a != 0 ? K * *x - A : K * *x;
+    const float keep = fabsf(q) <= 1 ? 1 : 1 / (1 + q), lose = fabsf(q) <= 1 ? -q / (1 + q) : 0;
+    if (s->g != 0)
+        *v = keep * *v + lose * *v;
+}
+
+static void rk4(float *x, float *v, const spring *s, float h)
+{
+    const float hw = h * s->w, ha = h * s->a, W = h * hw, G = h * s->g;
+    const float E = (12 - 4 * G + (G * G - W)) * (float)(1.0 / 24);
+    const float F = (4 * (G * G - W) - 12 * G + G * (2 * W - G * G)) * (float)(1.0 / 24);
+    float pull = hw * *x, dx = -W * E * *x + h * F * *v, dv = -hw * F * *x + (-W * E - G * F) * *v;
+    if (s->a != 0) {
+        pull -= ha;
+        dx -= -(h * E * ha);
+        dv -= -(F * ha);
+    }
+    if (s->g != 0)
+        pull += G * *v;
+    *x += h * *v + dx;
+    *v += dv - pull;
+}
+
+/* The closed form with coefficients that all springs share: computed in double, rounded once. */
+static void exact_shared(float *x, float *v, spring s, double t)
+{
+    const spring_params p = params_of(s);
+    const spring_propagator y = spring_propagator_of(&p, t, s.a != 0);
+    const float half = (float)y.half, F = (float)y.F, G = (float)y.G, H = (float)y.H, wH = (float)y.wH;
+    *x = half * (F * s.x + H * s.v);
+    *v = half * (G * s.v - wH * s.x);
+    if (s.a != 0) {
+        *x += (float)y.P * s.a;
+        *v += half * (H * s.a);
+    }
+}
+
+static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
+{
+    static void (*const step[])(float *, float *, const spring *, float) = {euler, leapfrog, rk4};
+    outcome end = {s.x, s.v, SPRING_OK};
+    spring_state state;
+    if (life_in_double(&state, s, SPRING_EULER, 1, 0) != SPRING_OK) {
+        end.status = SPRING_EINVAL;
+        return end;
+    }
+    if (m != SPRING_EXACT) {
+        s = (spring){s.x, s.v, s.w + 0, s.g + 0, s.a + 0}; /* -0 is 0 */
+        for (uint64_t i = 0; i < n && isfinite(end.x) && isfinite(end.v); i++)
+            step[m](&end.x, &end.v, &s, dt);
+    } else if (shared_coefficients) {
+        exact_shared(&end.x, &end.v, s, (double)dt * (double)n);
+    } else {
+        const bool done = life_in_double(&state, s, m, dt, n) == SPRING_OK;
+        end.x = done ? (float)state.x : NAN;
+        end.v = (float)state.v;
+    }
+    return isfinite(end.x) && isfinite(end.v) ? end : (outcome){s.x, s.v, SPRING_ENONFINITE};
+}
+
+#else
+
+static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
+{
+    (void)shared_coefficients;
+    spring_state state;
+    const spring_status status = life_in_double(&state, s, m, dt, n);
+    return (outcome){state.x, state.v, status};
+}
+
+#endif
+
+/* -------------------------------------------------------------------------------- batches, and what lies around them */
+
+enum { most = 1000, edge = 64 / sizeof(scalar), room = most + 2 * edge, arrays = 5, feature_count = 18 };
+static const scalar outside = (scalar)NAN; /* to be neither read nor written */
+
+typedef struct place {
+    _Alignas(64) scalar of[arrays][room];
+} place;
+
+typedef struct features {
+    enum sharing w, g, a;
+} features;
+
+static features features_of(size_t i)
+{
+    return (features){i % 2 ? SHARED : EACH, (enum sharing)(i / 2 % 3), (enum sharing)(i / 6 % 3)};
+}
+
+/* Spring i of a batch with these features, of which spring 0 gives what is shared. */
+static spring seen(const spring *s, size_t i, features f)
+{
+    spring one = s[i];
+    one.w = s[f.w == SHARED ? 0 : i].w;
+    one.g = f.g == NONE ? 0 : s[f.g == SHARED ? 0 : i].g;
+    one.a = f.a == NONE ? 0 : s[f.a == SHARED ? 0 : i].a;
+    return one;
+}
+
+static uint32_t shared_bits(features f)
+{
+    return (f.w == SHARED ? SPRING_SHARED_OMEGA2 : 0) | (f.g == SHARED ? SPRING_SHARED_GAMMA : 0) |
+           (f.a == SHARED ? SPRING_SHARED_ACCEL : 0);
+}
+
+/* Lays a batch out, every array at an alignment of its own. */
+static batch lay_out(place *p, const spring *s, size_t count, features f)
+{
+    scalar *at[arrays];
+    for (size_t i = 0; i < arrays; i++) {
+        for (size_t j = 0; j < room; j++)
+            p->of[i][j] = outside;
+        at[i] = p->of[i] + random_bits() % edge;
+    }
+    for (size_t i = 0; i < count; i++) {
+        at[0][i] = s[i].x;
+        at[1][i] = s[i].v;
+        if (f.w != SHARED || i == 0)
+            at[2][i] = s[i].w;
+        if (f.g == EACH || (f.g == SHARED && i == 0))
+            at[3][i] = s[i].g;
+        if (f.a == EACH || (f.a == SHARED && i == 0))
+            at[4][i] = s[i].a;
+    }
+    return (batch){count,         at[0], at[1], at[2], f.g == NONE ? NULL : at[3], f.a == NONE ? NULL : at[4],
+                   shared_bits(f)};
+}
+
+/* All arrays and what is around them, bit for bit. */
+static void check_place(const place *got, const place *want, const char *why)
+{
+    for (size_t i = 0; i < arrays; i++)
+        for (size_t j = 0; j < room && memcmp(got->of[i], want->of[i], sizeof got->of[i]) != 0; j++)
+            CHECK_BITS((double)got->of[i][j], (double)want->of[i][j], why);
+    CHECK(memcmp(got, want, sizeof *got) == 0, why);
+}
+
+static spring_status worse(spring_status a, spring_status b)
+{
+    return a == SPRING_EINVAL || b == SPRING_OK ? a : b;
+}
+
+static void check_batch(const spring *s, size_t count, features f, spring_method m, scalar dt, uint64_t n,
+                        const outcome *want)
+{
+    static place got, expected;
+    const batch b = lay_out(&got, s, count, f);
+    spring_status status = SPRING_OK;
+    char why[120];
+    snprintf(why, sizeof why, "%s, %zu springs, %d steps of %g s, sharing of w %d, g %d, a %d",
+             spring_method_name(m), count, (int)n, (double)dt, (int)f.w, (int)f.g, (int)f.a);
+    expected = got;
+    for (size_t i = 0; i < count; i++) {
+        expected.of[0][b.x - got.of[0] + (ptrdiff_t)i] = want[i].x;
+        expected.of[1][b.v - got.of[1] + (ptrdiff_t)i] = want[i].v;
+        status = worse(want[i].status, status);
+    }
+    CHECK(advance(&b, m, dt, n) == status, why);
+    check_place(&got, &expected, why);
+}
+
+static scalar any_sign(scalar zero_or_more)
+{
+    return random_bits() % 2 ? zero_or_more : -zero_or_more;
+}
+
+/* Of every kind, zeros of both signs included. The heavily damped ones are beyond the limits of Euler and RK4: over
+   thousands of steps they overflow, and with leapfrog they come to rest among denormal numbers. */
+static spring random_spring(void)
+{
+    static const double heavy = 300, tiny = 3e-42;
+    spring s = {(scalar)random_uniform(-1, 1), (scalar)random_uniform(-1, 1), (scalar)random_log(0.1, 10),
+                (scalar)random_log(1e-4, 1), (scalar)random_uniform(-1, 1)};
+    const uint64_t kind = random_bits();
+    if (kind % 8 == 0)
+        s.x = any_sign(kind % 16 == 0 ? 0 : (scalar)tiny);
+    if (kind / 16 % 8 == 0)
+        s.v = any_sign(kind / 16 % 16 == 0 ? 0 : (scalar)tiny);
+    if (kind / 256 % 8 == 0)
+        s.w = any_sign(0);
+    if (kind / 4096 % 4 == 0)
+        s.g = kind / 4096 % 8 == 0 ? (scalar)heavy : any_sign(0);
+    if (kind / 65536 % 4 == 0)
+        s.a = any_sign(0);
+    return s;
+}
+
+static const scalar huge_number = sizeof(scalar) == 4 ? (scalar)FLT_MAX : (scalar)DBL_MAX;
+
+enum { ways_to_spoil = 11 };
+
+static void spoil(spring *s, uint64_t way)
+{
+    const scalar bad[] = {NAN, INFINITY, -INFINITY}, negative = random_bits() % 2 ? -1 : -(scalar)1e-44;
+    switch (way % ways_to_spoil) {
+    case 0:
+        s->x = bad[random_bits() % 3];
+        break;
+    case 1:
+        s->v = bad[random_bits() % 3];
+        break;
+    case 2:
+        s->w = bad[random_bits() % 3];
+        break;
+    case 3:
+        s->g = bad[random_bits() % 3];
+        break;
+    case 4:
+        s->a = bad[random_bits() % 3];
+        break;
+    case 5:
+        s->w = negative;
+        break;
+    case 6:
+        s->g = negative;
+        break;
+    case 7:
+        s->x = any_sign(huge_number);
+        break;
+    case 8:
+        s->v = any_sign(huge_number);
+        break;
+    case 9:
+        s->w = huge_number;
+        break;
+    default:
+        s->g = huge_number;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- properties */
+
+static const scalar step = (scalar)0.05;
+static spring springs[most];
+static outcome lives[most];
+
+static void draw(uint64_t bad_of_8)
+{
+    for (size_t i = 0; i < most; i++) {
+        springs[i] = random_spring();
+        if (i > 0 && random_bits() % 8 < bad_of_8) /* spring 0 gives what is shared */
+            spoil(&springs[i], random_bits());
+    }
+}
+
+/* Every method, combination of features, number of springs and number of steps. */
+static void sweep(scalar dt, uint64_t bad_of_8)
+{
+    static const size_t counts[] = {0, 1, 7, 8, 9, 63, 64, 65, 127, 128, 129, most};
+    static const uint64_t steps[] = {1, 2, 16, 4097};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        for (size_t k = 0; k < feature_count * 4; k++) {
+            const features f = features_of(k);
+            const uint64_t n = steps[k / feature_count];
+            const size_t largest = n == 4097 ? 129 : most;
+            draw(bad_of_8);
+            for (size_t i = 0; i < largest; i++)
+                lives[i] = life(seen(springs, i, f), (spring_method)m, dt, n, f.w == SHARED && f.g != EACH);
+            for (size_t i = 0; i < sizeof counts / sizeof counts[0] && counts[i] <= largest; i++)
+                check_batch(springs, counts[i], f, (spring_method)m, dt, n, lives);
+        }
+}
+
+static void every_batch(void)
+{
+    sweep(step, 0);
+}
+
+static void backwards(void)
+{
+    sweep(-step / 64, 0);
+}
+
+static void bad_neighbours(void)
+{
+    sweep(step, 1);
+}
+
+static void mostly_bad(void)
+{
+    sweep(-step, 7);
+}
+
+/* One bad spring, at every place of groups and of what does not fill one. */
+static void one_bad_spring(void)
+{
+    enum { count = 128 + 65 };
+    const features f = {EACH, EACH, EACH};
+    for (size_t i = 0; i < 2 * count; i++) {
+        for (size_t j = 0; j < count; j++) {
+            springs[j] = (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, (scalar)0.6, (scalar)0.4};
+            springs[j].x += (scalar)j;
+        }
+        spoil(&springs[i / 2], i);
+        const spring_method m = (spring_method)(i % 3);
+        for (size_t j = 0; j < count; j++) {
+            lives[j] = life(springs[j], m, step, 3, false);
+            CHECK((lives[j].status == SPRING_OK) == (j != i / 2) || i % ways_to_spoil > 6,
+                  "the others are well");
+        }
+        check_batch(springs, count, f, m, step, 3, lives);
+    }
+}
+
+/* Zeros are what an array that is not there means. */
+static void absent_is_zero(void)
+{
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        draw(0);
+        for (size_t i = 0; i < most; i++) {
+            springs[i].g = any_sign(0);
+            springs[i].a = any_sign(0);
+            springs[i].w = springs[0].w;
+        }
+        for (size_t k = 0; k < feature_count; k++) {
+            const features f = features_of(k), none = {SHARED, NONE, NONE};
+            const bool one = f.w == SHARED && f.g != EACH;
+            for (size_t i = 0; i < 129; i++)
+                lives[i] = life(seen(springs, i, none), (spring_method)m, step, 5, one);
+            check_batch(springs, 129, f, (spring_method)m, step, 5, lives);
+        }
+    }
+}
+
+/* A bit of shared for an array that is not there means nothing. */
+static void shared_but_absent(void)
+{
+    static place got, want;
+    const features f = {EACH, NONE, NONE};
+    draw(0);
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        batch b = lay_out(&got, springs, 129, f);
+        want = got;
+        batch plain = b;
+        b.shared |= SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
+        plain.x = want.of[0] + (b.x - got.of[0]);
+        plain.v = want.of[1] + (b.v - got.of[1]);
+        CHECK(advance(&b, (spring_method)m, step, 3) == SPRING_OK, "no array, nothing to share");
+        CHECK(advance(&plain, (spring_method)m, step, 3) == SPRING_OK, "good input");
+        check_place(&got, &want, "the same as without the bits");
+    }
+}
+
+/* Arrays of exactly the right size, for tools that watch memory; a million springs; and split by pointer. */
+static void in_pieces(size_t count, features f, spring_method m, size_t pieces)
+{
+    const size_t bytes = count * sizeof(scalar);
+    scalar *x = malloc(bytes), *v = malloc(bytes), *w = malloc(bytes), *g = malloc(bytes), *a = malloc(bytes);
+    CHECK(x != NULL && v != NULL && w != NULL && g != NULL && a != NULL, "memory");
+    for (size_t i = 0; i < count; i++) {
+        x[i] = springs[i % most].x;
+        v[i] = springs[i % most].v;
+        w[i] = springs[i % most].w;
+        g[i] = springs[i % most].g;
+        a[i] = springs[i % most].a;
+    }
+    for (size_t k = 0; k < pieces; k++) {
+        const size_t first = count * k / pieces, after = count * (k + 1) / pieces;
+        const batch b = {.count = after - first,
+                         .x = x + first,
+                         .v = v + first,
+                         .omega2 = f.w == SHARED ? w : w + first,
+                         .gamma = f.g == NONE     ? NULL
+                                  : f.g == SHARED ? g
+                                                  : g + first,
+                         .accel = f.a == NONE     ? NULL
+                                  : f.a == SHARED ? a
+                                                  : a + first,
+                         .shared = shared_bits(f)};
+        CHECK(advance(&b, m, step, 3) == SPRING_OK, "good input");
+    }
+    for (size_t i = 0; i < most; i++)
+        lives[i] = life(seen(springs, i, f), m, step, 3, f.w == SHARED && f.g != EACH);
+    size_t wrong = 0;
+    for (size_t i = 0; i < count; i++) {
+        const outcome *want = &lives[i % most];
+        wrong += memcmp(&x[i], &want->x, sizeof x[i]) != 0 || memcmp(&v[i], &want->v, sizeof v[i]) != 0;
+    }
+    CHECK_CLOSE((double)wrong, 0, 0, "a spring's bits do not depend on its batch or its place in it");
+    free(x);
+    free(v);
+    free(w);
+    free(g);
+    free(a);
+}
+
+static void pieces(void)
+{
+    draw(0);
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        for (size_t k = 0; k < feature_count; k++)
+            for (size_t count = 1; count < 300; count += 64)
+                in_pieces(count, features_of(k), (spring_method)m, 1 + k % 7);
+    in_pieces(1000003, (features){EACH, EACH, EACH}, SPRING_LEAPFROG, 1);
+    in_pieces(1000003, (features){SHARED, SHARED, SHARED}, SPRING_RK4, 3);
+    in_pieces(1000003, (features){SHARED, NONE, NONE}, SPRING_EXACT, 1);
+}
+
+/* The public function, with the instruction set it chooses. */
+static void public_function(void)
+{
+    static place got, want;
+    draw(1);
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        for (size_t k = 0; k < feature_count; k++) {
+            const batch b = lay_out(&got, springs, 129 + k, features_of(k));
+            want = got;
+            const spring_status status = advance(&b, (spring_method)m, step, 5);
+            const place done = got;
+            got = want;
+            CHECK(BATCH(advance)(&b, (spring_method)m, step, 5) == status, "the same status");
+            check_place(&got, &done, "the same bits from every instruction set");
+        }
+}
+
+/* Once every spring of a batch has overflowed, no number of steps takes long. */
+static void overflow_ends(void)
+{
+    static place got, want;
+    for (size_t k = 0; k < feature_count; k++)
+        for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+            const features f = features_of(k);
+            for (size_t i = 0; i < 256; i++)
+                springs[i] =
+                    (spring){1, (scalar)0.5, (scalar)2.7 + (scalar)(i % 3), (scalar)0.6, (scalar)0.4};
+            const batch b = lay_out(&got, springs, 256, f);
+            want = got;
+            CHECK(advance(&b, (spring_method)m, 5, 1000000000000) == SPRING_ENONFINITE, "all overflow");
+            check_place(&got, &want, "all keep their state");
+        }
+}
+
+static void exact_over_all_steps(void)
+{
+    const scalar lengths[] = {step, -step, huge_number};
+    for (size_t k = 0; k < feature_count; k++)
+        for (size_t i = 0; i < 3; i++) {
+            const features f = features_of(k);
+            const uint64_t n = lengths[i] == huge_number ? UINT64_MAX : 107;
+            springs[0] = (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, (scalar)0.6, (scalar)0.4};
+            lives[0] = life(seen(springs, 0, f), SPRING_EXACT, lengths[i], n, f.w == SHARED && f.g != EACH);
+            CHECK((lives[0].status == SPRING_OK) == isfinite((double)lengths[i] * (double)n),
+                  "n dt may overflow");
+            for (size_t j = 1; j < 3; j++) {
+                springs[j] = springs[0];
+                lives[j] = lives[0];
+            }
+            check_batch(springs, 3, f, SPRING_EXACT, lengths[i], n, lives);
+        }
+}
+
+static void nothing_to_do(void)
+{
+    static place got, want;
+    for (size_t k = 0; k < feature_count; k++) {
+        draw(1);
+        const batch b = lay_out(&got, springs, 129, features_of(k)), empty = {0};
+        want = got;
+        for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+            const spring_method method = (spring_method)m;
+            CHECK(advance(&b, method, step, 0) == SPRING_OK, "n = 0");
+            CHECK(advance(&b, method, 0, 5) == SPRING_OK, "dt = 0");
+            CHECK(advance(&b, method, -(scalar)0, UINT64_MAX) == SPRING_OK, "dt = -0");
+            CHECK(advance(&empty, method, step, 5) == SPRING_OK, "no springs, no arrays");
+        }
+        check_place(&got, &want, "changes nothing");
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- bad batches */
+
+static scalar memory[400];
+
+static spring_status ask(const batch *b, spring_method m, scalar dt)
+{
+    for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
+        memory[i] = (scalar)0.5 + (scalar)i / 1024;
+    return advance(b, m, dt, 3);
+}
+
+static void refuse(const batch *b, spring_method m, scalar dt, const char *why)
+{
+    CHECK(ask(b, m, dt) == SPRING_EINVAL, why);
+    bool same = true;
+    for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
+        same = same && memory[i] == (scalar)0.5 + (scalar)i / 1024;
+    CHECK(same, "nothing has changed");
+    if (isfinite(dt)) /* what is wrong is the batch or the method */
+        CHECK(isnan(BATCH(stable_step)(b, m)), why);
+}
+
+static const batch good = {10, memory + 100, memory + 200, memory + 300, memory + 320, memory + 340, 0};
+
+static void overlaps(void)
+{
+    for (int shared = 0; shared <= 7; shared++)
+        for (int i = -11; i <= 11; i++) {
+            batch b = good;
+            b.shared = (uint32_t)shared;
+            b.v = b.x + i;
+            if (i > -10 && i < 10)
+                refuse(&b, SPRING_EULER, step, "x over v");
+            else
+                CHECK(ask(&b, SPRING_EULER, step) == SPRING_OK, "side by side");
+            for (int j = 0; j < 6; j++) {
+                scalar *const state = j % 2 ? good.v : good.x;
+                const scalar **const parameter = j / 2 == 0 ? &b.omega2 : j / 2 == 1 ? &b.gamma : &b.accel;
+                const int length = shared >> (j / 2) & 1 ? 1 : 10; /* the bits are in this order */
+                b = good;
+                b.shared = (uint32_t)shared;
+                *parameter = state + i;
+                if (i > -length && i < 10)
+                    refuse(&b, SPRING_EULER, step, "a parameter over the state");
+                else
+                    CHECK(ask(&b, SPRING_EULER, step) == SPRING_OK, "side by side");
+            }
+        }
+    batch b = good;
+    b.gamma = b.accel = b.omega2;
+    CHECK(ask(&b, SPRING_RK4, step) == SPRING_OK, "parameters may be one array");
+}
+
+static void bad_batches(void)
+{
+    CHECK(ask(&good, SPRING_LEAPFROG, step) == SPRING_OK, "good input");
+    refuse(NULL, SPRING_LEAPFROG, step, "no batch");
+    batch b = good;
+    b.x = NULL;
+    refuse(&b, SPRING_LEAPFROG, step, "no x");
+    b = good;
+    b.v = NULL;
+    refuse(&b, SPRING_LEAPFROG, step, "no v");
+    b = good;
+    b.omega2 = NULL;
+    refuse(&b, SPRING_LEAPFROG, step, "no omega2");
+    for (int i = 3; i < 32; i++) {
+        b = good;
+        b.shared = UINT32_C(1) << i;
+        refuse(&b, SPRING_LEAPFROG, step, "an unknown bit");
+        b.count = 0;
+        refuse(&b, SPRING_LEAPFROG, step, "an unknown bit, even without springs");
+    }
+    for (int m = -2; m < 100; m++)
+        if (m < SPRING_EULER || m > SPRING_EXACT)
+            refuse(&good, (spring_method)m, step, "no such method");
+    const scalar bad[] = {NAN, INFINITY, -INFINITY};
+    for (size_t i = 0; i < 3; i++)
+        refuse(&good, SPRING_LEAPFROG, bad[i], "dt not finite");
+    for (size_t extra = 1; extra < 20; extra++) {
+        b = good;
+        b.count = SIZE_MAX / sizeof(scalar) + extra;
+        refuse(&b, SPRING_LEAPFROG, step, "more bytes than can be counted");
+    }
+}
+
+static void bad_shared_parameters(void)
+{
+    const scalar bad[] = {NAN, INFINITY, -INFINITY, -1, -(scalar)1e-44};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+        for (int i = 0; i < 5; i++) {
+            batch b = good;
+            const scalar negative_zero = -(scalar)0, value = bad[i];
+            const bool only_negative = isfinite(value) != 0;
+            b.omega2 = &value;
+            b.shared = SPRING_SHARED_OMEGA2;
+            refuse(&b, (spring_method)m, step, "omega2");
+            b.omega2 = &negative_zero;
+            CHECK(ask(&b, (spring_method)m, step) == SPRING_OK, "-0 is not negative");
+            b = good;
+            b.gamma = &value;
+            b.shared = SPRING_SHARED_GAMMA;
+            refuse(&b, (spring_method)m, step, "gamma");
+            b.gamma = &negative_zero;
+            CHECK(ask(&b, (spring_method)m, step) == SPRING_OK, "-0 is not negative");
+            b = good;
+            b.accel = &value;
+            b.shared = SPRING_SHARED_ACCEL;
+            if (only_negative)
+                CHECK(ask(&b, (spring_method)m, step) == SPRING_OK, "a load has a sign");
+            else
+                refuse(&b, (spring_method)m, step, "accel");
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------------- stable step */
+
+static void stable_step(void)
+{
+    static place p;
+    const batch empty = {0};
+    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+        const spring_method method = (spring_method)m;
+        CHECK_BITS((double)BATCH(stable_step)(&empty, method), INFINITY, "no springs");
+        for (size_t k = 0; k < feature_count; k++) {
+            const features f = features_of(k);
+            for (size_t count = 1; count < 40; count += 19) {
+                draw(0);
+                double least = INFINITY;
+                for (size_t i = 0; i < count; i++) {
+                    const spring_params one = params_of(seen(springs, i, f));
+                    least = fmin(least, spring_stable_step(&one, method));
+                }
+                const batch b = lay_out(&p, springs, count, f);
+                CHECK_BITS((double)BATCH(stable_step)(&b, method), (double)(scalar)least, "the least of all");
+                b.x[0] = NAN;
+                CHECK_BITS((double)BATCH(stable_step)(&b, method), (double)(scalar)least,
+                           "whatever the state");
+            }
+        }
+        for (size_t i = 0; i < 30; i++) { /* one bad spring */
+            draw(0);
+            springs[i % 10].w = i < 10 ? (scalar)NAN : springs[i % 10].w;
+            springs[i % 10].g = i / 10 == 1 ? -1 : springs[i % 10].g;
+            springs[i % 10].a = i / 10 == 2 ? (scalar)INFINITY : springs[i % 10].a;
+            const batch b = lay_out(&p, springs, 10, (features){EACH, EACH, EACH});
+            CHECK(isnan(BATCH(stable_step)(&b, method)), "a bad spring");
+        }
+    }
+}
+
+#ifdef SPRING_FLOAT
+
+/* ------------------------------------------------------------------------------------------ how near to double it is */
+
+/* Each step of a stepper rounds by 2 eps (1 + z^2)^2 of (x, v/omega) at most, as in double (tests/test_iterate.c). No step
+   of exp(hM) makes that longer, and what a stepper differs by is at most (hM)^2/2, 2 z^2 of the length. */
+static void near_double(void)
+{
+    for (int i = 0; i < 3000; i++) {
+        const spring_method m = (spring_method)(i % 3);
+        const features each = {EACH, EACH, EACH};
+        const uint64_t n = 1 + random_bits() % 64;
+        const spring s = {(scalar)random_uniform(-1, 1), (scalar)random_uniform(-1, 1),
+                          (scalar)random_log(0.1, 10), (scalar)random_log(1e-4, 3),
+                          (scalar)random_uniform(-1, 1)};
+        const double omega = sqrt((double)s.w), z = fmax(omega, (double)s.g) * (double)step,
+                     steps = (double)n;
+        const double grown = exp(2 * z * z * steps);
+        const double size =
+            hypot((double)s.x, (double)s.v / omega) + steps * (double)step * fabs((double)s.a) / omega;
+        const double bound = steps * 2 * (double)FLT_EPSILON * pow(1 + z * z, 2) * size * grown * grown;
+        static place p;
+        const batch b = lay_out(&p, &s, 1, each);
+        spring_state want;
+        CHECK(advance(&b, m, step, n) == SPRING_OK && life_in_double(&want, s, m, step, n) == SPRING_OK,
+              "good input");
+        CHECK_CLOSE((double)b.x[0], want.x, bound, "n steps, each rounded by 2 eps (1 + z^2)^2");
+        CHECK_CLOSE((double)b.v[0], want.v, bound * omega, "n steps, each rounded by 2 eps (1 + z^2)^2");
+    }
+}
+
+/* With coefficients for all springs every term of x and v goes through five roundings, and the load's part through the
+   last of its sum as well. With coefficients of its own a spring is rounded once: tested to the bit above. */
+static void exact_near_double(void)
+{
+    const double eps = 3 * (double)FLT_EPSILON;
+    for (int i = 0; i < 3000; i++) {
+        spring s = random_spring();
+        s.g = i % 2 ? s.g : (scalar)random_log(1e-4, 30);
+        const uint64_t n = random_bits() % 400 + 1;
+        static place p;
+        const batch b = lay_out(&p, &s, 1, (features){SHARED, SHARED, EACH});
+        const spring_params one = params_of(s);
+        const spring_propagator y = spring_propagator_of(&one, (double)step * (double)n, true);
+        spring_state want;
+        CHECK(advance(&b, SPRING_EXACT, step, n) == SPRING_OK &&
+                  life_in_double(&want, s, SPRING_EXACT, step, n) == SPRING_OK,
+              "good input");
+        const double x = fabs((double)s.x), v = fabs((double)s.v), a = fabs((double)s.a);
+        const double smallest = 1e-44; /* some roundings of denormal numbers */
+        CHECK_CLOSE((double)b.x[0], want.x,
+                    eps * (y.half * (fabs(y.F) * x + fabs(y.H) * v) + fabs(y.P) * a) + smallest,
+                    "five roundings in float");
+        CHECK_CLOSE((double)b.v[0], want.v,
+                    eps * y.half * (fabs(y.G) * v + fabs(y.wH) * x + fabs(y.H) * a) + smallest,
+                    "five roundings in float");
+    }
+}
+
+#endif
+
+/* --------------------------------------------------------------------------------------------------------------- main */
+
+static const char *lacking;
+
+static void lacks_instructions(void)
+{
+    skip(lacking);
+}
+
+/* Sets kernels, or else lacking. */
+static void choose(const char *name)
+{
+    kernels = &BATCH(v128);
+    if (strcmp(name, "v128") == 0)
+        return;
+#if SPRING_X86_64
+    const bool wide = strcmp(name, "v512") == 0;
+    kernels = wide ? &BATCH(v512) : &BATCH(v256);
+    if (wide && !(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")))
+        lacking = "this processor has no AVX-512";
+    else if (!__builtin_cpu_supports("avx2"))
+        lacking = "this processor has no AVX2";
+#else
+    lacking = "this build has vectors of 16 bytes alone";
+#endif
+}
+
+int main(int argc, char **argv)
+{
+    static const test none[] = {{"instruction set", lacks_instructions}};
+    static const test tests[] = {
+        {"every spring has the bits of its own life", every_batch},
+        {"backwards", backwards},
+        {"bad springs keep their state, all others advance", bad_neighbours},
+        {"most springs bad, backwards", mostly_bad},
+        {"one bad spring at every place", one_bad_spring},
+        {"zero is absent", absent_is_zero},
+        {"shared and absent", shared_but_absent},
+        {"a million springs, and batches in pieces", pieces},
+        {"the public function", public_function},
+        {"overflow ends a batch", overflow_ends},
+        {"the closed form is one evaluation", exact_over_all_steps},
+        {"nothing to do", nothing_to_do},
+        {"overlapping arrays", overlaps},
+        {"bad batches", bad_batches},
+        {"bad shared parameters", bad_shared_parameters},
+        {"stable step", stable_step},
+#ifdef SPRING_FLOAT
+        {"near double", near_double},
+        {"closed form near double", exact_near_double},
+#endif
+    };
+    if (argc != 2)
+        return EXIT_FAILURE;
+    choose(argv[1]);
+    return lacking != NULL ? RUN_TESTS("batch", none) : RUN_TESTS("batch", tests);
+}
