@@ -49,8 +49,9 @@ CHANGES = {
 ALWAYS_BINARY = set(CHANGES) - set("+-*/!") - {"true", "false", "fabs"}
 
 # What a pointer is declared with, besides the spring_ types of the headers.
-TYPE = re.compile(r"char|const|double|bool|void|size_t|uint64_t|coefficients|propagator|"
-                  r"spring_(state|params|rates|roots|clock|method_row)")
+TYPE = re.compile(r"char|const|double|float|bool|void|size_t|u?int\d+_t|uintptr_t|real|truth|scalar|batch|propagator|"
+                  r"batch_(block|kernels?)|(\w+_)?coefficients|"
+                  r"spring_(state|params|rates|roots|clock|method_row|propagator)")
 
 
 class Mutant(NamedTuple):
@@ -71,12 +72,14 @@ class Mutant(NamedTuple):
 
 def other_number(text):
     """One more for a small whole number, a thousandth more for any other."""
-    digits = text.rstrip("uUlLfF")
-    value = float.fromhex(digits) if digits[:2].lower() == "0x" else float(digits)
+    hexadecimal = text[:2].lower() == "0x"
+    digits = text.rstrip("uUlL" if hexadecimal else "uUlLfF")
+    value = float.fromhex(digits) if hexadecimal else float(digits)
     if value < 1000 and value == int(value):
         value = int(value) + 1
         return f"{value}.0" if "." in digits else str(value)
-    return str(int(value * 1.001)) if digits.isdigit() else repr(value * 1.001)
+    whole = digits.isdigit() or (hexadecimal and value == int(value))
+    return str(int(value * 1.001)) if whole else repr(value * 1.001)
 
 
 def operand_ends_with(token):
@@ -88,12 +91,24 @@ def operand_ends_with(token):
     )
 
 
+def size_of_array(tokens, i):
+    """Is this number between the brackets of a declaration?"""
+    if tokens[i - 1][1] != "[":
+        return False
+    if [t[1] for t in tokens[i + 1 : i + 4]] == ["]", "=", "{"]:
+        return True
+    first = i - 1
+    while tokens[first - 1][1] == "]":
+        first -= 3
+    before = tokens[first - 2][1]
+    return before == "*" or TYPE.fullmatch(before) is not None
+
+
 def changes(tokens, i):
     kind, text = tokens[i][:2]
     before = tokens[i - 1] if i > 0 else None
     if kind == "number":
-        size_of_array = before[1] == "[" and [t[1] for t in tokens[i + 1 : i + 4]] == ["]", "=", "{"]
-        return [] if size_of_array else [other_number(text)]
+        return [] if size_of_array(tokens, i) else [other_number(text)]
     if text in ("+", "-", "*", "/", "&"):
         if operand_ends_with(before):
             return CHANGES.get(text, [])
@@ -103,10 +118,14 @@ def changes(tokens, i):
 
 def owner_of(head):
     """The name that a definition at the top level of a file gives, from the tokens it starts with."""
-    for i, token in enumerate(head):
-        if token[1] in ("(", "=", "[") and i > 0 and head[i - 1][0] == "word":
-            return head[i - 1][1]
-    return head[-1][1] if head else ""
+    words = [token[1] for token in head]
+    if "enum" in words[:1]:
+        return "enum"
+    for i, word in enumerate(words):
+        if word in ("(", "=", "[") and i > 0 and head[i - 1][0] == "word":
+            made = words[i - 1] in ("BATCH", "METHOD") and i + 1 < len(words)  # a name made by a macro
+            return words[i + 1] if made else words[i - 1]
+    return words[-1] if words else ""
 
 
 def mutants_of(name, text):
