@@ -1,28 +1,38 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench: what a step costs, beside the plain loop that anybody would write.
+ * spring-bench: what a step of a spring costs, beside a limit that is measured in the same run.
  *
- * Method    A sample is the time of a fixed number of steps, from the same start. Samples of the library and of the
- *           plain loop alternate, so that what slows the machine down for a while slows both; each figure is the median
- *           of its samples. Start and parameters come out of volatile objects and the end goes into one: nothing can
- *           be computed by the compiler, or left out.
+ * Method    A sample is the time of a fixed number of calls. Samples of the library and of its limits alternate, so that
+ *           what slows the machine down for a while slows all of them; each figure is the median of its samples. Of two
+ *           limits the slower one counts: nothing can be faster than either.
  */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <springstep/spring.h>
-
+#include "bench.h"
 #include "cli.h"
 #include "timing.h"
 
-static int only_kernel = -1;
+static const char *const parts[] = {"spring", "batch", NULL};
+static int only_part = -1, only_kernel = -1;
+static uint64_t only_count, calls;
 static bool quick;
 
-static cli_option options[] = {
-    {"kernel", CLI_CHOICE, .choice = &only_kernel, .value = "NAME", .help = "only this row"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a second in all"},
+enum { most_rows = 256 };
+static bench_row rows[most_rows];
+static size_t row_count;
+static const char *kernels[most_rows + 1]; /* each name once, ended by NULL */
+
+static const cli_option options[] = {
+    {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
+     .help = "spring (one at a time) or batch"},
+    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
+     .help = "only the rows of this name"},
+    {"count", CLI_COUNT, .count = &only_count, .value = "N", .help = "only rows of so many springs"},
+    {"calls", CLI_COUNT, .count = &calls, .value = "N",
+     .help = "only make so many calls, for tools that count instructions"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
     {.name = NULL},
 };
 
@@ -30,16 +40,29 @@ static const double noisy_spread = 0.05; /* --help says it, too */
 
 static const cli_program program = {
     .name = "spring-bench",
-    .summary = "What a step of a spring costs, beside a plain loop in the same run.",
+    .summary = "What a step of a spring costs, beside a limit measured in the same run.",
     .details =
-        "Columns: kernel, precision, count (springs), ns_per_spring_step, limit_ns (the plain loop),\n"
-        "ratio (of the two), spread, verdict, goal_ratio and goal_ns (what the library promises; inf:\n"
-        "nothing).\n\n"
-        "Kernels: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of the kernel,\n"
-        "METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with damping, with load.\n"
-        "Limits: the same steps written out in a loop, in registers: Euler; kick, drift, kick; the four\n"
-        "stages of rk4; for exact the textbook formula of an underdamped spring, exp, cos and sin.\n"
-        "leapfrog_denormal starts from 1e-310 m; its limit is leapfrog from an ordinary start.\n\n"
+        "Columns: kernel, precision, count (springs), ns_per_spring_step, limit_ns, ratio (of the two),\n"
+        "spread, verdict, goal_ratio and goal_ns (what the library promises; inf: nothing), limit (its\n"
+        "name).\n\n"
+        "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of the\n"
+        "kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with damping, with\n"
+        "load. Limit \"loop\": the same steps written out in a loop, in registers: Euler; kick, drift, "
+        "kick;\n"
+        "the four stages of rk4. \"textbook\": the formula of an underdamped spring, exp, cos and sin.\n"
+        "leapfrog_denormal starts from 1e-310 m; its limit, \"ordinary\", is leapfrog from an ordinary "
+        "start.\n\n"
+        "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array; "
+        "_shared_X,\n"
+        "_own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from 1e-310 m (float: "
+        "1e-41);\n"
+        "_unaligned: arrays that begin 8 bytes after a multiple of 64. Limits, in vectors as wide as the\n"
+        "library's: \"streams\" reads and writes the same arrays, does no arithmetic, and its time is "
+        "shared\n"
+        "out among the steps of a call; \"arithmetic\" does the multiplications and additions of a step in\n"
+        "registers, with ready coefficients. The slower one is the limit: streams for one step, arithmetic\n"
+        "for many. For own parameters of the closed form it is the textbook's formula; for settled and\n"
+        "unaligned, the same kernel without that.\n\n"
         "Figures are medians of samples that alternate with those of the limit. spread is the distance\n"
         "between the quartiles over the median, the larger one of kernel and limit. verdict is ok, noisy\n"
         "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal. No verdict\n"
@@ -47,175 +70,26 @@ static const cli_program program = {
     .options = options,
 };
 
-/* Light damping and short steps: over the few hundred seconds that a sample lasts for the spring,
-   nothing overflows, dies out or becomes denormal. */
-static volatile const double mass = 1.3, stiffness = 2.7, damping = 0.06, load = 0.9, x0 = 0.83, v0 = -0.59;
-static volatile const double dt = 1e-4;
-static volatile double sink;
-
-/* ------------------------------------------------------------------------------------------------- the plain loop */
-
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline)) /* constant arguments shape the loops */
-#else
-#define INLINE static inline
-#endif
-
-typedef struct model {
-    double w, g, a; /* stiffness/mass [1/s^2], damping/mass [1/s], load/mass [m/s^2] */
-    bool damped, loaded;
-} model;
-
-INLINE double acceleration(double x, double v, model m)
+void bench_add(const bench_row *row)
 {
-    double result = -(m.w * x);
-    if (m.loaded)
-        result += m.a;
-    if (m.damped)
-        result -= m.g * v;
-    return result;
-}
-
-INLINE spring_state plain_euler(spring_state s, model m, double h)
-{
-    return (spring_state){s.x + h * s.v, s.v + h * acceleration(s.x, s.v, m)};
-}
-
-INLINE spring_state plain_leapfrog(spring_state s, model m, double h)
-{
-    s.v += h / 2 * acceleration(s.x, s.v, m);
-    s.x += h * s.v;
-    s.v += h / 2 * acceleration(s.x, 0, m);
-    if (m.damped)
-        s.v *= 1 / (1 + h / 2 * m.g); /* computed once, before the loop */
-    return s;
-}
-
-INLINE spring_state plain_rk4(spring_state s, model m, double h)
-{
-    const spring_state k1 = {s.v, acceleration(s.x, s.v, m)};
-    const spring_state y2 = {s.x + h / 2 * k1.x, s.v + h / 2 * k1.v};
-    const spring_state k2 = {y2.v, acceleration(y2.x, y2.v, m)};
-    const spring_state y3 = {s.x + h / 2 * k2.x, s.v + h / 2 * k2.v};
-    const spring_state k3 = {y3.v, acceleration(y3.x, y3.v, m)};
-    const spring_state y4 = {s.x + h * k3.x, s.v + h * k3.v};
-    const spring_state k4 = {y4.v, acceleration(y4.x, y4.v, m)};
-    return (spring_state){
-        s.x + h / 6 * (k1.x + 2 * k2.x + 2 * k3.x + k4.x),
-        s.v + h / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v),
-    };
-}
-
-INLINE spring_state plain_exact(spring_state s, model m, double t)
-{
-    const double b = m.g / 2, split = sqrt(m.w - b * b);
-    const double E = m.damped ? exp(-b * t) : 1, C = cos(split * t), S = sin(split * t) / split;
-    const double rest = m.loaded ? m.a / m.w : 0, y = s.x - rest;
-    return (spring_state){rest + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (m.w * y + b * s.v))};
-}
-
-typedef spring_state plain_step(spring_state s, model m, double h);
-
-INLINE spring_state plain_loop(plain_step *step, spring_state s, model m, double h, uint64_t n)
-{
-    for (; n > 0; n--)
-        s = step(s, m, h);
-    return s;
-}
-
-INLINE spring_state plain_steps(plain_step *step, spring_state s, model m, double h, uint64_t n)
-{
-    const double w = m.w, g = m.g, a = m.a;
-    if (m.damped && m.loaded)
-        return plain_loop(step, s, (model){w, g, a, true, true}, h, n);
-    if (m.damped)
-        return plain_loop(step, s, (model){w, g, 0, true, false}, h, n);
-    if (m.loaded)
-        return plain_loop(step, s, (model){w, 0, a, false, true}, h, n);
-    return plain_loop(step, s, (model){w, 0, 0, false, false}, h, n);
-}
-
-static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
-                              uint64_t n)
-{
-    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
-                     p->load != 0};
-    switch (method) {
-    case SPRING_EULER:
-        return plain_steps(plain_euler, s, m, h, n);
-    case SPRING_LEAPFROG:
-        return plain_steps(plain_leapfrog, s, m, h, n);
-    case SPRING_RK4:
-        return plain_steps(plain_rk4, s, m, h, n);
-    case SPRING_EXACT:
-        for (; n > 0; n--)
-            s = plain_exact(s, m, dt); /* volatile: evaluated anew at every step, as the library does */
-    }
-    return s;
-}
-
-/* --------------------------------------------------------------------------------------------------- the library */
-
-typedef enum form { ADVANCE, CALL, ADVANCE_1 } form;
-
-static void (*const kernels[])(spring_state *s, const spring_params *p, double dt) = {
-    [SPRING_EULER] = spring_step_euler,
-    [SPRING_LEAPFROG] = spring_step_leapfrog,
-    [SPRING_RK4] = spring_step_rk4,
-    [SPRING_EXACT] = spring_step_exact,
-};
-
-static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p,
-                                double h, uint64_t n)
-{
-    switch (f) {
-    case ADVANCE:
-        spring_advance(&s, p, method, h, n);
-        break;
-    case CALL:
-        for (; n > 0; n--)
-            kernels[method](&s, p, h);
-        break;
-    case ADVANCE_1:
-        for (; n > 0; n--)
-            spring_advance(&s, p, method, h, 1);
-        break;
-    }
-    return s;
+    if (row_count == most_rows)
+        cli_fail(CLI_FAILED, "more than %d rows", most_rows);
+    rows[row_count] = *row;
+    int k = 0;
+    while (kernels[k] != NULL && strcmp(kernels[k], row->kernel) != 0)
+        k++;
+    kernels[k] = rows[row_count++].kernel;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the samples */
 
-enum { most_samples = 101 };
+enum { most_samples = 51, timed = 1 + bench_most_limits }; /* the kernel, its limits */
 
-typedef struct row {
-    const char *kernel;
-    spring_method method;
-    form form;
-    bool damped, loaded;
-    double goal_ratio, goal_ns; /* [1], [ns] */
-    double size;                /* of the start; where it is not 1, the limit is the same kernel at 1 */
-} row;
-
-/* Time of a step of a kernel, or of its limit [ns]. */
-static double sample(const row *r, bool limit, uint64_t n)
+/* As many calls as fill the time. */
+static uint64_t calls_for(const bench_row *r, int which, double time_ns)
 {
-    const bool plain = limit && r->size == 1;
-    const double size = limit ? 1 : r->size;
-    const spring_params p = {mass, stiffness, r->damped ? damping : 0, r->loaded ? load : 0};
-    spring_state s = {size * x0, size * v0};
-    const double h = dt, start = timing_now();
-    s = plain ? run_plain(r->method, s, &p, h, n) : run_library(r->method, r->form, s, &p, h, n);
-    const double elapsed = timing_now() - start;
-    sink = s.x + s.v;
-    return elapsed / (double)n;
-}
-
-/* As many steps as fill the time. */
-static uint64_t steps_for(const row *r, bool limit, double time_ns)
-{
-    uint64_t n = 1024;
-    while (sample(r, limit, n) * (double)n < time_ns)
+    uint64_t n = 1;
+    while (r->time(r, which, n) < time_ns)
         n *= 2;
     return n;
 }
@@ -238,77 +112,67 @@ static figure summarise(double *samples, size_t count)
 }
 
 /* Measures and writes one row. */
-static void measure(cli_table *table, const row *r)
+static void measure(cli_table *table, const bench_row *r)
 {
-    const size_t count = quick ? 15 : most_samples;
-    const double sample_ns = quick ? 1e6 : 4e6;
-    double kernel[most_samples], beside[most_samples];
-    const uint64_t n = steps_for(r, false, sample_ns), n_beside = steps_for(r, true, sample_ns);
-    for (size_t i = 0; i < count; i++) {
-        kernel[i] = sample(r, false, n);
-        beside[i] = sample(r, true, n_beside);
-    }
-    const figure ours = summarise(kernel, count), limit = summarise(beside, count);
+    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 3e7 : 4e8;
+    const size_t least = quick ? 3 : 11, most = quick ? 9 : most_samples;
+    int used = 1;
+    while (used < timed && r->limits[used - 1] != NULL)
+        used++;
+    double samples[timed][most_samples];
+    uint64_t n[timed];
+    for (int k = 0; k < used; k++)
+        n[k] = calls_for(r, k, sample_ns);
+    size_t count = 0;
+    const double begin = timing_now();
+    for (; count < least || (count < most && timing_now() - begin < row_ns); count++)
+        for (int k = 0; k < used; k++)
+            samples[k][count] = r->time(r, k, n[k]) / (double)n[k] / (double)r->count / (double)r->steps;
+    figure figures[timed];
+    for (int k = 0; k < used; k++)
+        figures[k] = summarise(samples[k], count);
+    int slowest = 1;
+    for (int k = 2; k < used; k++)
+        if (figures[k].median > figures[slowest].median)
+            slowest = k;
+    const figure ours = figures[0], limit = figures[slowest];
     const double ratio = ours.median / limit.median, spread = fmax(ours.spread, limit.spread);
     const bool noisy = !(spread <= noisy_spread);
     const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns;
-    cli_row(table, "%s\tdouble\t1\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%g\t%g", r->kernel, ours.median, limit.median,
-            ratio, spread,
+    cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s", r->kernel, r->precision,
+            r->count, ours.median, limit.median, ratio, spread,
             noisy   ? "noisy"
             : holds ? "ok"
                     : "above_goal",
-            r->goal_ratio, r->goal_ns);
+            r->goal_ratio, r->goal_ns, r->limits[slowest - 1]);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the table */
 
-static const row rows[] = {
-    {"euler", SPRING_EULER, ADVANCE, false, false, INFINITY, INFINITY, 1},
-    {"euler_damped", SPRING_EULER, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"euler_loaded", SPRING_EULER, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"euler_damped_loaded", SPRING_EULER, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"leapfrog", SPRING_LEAPFROG, ADVANCE, false, false, 0.95, INFINITY, 1},
-    {"leapfrog_damped", SPRING_LEAPFROG, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"leapfrog_loaded", SPRING_LEAPFROG, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"leapfrog_damped_loaded", SPRING_LEAPFROG, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"rk4", SPRING_RK4, ADVANCE, false, false, 0.45, INFINITY, 1},
-    {"rk4_damped", SPRING_RK4, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"rk4_loaded", SPRING_RK4, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"rk4_damped_loaded", SPRING_RK4, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"euler_call", SPRING_EULER, CALL, false, false, INFINITY, 12, 1},
-    {"euler_advance_1", SPRING_EULER, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"leapfrog_call", SPRING_LEAPFROG, CALL, false, false, INFINITY, 12, 1},
-    {"leapfrog_advance_1", SPRING_LEAPFROG, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"rk4_call", SPRING_RK4, CALL, false, false, INFINITY, 12, 1},
-    {"rk4_advance_1", SPRING_RK4, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"exact_call", SPRING_EXACT, CALL, false, false, INFINITY, INFINITY, 1},
-    {"exact_damped_call", SPRING_EXACT, CALL, true, false, INFINITY, INFINITY, 1},
-    {"exact_damped_loaded_call", SPRING_EXACT, CALL, true, true, INFINITY, INFINITY, 1},
-    {"exact_damped_loaded_advance_1", SPRING_EXACT, ADVANCE_1, true, true, INFINITY, INFINITY, 1},
-    {"leapfrog_denormal", SPRING_LEAPFROG, ADVANCE, false, false, INFINITY, INFINITY, 1e-310},
-};
-
-enum { row_count = sizeof rows / sizeof rows[0] };
-
-static void name_kernels(void)
+static bool wanted(const bench_row *r)
 {
-    static const char *names[row_count + 1]; /* ended by NULL */
-    for (size_t i = 0; i < row_count; i++)
-        names[i] = rows[i].kernel;
-    options[0].choices = names;
+    return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
+           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) &&
+           (only_count == 0 || only_count == r->count);
 }
 
 int main(int argc, char **argv)
 {
-    name_kernels();
+    bench_add_springs();
+    bench_add_batches();
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_columns(table,
-                "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns");
+    cli_columns(
+        table,
+        "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit");
     for (size_t i = 0; i < row_count; i++) {
-        cli_progress((double)i / row_count);
-        if (only_kernel < 0 || i == (size_t)only_kernel)
+        cli_progress((double)i / (double)row_count);
+        if (!wanted(&rows[i]))
+            continue;
+        if (calls > 0)
+            rows[i].time(&rows[i], 0, calls);
+        else
             measure(table, &rows[i]);
     }
     cli_finish();

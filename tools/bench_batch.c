@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-bench, batches: every method over 10^3 to 10^7 springs, and what each feature costs, beside what the memory and
+ * the arithmetic alone would take (bench_limits.h).
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <springstep/batch.h>
+
+#include "bench.h"
+#include "bench_limits.h"
+#include "cli.h"
+#include "timing.h"
+
+enum { alignment = 64 }; /* bytes: the widest vector, a line of the cache */
+
+typedef enum sharing { NONE, SHARED, OWN, ZERO } sharing; /* ZERO: an array of zeros, which is paid for */
+
+/* What stands beside the kernel. */
+typedef enum beside {
+    LIMITS,   /* the kernels of bench_limits.h */
+    ORDINARY, /* the same kernel with an ordinary start in aligned arrays */
+    TEXTBOOK  /* the textbook's closed form, spring by spring */
+} beside;
+
+typedef struct subject {
+    spring_method method;
+    size_t count;
+    uint64_t steps;
+    sharing omega2, gamma, accel;
+    bool single; /* float */
+    beside beside;
+    bool settled, unaligned; /* ORDINARY */
+} subject;
+
+/* ------------------------------------------------------------------------------------------------------- the memory */
+
+static const double dt =
+    1e-4; /* [s]: over the minutes that a row lasts for a spring nothing overflows or dies out */
+
+/* Of an array, what it holds for the first springs; then it repeats. */
+enum { period = 1000 };
+
+typedef struct array {
+    void *memory;
+    double mean; /* of the springs' values, which differ by a tenth */
+    sharing sharing;
+} array;
+
+/* x, v, omega2, gamma, accel */
+enum { X, V, OMEGA2, GAMMA, ACCEL, arrays };
+static array all[arrays] = {
+    [X] = {.mean = 0.83, .sharing = OWN},
+    [V] = {.mean = -0.59, .sharing = OWN},
+    [OMEGA2] = {.mean = 2.1},
+    [GAMMA] = {.mean = 0.046},
+    [ACCEL] = {.mean = 0.69},
+};
+
+static void set(void *memory, bool single, size_t i, double value)
+{
+    if (single)
+        ((float *)memory)[i] = (float)value;
+    else
+        ((double *)memory)[i] = value;
+}
+
+static void fill(const array *a, const subject *s, double scale)
+{
+    const size_t element = s->single ? sizeof(float) : sizeof(double);
+    char *memory = a->memory;
+    for (size_t i = 0; i < period; i++)
+        set(memory, s->single, i, a->sharing == ZERO ? 0 : scale * a->mean * (1 + 0.1 * (double)(i % 7) / 7));
+    for (size_t i = period; i < s->count + alignment;
+         i += period) /* vectors may reach beyond the last spring */
+        memcpy(memory + i * element, memory, period * element);
+}
+
+/* The batch, freshly filled if it is another one than last time. */
+static void prepare(const subject *s, bool settled)
+{
+    static const subject *filled;
+    static bool filled_settled;
+    if (s == filled && settled == filled_settled)
+        return;
+    filled = s;
+    filled_settled = settled;
+    all[OMEGA2].sharing = s->omega2;
+    all[GAMMA].sharing = s->gamma;
+    all[ACCEL].sharing = s->accel;
+    for (int i = 0; i < arrays; i++) {
+        const size_t bytes = (s->count + 2 * period) * sizeof(double);
+        static size_t allocated[arrays];
+        if (all[i].sharing == NONE)
+            continue;
+        if (allocated[i] < bytes) {
+            free(all[i].memory);
+            allocated[i] = (bytes + alignment - 1) / alignment * alignment;
+            all[i].memory = aligned_alloc(alignment, allocated[i]);
+            if (all[i].memory == NULL)
+                cli_fail(CLI_FAILED, "no memory for %zu springs", s->count);
+        }
+        const double smallest = s->single ? 1e-41 : 1e-310; /* denormal */
+        fill(&all[i], s, settled && i <= V ? smallest : 1);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- the calls */
+
+static void *start(int i, const subject *s, bool unaligned)
+{
+    const size_t element = s->single ? sizeof(float) : sizeof(double);
+    return all[i].sharing == NONE ? NULL : (char *)all[i].memory + (unaligned ? element : 0);
+}
+
+static void advance(const subject *s, bool unaligned, uint64_t calls)
+{
+    const uint32_t shared = (s->omega2 == SHARED ? SPRING_SHARED_OMEGA2 : 0) |
+                            (s->gamma == SHARED ? SPRING_SHARED_GAMMA : 0) |
+                            (s->accel == SHARED ? SPRING_SHARED_ACCEL : 0);
+    void *a[arrays];
+    for (int i = 0; i < arrays; i++)
+        a[i] = start(i, s, unaligned);
+    const spring_batch b = {s->count, a[X], a[V], a[OMEGA2], a[GAMMA], a[ACCEL], shared};
+    const spring_batchf f = {s->count, a[X], a[V], a[OMEGA2], a[GAMMA], a[ACCEL], shared};
+    spring_status status = SPRING_OK;
+    for (; calls > 0 && status == SPRING_OK; calls--)
+        status = s->single ? spring_batchf_advance(&f, s->method, (float)dt, s->steps)
+                           : spring_batch_advance(&b, s->method, dt, s->steps);
+    if (status != SPRING_OK)
+        cli_fail(CLI_FAILED, "%zu springs: %s", s->count, spring_status_string(status));
+}
+
+static void move_streams(const bench_limits *limits, const subject *s, uint64_t calls)
+{
+    const bool w = s->omega2 >= OWN, g = s->gamma >= OWN, a = s->accel >= OWN;
+    const bench_streams streams = {s->count,           all[X].memory,     all[V].memory,
+                                   all[OMEGA2].memory, all[GAMMA].memory, all[ACCEL].memory};
+    limits->streams[w][g][a](&streams, calls);
+}
+
+static void textbook(const subject *s, uint64_t calls)
+{
+    double *x = all[X].memory, *v = all[V].memory;
+    const double *w = all[OMEGA2].memory, *g = all[GAMMA].memory, *a = all[ACCEL].memory;
+    const bool damped = s->gamma != NONE, loaded = s->accel != NONE;
+    for (; calls > 0; calls--) {
+        for (size_t i = 0; i < s->count; i++) {
+            const spring_state y = bench_textbook((spring_state){x[i], v[i]}, w[i], damped ? g[i] : 0,
+                                                  loaded ? a[i] : 0, dt, damped, loaded);
+            x[i] = y.x;
+            v[i] = y.v;
+        }
+    }
+}
+
+static double run(const bench_row *row, int which, uint64_t calls)
+{
+    const subject *s = row->subject;
+    const bench_limits *limits = bench_limits_of(s->single);
+    const double springs = (double)s->count * (double)s->steps / (double)limits->springs * (double)calls;
+    const uint64_t steps =
+        (uint64_t)springs + 1; /* of the arithmetic, for as many springs as the calls advance */
+    const bool as_it_is = which == 0;
+    prepare(s, as_it_is && s->settled);
+    const double begin = timing_now();
+    if (as_it_is || s->beside == ORDINARY)
+        advance(s, as_it_is && s->unaligned, calls);
+    else if (s->beside == TEXTBOOK)
+        textbook(s, calls);
+    else if (which == 1)
+        move_streams(limits, s, calls);
+    else
+        limits->arithmetic[s->method][s->gamma != NONE][s->accel != NONE](steps);
+    const double elapsed = timing_now() - begin;
+    return which == 2 ? elapsed * springs / (double)steps : elapsed;
+}
+
+/* --------------------------------------------------------------------------------------------------------- the rows */
+
+/* In one run, of what is possible: one step over springs in memory, several steps. */
+static const double memory_goal = 1 / 0.85, steps_goal = 1 / 0.8;
+static const size_t from_memory = 10000000, in_cache = 1000;
+
+static void add(const char *feature, subject s, double goal_ns)
+{
+    enum { most_rows = 256 };
+    static subject subjects[most_rows];
+    static size_t used;
+    if (used == most_rows)
+        cli_fail(CLI_FAILED, "more than %d rows", most_rows);
+    subject *kept = &subjects[used++];
+    *kept = s;
+    const bool limited = s.beside == LIMITS;
+    bench_row row = {
+        .part = "batch",
+        .precision = s.single ? "float" : "double",
+        .count = s.count,
+        .steps = s.steps,
+        .goal_ratio = !limited                 ? INFINITY
+                      : s.steps > 1            ? steps_goal
+                      : s.count == from_memory ? memory_goal
+                                               : INFINITY,
+        .goal_ns = goal_ns,
+        .limits = {limited                ? "streams"
+                   : s.beside == ORDINARY ? "ordinary"
+                                          : "textbook",
+                   limited ? "arithmetic" : NULL},
+        .time = run,
+        .subject = kept,
+    };
+    snprintf(row.kernel, sizeof row.kernel, "%s_batch_%d%s", spring_method_name(s.method), (int)s.steps,
+             feature);
+    bench_add(&row);
+}
+
+/* Every method, at every count, in both precisions. */
+static void add_methods(void)
+{
+    static const struct {
+        spring_method method;
+        uint64_t steps;
+        sharing omega2;
+        double goal_ns; /* of double, on the processor that it was set for */
+    } methods[] = {
+        {SPRING_EULER, 1, OWN, INFINITY},    {SPRING_EULER, 16, OWN, INFINITY},
+        {SPRING_LEAPFROG, 1, OWN, INFINITY}, {SPRING_LEAPFROG, 16, OWN, 0.13},
+        {SPRING_RK4, 1, OWN, INFINITY},      {SPRING_RK4, 16, OWN, 0.20},
+        {SPRING_EXACT, 1, SHARED, INFINITY},
+    };
+    for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++)
+        for (int single = 0; single < 2; single++)
+            for (size_t count = in_cache; count <= from_memory; count *= 10)
+                add(methods[m].omega2 == SHARED ? "_shared_omega2" : "",
+                    (subject){methods[m].method, count, methods[m].steps, methods[m].omega2,
+                              .single = single},
+                    methods[m].goal_ns * (single ? 0.6 : 1));
+}
+
+/* One feature after the other. */
+static void add_features(void)
+{
+    static const struct {
+        const char *name;
+        sharing omega2, gamma, accel;
+    } features[] = {
+        {"_shared_omega2", SHARED, NONE, NONE}, {"_shared_gamma", OWN, SHARED, NONE},
+        {"_own_gamma", OWN, OWN, NONE},         {"_shared_accel", OWN, NONE, SHARED},
+        {"_own_accel", OWN, NONE, OWN},         {"_shared_gamma_accel", OWN, SHARED, SHARED},
+        {"_own_gamma_accel", OWN, OWN, OWN},    {"_zero_gamma_accel", OWN, ZERO, ZERO},
+    };
+    static const struct {
+        size_t count;
+        uint64_t steps;
+    } at[] = {{1000, 16}, {1000, 1}, {10000000, 1}};
+    for (spring_method m = SPRING_LEAPFROG; m <= SPRING_RK4; m++)
+        for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
+            for (size_t f = 0; f < sizeof features / sizeof features[0]; f++)
+                add(features[f].name,
+                    (subject){.method = m,
+                              .count = at[i].count,
+                              .steps = at[i].steps,
+                              .omega2 = features[f].omega2,
+                              .gamma = features[f].gamma,
+                              .accel = features[f].accel},
+                    INFINITY);
+}
+
+static void add_special(void)
+{
+    const subject exact = {SPRING_EXACT, in_cache, 1, OWN, .beside = TEXTBOOK};
+    add("", exact, INFINITY);
+    for (spring_method m = SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
+        const subject s = {m, in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
+        add("_settled", s, INFINITY);
+    }
+    const subject settled = {SPRING_LEAPFROG,    in_cache,       16, OWN, .single = true,
+                             .beside = ORDINARY, .settled = true};
+    add("_settled", settled, INFINITY);
+    const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .beside = ORDINARY, .unaligned = true};
+    add("_unaligned", unaligned, INFINITY);
+}
+
+void bench_add_batches(void)
+{
+    add_methods();
+    add_features();
+    add_special();
+}

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/* The limits of a batch, for each vector and precision; the kernels are in bench_limits_kernels.h. GNU C. */
+#include "bench_limits.h"
+
+/* An empty instruction that may change a vector, for all the compiler knows: it has to be in a register then, and what
+   was loaded before and is stored afterwards cannot be left out. */
+#if defined(__x86_64__)
+#define TOUCH(vector) __asm__ volatile("" : "+v"(vector))
+#elif defined(__aarch64__)
+#define TOUCH(vector) __asm__ volatile("" : "+w"(vector))
+#else
+#define TOUCH(vector) __asm__ volatile("" : "+m"(vector)) /* by way of memory: slower */
+#endif
+
+#define INLINE static inline __attribute__((always_inline)) /* constant flags shape the kernels */
+#if defined(__clang__)
+#define UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define UNROLL _Pragma("GCC unroll 16")
+#endif
+
+/* Coefficients of a step and the state it starts from: of the size of real ones, and not known to the compiler. */
+static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.9999, -1.3e-5},
+                             start[] = {0.83, -0.59};
+
+#define PASTE(name, precision, bytes)  name##_##precision##_##bytes
+#define PASTED(name, precision, bytes) PASTE(name, precision, bytes)
+#define NAME(name)                     PASTED(name, SCALAR, BYTES)
+
+#define SCALAR double
+#define BYTES  16
+#include "bench_limits_kernels.h"
+#define SCALAR float
+#define BYTES  16
+#include "bench_limits_kernels.h"
+
+#if defined(__x86_64__)
+
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+#define SCALAR double
+#define BYTES  32
+#include "bench_limits_kernels.h"
+#define SCALAR float
+#define BYTES  32
+#include "bench_limits_kernels.h"
+#if defined(__clang__)
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq"))), apply_to = function)
+#else
+#pragma GCC target("avx512f,avx512dq")
+#endif
+#define SCALAR double
+#define BYTES  64
+#include "bench_limits_kernels.h"
+#define SCALAR float
+#define BYTES  64
+#include "bench_limits_kernels.h"
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+
+#endif
+
+const bench_limits *bench_limits_of(bool single)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+        return single ? &limits_float_64 : &limits_double_64;
+    if (__builtin_cpu_supports("avx2"))
+        return single ? &limits_float_32 : &limits_double_32;
+#endif
+    return single ? &limits_float_16 : &limits_double_16;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What no batch can be faster than: kernels that only move the memory, and kernels that only do the arithmetic.
+ *
+ * streams     reads x, v and the parameters that are there, one by one, and writes x and v as they were.
+ * arithmetic  does the multiplications and additions of a step and nothing else: states and coefficients stay in
+ *             registers, on as many independent vectors as run best.
+ *
+ * Like the library's they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the processor has is used.
+ */
+#ifndef SPRINGSTEP_BENCH_LIMITS_H
+#define SPRINGSTEP_BENCH_LIMITS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct bench_streams {
+    size_t count; /* springs; memory is touched up to the next whole vector */
+    void *x, *v;
+    const void *w, *g, *a; /* NULL: not there */
+} bench_streams;
+
+typedef struct bench_limits {
+    size_t springs; /* that the arithmetic is done for, at once */
+    void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by: there is w, g, a */
+    void (*arithmetic[4][2][2])(uint64_t steps);                      /* by method, damped, loaded */
+} bench_limits;
+
+/** The limits in the widest vectors; single: of float instead of double. */
+const bench_limits *bench_limits_of(bool single);
+
+#endif

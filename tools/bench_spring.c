@@ -1,0 +1,222 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-bench, one spring: the library beside the plain loop that anybody would write.
+ *
+ * Start and parameters come out of volatile objects and the end goes into one: nothing can be computed by the compiler,
+ * or left out.
+ */
+#include "bench.h"
+#include "timing.h"
+
+#include <stdio.h>
+
+/* Light damping and short steps: over the few hundred seconds that a sample lasts for the spring,
+   nothing overflows, dies out or becomes denormal. */
+static volatile const double mass = 1.3, stiffness = 2.7, damping = 0.06, load = 0.9, x0 = 0.83, v0 = -0.59;
+static volatile const double dt = 1e-4;
+static volatile double sink;
+
+/* ------------------------------------------------------------------------------------------------- the plain loop */
+
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline)) /* constant arguments shape the loops */
+#else
+#define INLINE static inline
+#endif
+
+typedef struct model {
+    double w, g, a; /* stiffness/mass [1/s^2], damping/mass [1/s], load/mass [m/s^2] */
+    bool damped, loaded;
+} model;
+
+INLINE double acceleration(double x, double v, model m)
+{
+    double result = -(m.w * x);
+    if (m.loaded)
+        result += m.a;
+    if (m.damped)
+        result -= m.g * v;
+    return result;
+}
+
+INLINE spring_state plain_euler(spring_state s, model m, double h)
+{
+    return (spring_state){s.x + h * s.v, s.v + h * acceleration(s.x, s.v, m)};
+}
+
+INLINE spring_state plain_leapfrog(spring_state s, model m, double h)
+{
+    s.v += h / 2 * acceleration(s.x, s.v, m);
+    s.x += h * s.v;
+    s.v += h / 2 * acceleration(s.x, 0, m);
+    if (m.damped)
+        s.v *= 1 / (1 + h / 2 * m.g); /* computed once, before the loop */
+    return s;
+}
+
+INLINE spring_state plain_rk4(spring_state s, model m, double h)
+{
+    const spring_state k1 = {s.v, acceleration(s.x, s.v, m)};
+    const spring_state y2 = {s.x + h / 2 * k1.x, s.v + h / 2 * k1.v};
+    const spring_state k2 = {y2.v, acceleration(y2.x, y2.v, m)};
+    const spring_state y3 = {s.x + h / 2 * k2.x, s.v + h / 2 * k2.v};
+    const spring_state k3 = {y3.v, acceleration(y3.x, y3.v, m)};
+    const spring_state y4 = {s.x + h * k3.x, s.v + h * k3.v};
+    const spring_state k4 = {y4.v, acceleration(y4.x, y4.v, m)};
+    return (spring_state){
+        s.x + h / 6 * (k1.x + 2 * k2.x + 2 * k3.x + k4.x),
+        s.v + h / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v),
+    };
+}
+
+typedef spring_state plain_step(spring_state s, model m, double h);
+
+INLINE spring_state plain_loop(plain_step *step, spring_state s, model m, double h, uint64_t n)
+{
+    for (; n > 0; n--)
+        s = step(s, m, h);
+    return s;
+}
+
+INLINE spring_state plain_steps(plain_step *step, spring_state s, model m, double h, uint64_t n)
+{
+    const double w = m.w, g = m.g, a = m.a;
+    if (m.damped && m.loaded)
+        return plain_loop(step, s, (model){w, g, a, true, true}, h, n);
+    if (m.damped)
+        return plain_loop(step, s, (model){w, g, 0, true, false}, h, n);
+    if (m.loaded)
+        return plain_loop(step, s, (model){w, 0, a, false, true}, h, n);
+    return plain_loop(step, s, (model){w, 0, 0, false, false}, h, n);
+}
+
+spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded)
+{
+    const double b = g / 2, split = sqrt(w - b * b);
+    const double E = damped ? exp(-b * t) : 1, C = cos(split * t), S = sin(split * t) / split;
+    const double rest = loaded ? a / w : 0, y = s.x - rest;
+    return (spring_state){rest + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (w * y + b * s.v))};
+}
+
+static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
+                              uint64_t n)
+{
+    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
+                     p->load != 0};
+    switch (method) {
+    case SPRING_EULER:
+        return plain_steps(plain_euler, s, m, h, n);
+    case SPRING_LEAPFROG:
+        return plain_steps(plain_leapfrog, s, m, h, n);
+    case SPRING_RK4:
+        return plain_steps(plain_rk4, s, m, h, n);
+    case SPRING_EXACT:
+        for (; n > 0; n--)
+            s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped,
+                               m.loaded); /* volatile dt: evaluated anew at every step, as the library does */
+    }
+    return s;
+}
+
+/* --------------------------------------------------------------------------------------------------- the library */
+
+typedef enum form { ADVANCE, CALL, ADVANCE_1 } form;
+
+static void (*const kernels[])(spring_state *s, const spring_params *p, double dt) = {
+    [SPRING_EULER] = spring_step_euler,
+    [SPRING_LEAPFROG] = spring_step_leapfrog,
+    [SPRING_RK4] = spring_step_rk4,
+    [SPRING_EXACT] = spring_step_exact,
+};
+
+static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p,
+                                double h, uint64_t n)
+{
+    switch (f) {
+    case ADVANCE:
+        spring_advance(&s, p, method, h, n);
+        break;
+    case CALL:
+        for (; n > 0; n--)
+            kernels[method](&s, p, h);
+        break;
+    case ADVANCE_1:
+        for (; n > 0; n--)
+            spring_advance(&s, p, method, h, 1);
+        break;
+    }
+    return s;
+}
+
+/* ------------------------------------------------------------------------------------------------------- the rows */
+
+typedef struct subject {
+    const char *kernel;
+    spring_method method;
+    form form;
+    bool damped, loaded;
+    double goal_ratio, goal_ns; /* [1], [ns] */
+    double size;                /* of the start; where it is not 1, the limit is the same kernel at 1 */
+} subject;
+
+static double run(const bench_row *row, int which, uint64_t n)
+{
+    const subject *r = row->subject;
+    const bool limit = which > 0, plain = limit && r->size == 1;
+    const double size = limit ? 1 : r->size;
+    const spring_params p = {mass, stiffness, r->damped ? damping : 0, r->loaded ? load : 0};
+    spring_state s = {size * x0, size * v0};
+    const double h = dt, begin = timing_now();
+    s = plain ? run_plain(r->method, s, &p, h, n) : run_library(r->method, r->form, s, &p, h, n);
+    const double elapsed = timing_now() - begin;
+    sink = s.x + s.v;
+    return elapsed;
+}
+
+static const subject subjects[] = {
+    {"euler", SPRING_EULER, ADVANCE, false, false, INFINITY, INFINITY, 1},
+    {"euler_damped", SPRING_EULER, ADVANCE, true, false, INFINITY, INFINITY, 1},
+    {"euler_loaded", SPRING_EULER, ADVANCE, false, true, INFINITY, INFINITY, 1},
+    {"euler_damped_loaded", SPRING_EULER, ADVANCE, true, true, INFINITY, INFINITY, 1},
+    {"leapfrog", SPRING_LEAPFROG, ADVANCE, false, false, 0.95, INFINITY, 1},
+    {"leapfrog_damped", SPRING_LEAPFROG, ADVANCE, true, false, INFINITY, INFINITY, 1},
+    {"leapfrog_loaded", SPRING_LEAPFROG, ADVANCE, false, true, INFINITY, INFINITY, 1},
+    {"leapfrog_damped_loaded", SPRING_LEAPFROG, ADVANCE, true, true, INFINITY, INFINITY, 1},
+    {"rk4", SPRING_RK4, ADVANCE, false, false, 0.45, INFINITY, 1},
+    {"rk4_damped", SPRING_RK4, ADVANCE, true, false, INFINITY, INFINITY, 1},
+    {"rk4_loaded", SPRING_RK4, ADVANCE, false, true, INFINITY, INFINITY, 1},
+    {"rk4_damped_loaded", SPRING_RK4, ADVANCE, true, true, INFINITY, INFINITY, 1},
+    {"euler_call", SPRING_EULER, CALL, false, false, INFINITY, 12, 1},
+    {"euler_advance_1", SPRING_EULER, ADVANCE_1, false, false, INFINITY, 12, 1},
+    {"leapfrog_call", SPRING_LEAPFROG, CALL, false, false, INFINITY, 12, 1},
+    {"leapfrog_advance_1", SPRING_LEAPFROG, ADVANCE_1, false, false, INFINITY, 12, 1},
+    {"rk4_call", SPRING_RK4, CALL, false, false, INFINITY, 12, 1},
+    {"rk4_advance_1", SPRING_RK4, ADVANCE_1, false, false, INFINITY, 12, 1},
+    {"exact_call", SPRING_EXACT, CALL, false, false, INFINITY, INFINITY, 1},
+    {"exact_damped_call", SPRING_EXACT, CALL, true, false, INFINITY, INFINITY, 1},
+    {"exact_damped_loaded_call", SPRING_EXACT, CALL, true, true, INFINITY, INFINITY, 1},
+    {"exact_damped_loaded_advance_1", SPRING_EXACT, ADVANCE_1, true, true, INFINITY, INFINITY, 1},
+    {"leapfrog_denormal", SPRING_LEAPFROG, ADVANCE, false, false, INFINITY, INFINITY, 1e-310},
+};
+
+void bench_add_springs(void)
+{
+    for (size_t i = 0; i < sizeof subjects / sizeof subjects[0]; i++) {
+        const subject *r = &subjects[i];
+        bench_row row = {
+            .part = "spring",
+            .precision = "double",
+            .count = 1,
+            .steps = 1,
+            .goal_ratio = r->goal_ratio,
+            .goal_ns = r->goal_ns,
+            .limits = {r->size != 1                ? "ordinary"
+                       : r->method == SPRING_EXACT ? "textbook"
+                                                   : "loop"},
+            .time = run,
+            .subject = r,
+        };
+        snprintf(row.kernel, sizeof row.kernel, "%s", r->kernel);
+        bench_add(&row);
+    }
+}
