@@ -118,8 +118,11 @@ INLINE void NAME(run)(NAME(step) * step, uint64_t steps, bool damped, bool loade
     }
     for (; steps > 0; steps--) {
         UNROLL
-        for (int k = 0; k < NAME(together); k++)
+        for (int k = 0; k < NAME(together); k++) {
             step(&x[k], &v[k], c, damped, loaded);
+            TOUCH(x[k]); /* or the compiler interleaves so many steps that registers run out */
+            TOUCH(v[k]);
+        }
     }
     UNROLL
     for (int k = 0; k < NAME(together); k++) {
