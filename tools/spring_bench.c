@@ -4,7 +4,8 @@
  *
  * Method    A sample is the time of a fixed number of calls. Samples of the library and of its limits alternate, so that
  *           what slows the machine down for a while slows all of them; each figure is the median of its samples. Of two
- *           limits the slower one counts: nothing can be faster than either.
+ *           limits the slower one counts: nothing can be faster than either. Processor time is what is measured: other
+ *           processes take part of the caches and of the memory's time, but not of the clock's.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -63,7 +64,8 @@ static const cli_program program = {
         "registers, with ready coefficients. The slower one is the limit: streams for one step, arithmetic\n"
         "for many. For own parameters of the closed form it is the textbook's formula; for settled and\n"
         "unaligned, the same kernel without that.\n\n"
-        "Figures are medians of samples that alternate with those of the limit. spread is the distance\n"
+        "Figures are medians of samples, in processor time, that alternate with those of the limit. spread "
+        "is the distance\n"
         "between the quartiles over the median, the larger one of kernel and limit. verdict is ok, noisy\n"
         "(spread above 0.05: the machine was busy, the row proves nothing) or above_goal. No verdict\n"
         "changes the exit status: time is for people to judge.",

@@ -9,11 +9,21 @@
 #include <sys/utsname.h>
 #include <time.h>
 
-double timing_now(void)
+static double now(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+double timing_now(void)
+{
+    return now(CLOCK_MONOTONIC);
+}
+
+double timing_busy(void)
+{
+    return now(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /* The model of the processor as Linux knows it; elsewhere its architecture. */
