@@ -4,11 +4,13 @@
  *
  * The bytes are read as doubles, so the fuzzer reaches NaN, denormals and every sign; an input is at most sizeof(input) bytes.
  */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include <springstep/batch.h>
 #include <springstep/clock.h>
 #include <springstep/spring.h>
 
@@ -22,6 +24,8 @@ typedef struct input {
     uint32_t max_steps;
     int32_t method;
     spring_clock clock;
+    uint32_t count, features, shared, first_part; /* of a batch */
+    double more[8];
 } input;
 
 static void must(bool holds, const char *what)
@@ -98,6 +102,81 @@ static void check_clock(const input *in)
              "bad input leaves the clock as it was");
 }
 
+enum { most_springs = 200, arrays = 5 };
+
+/* Arrays of numbers from the input, of any bits, and others made of them. */
+static void fill(double array[arrays][most_springs], const input *in)
+{
+    double numbers[sizeof *in / sizeof(double)];
+    memcpy(numbers, in, sizeof numbers);
+    const size_t given = sizeof numbers / sizeof numbers[0];
+    for (size_t i = 0; i < arrays; i++)
+        for (size_t j = 0; j < most_springs; j++)
+            array[i][j] = numbers[(i * 3 + j) % given] + (j < given ? 0 : (double)(j % 7));
+}
+
+static void check_batch(const input *in, spring_method m)
+{
+    static double now[arrays][most_springs], start[arrays][most_springs];
+    const size_t count = in->count % (most_springs + 1);
+    const uint64_t n = 1 + in->n % 60;
+    const bool damped = in->features & 1, loaded = in->features & 2;
+    fill(start, in);
+    memcpy(now, start, sizeof now);
+    const spring_batch b = {
+        count, now[0], now[1], now[2], damped ? now[3] : NULL, loaded ? now[4] : NULL, in->shared % 16};
+    const spring_status status = spring_batch_advance(&b, m, in->dt, n);
+    bool refused = false, lost = false, same_state = memcmp(now, start, sizeof now) == 0;
+    for (size_t i = 0; i < count; i++) {
+        const spring_params p = {1, start[2][b.shared & SPRING_SHARED_OMEGA2 ? 0 : i],
+                                 damped ? start[3][b.shared & SPRING_SHARED_GAMMA ? 0 : i] : 0,
+                                 loaded ? start[4][b.shared & SPRING_SHARED_ACCEL ? 0 : i] : 0};
+        spring_state s = {start[0][i], start[1][i]};
+        const spring_status alone = spring_advance(&s, &p, m, in->dt, n);
+        refused = refused || alone == SPRING_EINVAL;
+        lost = lost || alone == SPRING_ENONFINITE;
+        must(status == SPRING_EINVAL && same_state ? true : same(s, (spring_state){now[0][i], now[1][i]}),
+             "each spring has its own life, to the bit");
+    }
+    must(status == SPRING_EINVAL || (!refused || in->dt == 0), "a bad spring is told");
+    must(status != SPRING_OK || in->dt == 0 || !lost, "a spring that overflows is told");
+    must(status != SPRING_ENONFINITE || (lost && !refused), "some spring has overflowed");
+    must(status != SPRING_EINVAL || refused || same_state, "a bad batch does not change");
+}
+
+/* In float: the same bits in one batch and in two. */
+static void check_float_batch(const input *in, spring_method m)
+{
+    static double start[arrays][most_springs];
+    static float whole[arrays][most_springs], parts[arrays][most_springs];
+    const size_t count = in->count % (most_springs + 1), first = count > 0 ? in->first_part % count : 0;
+    const uint64_t n = 1 + in->n % 60;
+    fill(start, in);
+    for (size_t i = 0; i < arrays; i++)
+        for (size_t j = 0; j < most_springs; j++) {
+            const bool fits = fabs(start[i][j]) <= (double)FLT_MAX; /* else the conversion is not defined */
+            whole[i][j] = parts[i][j] = fits ? (float)start[i][j] : (float)INFINITY;
+        }
+    const float dt = fabs(in->dt) <= (double)FLT_MAX ? (float)in->dt : (float)NAN;
+    const spring_batchf b = {count, whole[0], whole[1], whole[2], whole[3], whole[4], 0};
+    const spring_batchf left = {first, parts[0], parts[1], parts[2], parts[3], parts[4], 0},
+                        right = {count - first,
+                                 parts[0] + first,
+                                 parts[1] + first,
+                                 parts[2] + first,
+                                 parts[3] + first,
+                                 parts[4] + first,
+                                 0};
+    const spring_status status = spring_batchf_advance(&b, m, dt, n),
+                        status_left = spring_batchf_advance(&left, m, dt, n),
+                        status_right = spring_batchf_advance(&right, m, dt, n);
+    must(memcmp(whole, parts, sizeof whole) == 0, "a batch may be split, to the bit");
+    must((status == SPRING_OK) == (status_left == SPRING_OK && status_right == SPRING_OK),
+         "the whole is well if its parts are");
+    must((status == SPRING_EINVAL) == (status_left == SPRING_EINVAL || status_right == SPRING_EINVAL),
+         "the whole is bad if a part is");
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input in = {.p = {.mass = 1}};
@@ -106,5 +185,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_advance(&in, m);
     check_questions(&in, m);
     check_clock(&in);
+    check_batch(&in, m);
+    check_float_batch(&in, m);
     return 0;
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A C program that uses the installed library: prints its version and where a spring is after a second. */
+/* A C program that uses the installed library: prints its version and where a spring is after a second, alone and in a
+   batch. */
 #include <stdio.h>
 
+#include <springstep/batch.h>
 #include <springstep/clock.h>
 #include <springstep/spring.h>
 
@@ -14,6 +16,15 @@ int main(void)
     const uint64_t n = spring_clock_tick(&clock, 1.0, dt, 1000, NULL);
     if (spring_advance(&s, &p, SPRING_LEAPFROG, dt, n) != SPRING_OK)
         return 1;
-    printf("%s %a\n", spring_version(), s.x);
+    double x[] = {1.0, 0.5, 0.25}, v[] = {0.0, 0.0, 0.0};
+    float xf[] = {1.0f}, vf[] = {0.0f};
+    const double omega2 = 2.7 / 1.3;
+    const float omega2f = 2.0f;
+    const spring_batch b = {.count = 3, .x = x, .v = v, .omega2 = &omega2, .shared = SPRING_SHARED_OMEGA2};
+    const spring_batchf bf = {.count = 1, .x = xf, .v = vf, .omega2 = &omega2f};
+    if (spring_batch_advance(&b, SPRING_LEAPFROG, dt, n) != SPRING_OK || x[0] != s.x || x[1] != s.x / 2 ||
+        spring_batchf_advance(&bf, SPRING_LEAPFROG, (float)dt, n) != SPRING_OK)
+        return 1;
+    printf("%s %a %a\n", spring_version(), s.x, (double)xf[0]);
     return 0;
 }
