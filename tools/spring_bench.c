@@ -15,8 +15,8 @@
 #include "cli.h"
 #include "timing.h"
 
-static const char *const parts[] = {"spring", "batch", NULL};
-static int only_part = -1, only_kernel = -1;
+static const char *const parts[] = {"spring", "batch", NULL}, *const precisions[] = {"double", "float", NULL};
+static int only_part = -1, only_kernel = -1, only_precision = -1;
 static uint64_t only_count, calls;
 static bool quick;
 
@@ -30,6 +30,8 @@ static const cli_option options[] = {
      .help = "spring (one at a time) or batch"},
     {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
      .help = "only the rows of this name"},
+    {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
+     .help = "double or float"},
     {"count", CLI_COUNT, .count = &only_count, .value = "N", .help = "only rows of so many springs"},
     {"calls", CLI_COUNT, .count = &calls, .value = "N",
      .help = "only make so many calls, for tools that count instructions"},
@@ -155,6 +157,7 @@ static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
            (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) &&
+           (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
 
