@@ -57,14 +57,6 @@ spring_status BATCH(advance_with)(const batch_kernels *kernels, const batch *b, 
 #include "leapfrog.h"
 #include "rk4.h"
 
-#if defined(__clang__)
-#define SPRING_UNROLL _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
-#define SPRING_UNROLL _Pragma("GCC unroll 8")
-#else
-#define SPRING_UNROLL
-#endif
-
 /* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, else 16). */
 enum { vectors = SPRING_VECTOR == 64 ? 8 : 4, group = vectors * lanes };
 

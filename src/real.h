@@ -27,6 +27,15 @@
 #define SPRING_INLINE static inline
 #endif
 
+/* Before a loop whose arrays are to live in registers. */
+#if defined(__clang__)
+#define SPRING_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define SPRING_UNROLL _Pragma("GCC unroll 8")
+#else
+#define SPRING_UNROLL
+#endif
+
 #ifdef SPRING_FLOAT
 typedef float scalar;
 typedef int32_t scalar_bits;
@@ -75,6 +84,51 @@ SPRING_INLINE real select_real(truth t, real a, real b)
     return (real)((t & (truth)a) | (~t & (truth)b));
 }
 
+/* From a byte a lane, -1 or 0. */
+SPRING_INLINE truth load_truth(const int8_t *p)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
+    return (truth)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 64
+    return (truth)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
+    return (truth)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    int four;
+    memcpy(&four, p, sizeof four);
+    return (truth)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+#else
+    truth t;
+    for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
+        t[i] = p[i];
+    return t;
+#endif
+}
+
+SPRING_INLINE real root(real a)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
+    return (real)_mm512_sqrt_ps((__m512)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 64
+    return (real)_mm512_sqrt_pd((__m512d)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
+    return (real)_mm256_sqrt_ps((__m256)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    return (real)_mm256_sqrt_pd((__m256d)a);
+#elif SPRING_X86_64 && defined(SPRING_FLOAT)
+    return (real)_mm_sqrt_ps((__m128)a);
+#elif SPRING_X86_64
+    return (real)_mm_sqrt_pd((__m128d)a);
+#else
+    scalar each[sizeof a / sizeof(scalar)];
+    memcpy(each, &a, sizeof a);
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
+        each[i] = (scalar)sqrt((double)each[i]); /* rounding twice changes nothing for a square root */
+    memcpy(&a, each, sizeof a);
+    return a;
+#endif
+}
+
 SPRING_INLINE real magnitude(real a)
 {
     return (real)(~(truth)splat(-(scalar)0) & (truth)a);
@@ -103,6 +157,16 @@ SPRING_INLINE bool any(truth t)
 SPRING_INLINE real select_real(truth t, real a, real b)
 {
     return t ? a : b;
+}
+
+SPRING_INLINE truth load_truth(const int8_t *p)
+{
+    return *p != 0;
+}
+
+SPRING_INLINE real root(real a)
+{
+    return (real)sqrt((double)a);
 }
 
 SPRING_INLINE real magnitude(real a)

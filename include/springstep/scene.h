@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * springstep: particles joined by springs (rope, cloth, jelly, water), in memory that the caller owns.
+ *
+ *     mass x'' = link forces + mass gravity - drag x' + F(t, x, x')
+ *
+ *     spring_scene_def def = {.particles = 3, .links = 2, .position = p, .pinned = pinned, .link = links,
+ *                             .gravity = {0, -9.81, 0}};
+ *     size_t bytes;
+ *     spring_scene *scene;
+ *     spring_scene_bytes(&def, &bytes);
+ *     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);          // a multiple of SPRING_SCENE_ALIGN
+ *     spring_scene_init(memory, bytes, &def, &scene);
+ *     const double dt = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+ *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
+ *
+ * What holds for every function here, beside what spring.h says:
+ *  - Only what the definition sets is stored and computed; README.md says what each feature takes in bytes and time.
+ *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
+ *  - The block of memory holds no pointer to itself: memcpy() of its bytes to another place with the same alignment, in
+ *    the same build, is a working scene. So a snapshot is a memcpy(), and rolling back another. The callback and its
+ *    user pointer are copied as they are.
+ *  - Distinct scenes may be used by distinct threads at once; one scene by one at a time, functions on a const scene
+ *    included, since they may compute and keep forces.
+ *  - The same bits with every compiler, instruction set and vector length, as far as the callback does its part.
+ *  - There is no position solver: for a contact, move particles between calls of spring_scene_advance(..., 1) with
+ *    spring_scene_get() and spring_scene_set(), or push them in the callback.
+ *
+ * spring_scenef_... is the float twin, from the same source: state and arithmetic in float, half the memory, most of
+ * twice the speed. Definitions, times, energies and spring_scenef_get() stay in double; only its callback sees floats.
+ */
+#ifndef SPRINGSTEP_SCENE_H
+#define SPRINGSTEP_SCENE_H
+
+#include <stddef.h>
+
+#include <springstep/spring.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SPRING_SCENE_ALIGN 64 /* of the memory of a scene [bytes] */
+
+/* A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest); on more it
+   pulls both ends along the line between them with stiffness (length - rest) + damping (rate of length). Where both
+   ends are at the same place that line has no direction, and there is no force. */
+typedef struct spring_link {
+    uint32_t a, b;    /*         indices of two different particles */
+    double rest;      /* [m]     length at which it does not pull >= 0 */
+    double stiffness; /* [N/m]   >= 0 */
+    double damping;   /* [N s/m] >= 0, along the link */
+} spring_link;
+
+/* Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
+   [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL. It must depend on nothing but its
+   arguments and *user, or advance(10) is not 10 times advance(1). */
+typedef void spring_force_fn(void *user, double t, size_t particles, const double *const position[3],
+                             const double *const velocity[3], double *const force[3]);
+typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
+                                    const float *const velocity[3], float *const force[3]);
+
+/* flags */
+#define SPRING_SCENE_EDITABLE UINT32_C(1) /* spring_scene_set_link() is allowed */
+#define SPRING_SCENE_NO_UNDO \
+    UINT32_C(2) /* no copy of the state: a failed advance leaves the scene unusable until */
+                /* positions and velocities have been set again */
+#define SPRING_SCENE_FORCE_STILL \
+    UINT32_C(4) /* no callback will use velocities: leapfrog need not predict them */
+
+/* Zero-initialise; what is not set is neither stored nor computed. Every array is copied. */
+typedef struct spring_scene_def {
+    uint32_t axes;  /* 1, 2 or 3; 0 means 3 */
+    uint32_t flags; /* SPRING_SCENE_... */
+    uint32_t
+        methods; /* 1u << SPRING_EULER | ...: what will be used; 0: Euler and leapfrog. RK4 costs memory */
+    size_t particles;       /* >= 1 */
+    size_t links;           /* */
+    const double *position; /* [particles*axes] x0 y0 z0 x1 ... [m] */
+    const double *velocity; /* [particles*axes] [m/s]; NULL: at rest */
+    const double *mass;     /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
+    double mass_all;        /* [kg]; 0 means 1 */
+    const uint8_t
+        *pinned; /* [particles]; non-zero: feels no force, moves with the velocity it is given; NULL: none */
+    const spring_link *link; /* [links] */
+    double gravity[3];       /* [m/s^2] */
+    double drag;             /* [N s/m] >= 0, on every particle */
+    spring_force_fn *force;  /* NULL: none */
+    void *user;              /* handed to force */
+} spring_scene_def;
+
+typedef struct spring_scene spring_scene;
+
+/**
+ * Is a definition valid?
+ *
+ * @param[out] field  name of the first field that is not, such as "mass" or "link.a"; NULL if all are. May be NULL
+ * @param[out] index  of the particle or link, 0 where there is none. May be NULL
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: an index of a particle is too large, or a count for this machine;
+ *         SPRING_EUNSUPPORTED: the closed form among the methods
+ */
+SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
+
+/**
+ * The memory that a scene takes [bytes], a multiple of SPRING_SCENE_ALIGN.
+ *
+ * @return as spring_scene_check()
+ */
+SPRING_API spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes);
+
+/**
+ * Make a scene in the memory given. Time is 0.
+ *
+ * @param[out] memory  aligned to SPRING_SCENE_ALIGN
+ * @param[in]  bytes   of memory, at least what spring_scene_bytes() says
+ * @param[out] scene   the scene; NULL after an error. There is nothing to release but the memory
+ * @return SPRING_OK; SPRING_ENOMEM; SPRING_EALIGN; and as spring_scene_check()
+ */
+SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def,
+                                           spring_scene **scene);
+
+/**
+ * Advance a scene by n steps.
+ *
+ *     Euler     x1 = x + dt v;   v1 = v + dt a(t, x, v)
+ *     leapfrog  v' = v + dt/2 a(t, x, v);   x1 = x + dt v';   v1 = v' + dt/2 a(t + dt, x1, v1)
+ *     RK4       the four stages
+ *
+ * Drag is solved for in the last half kick of leapfrog. Velocities that enter link damping and callbacks there are
+ * predicted: v* = v' + dt/2 a(x1, v'), v1 = v' + dt/2 a(x1, v*): still of second order, at three force evaluations a step
+ * instead of one. (Of Euler: one, RK4: four. A callback that uses no velocities is not predicted for, see
+ * SPRING_SCENE_FORCE_STILL.) With drag alone leapfrog evaluates once; its force at the end of a step is that at the
+ * start of the next, and is kept.
+ *
+ * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
+ *
+ * @param[in] m   one of the methods of the definition
+ * @param[in] dt  finite step [s]; negative runs backwards
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the closed form, or a method that the definition does not have;
+ *         SPRING_ENONFINITE: the state would become infinite or NaN, noticed at the step where it does
+ * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
+ *                Solving Ordinary Differential Equations I (1993), section II.1
+ */
+SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
+
+/**
+ * A step that is safe: below it a method is stable, as long as no link is compressed below half its rest length, and the
+ * callback is not stiffer than the links.
+ *
+ * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
+ * G the same of damping plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
+ * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with, K the largest sum of 2 stiffness.
+ * A bound, not the limit: that is up to 1.2 times larger on a height field, 1.5 times on cloth.
+ *
+ * @return [s]; 0: never stable; INFINITY: no force to be unstable with; NaN for bad input or the closed form
+ * @par Source    Gershgorin's circles
+ */
+SPRING_API double spring_scene_stable_step(const spring_scene *s, spring_method m);
+
+/** [s] since init; NaN for NULL. */
+SPRING_API double spring_scene_time(const spring_scene *s);
+
+typedef struct spring_scene_energies {
+    double kinetic, elastic, gravity; /* [J]; of pinned particles only what their links hold */
+} spring_scene_energies;
+
+/** Energies of the links and of the particles that are not pinned; gravity is 0 at the origin. NaN for NULL. */
+SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
+
+/** Is every speed at most v_tol [m/s], and every acceleration of a particle that is not pinned at most a_tol [m/s^2]?
+    May evaluate the forces. False for bad input. */
+SPRING_API bool spring_scene_at_rest(const spring_scene *s, double v_tol, double a_tol);
+
+typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantity;
+
+/**
+ * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
+ *
+ * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions.
+ *
+ * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
+ * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number that is not finite;
+ *         SPRING_ERANGE: there are not so many particles
+ */
+SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out,
+                                          size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float *out,
+                                           size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double *in, size_t stride,
+                                          size_t first, size_t count);
+
+/** Change gravity [m/s^2]; elements beyond the axes are ignored. SPRING_EINVAL for NULL or numbers that are not finite. */
+SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
+
+/** Change the callback; NULL: none. */
+SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_force_fn *force, void *user);
+
+/**
+ * Change a link of an editable scene; stiffness 0 and damping 0 cut it.
+ *
+ * @param[in] link  a and b as defined
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EUNSUPPORTED: the scene is not editable
+ */
+SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
+
+/** The force along a link [N], > 0 pulls; its damping included. NaN for bad input. */
+SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
+
+/* ------------------------------------------------------------------------------------------------- the float twin */
+
+/* spring_scene_def, but for the callback. */
+typedef struct spring_scenef_def {
+    uint32_t axes;
+    uint32_t flags;
+    uint32_t methods;
+    size_t particles;
+    size_t links;
+    const double *position;
+    const double *velocity;
+    const double *mass;
+    double mass_all;
+    const uint8_t *pinned;
+    const spring_link *link;
+    double gravity[3];
+    double drag;
+    spring_scenef_force_fn *force;
+    void *user;
+} spring_scenef_def;
+
+typedef struct spring_scenef spring_scenef;
+typedef spring_scene_energies spring_scenef_energies;
+
+SPRING_API spring_status spring_scenef_check(const spring_scenef_def *def, const char **field, size_t *index);
+SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_t *bytes);
+SPRING_API spring_status spring_scenef_init(void *memory, size_t bytes, const spring_scenef_def *def,
+                                            spring_scenef **scene);
+SPRING_API spring_status spring_scenef_advance(spring_scenef *s, spring_method m, double dt, uint64_t n);
+SPRING_API double spring_scenef_stable_step(const spring_scenef *s, spring_method m);
+SPRING_API double spring_scenef_time(const spring_scenef *s);
+SPRING_API spring_scenef_energies spring_scenef_energy(const spring_scenef *s);
+SPRING_API bool spring_scenef_at_rest(const spring_scenef *s, double v_tol, double a_tol);
+SPRING_API spring_status spring_scenef_get(const spring_scenef *s, spring_quantity q, double *out,
+                                           size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scenef_getf(const spring_scenef *s, spring_quantity q, float *out,
+                                            size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scenef_set(spring_scenef *s, spring_quantity q, const double *in,
+                                           size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scenef_set_gravity(spring_scenef *s, const double gravity[3]);
+SPRING_API spring_status spring_scenef_set_force(spring_scenef *s, spring_scenef_force_fn *force, void *user);
+SPRING_API spring_status spring_scenef_set_link(spring_scenef *s, size_t index, const spring_link *link);
+SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
+
+/* ------------------------------------------------------------------------------------ ropes, sheets and blocks */
+
+/* links of a grid */
+#define SPRING_GRID_STRUCTURAL UINT32_C(1) /* to the next particle along each edge */
+#define SPRING_GRID_SHEAR      UINT32_C(2) /* across the faces and through the middle of each cell */
+#define SPRING_GRID_BEND       UINT32_C(4) /* to the particle after the next */
+
+/* faces whose particles are pinned: first or last along x, y, z */
+#define SPRING_GRID_FIRST_X UINT32_C(1)
+#define SPRING_GRID_LAST_X  UINT32_C(2)
+#define SPRING_GRID_FIRST_Y UINT32_C(4)
+#define SPRING_GRID_LAST_Y  UINT32_C(8)
+#define SPRING_GRID_FIRST_Z UINT32_C(16)
+#define SPRING_GRID_LAST_Z  UINT32_C(32)
+
+/* Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly. Particle
+   (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
+typedef struct spring_grid {
+    uint32_t count[3]; /* particles along x, y, z; 0 means 1 */
+    uint32_t axes;     /* of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
+    bool height;       /* a height field: axes = 1, across the grid; positions and rest lengths are 0 */
+    double spacing;    /* [m] > 0 from one particle to the next */
+    double
+        stretch; /* of every link, its length over its rest length > 0; 0 means 1. More than 1 is tension */
+    uint32_t families; /* SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
+    double stiffness;  /* [N/m] of every link */
+    double damping;    /* [N s/m] */
+    uint32_t pinned;   /* SPRING_GRID_FIRST_X | ... */
+} spring_grid;
+
+/**
+ * How many particles and links a grid has.
+ *
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: too many for 32-bit indices
+ */
+SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particles, size_t *links);
+
+/**
+ * Fill the arrays of a definition, of either precision. They are the caller's, and may be changed before they are used.
+ *
+ * @param[out] position  [particles*axes], from the origin along the axes
+ * @param[out] pinned    [particles]; may be NULL
+ * @param[out] link      [links]; may be NULL
+ * @return as spring_grid_size(); nothing is written after an error
+ */
+SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned,
+                                          spring_link *link);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

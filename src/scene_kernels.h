@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The loops over the particles and links of a scene, in the vectors that real.h is set to.
+ *
+ * Rows      Links whose ends are the same number of particles apart, as in a rope, a sheet or a block, lie in one row,
+ *           by their lower end; where the row has no link its stiffness is 0. Each particle pulls from both sides: it
+ *           gathers from neighbours at fixed distances and nothing is scattered. Every force is computed twice, once for
+ *           either end, with opposite signs and otherwise the same bits, so momentum is conserved to rounding.
+ * List      All other links, in blocks: gather, vector arithmetic, scatter in the order of the links.
+ * Motion    The parts of a step: kick, drift, stages. A particle that is pinned has inverse mass 0.
+ */
+#ifndef SPRINGSTEP_SCENE_KERNELS_H
+#define SPRINGSTEP_SCENE_KERNELS_H
+
+#include "real.h"
+
+#include <stddef.h>
+
+#ifdef SPRING_FLOAT
+#define SCENE(name) spring_scenef_##name
+#else
+#define SCENE(name) spring_scene_##name
+#endif
+
+enum {
+    padding = 16
+}; /* elements before and after what vectors read: as many as the longest vector has lanes */
+
+/* Links whose upper end is `offset` particles after the lower one. Arrays start `padding` before the first lower end. */
+typedef struct scene_row {
+    ptrdiff_t offset;
+    ptrdiff_t first, end;  /* of the lower ends */
+    const int8_t *present; /* -1 where there is a link, else 0; NULL: each link has numbers of its own */
+    const scalar
+        *stiffness;        /* [N/m]; of a vector of equal links, or of each place, 0 where there is no link */
+    const scalar *rest;    /* [m]; negative on one axis where the link runs from the upper end to the lower */
+    const scalar *damping; /* [N s/m]; NULL: none in the scene */
+} scene_row;
+
+typedef struct scene_list {
+    size_t count;
+    const uint32_t *a, *b;
+    const scalar *stiffness, *rest, *damping; /* damping as in scene_row */
+} scene_list;
+
+typedef struct scene_links { /* what a force kernel works on */
+    size_t particles;
+    const scalar *x[3], *v[3];
+    scalar *force[3];
+    size_t rows;
+    const scene_row *row;
+    scene_list list;
+} scene_links;
+
+typedef struct scene_motion { /* what moves particles; the pointers are set for each kernel, see there */
+    size_t particles;
+    uint32_t axes;
+    const scalar *inverse_mass; /* NULL: one for all */
+    scalar inverse_mass_all;
+    scalar gravity[3];
+    scalar drag;
+    scalar h;
+    const scalar *force[3];
+    const scalar *x0[3], *v0[3]; /* from */
+    scalar *x[3], *v[3];         /* to */
+    const scalar *stage_v[3];    /* RK4: velocity of the stage that `force` belongs to */
+    scalar *sum_x[3], *sum_v[3]; /* RK4: weighted sums of the stages */
+} scene_motion;
+
+typedef void scene_link_kernel(const scene_links *);
+typedef bool scene_motion_kernel(const scene_motion *); /* false: a number is infinite or NaN */
+
+typedef struct scene_kernels {
+    scene_link_kernel *rows[3][2]; /* by axes - 1, damping */
+    scene_link_kernel *list[3][2];
+    scene_motion_kernel *euler;        /* x0, v0 -> x, v */
+    scene_motion_kernel *kick_drift;   /* x0, v0 -> x, v */
+    scene_motion_kernel *kick;         /* v0 -> v, drag solved for */
+    scene_motion_kernel *rk4_stage[3]; /* stage_v, x0, v0 -> x, v, sums */
+    scene_motion_kernel *rk4_end;      /* stage_v, x0, v0, sums -> x, v */
+} scene_kernels;
+
+extern const scene_kernels SCENE(v128), SCENE(v256), SCENE(v512); /* by bytes of a vector */
+
+#ifdef SPRING_VECTOR
+
+/* ---------------------------------------------------------------------------------------------------------- links */
+
+/* The force of a link on one of its ends is this times the way to the other end; 0 where both are at one place.
+   k (1 - rest/length) + c (relative velocity . way)/length^2 */
+SPRING_INLINE real pull(uint32_t axes, const real *way, const real *relative, real k, real rest, real c,
+                        bool damped)
+{
+    real square = way[0] * way[0];
+    SPRING_UNROLL
+    for (uint32_t a = 1; a < axes; a++)
+        square += way[a] * way[a];
+    real scale = k * (1 - rest / root(square));
+    if (damped) {
+        real rate = way[0] * relative[0];
+        SPRING_UNROLL
+        for (uint32_t a = 1; a < axes; a++)
+            rate += way[a] * relative[a];
+        scale += c * (rate / square);
+    }
+    return select_real(square > 0, scale, splat(0));
+}
+
+/* Adds what one side of a row does to the vector of particles from i; offset is negative for the lower neighbours. */
+SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff_t i, ptrdiff_t offset,
+                             uint32_t axes, bool damped, const real *x, const real *v, real *force)
+{
+    const ptrdiff_t at = (offset > 0 ? i : i + offset) - row->first + padding;
+    const ptrdiff_t number = row->present != NULL ? 0 : at;
+    const real rest = load(row->rest + number);
+    real k = load(row->stiffness + number), c = damped ? load(row->damping + number) : splat(0);
+    if (row->present != NULL) {
+        const truth present = load_truth(row->present + at);
+        k = select_real(present, k, splat(0));
+        if (damped)
+            c = select_real(present, c, splat(0));
+    }
+    real way[3], relative[3];
+    SPRING_UNROLL
+    for (uint32_t a = 0; a < axes; a++) {
+        way[a] = load(s->x[a] + i + offset) - x[a];
+        if (damped)
+            relative[a] = load(s->v[a] + i + offset) - v[a];
+    }
+    if (axes == 1) {
+        real f = k * (offset > 0 ? way[0] - rest : way[0] + rest);
+        if (damped)
+            f += c * relative[0];
+        force[0] += f;
+        return;
+    }
+    const real scale = pull(axes, way, relative, k, rest, c, damped);
+    SPRING_UNROLL
+    for (uint32_t a = 0; a < axes; a++)
+        force[a] += scale * way[a];
+}
+
+SPRING_INLINE void rows(const scene_links *s, uint32_t axes, bool damped)
+{
+    for (ptrdiff_t i = 0; i < (ptrdiff_t)s->particles; i += lanes) {
+        real x[3], v[3], force[3];
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            x[a] = load(s->x[a] + i);
+            if (damped)
+                v[a] = load(s->v[a] + i);
+            force[a] = splat(0);
+        }
+        for (size_t r = 0; r < s->rows; r++) {
+            const scene_row *row = &s->row[r];
+            if (i + lanes > row->first && i < row->end)
+                pull_side(s, row, i, row->offset, axes, damped, x, v, force);
+            if (i + lanes > row->first + row->offset && i < row->end + row->offset)
+                pull_side(s, row, i, -row->offset, axes, damped, x, v, force);
+        }
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            store(s->force[a] + i, force[a]);
+    }
+}
+
+enum { block = 64 }; /* links whose ends are gathered together: they stay in the first cache */
+
+SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
+{
+    const scene_list *l = &s->list;
+    for (size_t first = 0; first < l->count; first += block) {
+        const size_t count = l->count - first < block ? l->count - first : block;
+        const uint32_t *from = l->a + first, *to = l->b + first;
+        scalar way[3][block] = {{0}}, relative[3][block] = {{0}};
+        for (uint32_t a = 0; a < axes; a++)
+            for (size_t j = 0; j < count; j++) {
+                way[a][j] = s->x[a][to[j]] - s->x[a][from[j]];
+                if (damped)
+                    relative[a][j] = s->v[a][to[j]] - s->v[a][from[j]];
+            }
+        for (size_t j = 0; j < count; j += lanes) {
+            const real k = load(l->stiffness + first + j), rest = load(l->rest + first + j);
+            const real c = damped ? load(l->damping + first + j) : splat(0);
+            real w[3], r[3];
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                w[a] = load(&way[a][j]);
+                r[a] = damped ? load(&relative[a][j]) : splat(0);
+            }
+            if (axes == 1) {
+                real f = k * (w[0] - rest);
+                if (damped)
+                    f += c * r[0];
+                store(&way[0][j], f);
+            } else {
+                const real scale = pull(axes, w, r, k, rest, c, damped);
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    store(&way[a][j], scale * w[a]);
+            }
+        }
+        for (uint32_t a = 0; a < axes; a++)
+            for (size_t j = 0; j < count; j++) {
+                s->force[a][from[j]] += way[a][j];
+                s->force[a][to[j]] -= way[a][j];
+            }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- motion */
+
+typedef struct particle_vector { /* what is the same on every axis */
+    real inverse_mass;
+    real drag; /* [1/s] */
+} particle_vector;
+
+SPRING_INLINE particle_vector particles_at(const scene_motion *s, size_t i)
+{
+    const real inverse_mass =
+        s->inverse_mass != NULL ? load(s->inverse_mass + i) : splat(s->inverse_mass_all);
+    return (particle_vector){inverse_mass, s->drag * inverse_mass};
+}
+
+/* Without drag. */
+SPRING_INLINE real acceleration(const scene_motion *s, const particle_vector *p, uint32_t a, size_t i)
+{
+    const real fall = select_real(p->inverse_mass > 0, splat(s->gravity[a]), splat(0));
+    return p->inverse_mass * load(s->force[a] + i) + fall;
+}
+
+#define FOR_EACH_VECTOR(s, i) for (size_t i = 0; i < (s)->particles; i += lanes)
+
+static bool euler(const scene_motion *s)
+{
+    const real h = splat(s->h);
+    truth wrong = {0};
+    FOR_EACH_VECTOR(s, i)
+    {
+        const particle_vector p = particles_at(s, i);
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const real v = load(s->v0[a] + i);
+            const real x1 = load(s->x0[a] + i) + h * v;
+            const real v1 = v + h * (acceleration(s, &p, a, i) - p.drag * v);
+            store(s->x[a] + i, x1);
+            store(s->v[a] + i, v1);
+            wrong |= not_finite(x1) | not_finite(v1);
+        }
+    }
+    return !any(wrong);
+}
+
+static bool kick_drift(const scene_motion *s)
+{
+    const real h = splat(s->h), half = h / 2;
+    truth wrong = {0};
+    FOR_EACH_VECTOR(s, i)
+    {
+        const particle_vector p = particles_at(s, i);
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const real v = load(s->v0[a] + i);
+            const real v1 = v + half * (acceleration(s, &p, a, i) - p.drag * v);
+            const real x1 = load(s->x0[a] + i) + h * v1;
+            store(s->x[a] + i, x1);
+            store(s->v[a] + i, v1);
+            wrong |= not_finite(x1) | not_finite(v1);
+        }
+    }
+    return !any(wrong);
+}
+
+static bool kick(const scene_motion *s)
+{
+    const real half = splat(s->h) / 2;
+    truth wrong = {0};
+    FOR_EACH_VECTOR(s, i)
+    {
+        const particle_vector p = particles_at(s, i);
+        const real solve = 1 + half * p.drag;
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const real v1 = (load(s->v0[a] + i) + half * acceleration(s, &p, a, i)) / solve;
+            store(s->v[a] + i, v1);
+            wrong |= not_finite(v1);
+        }
+    }
+    return !any(wrong);
+}
+
+/* Adds a stage to the weighted sums and goes on to the state of the next one. */
+SPRING_INLINE bool rk4_stage(const scene_motion *s, bool first, scalar weight, scalar fraction)
+{
+    const real step = splat(s->h) * fraction;
+    FOR_EACH_VECTOR(s, i)
+    {
+        const particle_vector p = particles_at(s, i);
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const real dx = load(s->stage_v[a] + i);
+            const real dv = acceleration(s, &p, a, i) - p.drag * dx;
+            store(s->sum_x[a] + i, first ? dx : load(s->sum_x[a] + i) + weight * dx);
+            store(s->sum_v[a] + i, first ? dv : load(s->sum_v[a] + i) + weight * dv);
+            store(s->x[a] + i, load(s->x0[a] + i) + step * dx);
+            store(s->v[a] + i, load(s->v0[a] + i) + step * dv);
+        }
+    }
+    return true;
+}
+
+static bool rk4_stage_1(const scene_motion *s)
+{
+    return rk4_stage(s, true, 1, (scalar)0.5);
+}
+
+static bool rk4_stage_2(const scene_motion *s)
+{
+    return rk4_stage(s, false, 2, (scalar)0.5);
+}
+
+static bool rk4_stage_3(const scene_motion *s)
+{
+    return rk4_stage(s, false, 2, 1);
+}
+
+static bool rk4_end(const scene_motion *s)
+{
+    const real sixth = splat(s->h) / 6;
+    truth wrong = {0};
+    FOR_EACH_VECTOR(s, i)
+    {
+        const particle_vector p = particles_at(s, i);
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const real dx = load(s->stage_v[a] + i);
+            const real dv = acceleration(s, &p, a, i) - p.drag * dx;
+            const real x1 = load(s->x0[a] + i) + sixth * (load(s->sum_x[a] + i) + dx);
+            const real v1 = load(s->v0[a] + i) + sixth * (load(s->sum_v[a] + i) + dv);
+            store(s->x[a] + i, x1);
+            store(s->v[a] + i, v1);
+            wrong |= not_finite(x1) | not_finite(v1);
+        }
+    }
+    return !any(wrong);
+}
+
+/* ------------------------------------------------------------------------------------------------------ the table */
+
+#define LINK_KERNELS(kernel, axes)                             \
+    static void kernel##_##axes(const scene_links *s)          \
+    {                                                          \
+        kernel(s, axes, false);                                \
+    }                                                          \
+    static void kernel##_##axes##_damped(const scene_links *s) \
+    {                                                          \
+        kernel(s, axes, true);                                 \
+    }
+
+LINK_KERNELS(rows, 1)
+LINK_KERNELS(rows, 2)
+LINK_KERNELS(rows, 3)
+LINK_KERNELS(list, 1)
+LINK_KERNELS(list, 2)
+LINK_KERNELS(list, 3)
+
+#define LINK_TABLE(kernel)                                                \
+    {                                                                     \
+        {kernel##_1, kernel##_1_damped}, {kernel##_2, kernel##_2_damped}, \
+        {                                                                 \
+            kernel##_3, kernel##_3_damped                                 \
+        }                                                                 \
+    }
+
+/* clang-format off */
+#define SCENE_KERNELS {                                                                                        \
+    LINK_TABLE(rows), LINK_TABLE(list), euler, kick_drift, kick, {rk4_stage_1, rk4_stage_2, rk4_stage_3}, rk4_end \
+}
+/* clang-format on */
+
+#endif
+
+#endif
