@@ -658,10 +658,11 @@ static void bad_shared_parameters(void)
 static void stable_step(void)
 {
     static place p;
-    const batch empty = {0};
+    const batch empty = {0}, empty_shared = {.omega2 = &step, .shared = SPRING_SHARED_OMEGA2};
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
         const spring_method method = (spring_method)m;
         CHECK_BITS((double)BATCH(stable_step)(&empty, method), INFINITY, "no springs");
+        CHECK_BITS((double)BATCH(stable_step)(&empty_shared, method), INFINITY, "no springs");
         for (size_t k = 0; k < feature_count; k++) {
             const features f = features_of(k);
             for (size_t count = 1; count < 40; count += 19) {
