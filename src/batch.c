@@ -86,7 +86,8 @@ static const batch_kernels *best_kernels(void)
     return &BATCH(v128);
 }
 
-/* The springs that do not fill a group advance in one that is filled up with springs that do not move. */
+/* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
+   group is given up when all of them are lost. */
 static bool advance_rest(batch_kernel *kernel, size_t size, const batch *b, const batch_block *all,
                          size_t first)
 {
@@ -103,6 +104,13 @@ static bool advance_rest(batch_kernel *kernel, size_t size, const batch *b, cons
         rest.g = memcpy(g, b->gamma + first, bytes);
     if (b->accel != NULL && !shared(b, SPRING_SHARED_ACCEL))
         rest.a = memcpy(a, b->accel + first, bytes);
+    for (size_t i = count; i < size; i++) {
+        x[i] = x[0];
+        v[i] = v[0];
+        w[i] = w[0];
+        g[i] = g[0];
+        a[i] = a[0];
+    }
     const bool done = kernel(&rest);
     memcpy(b->x + first, x, bytes);
     memcpy(b->v + first, v, bytes);
@@ -132,13 +140,13 @@ static bool run(batch_kernel *kernel, size_t size, const batch *b, batch_block b
 }
 
 /* Every spring by its own closed form. */
-static bool advance_exact(const batch *b, double t)
+static bool advance_exact(const batch *b, scalar dt, uint64_t n)
 {
     bool done = true;
     for (size_t i = 0; i < b->count; i++) {
         const spring_params p = spring_at(b, i);
         spring_state s = {(double)b->x[i], (double)b->v[i]};
-        const bool advanced = spring_advance(&s, &p, SPRING_EXACT, t, 1) == SPRING_OK;
+        const bool advanced = spring_advance(&s, &p, SPRING_EXACT, (double)dt, n) == SPRING_OK;
         const scalar x = (scalar)s.x, v = (scalar)s.v;
         if (advanced && isfinite(x) && isfinite(v)) {
             b->x[i] = x;
@@ -168,7 +176,7 @@ spring_status BATCH(advance_with)(const batch_kernels *kernels, const batch *b, 
         const spring_propagator y = spring_propagator_of(&p, (double)dt * (double)n, loaded);
         done = run(kernels->exact[loaded], kernels->group, b, (batch_block){.propagator = &y});
     } else {
-        done = advance_exact(b, (double)dt * (double)n);
+        done = advance_exact(b, dt, n);
     }
     return done ? SPRING_OK : reason(b);
 }
