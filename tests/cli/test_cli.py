@@ -2,7 +2,7 @@
 """The command-line tools as their users see them: numbers, columns, messages, exit statuses, files. Prints TAP.
 
 Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy PATH/spring-validate PATH/spring-stability
-                   PATH/spring-rounding
+                   PATH/spring-rounding PATH/spring-bench
 """
 import math
 import os
@@ -15,7 +15,9 @@ import sys
 import tempfile
 import time
 
-TOOLS = {os.path.basename(path): os.path.abspath(path) for path in sys.argv[1:]}
+PATHS = {os.path.basename(path): os.path.abspath(path) for path in sys.argv[1:]}
+BENCH = 'spring-bench'  # measures time: no two runs give the same bytes
+TOOLS = {name: path for name, path in PATHS.items() if name != BENCH}
 ORDER, RUN, ENERGY = BY_METHOD = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
 VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
 SEED_RUN = ['--duration', '1000', '--steps', '1e7']
@@ -54,7 +56,7 @@ def equal(got, want, name):
 
 def run(tool, *args, **how):
     how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
-    return subprocess.run([TOOLS[tool], *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
+    return subprocess.run([PATHS[tool], *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
 
 
 def in_shell(script, tool, *args):
@@ -666,6 +668,33 @@ def test_rounding():
         rows = table(ROUNDING, '--method', method, '--sum', 'compensated', '--steps', '1e6')[-8:]
         check(all(abs(float(r['state_error']) / float(r['coefficient_error']) - 1) <= 0.05 for r in rows),
               f'rounding: {method}, a decimal step: the coefficient it is', rows)
+
+
+def test_bench():
+    fixed = 'kernel precision count ns_per_spring_step limit_ns ratio spread verdict'.split()
+    small = table(BENCH, '--quick', '--part', 'batch', '--count', '1000')
+    sizes = table(BENCH, '--quick', '--kernel', 'leapfrog_batch_16')
+    spring = table(BENCH, '--quick', '--part', 'spring', '--kernel', 'rk4')
+    for rows in (small, sizes, spring):
+        equal(list(rows[0])[:len(fixed)], fixed, 'bench: columns')
+        check(all(float(r[name]) > 0 for r in rows for name in ('ns_per_spring_step', 'limit_ns')), 'bench: time passes', rows)
+        check(all(abs(float(r['ratio']) - float(r['ns_per_spring_step']) / float(r['limit_ns'])) <= 2e-3 * float(r['ratio'])
+                  for r in rows), 'bench: ratio, of figures with four digits', rows)
+        check(all((r['verdict'] == 'noisy') == (float(r['spread']) > 0.05) for r in rows if r['spread'] != '0.05'),
+              'bench: noisy is a spread above 0.05', rows)
+        excess = [(r, max(float(r['ratio']) / float(r['goal_ratio']), float(r['ns_per_spring_step']) / float(r['goal_ns'])))
+                  for r in rows if r['verdict'] != 'noisy']
+        check(all((r['verdict'] == 'above_goal') == (x > 1) for r, x in excess if abs(x - 1) > 2e-3),
+              'bench: above_goal is one, to four digits', excess)
+    equal({r['count'] for r in small}, {'1000'}, 'bench: --count')
+    check({'ordinary', 'textbook'} < {r['limit'] for r in small} <= {'ordinary', 'textbook', 'streams', 'arithmetic'},
+          'bench: limits', {r['limit'] for r in small})
+    equal([(r['precision'], int(r['count'])) for r in sizes],
+          [(p, 10**k) for p in ('double', 'float') for k in range(3, 8)], 'bench: counts and precisions')
+    equal([(r['kernel'], r['count'], r['limit']) for r in spring], [('rk4', '1', 'loop')], 'bench: one spring')
+    equal(table(BENCH, '--calls', '1', '--count', '1000'), [], 'bench: --calls measures nothing')
+    result = run(BENCH, '--part', 'scenery')
+    check(result.returncode == 2 and '"scenery"' in result.stderr and 'batch' in result.stderr, 'bench: another part', result)
 
 
 def main():
