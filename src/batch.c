@@ -3,6 +3,7 @@
  * Many springs: checks, choice of the kernel, and what does not fill a group of vectors.
  */
 #include "batch_kernels.h"
+#include "processor.h"
 
 enum { largest_group = 128 }; /* springs: eight vectors of 64 bytes, in float */
 
@@ -77,13 +78,7 @@ static spring_status reason(const batch *b)
 
 static const batch_kernels *best_kernels(void)
 {
-#if SPRING_X86_64
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-        return &BATCH(v512);
-    if (__builtin_cpu_supports("avx2"))
-        return &BATCH(v256);
-#endif
-    return &BATCH(v128);
+    return SPRING_BEST_KERNELS(&BATCH(v128), &BATCH(v256), &BATCH(v512));
 }
 
 /* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the

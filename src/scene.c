@@ -7,18 +7,13 @@
  *           no copy. Without undo there is one frame.
  */
 #include "scene_block.h"
+#include "processor.h"
 
 /* ------------------------------------------------------------------------------------------------------- forces */
 
 static const scene_kernels *best_kernels(void)
 {
-#if SPRING_X86_64
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
-        return &SCENE(v512);
-    if (__builtin_cpu_supports("avx2"))
-        return &SCENE(v256);
-#endif
-    return &SCENE(v128);
+    return SPRING_BEST_KERNELS(&SCENE(v128), &SCENE(v256), &SCENE(v512));
 }
 
 /* Does a(x, v) depend on v by more than drag? */

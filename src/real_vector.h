@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT */
+/* `real` as a vector of SPRING_VECTOR bytes; see real.h. */
+typedef scalar real __attribute__((vector_size(SPRING_VECTOR)));
+typedef scalar_bits truth
+    __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
+
+SPRING_INLINE real splat(scalar s)
+{
+    return s - (real){0}; /* -0.0 stays -0.0 */
+}
+
+/* Not 0 in the lanes that are infinite or NaN. */
+SPRING_INLINE truth not_finite(real a)
+{
+    return (truth)(a - a);
+}
+
+/* Is any bit set? */
+SPRING_INLINE bool any(truth t)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64
+    return _mm512_test_epi64_mask((__m512i)t, (__m512i)t) != 0;
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    return !_mm256_testz_si256((__m256i)t, (__m256i)t);
+#elif SPRING_X86_64
+    return _mm_movemask_epi8(_mm_cmpeq_epi8((__m128i)t, _mm_setzero_si128())) != 0xffff;
+#else
+    uint64_t part[sizeof t / sizeof(uint64_t)], all = 0;
+    memcpy(part, &t, sizeof t);
+    for (size_t i = 0; i < sizeof part / sizeof part[0]; i++)
+        all |= part[i];
+    return all != 0;
+#endif
+}
+
+SPRING_INLINE real select_real(truth t, real a, real b)
+{
+    return (real)((t & (truth)a) | (~t & (truth)b));
+}
+
+/* From a byte a lane, -1 or 0. */
+SPRING_INLINE truth load_truth(const int8_t *p)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
+    return (truth)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 64
+    return (truth)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
+    return (truth)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    int four;
+    memcpy(&four, p, sizeof four);
+    return (truth)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+#else
+    truth t = {0};
+    for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
+        t[i] = p[i];
+    return t;
+#endif
+}
+
+SPRING_INLINE real root(real a)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
+    return (real)_mm512_sqrt_ps((__m512)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 64
+    return (real)_mm512_sqrt_pd((__m512d)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
+    return (real)_mm256_sqrt_ps((__m256)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    return (real)_mm256_sqrt_pd((__m256d)a);
+#elif SPRING_X86_64 && defined(SPRING_FLOAT)
+    return (real)_mm_sqrt_ps((__m128)a);
+#elif SPRING_X86_64
+    return (real)_mm_sqrt_pd((__m128d)a);
+#else
+    scalar each[sizeof a / sizeof(scalar)];
+    memcpy(each, &a, sizeof a);
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
+        each[i] = (scalar)sqrt((double)each[i]); /* rounding twice changes nothing for a square root */
+    memcpy(&a, each, sizeof a);
+    return a;
+#endif
+}
+
+SPRING_INLINE real magnitude(real a)
+{
+    return (real)(~(truth)splat(-(scalar)0) & (truth)a);
+}
