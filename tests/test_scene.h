@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: MIT */
+/* What the tests of scenes share: scenes in memory of their own, models with every feature, and a plain loop over links. */
+#ifndef TEST_SCENE_H
+#define TEST_SCENE_H
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "scene_block.h"
+
+#ifdef SPRING_FLOAT
+#define EPS ((double)FLT_EPSILON)
+#else
+#define EPS DBL_EPSILON
+#endif
+
+enum { all_methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4, kernel_count = 3 };
+
+/* By ascending length of the vectors; NULL: this processor lacks the instructions. */
+SPRING_INLINE const scene_kernels *kernels_of(int i)
+{
+#if SPRING_X86_64
+    if (i == 1)
+        return __builtin_cpu_supports("avx2") ? &SCENE(v256) : NULL;
+    if (i == 2)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &SCENE(v512) : NULL;
+#endif
+    return i == 0 ? &SCENE(v128) : NULL;
+}
+
+/* A scene in memory of its own, to be given to free(). */
+SPRING_INLINE scene *scene_of(const scene_def *def)
+{
+    size_t bytes = 0;
+    CHECK(SCENE(bytes)(def, &bytes) == SPRING_OK && bytes > 0, "a valid definition");
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    scene *s;
+    CHECK(SCENE(init)(memory, bytes, def, &s) == SPRING_OK && (void *)s == memory,
+          "the scene is the block, or a copy of the block would be none");
+    return memory;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- models */
+
+enum { most = 512, most_links = 6000 }; /* particles and links of a model */
+
+/* features of a model, random numbers where there are numbers */
+enum {
+    OWN = 1,      /* each link has its own stiffness and rest length */
+    SHUFFLED = 2, /* no order among the links, and no common direction: no rows */
+    REVERSED = 4, /* links run from the upper particle to the lower */
+    DAMPED = 8,   /* links */
+    STRAY = 16,   /* links between any two particles as well: rows and a list */
+    MASSES = 32,  /* each particle its own */
+    PINNED = 64,  /* some particles, moving */
+    DRAG = 128,
+    GRAVITY = 256,
+    EDITABLE = 512,
+    feature_masks = 1024
+};
+
+typedef struct model {
+    scene_def def;
+    double position[3 * most], velocity[3 * most], mass[most];
+    uint8_t pinned[most];
+    spring_link link[most_links];
+} model;
+
+SPRING_INLINE void reverse(spring_link *link)
+{
+    const uint32_t a = link->a;
+    link->a = link->b;
+    link->b = a;
+}
+
+SPRING_INLINE void shuffle(spring_link *link, size_t count)
+{
+    for (size_t i = count; i > 1; i--) {
+        const size_t j = random_bits() % i;
+        const spring_link other = link[j];
+        link[j] = link[i - 1];
+        link[i - 1] = other;
+        if (random_bits() % 2)
+            reverse(&link[i - 1]);
+    }
+}
+
+/* The links of a grid with all families between particles that lie near the grid, on so many axes. */
+SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsigned features)
+{
+    const spring_grid g = {
+        .count = {count[0], count[1], count[2]},
+        .spacing = 0.7,
+        .stretch = 1.3,
+        .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+        .stiffness = 27.3,
+        .damping = features & DAMPED ? 0.43 : 0,
+    };
+    size_t particles = 0, links = 0;
+    const spring_status size = spring_grid_size(&g, &particles, &links);
+    CHECK(size == SPRING_OK && particles <= most && links <= most_links - 20, "fits into a model");
+    spring_grid_fill(&g, m->position, NULL, m->link);
+    for (size_t i = 0; i < particles; i++) {
+        for (uint32_t a = 0; a < axes; a++) /* in place: axes <= 3, so what is still to be read lies behind */
+            m->position[i * axes + a] = m->position[i * 3 + a] + random_uniform(-0.2, 0.2);
+        m->mass[i] = random_log(0.3, 5);
+        m->pinned[i] = random_bits() % 5 == 0;
+    }
+    for (size_t i = 0; i < particles * axes; i++)
+        m->velocity[i] = random_uniform(-1, 1);
+    for (size_t i = 0; i < links; i++) {
+        spring_link *link = &m->link[i];
+        if (features & OWN) {
+            link->rest = random_uniform(0, 1);
+            link->stiffness = random_log(3, 60);
+            link->damping = features & DAMPED && random_bits() % 2 ? random_uniform(0, 0.6) : 0;
+        }
+        if (features & REVERSED)
+            reverse(link);
+    }
+    for (size_t i = 0; i < 20 && features & STRAY && particles > 1; i++) {
+        const uint32_t one = (uint32_t)(random_bits() % particles);
+        const uint32_t other = (uint32_t)(random_bits() % (particles - 1));
+        m->link[links++] = (spring_link){one, other < one ? other : other + 1, 0.8, 9.7, m->link[0].damping};
+    }
+    if (features & SHUFFLED)
+        shuffle(m->link, links);
+    m->def = (scene_def){
+        .axes = axes,
+        .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
+        .methods = all_methods,
+        .particles = particles,
+        .links = links,
+        .position = m->position,
+        .velocity = m->velocity,
+        .mass = features & MASSES ? m->mass : NULL,
+        .mass_all = 1.7,
+        .pinned = features & PINNED ? m->pinned : NULL,
+        .link = m->link,
+        .gravity = {features & GRAVITY ? 1.1 : 0, features & GRAVITY ? -9.81 : 0,
+                    features & GRAVITY ? 0.4 : 0},
+        .drag = features & DRAG ? 0.37 : 0,
+    };
+}
+
+SPRING_INLINE double mass_in(const scene_def *def, size_t i)
+{
+    return def->mass != NULL ? def->mass[i] : def->mass_all == 0 ? 1 : def->mass_all;
+}
+
+SPRING_INLINE bool pinned_in(const scene_def *def, size_t i)
+{
+    return def->pinned != NULL && def->pinned[i] != 0;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- states */
+
+typedef struct state {
+    double x[3 * most], v[3 * most];
+} state;
+
+SPRING_INLINE void get_state(const scene *s, size_t particles, state *y)
+{
+    CHECK(SCENE(get)(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
+              SCENE(get)(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
+          "the whole state");
+}
+
+SPRING_INLINE void set_state(scene *s, size_t particles, const state *y)
+{
+    CHECK(SCENE(set)(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
+              SCENE(set)(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
+          "the whole state");
+}
+
+/* Positions and velocities of two scenes of equal size, to the bit. */
+SPRING_INLINE bool same_bits(const scene *s, const scene *other, size_t particles, uint32_t axes)
+{
+    static state a, b;
+    get_state(s, particles, &a);
+    get_state(other, particles, &b);
+    return memcmp(a.x, b.x, particles * axes * sizeof a.x[0]) == 0 &&
+           memcmp(a.v, b.v, particles * axes * sizeof a.v[0]) == 0;
+}
+
+SPRING_INLINE bool all_finite(const scene *s, size_t particles, uint32_t axes)
+{
+    static state y;
+    get_state(s, particles, &y);
+    for (size_t i = 0; i < particles * axes; i++)
+        if (!isfinite(y.x[i]) || !isfinite(y.v[i]))
+            return false;
+    return true;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- a plain loop */
+
+/* What a link does, from its definition in scene.h. On one axis length and rate are those from a to b. */
+typedef struct drawn_link {
+    double way[3], length, rate, tension;
+} drawn_link;
+
+SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
+{
+    drawn_link d = {{0}, 0, 0, 0};
+    double square = 0, product = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        d.way[a] = x[link->b * axes + a] - x[link->a * axes + a];
+        square += d.way[a] * d.way[a];
+        product += d.way[a] * (v[link->b * axes + a] - v[link->a * axes + a]);
+    }
+    d.length = axes == 1 ? d.way[0] : sqrt(square);
+    d.rate = d.length != 0 ? product / d.length : axes == 1 ? v[link->b] - v[link->a] : 0;
+    d.tension = (double)(scalar)link->stiffness * (d.length - (double)(scalar)link->rest) +
+                (double)(scalar)link->damping * d.rate;
+    return d;
+}
+
+/* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) + damping
+   |relative velocity|, what the rounding errors of its force are relative to. size may be NULL. */
+SPRING_INLINE void plain_forces(const scene_def *def, uint32_t axes, const double *x, const double *v,
+                                double *force, double *size)
+{
+    for (size_t i = 0; i < def->links; i++) {
+        const spring_link *link = &def->link[i];
+        const drawn_link d = draw_link(link, axes, x, v);
+        for (uint32_t a = 0; a < axes; a++) {
+            const double f = axes == 1 ? d.tension : d.length > 0 ? d.tension * d.way[a] / d.length : 0;
+            force[link->a * axes + a] += f;
+            force[link->b * axes + a] -= f;
+        }
+        if (size == NULL)
+            continue;
+        double relative = 0;
+        for (uint32_t a = 0; a < axes; a++)
+            relative = hypot(relative, v[link->b * axes + a] - v[link->a * axes + a]);
+        const double larger = link->stiffness * (fabs(d.length) + 2 * link->rest) + link->damping * relative;
+        size[link->a] += larger;
+        size[link->b] += larger;
+    }
+}
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT */
+/* Forces of links: against a plain loop, in rows and lists, with every instruction set; tension, energies, rest. */
+#include "test_scene.h"
+
+/* ------------------------------------------------------------------------------------------------ against a plain loop */
+
+typedef struct seen {
+    uint32_t axes;
+    double force[3 * most];
+} seen;
+
+/* A callback that only looks: the forces of the links are there when it is called. */
+static void look(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                 scalar *const force[3])
+{
+    (void)t, (void)x, (void)v;
+    seen *all = user;
+    for (size_t i = 0; i < particles; i++)
+        for (uint32_t a = 0; a < all->axes; a++)
+            all->force[i * all->axes + a] = (double)force[a][i];
+}
+
+static void check_forces(model *m, const scene_kernels *kernels)
+{
+    static seen all;
+    static state y;
+    static double force[3 * most], size[most];
+    static unsigned degree[most];
+    const uint32_t axes = all.axes = m->def.axes;
+    const size_t particles = m->def.particles;
+    m->def.force = look;
+    m->def.user = &all;
+    scene *s = scene_of(&m->def);
+    get_state(s, particles, &y);
+    CHECK(SCENE(advance_with)(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
+    memset(force, 0, sizeof force);
+    memset(size, 0, sizeof size);
+    memset(degree, 0, sizeof degree);
+    plain_forces(&m->def, axes, y.x, y.v, force, size);
+    for (size_t i = 0; i < m->def.links; i++) {
+        degree[m->def.link[i].a]++;
+        degree[m->def.link[i].b]++;
+    }
+    for (size_t i = 0; i < particles; i++)
+        for (uint32_t a = 0; a < axes; a++)
+            CHECK_CLOSE(all.force[i * axes + a], force[i * axes + a], (15 + degree[i]) * EPS * size[i],
+                        "15 roundings of half an eps in each link here and there, and one for each sum");
+    free(s);
+    m->def.force = NULL;
+}
+
+static const uint32_t grids[][3] = {{23, 1, 1}, {2, 9, 1}, {3, 17, 1}, {13, 11, 1}, {5, 4, 7}, {17, 2, 3}};
+static const size_t grid_count = sizeof grids / sizeof grids[0];
+
+static void against_a_plain_loop(void)
+{
+    static model m;
+    size_t with_rows = 0, with_list = 0, with_both = 0;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (size_t g = 0; g < grid_count; g++)
+            for (unsigned features = 0; features < MASSES; features++) {
+                build(&m, grids[g], axes, features);
+                scene *s = scene_of(&m.def);
+                with_rows += s->plan.rows > 0 && s->plan.list_links == 0;
+                with_list += s->plan.rows == 0;
+                with_both += s->plan.rows > 0 && s->plan.list_links > 0;
+                free(s);
+                for (int k = 0; k < kernel_count; k++)
+                    if (kernels_of(k) != NULL)
+                        check_forces(&m, kernels_of(k));
+            }
+    CHECK(with_rows > 0 && with_list > 0 && with_both > 0, "rows, lists, and both together have been tried");
+}
+
+/* The vectors at the ends of the arrays. */
+static void few_particles(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (uint32_t n = 1; n <= 40; n++)
+            for (unsigned features = 0; features < MASSES; features += 3) {
+                build(&m, (uint32_t[]){n, 1, 1}, axes, features);
+                for (int k = 0; k < kernel_count; k++)
+                    if (kernels_of(k) != NULL)
+                        check_forces(&m, kernels_of(k));
+            }
+}
+
+/* On one axis a link is a linear spring, with a direction. */
+static void one_axis_direction(void)
+{
+    for (unsigned reversed = 0; reversed < 2; reversed++)
+        for (size_t links = 1; links <= 9; links += 8) { /* in a list, in a row */
+            spring_link link[9];
+            double x[10];
+            for (uint32_t i = 0; i < 10; i++)
+                x[i] = 0.3 * i;
+            for (uint32_t i = 0; i < 9; i++) {
+                link[i] = (spring_link){i, i + 1, 0.7, 5.3, 0};
+                if (reversed)
+                    reverse(&link[i]);
+            }
+            const scene_def def = {
+                .axes = 1, .particles = 10, .links = links, .position = x, .link = link, .mass_all = 2.3};
+            scene *s = scene_of(&def);
+            const double stretch = reversed ? -0.3 - 0.7 : 0.3 - 0.7; /* (x_b - x_a) - rest */
+            CHECK_CLOSE(SCENE(tension)(s, 0), 5.3 * stretch, 8 * EPS,
+                        "a handful of roundings of numbers below 10");
+            double v;
+            SCENE(advance)(s, SPRING_EULER, 0.01, 1);
+            SCENE(get)(s, SPRING_VELOCITY, &v, 0, 0, 1);
+            const double pull = (reversed ? -1 : 1) * 5.3 * stretch;
+            CHECK_CLOSE(v, 0.01 * pull / 2.3, EPS, "a few roundings of numbers below 0.1");
+            free(s);
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ bits */
+
+static void same_with_all_kernels(const model *m, spring_method method)
+{
+    scene *first = scene_of(&m->def);
+    CHECK(SCENE(advance_with)(kernels_of(0), first, method, 0.004, 12) == SPRING_OK, "stable");
+    for (int k = 1; k < kernel_count; k++)
+        if (kernels_of(k) != NULL) {
+            scene *s = scene_of(&m->def);
+            SCENE(advance_with)(kernels_of(k), s, method, 0.004, 12);
+            CHECK(same_bits(s, first, m->def.particles, m->def.axes), "lane by lane the same operations");
+            free(s);
+        }
+    free(first);
+}
+
+static void same_bits_everywhere(void)
+{
+    static model m;
+    if (kernels_of(1) == NULL || kernels_of(2) == NULL)
+        skip("this processor lacks AVX2 or AVX-512");
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < feature_masks; features++) {
+            build(&m, grids[features % grid_count], axes, features);
+            same_with_all_kernels(&m, (spring_method)(features % 3));
+            const uint32_t n = features % 40 + 1;
+            build(&m, (uint32_t[]){n, 1, 1}, axes, features);
+            same_with_all_kernels(&m, (spring_method)((features + 1) % 3));
+        }
+}
+
+static void edit_and_public_function(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < EDITABLE; features += 7) {
+            build(&m, grids[3], axes, features);
+            scene *s = scene_of(&m.def);
+            m.def.flags = SPRING_SCENE_EDITABLE;
+            scene *editable = scene_of(&m.def);
+            SCENE(advance)(s, SPRING_LEAPFROG, 0.004, 9);
+            SCENE(advance_with)(kernels_of(0), editable, SPRING_LEAPFROG, 0.004, 9);
+            CHECK(same_bits(s, editable, m.def.particles, axes), "where the numbers lie changes nothing");
+            free(s);
+            free(editable);
+        }
+}
+
+/* --------------------------------------------------------------------------------------------------- zero length */
+
+static void zero_length(void)
+{
+    static model m;
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (unsigned features = 0; features < MASSES; features++)
+            for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
+                build(&m, grids[0], axes, features);
+                for (size_t i = 0; i < m.def.particles * axes; i++)
+                    m.position[i] = 0.25; /* all collapsed into one point */
+                scene *s = scene_of(&m.def);
+                static state before, after;
+                get_state(s, m.def.particles, &before);
+                CHECK(SCENE(advance)(s, SPRING_EULER, 0.01, 1) == SPRING_OK, "no direction, no force");
+                get_state(s, m.def.particles, &after);
+                CHECK(memcmp(before.v, after.v, m.def.particles * axes * sizeof after.v[0]) == 0,
+                      "no direction, no force");
+                set_state(s, m.def.particles, &before);
+                CHECK(SCENE(advance)(s, (spring_method)method, 0.004, 50) == SPRING_OK &&
+                          all_finite(s, m.def.particles, axes),
+                      "and off they fly");
+                free(s);
+            }
+}
+
+/* ------------------------------------------------------------------------------------------ tension, energies, rest */
+
+static void tension_and_energies(void)
+{
+    static model m;
+    static state y;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < feature_masks; features += 5) {
+            build(&m, grids[features % grid_count], axes, features);
+            scene *s = scene_of(&m.def);
+            get_state(s, m.def.particles, &y);
+            double kinetic = 0, gravity = 0, elastic = 0, all = 0, heights = 0;
+            for (size_t i = 0; i < m.def.particles; i++)
+                for (uint32_t a = 0; a < axes && !pinned_in(&m.def, i); a++) {
+                    const double mass = mass_in(&m.def, i), height = y.x[i * axes + a];
+                    kinetic += mass * y.v[i * axes + a] * y.v[i * axes + a] / 2;
+                    gravity -= mass * m.def.gravity[a] * height;
+                    heights += fabs(mass * m.def.gravity[a] * height);
+                }
+            for (size_t i = 0; i < m.def.links; i++) {
+                const spring_link *link = &m.def.link[i];
+                const drawn_link d = draw_link(link, axes, y.x, y.v);
+                const double extension = d.length - link->rest, size = fabs(d.length) + link->rest;
+                elastic += link->stiffness * extension * extension / 2;
+                all += link->stiffness * size * size / 2;
+                CHECK_CLOSE(SCENE(tension)(s, i), d.tension,
+                            8 * EPS * (link->stiffness * size + 2 * link->damping),
+                            "eight roundings, velocities below 1");
+            }
+            const spring_scene_energies e = SCENE(energy)(s);
+            const double sums = (double)(m.def.particles + m.def.links) * DBL_EPSILON;
+            CHECK_CLOSE(e.kinetic, kinetic, (8 * EPS + sums) * kinetic, "eight roundings and the sum's");
+            CHECK_CLOSE(e.gravity, gravity, (8 * EPS + sums) * heights, "eight roundings and the sum's");
+            CHECK_CLOSE(e.elastic, elastic, (8 * EPS + sums) * all, "eight roundings and the sum's");
+            free(s);
+        }
+}
+
+static void at_rest(void)
+{
+    /* A weight on a spring, where it hangs still: k (length - rest) = m g. */
+    const double k = 27, mass = 2.5, g = -8, rest = 0.5, drop = mass * -g / k;
+    const double hanging[] = {0, 0, 0, 0, -rest - drop, 0};
+    const uint8_t pinned[] = {1, 0};
+    const double masses[] = {0, mass};
+    const spring_link link = {0, 1, rest, k, 0};
+    const scene_def def = {.particles = 2,
+                           .links = 1,
+                           .position = hanging,
+                           .mass = masses,
+                           .pinned = pinned,
+                           .link = &link,
+                           .gravity = {0, g, 0}};
+    scene *s = scene_of(&def);
+    const double rounding = 8 * EPS * -g * (rest + drop) / drop; /* of the acceleration */
+    CHECK(SCENE(at_rest)(s, 0, rounding), "it hangs still");
+    const double moved[] = {0, -rest - drop - 0.01, 0}, a = k * 0.01 / mass;
+    SCENE(set)(s, SPRING_POSITION, moved, 0, 1, 1);
+    CHECK(SCENE(at_rest)(s, 0, a * (1 + 1e-3)) && !SCENE(at_rest)(s, 1, a * (1 - 1e-3)), "k 0.01 m / m");
+    SCENE(set)(s, SPRING_POSITION, hanging + 3, 0, 1, 1);
+    const double v[] = {0.3, 0, -0.4};
+    SCENE(set)(s, SPRING_VELOCITY, v, 0, 1, 1);
+    CHECK(SCENE(at_rest)(s, 0.5 * (1 + 4 * EPS), rounding) && !SCENE(at_rest)(s, 0.49, 1), "0.5 m/s");
+    const double still[] = {0, 0, 0};
+    SCENE(set)(s, SPRING_VELOCITY, still, 0, 1, 1);
+    SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, 1);
+    CHECK(!SCENE(at_rest)(s, 0.49, 1) && SCENE(at_rest)(s, 0.51, rounding), "a pin that moves is no rest");
+    CHECK(!SCENE(at_rest)(NULL, 1, 1) && !SCENE(at_rest)(s, -1, 1) && !SCENE(at_rest)(s, 1, NAN),
+          "bad input");
+    free(s);
+}
+
+static void at_rest_with_drag(void)
+{
+    const double x[] = {0, 0}, v[] = {3, -1}; /* drag 0.6 on 1.5 kg: 0.4/s times hypot(3, 1) m/s */
+    const scene_def def = {
+        .axes = 2, .particles = 1, .position = x, .velocity = v, .mass_all = 1.5, .drag = 0.6};
+    scene *s = scene_of(&def);
+    const double speed = hypot(3, 1);
+    CHECK(SCENE(at_rest)(s, speed * 1.001, 0.4 * speed * 1.001) &&
+              !SCENE(at_rest)(s, speed * 1.001, 0.4 * speed * 0.999) &&
+              !SCENE(at_rest)(s, speed * 0.999, 0.4 * speed * 1.001),
+          "drag is an acceleration");
+    free(s);
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"forces against a plain loop", against_a_plain_loop},
+        {"1 to 40 particles", few_particles},
+        {"one axis has a direction", one_axis_direction},
+        {"the same bits with every instruction set", same_bits_everywhere},
+        {"editable scenes have the same bits", edit_and_public_function},
+        {"links of length zero", zero_length},
+        {"tension and energies", tension_and_energies},
+        {"at rest", at_rest},
+        {"at rest with drag", at_rest_with_drag},
+    };
+    return RUN_TESTS("scene_forces", tests);
+}
