@@ -1,0 +1,511 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The catalogue of hard scenes; see scenes.h.
+ *
+ * Digits at the end of nonlinear cases were computed in quadruple precision, twice, with steps of different length. Of
+ * cases that fix k = m = 1 the mass is another, and the forces are as many times larger.
+ *
+ * Largest steps are such that the errors follow their power law: over the whole run the fastest mode is out of phase by
+ * less than a tenth, and Euler's method amplifies by less than e. They are powers of two where a force depends on time.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "harness/reference.h"
+#include "harness/scenes.h"
+
+static const double mass = 1.3;                  /* [kg] */
+static const double pi = 3.14159265358979323846; /* */
+
+static void *room(size_t count, size_t size)
+{
+    void *array = calloc(count + 1, size);
+    if (array == NULL)
+        exit(EXIT_FAILURE);
+    return array;
+}
+
+/* At the origin, at rest, not pinned; the mass of all is `mass`. */
+static void make(scene_problem *p, uint32_t axes, size_t particles, size_t links)
+{
+    p->position = room(axes * particles, sizeof *p->position);
+    p->velocity = room(axes * particles, sizeof *p->velocity);
+    p->mass = room(particles, sizeof *p->mass);
+    p->pinned = room(particles, sizeof *p->pinned);
+    p->link = room(links, sizeof *p->link);
+    for (size_t i = 0; i < particles; i++)
+        p->mass[i] = mass;
+    p->def = (spring_scene_def){.axes = axes,
+                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+                                .particles = particles,
+                                .links = links,
+                                .position = p->position,
+                                .velocity = p->velocity,
+                                .mass_all = mass,
+                                .pinned = p->pinned,
+                                .link = p->link};
+}
+
+/* Particles of different mass. */
+static void weigh(scene_problem *p, size_t i, double kilograms)
+{
+    p->mass[i] = kilograms;
+    p->def.mass = p->mass;
+}
+
+/* One coordinate that moves, held to 0 by a link (to particle 1, pinned) unless the stiffness is 0. */
+static void make_one(scene_problem *p, double x, double v, double stiffness)
+{
+    make(p, 1, 2, stiffness > 0);
+    p->position[0] = x;
+    p->velocity[0] = v;
+    p->pinned[1] = true;
+    p->link[0] = (spring_link){0, 1, 0, stiffness, 0};
+}
+
+/* -------------------------------------------------------------------------------------- systems with a callback */
+
+typedef const double *const *state_arrays;
+typedef double *const *force_arrays;
+
+static void cubic(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
+{
+    (void)user, (void)t, (void)particles, (void)v;
+    force[0][0] -= mass * x[0][0] * x[0][0] * x[0][0];
+}
+
+static void build_duffing(const scene_case *c, scene_problem *p) /* x'' = -x - x^3 */
+{
+    (void)c;
+    make_one(p, 1, 0, mass);
+    p->def.force = cubic;
+    p->def.flags = SPRING_SCENE_FORCE_STILL;
+}
+
+static void gravity_on_a_circle(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                                force_arrays force)
+{
+    (void)user, (void)t, (void)particles, (void)v;
+    force[0][0] -= mass * sin(x[0][0]);
+}
+
+static void build_pendulum(const scene_case *c, scene_problem *p) /* x'' = -sin x */
+{
+    (void)c;
+    make_one(p, 3, 0, 0);
+    p->def.force = gravity_on_a_circle;
+}
+
+static void cubic_driven(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                         force_arrays force)
+{
+    cubic(user, t, particles, x, v, force);
+    force[0][0] += mass * 7.5 * cos(t);
+}
+
+static void build_chaotic(const scene_case *c, scene_problem *p) /* x'' = -0.05 x' - x^3 + 7.5 cos t */
+{
+    (void)c;
+    make_one(p, 3, 4, 0);
+    p->def.drag = 0.05 * mass;
+    p->def.force = cubic_driven;
+    p->def.flags = SPRING_SCENE_FORCE_STILL;
+}
+
+static void van_der_pol(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                        force_arrays force)
+{
+    const double *mu = user;
+    (void)t, (void)particles;
+    force[0][0] += mass * *mu * (1 - x[0][0] * x[0][0]) * v[0][0];
+}
+
+static void build_van_der_pol(const scene_case *c, scene_problem *p) /* x'' = mu (1 - x^2) x' - x */
+{
+    static double mu[] = {1, 5};
+    make_one(p, 2, 0, mass);
+    p->def.force = van_der_pol;
+    p->def.user = &mu[c->count > 1];
+}
+
+static void resonant(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                     force_arrays force)
+{
+    (void)user, (void)particles, (void)x, (void)v;
+    force[0][0] += mass * 0.7 * cos(t);
+}
+
+static void build_resonance(const scene_case *c, scene_problem *p) /* x'' = -x + 0.7 cos t */
+{
+    (void)c;
+    make_one(p, 0, 0, mass);
+    p->def.force = resonant;
+    p->def.flags = SPRING_SCENE_FORCE_STILL;
+}
+
+static void solve_resonance(const scene_case *c, const scene_problem *p, double *y)
+{
+    const double t = c->duration;
+    (void)p;
+    y[0] = 0.35 * t * sin(t);
+    y[1] = 0.35 * (sin(t) + t * cos(t));
+}
+
+/* Two angles from the vertical, unit rods, equal masses: the mass matrix depends on the angles, the forces on velocities. */
+static void double_pendulum(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                            force_arrays force)
+{
+    (void)user, (void)t, (void)particles;
+    const double g = 9.81, one = x[0][0], two = x[0][1], w1 = v[0][0] * v[0][0], w2 = v[0][1] * v[0][1];
+    const double between = one - two, S = 2 * sin(between), C = cos(between), inertia = 3 - cos(2 * between);
+    force[0][0] -= mass * (g * (3 * sin(one) + sin(one - 2 * two)) + S * (w2 + w1 * C)) / inertia;
+    force[0][1] += mass * S * (2 * w1 + 2 * g * cos(one) + w2 * C) / inertia;
+}
+
+static void build_double_pendulum(const scene_case *c, scene_problem *p)
+{
+    (void)c;
+    make(p, 1, 2, 0);
+    p->position[0] = p->position[1] = pi / 2;
+    p->def.force = double_pendulum;
+}
+
+/* The potential (q_2i+1 - q_2i)^4 between pairs and to the walls: Fermi, Pasta, Ulam as in Hairer, Lubich, Wanner,
+   Geometric Numerical Integration (2006), section I.5.1. */
+static void soft_quartic(void *user, double t, size_t particles, state_arrays x, state_arrays v,
+                         force_arrays force)
+{
+    (void)user, (void)t, (void)v;
+    for (size_t i = 0; i <= particles; i += 2) {
+        const double left = i > 0 ? x[0][i - 1] : 0, right = i < particles ? x[0][i] : 0;
+        const double pull = 4 * mass * pow(right - left, 3);
+        if (i > 0)
+            force[0][i - 1] += pull;
+        if (i < particles)
+            force[0][i] -= pull;
+    }
+}
+
+static void build_stiff_and_soft(const scene_case *c, scene_problem *p)
+{
+    const double omega = 50;
+    (void)c;
+    make(p, 1, 6, 3);
+    for (uint32_t i = 0; i < 3; i++)
+        p->link[i] = (spring_link){2 * i, 2 * i + 1, 0, mass * omega * omega / 2, 0};
+    p->position[0] = (1 - 1 / omega) / sqrt(2);
+    p->position[1] = (1 + 1 / omega) / sqrt(2);
+    p->velocity[1] = sqrt(2);
+    p->def.force = soft_quartic;
+    p->def.flags = SPRING_SCENE_FORCE_STILL;
+}
+
+/* --------------------------------------------------------------------------------------------- scenes of links */
+
+static void build_elastic_pendulum(const scene_case *c, scene_problem *p)
+{
+    (void)c;
+    make(p, 2, 2, 1);
+    p->pinned[0] = true;
+    p->position[2] = 1.2;
+    p->position[3] = -0.1;
+    p->velocity[2] = -0.3;
+    p->velocity[3] = 0.4;
+    p->link[0] = (spring_link){0, 1, 1, 52, 0};
+    p->def.gravity[1] = -9.81;
+}
+
+/* A row of particles in the plane, the first one pinned, each half as far down as across. */
+static void make_row(scene_problem *p, size_t particles, double spacing, double stretch)
+{
+    make(p, 2, particles, particles - 1);
+    p->pinned[0] = true;
+    for (uint32_t i = 0; i < particles; i++) {
+        p->position[2 * i] = 0.6 * spacing * stretch * i;
+        p->position[2 * i + 1] = -0.8 * spacing * stretch * i;
+        if (i > 0)
+            p->link[i - 1] = (spring_link){i - 1, i, spacing, 0, 0};
+    }
+    p->def.gravity[1] = -9.81;
+}
+
+static void build_rope(const scene_case *c, scene_problem *p)
+{
+    const double light = 1e-3, heavy = 10; /* [kg] */
+    (void)c;
+    make_row(p, 12, 0.1, 1.08);
+    for (size_t i = 0; i + 1 < p->def.particles; i++) {
+        weigh(p, i, light);
+        p->link[i].stiffness = 1e4;
+    }
+    weigh(p, p->def.particles - 1, heavy);
+}
+
+static void build_stiffness_ratio(const scene_case *c, scene_problem *p)
+{
+    (void)c;
+    make_row(p, 8, 0.5, 1.01);
+    for (size_t i = 0; i < p->def.links; i++)
+        p->link[i].stiffness = i % 2 == 0 ? 2.7e6 : 2.7;
+}
+
+static void make_grid(scene_problem *p, const spring_grid *g)
+{
+    size_t particles, links;
+    if (spring_grid_size(g, &particles, &links) != SPRING_OK)
+        exit(EXIT_FAILURE);
+    make(p, g->height ? 1 : g->axes, particles, links);
+    spring_grid_fill(g, p->position, p->pinned, p->link);
+}
+
+static void build_cloth(const scene_case *c, scene_problem *p)
+{
+    const spring_grid g = {.count = {5, 5, 1},
+                           .axes = 3,
+                           .spacing = 0.2,
+                           .stretch = 1.02,
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+                           .stiffness = 500,
+                           .damping = 0.4,
+                           .pinned = SPRING_GRID_FIRST_Y};
+    (void)c;
+    make_grid(p, &g);
+    p->def.gravity[1] = -2;
+    p->def.gravity[2] = -9.5;
+    p->def.drag = 0.3;
+}
+
+static void build_water(const scene_case *c, scene_problem *p)
+{
+    const spring_grid g = {.count = {7, 7, 1},
+                           .height = true,
+                           .spacing = 0.2,
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+                           .stiffness = 25,
+                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
+                                     SPRING_GRID_LAST_Y};
+    (void)c;
+    make_grid(p, &g);
+    for (size_t i = 0; i < p->def.particles; i++)
+        if (!p->pinned[i]) {
+            p->position[i] = 0.1 * exp(-0.5 * (double)((i - 16) * (i - 16)));
+            p->velocity[i] = 0.5 * sin(1.7 * (double)i);
+        }
+    p->def.drag = 0.5;
+}
+
+/* ------------------------------------------------------------------------------------------------ linear scenes */
+
+/* n steps of one mode, x'' = -omega^2 x: a rotation and a growth in (x, v/scale), facts of the step's two eigenvalues. */
+static void mode_steps(spring_method m, long double omega, long double h, uint64_t n, long double *x,
+                       long double *v)
+{
+    const long double z = omega * h, N = (long double)n;
+    long double scale = omega, angle, growth = 1;
+    if (omega == 0) {
+        *x += N * h * *v;
+        return;
+    }
+    if (m == SPRING_EULER) { /* (1 - i z)^n */
+        angle = N * atanl(z);
+        growth = expl(N / 2 * log1pl(z * z));
+    } else if (m == SPRING_LEAPFROG) {
+        angle = N * 2 * asinl(z / 2);
+        scale *= sqrtl(1 - z * z / 4);
+    } else { /* (1 - z^2/2 + z^4/24 - i (z - z^3/6))^n */
+        const long double zz = z * z;
+        angle = N * atan2l(z * (1 - zz / 6), 1 - zz / 2 + zz * zz / 24);
+        growth = expl(N / 2 * log1pl(zz * zz * zz * (zz / 8 - 1) / 72));
+    }
+    const long double C = growth * cosl(angle), S = growth * sinl(angle), x0 = *x;
+    *x = C * x0 + S * *v / scale;
+    *v = C * *v - S * scale * x0;
+}
+
+static const double chain_stiffness = 2.7, chain_spacing = 0.5; /* [N/m], [m] */
+
+/* Equal masses between two walls. */
+static void build_chain(const scene_case *c, scene_problem *p)
+{
+    const size_t n = c->count;
+    make(p, 1, n + 2, n + 1);
+    p->pinned[0] = p->pinned[n + 1] = true;
+    for (uint32_t i = 0; i < n + 2; i++) {
+        const bool inside = !p->pinned[i];
+        p->position[i] = chain_spacing * i + (inside ? 0.1 * sin(1.7 * i) : 0);
+        p->velocity[i] = inside ? 0.15 * cos(2.3 * i) : 0;
+        if (i > 0)
+            p->link[i - 1] = (spring_link){i - 1, i, chain_spacing, chain_stiffness, 0};
+    }
+}
+
+/* omega_j = 2 sqrt(k/m) sin(j pi/(2 (n + 1))), shape sin(i j pi/(n + 1)). */
+static void chain_modes(const scene_case *c, const scene_problem *p, spring_method m, double h,
+                        uint64_t steps, double *y)
+{
+    const size_t n = c->count, period = 2 * (n + 1);
+    const long double quarter = 2 * atanl(1), highest = 2 * sqrtl((long double)chain_stiffness / mass);
+    long double *sine = room(period, sizeof *sine), *end = room(2 * n, sizeof *end);
+    for (size_t i = 0; i < period; i++)
+        sine[i] = sinl(2 * quarter * (long double)i / (long double)(n + 1));
+    for (size_t j = 1; j <= n; j++) {
+        long double x = 0, v = 0;
+        for (size_t i = 1; i <= n; i++) {
+            x += sine[i * j % period] * (p->position[i] - chain_spacing * (long double)i);
+            v += sine[i * j % period] * p->velocity[i];
+        }
+        mode_steps(m, highest * sinl(quarter * (long double)j / (long double)(n + 1)), h, steps, &x, &v);
+        for (size_t i = 1; i <= n; i++) {
+            end[i - 1] += sine[i * j % period] * x;
+            end[n + i - 1] += sine[i * j % period] * v;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        y[i] = (double)(chain_spacing * (long double)(i + 1) + end[i] * 2 / (long double)(n + 1));
+        y[n + i] = (double)(end[n + i] * 2 / (long double)(n + 1));
+    }
+    free(sine);
+    free(end);
+}
+
+/* Two particles and a link; all that moves moves along the way from one to the other, or with both. */
+static const double pair_mass[] = {1.3, 0.4}, pair_stiffness = 2.7, pair_rest = 1.25; /* [kg], [N/m], [m] */
+static const double pair_way[] = {0.5, 1, 1}, pair_length = 1.5; /* [m] exactly: without rotation */
+static const double pair_rate = -0.75;                           /* [m/s] of the length */
+static const double pair_drift[] = {0.3, -0.2, 0.1};             /* [m/s] of the first particle */
+
+static void build_pair(const scene_case *c, scene_problem *p)
+{
+    const uint32_t axes = (uint32_t)c->count;
+    make(p, axes, 2, 1);
+    for (uint32_t d = 0; d < axes; d++) {
+        const double along = axes == 1 ? 1 : pair_way[d] / pair_length;
+        p->position[axes + d] = axes == 1 ? pair_length : pair_way[d];
+        p->velocity[d] = pair_drift[d];
+        p->velocity[axes + d] = pair_drift[d] + pair_rate * along;
+    }
+    for (size_t i = 0; i < 2; i++)
+        weigh(p, i, pair_mass[i]);
+    p->link[0] = (spring_link){0, 1, pair_rest, pair_stiffness, 0};
+}
+
+static void build_damped_pair(const scene_case *c, scene_problem *p)
+{
+    build_pair(c, p);
+    p->link[0].damping = 0.4;
+}
+
+/* Both from the extension of the link and its rate, and the centre of mass. */
+static void place_pair(const scene_case *c, const scene_problem *p, long double t, long double x,
+                       long double v, double *y)
+{
+    const size_t axes = c->count;
+    const long double share = pair_mass[1] / ((long double)pair_mass[0] + pair_mass[1]);
+    for (size_t d = 0; d < axes; d++) {
+        const long double along = axes == 1 ? 1 : pair_way[d] / (long double)pair_length;
+        const long double drift = p->velocity[d] + share * pair_rate * along;
+        const long double centre = p->position[d] + share * pair_length * along + drift * t;
+        const long double way = (pair_rest + x) * along, rate = v * along;
+        y[d] = (double)(centre - share * way);
+        y[axes + d] = (double)(centre + (1 - share) * way);
+        y[2 * axes + d] = (double)(drift - share * rate);
+        y[3 * axes + d] = (double)(drift + (1 - share) * rate);
+    }
+}
+
+static void iterate_pair(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
+                         double *y)
+{
+    const long double inverse = 1 / (long double)pair_mass[0] + 1 / (long double)pair_mass[1];
+    long double x = (long double)pair_length - pair_rest, v = pair_rate;
+    mode_steps(m, sqrtl(pair_stiffness * inverse), h, n, &x, &v);
+    place_pair(c, p, (long double)n * h, x, v, y);
+}
+
+static void solve_damped_pair(const scene_case *c, const scene_problem *p, double *y)
+{
+    const spring_params reduced = {1 / (1 / pair_mass[0] + 1 / pair_mass[1]), pair_stiffness,
+                                   p->link[0].damping, 0};
+    reference truth;
+    reference_init(&truth);
+    reference_start(&truth, &reduced, (spring_state){pair_length - pair_rest, pair_rate});
+    reference_exact(&truth, &reduced, c->duration);
+    place_pair(c, p, c->duration, mpfr_get_ld(truth.x, MPFR_RNDN), mpfr_get_ld(truth.v, MPFR_RNDN), y);
+    reference_clear(&truth);
+}
+
+/* ------------------------------------------------------------------------------------------------ the catalogue */
+
+#define STEPS(euler, leapfrog, rk4) .steps = {euler, leapfrog, rk4}
+#define CHAIN(n, first, last)                                                                              \
+    .build = build_chain, .count = n, .duration = 16, STEPS(1024, 512, 512), .omega = 1.44, .length = 0.1, \
+    .closed = "modes", .iterate = chain_modes, .slowest = first, .fastest = last
+
+const scene_case scene_cases[] = {
+    /* callbacks, with digits known */
+    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32), .omega = 1,
+     .length = 1, .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .peers = true},
+    {"duffing-period", "the same for one period, back to the start", build_duffing,
+     .duration = 4.768022029102460806304518, STEPS(4096, 512, 128), .omega = 1, .length = 1, .callback = 1,
+     .known = 2, .digits = {1, 0}},
+    {"pendulum", "a pendulum that starts next to its highest point", build_pendulum, .duration = 10,
+     STEPS(10240, 1280, 320), .omega = 1, .length = 3, .callback = 1, .known = 1,
+     .digits = {-2.650674563598209613232602}, .peers = true},
+    {"pendulum-period", "the same for one period, past the highest point", build_pendulum,
+     .duration = 16.15553937239337476376028, STEPS(65536, 2048, 512), .omega = 1, .length = 3, .callback = 1,
+     .known = 2, .digits = {3, 0}},
+    {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 2560),
+     .omega = 1, .length = 4, .callback = 100, .known = 2,
+     .digits = {-0.92175345784461174225, 5.2692478469465402339}, .peers = true},
+    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 409600, 51200), .omega = 1,
+     .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
+     .peers = true, .slow = true},
+    {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
+     .duration = 20, STEPS(81920, 10240, 1280), .omega = 1, .length = 2, .callback = 17, .known = 2,
+     .digits = {2.0081497621749485920, -0.042508875273202146986}, .peers = true},
+    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
+     STEPS(327680, 40960, 5120), .omega = 1, .length = 2, .callback = 205, .known = 2,
+     .digits = {-1.6012968795428539088, 0.19832667633866208454}, .peers = true, .slow = true},
+    {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
+     STEPS(16384, 2048, 512), .omega = 50, .length = 1, .callback = 12, .known = 2,
+     .digits = {0.51767820806882268094, 0.53980860868328140544}, .peers = true},
+    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 40960, 10240),
+     .omega = 50, .length = 1, .callback = 12, .known = 2,
+     .digits = {0.75633242161029198993, 0.71735962155453710255}, .peers = true, .slow = true},
+    {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
+     STEPS(81920, 10240, 1280), .omega = 3, .length = 1, .callback = 256, .known = 2,
+     .digits = {-0.62718670506653073014, -1.3013155502098116779}, .peers = true},
+    {"resonant-drive", "a drive in the callback, sampled at every stage", build_resonance, .duration = 20,
+     STEPS(20480, 2560, 640), .omega = 1, .length = 7, .callback = 0.7, .closed = "formula",
+     .solution = solve_resonance, .peers = true},
+    /* links */
+    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8,
+     STEPS(65536, 4096, 1024), .omega = 6, .length = 1, .peers = true},
+    {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
+     STEPS(0, 4096, 1024), .omega = 6325, .length = 0.1, .peers = true, .slow = true},
+    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
+     STEPS(0, 4096, 1024), .omega = 2038, .length = 0.5, .peers = true, .slow = true},
+    {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128),
+     .omega = 100, .length = 0.2, .peers = true, .slow = true},
+    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21,
+     .length = 0.1, .peers = true, .slow = true},
+    /* linear chains, with fixed ends */
+    {"chain-1", "one mass between walls", CHAIN(1, 2.038, 2.039)},
+    {"chain-2", "two", CHAIN(2, 1.441, 2.497)},
+    {"chain-10", "ten", CHAIN(10, 0.410, 2.853)},
+    {"chain-100", "a hundred", CHAIN(100, 0.0448, 2.883)},
+    {"chain-1000", "a thousand: waves as long as the chain and as short as a link",
+     CHAIN(1000, 0.00452, 2.883), .slow = true},
+    /* two particles */
+    {"pair", "two masses on a line and their link: one spring of the reduced mass", build_pair, .count = 1,
+     .duration = 16, STEPS(2048, 512, 512), .omega = 2.97, .length = 1, .closed = "reduced-mass",
+     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972},
+    {"pair-3d", "the same in space, adrift", build_pair, .count = 3, .duration = 16, STEPS(2048, 512, 512),
+     .omega = 2.97, .length = 1, .closed = "reduced-mass", .iterate = iterate_pair, .slowest = 0,
+     .fastest = 2.972},
+    {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
+     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .closed = "reduced-mass",
+     .solution = solve_damped_pair, .peers = true},
+};
+
+const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: MIT */
+/* The equation of a scene and its methods, a second time; see scenes.h. */
+#include "harness/scenes.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double *numbers(size_t count)
+{
+    double *array = calloc(count + 1, sizeof *array);
+    if (array == NULL) {
+        fputs("scenes: out of memory\n", stderr);
+        exit(EXIT_FAILURE);
+    }
+    return array;
+}
+
+void scene_problem_init(scene_problem *p, const scene_case *c)
+{
+    *p = (scene_problem){.moving = 0};
+    c->build(c, p);
+    const size_t axes = p->def.axes, particles = p->def.particles;
+    p->coordinate = (size_t *)numbers(axes * particles);
+    p->room = numbers(4 * axes * particles);
+    for (size_t i = 0; i < axes * particles; i++)
+        if (!p->pinned[i / axes])
+            p->coordinate[p->moving++] = i;
+}
+
+void scene_problem_clear(scene_problem *p)
+{
+    free(p->position);
+    free(p->velocity);
+    free(p->mass);
+    free(p->pinned);
+    free(p->link);
+    free(p->coordinate);
+    free(p->room);
+}
+
+void scene_start(const scene_problem *p, double *y)
+{
+    for (size_t i = 0; i < p->moving; i++) {
+        y[i] = p->position[p->coordinate[i]];
+        y[p->moving + i] = p->velocity[p->coordinate[i]];
+    }
+}
+
+double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b,
+                      size_t known)
+{
+    double sum = 0;
+    for (size_t i = 0; i < (known > 0 ? known : 2 * p->moving); i++) {
+        const double part = (a[i] - b[i]) / (i < p->moving ? 1 : c->omega);
+        sum += part * part;
+    }
+    return sqrt(sum);
+}
+
+/* ------------------------------------------------------------------------------------------------------- forces */
+
+enum { POSITION, VELOCITY, FORCE, SIZE };
+
+static double *axis_of(const scene_problem *p, int what, size_t axis)
+{
+    return p->room + ((size_t)what * p->def.axes + axis) * p->def.particles;
+}
+
+/* A link pulls a towards b with k (length - rest) + c (rate of length), on one axis with the signs of b - a. */
+static void pull(const scene_problem *p, const spring_link *link)
+{
+    const size_t axes = p->def.axes, a = link->a, b = link->b;
+    double way[3], length = 0, rate = 0;
+    for (size_t d = 0; d < axes; d++) {
+        way[d] = axis_of(p, POSITION, d)[b] - axis_of(p, POSITION, d)[a];
+        length += way[d] * way[d];
+        rate += way[d] * (axis_of(p, VELOCITY, d)[b] - axis_of(p, VELOCITY, d)[a]);
+    }
+    length = axes == 1 ? way[0] : sqrt(length);
+    if (axes == 1) {
+        rate = axis_of(p, VELOCITY, 0)[b] - axis_of(p, VELOCITY, 0)[a];
+        way[0] = 1;
+    } else if (length > 0) {
+        rate /= length;
+        for (size_t d = 0; d < axes; d++)
+            way[d] /= length;
+    }
+    const double force = link->stiffness * (length - link->rest) + link->damping * rate;
+    const double size = link->stiffness * (fabs(length) + link->rest) + link->damping * fabs(rate);
+    for (size_t d = 0; d < axes; d++) {
+        axis_of(p, FORCE, d)[a] += force * way[d];
+        axis_of(p, FORCE, d)[b] -= force * way[d];
+        axis_of(p, SIZE, d)[a] += size * fabs(way[d]);
+        axis_of(p, SIZE, d)[b] += size * fabs(way[d]);
+    }
+}
+
+/* Acceleration of all that moves, without drag. */
+static void accelerations(const scene_problem *p, double t, const double *x, const double *v, double *a)
+{
+    const spring_scene_def *def = &p->def;
+    const size_t axes = def->axes;
+    double *axis[4][3] = {{NULL}};
+    for (int what = POSITION; what <= SIZE; what++)
+        for (size_t d = 0; d < axes; d++)
+            axis[what][d] = axis_of(p, what, d);
+    memset(axis[FORCE][0], 0, 2 * axes * def->particles * sizeof(double));
+    for (size_t i = 0; i < axes * def->particles; i++) {
+        axis[POSITION][i % axes][i / axes] = p->position[i];
+        axis[VELOCITY][i % axes][i / axes] = 0;
+    }
+    for (size_t i = 0; i < p->moving; i++) {
+        const size_t at = p->coordinate[i];
+        axis[POSITION][at % axes][at / axes] = x[i];
+        axis[VELOCITY][at % axes][at / axes] = v[i];
+    }
+    for (size_t i = 0; i < def->links; i++)
+        pull(p, &p->link[i]);
+    if (def->force != NULL)
+        def->force(def->user, t, def->particles, (const double *const *)axis[POSITION],
+                   (const double *const *)axis[VELOCITY], axis[FORCE]);
+    for (size_t i = 0; i < p->moving; i++) {
+        const size_t at = p->coordinate[i];
+        a[i] = axis[FORCE][at % axes][at / axes] / p->mass[at / axes] + def->gravity[at % axes];
+    }
+}
+
+static double drag_rate(const scene_problem *p, size_t i)
+{
+    return p->def.drag / p->mass[p->coordinate[i] / p->def.axes];
+}
+
+void scene_derivative(double t, const double *y, double *dy, const void *data)
+{
+    const scene_problem *p = data;
+    const double *v = y + p->moving;
+    accelerations(p, t, y, v, dy + p->moving);
+    for (size_t i = 0; i < p->moving; i++) {
+        dy[i] = v[i];
+        dy[p->moving + i] -= drag_rate(p, i) * v[i];
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ methods */
+
+static bool velocity_forces(const scene_problem *p)
+{
+    for (size_t i = 0; i < p->def.links; i++)
+        if (p->link[i].damping > 0)
+            return true;
+    return p->def.force != NULL && (p->def.flags & SPRING_SCENE_FORCE_STILL) == 0;
+}
+
+static void euler_step(const scene_problem *p, double h, double t, double *y, double *work)
+{
+    scene_derivative(t, y, work, p);
+    for (size_t i = 0; i < 2 * p->moving; i++)
+        y[i] += h * work[i];
+}
+
+/* v1 = (v' + h/2 a)/(1 + h/2 drag/mass) */
+static void last_kick(const scene_problem *p, double h, const double *a, const double *v, double *v1)
+{
+    for (size_t i = 0; i < p->moving; i++)
+        v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * drag_rate(p, i));
+}
+
+static void leapfrog_step(const scene_problem *p, double h, double t, double *y, double *work)
+{
+    double *x = y, *v = y + p->moving, *a = work + p->moving, *predicted = work;
+    scene_derivative(t, y, work, p);
+    for (size_t i = 0; i < p->moving; i++) {
+        v[i] += h / 2 * a[i];
+        x[i] += h * v[i];
+    }
+    accelerations(p, t + h, x, v, a);
+    if (velocity_forces(p)) {
+        last_kick(p, h, a, v, predicted);
+        accelerations(p, t + h, x, predicted, a);
+    }
+    last_kick(p, h, a, v, v);
+}
+
+static void rk4_step(const scene_problem *p, double h, double t, double *y, double *work)
+{
+    static const double at[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};
+    const size_t size = 2 * p->moving;
+    double *k = work, *stage = work + size, *sum = work + 2 * size;
+    memset(k, 0, size * sizeof *k);
+    memset(sum, 0, size * sizeof *sum);
+    for (int s = 0; s < 4; s++) {
+        for (size_t i = 0; i < size; i++)
+            stage[i] = y[i] + at[s] * h * k[i];
+        scene_derivative(t + at[s] * h, stage, k, p);
+        for (size_t i = 0; i < size; i++)
+            sum[i] += weight[s] * k[i];
+    }
+    for (size_t i = 0; i < size; i++)
+        y[i] += h / 6 * sum[i];
+}
+
+/* work has room for three vectors. */
+static void step(const scene_problem *p, spring_method m, double h, double t, double *y, double *work)
+{
+    static void (*const steps[])(const scene_problem *, double, double, double *,
+                                 double *) = {euler_step, leapfrog_step, rk4_step};
+    steps[m](p, h, t, y, work);
+}
+
+/* ----------------------------------------------------------------------------------------------------- rounding */
+
+/* The rate of the stiffest particle, by Gershgorin's circles as in scene.h, and the most links of one. */
+static double stiffest(const scene_problem *p, size_t *most_links)
+{
+    double *sum = numbers(p->def.particles), *links = numbers(p->def.particles), most = 0, highest = 0;
+    for (size_t i = 0; i < p->def.links; i++) {
+        const spring_link *l = &p->link[i];
+        sum[l->a] += 2 * l->stiffness;
+        sum[l->b] += 2 * l->stiffness;
+        links[l->a]++;
+        links[l->b]++;
+    }
+    for (size_t i = 0; i < p->def.particles; i++) {
+        most = fmax(most, links[i]);
+        highest = fmax(highest, p->pinned[i] ? 0 : sum[i] / p->mass[i]);
+    }
+    free(sum);
+    free(links);
+    *most_links = (size_t)most;
+    return sqrt(highest);
+}
+
+typedef struct local_rounding {
+    double rate; /* [1/s] stiffest */
+    double links;
+} local_rounding;
+
+/* What a step adds that ends in y, right after the forces there were computed: their sizes are in p->room. */
+static double added(const scene_case *c, const scene_problem *p, const local_rounding *l, double h,
+                    const double *y)
+{
+    const size_t axes = p->def.axes;
+    double state = 0, speed = 0, force = 0;
+    for (size_t i = 0; i < p->moving; i++) {
+        const size_t at = p->coordinate[i];
+        const double v = y[p->moving + i];
+        const double F = axis_of(p, SIZE, at % axes)[at / axes] / p->mass[at / axes] +
+                         fabs(p->def.gravity[at % axes]) + c->callback + drag_rate(p, i) * fabs(v);
+        state += y[i] * y[i] + v * v / (c->omega * c->omega);
+        speed += v * v;
+        force += F * F;
+    }
+    const double unit = DBL_EPSILON / 2, z = l->rate * h;
+    return unit * pow(1 + z * z, 2) *
+           (4 * sqrt(state) + 4 * h * sqrt(speed) + (10 + l->links) * h * sqrt(force) / c->omega);
+}
+
+/* Of a linear scene: n steps of a mode have at most the norm 1/sqrt(1 - z^2/4), (1 + z^2)^(n/2), 1 in (x, v/rate). In
+   (x, v/omega) that is larger by the ratio of the rates, but a slow mode cannot do more than drift for as long. */
+static double carried(const scene_case *c, spring_method m, double h, uint64_t n)
+{
+    const double z = c->fastest * h;
+    const double norm[] = {exp((double)n / 2 * log1p(z * z)), 1 / sqrt(1 - z * z / 4), 1};
+    const double slow = fmin(c->omega / c->slowest, 1 + c->omega * c->duration);
+    return norm[m] * fmax(1, fmax(slow, c->fastest / c->omega));
+}
+
+/* The matrix of a step in (x, v/omega) by one-sided differences, relative error of about 1e-7 h times a rate. */
+static void step_matrix(const scene_case *c, const scene_problem *p, spring_method m, double h, double t,
+                        const double *y, double *matrix, double *work)
+{
+    const size_t size = 2 * p->moving;
+    const double nudge = 1e-7 * c->length;
+    double *base = work + 3 * size, *moved = work + 4 * size;
+    memcpy(base, y, size * sizeof *y);
+    step(p, m, h, t, base, work);
+    for (size_t j = 0; j < size; j++) {
+        memcpy(moved, y, size * sizeof *y);
+        moved[j] += nudge * (j < p->moving ? 1 : c->omega);
+        step(p, m, h, t, moved, work);
+        for (size_t i = 0; i < size; i++)
+            matrix[i * size + j] = (moved[i] - base[i]) / nudge / (i < p->moving ? 1 : c->omega);
+    }
+}
+
+/* An upper bound of the spectral norm: the smaller of Frobenius' and of sqrt(largest column sum largest row sum). */
+static double norm_bound(const double *matrix, size_t size, double *column)
+{
+    double squares = 0, largest_row = 0, largest_column = 0;
+    memset(column, 0, size * sizeof *column);
+    for (size_t i = 0; i < size; i++) {
+        double row = 0;
+        for (size_t j = 0; j < size; j++) {
+            const double entry = fabs(matrix[i * size + j]);
+            row += entry;
+            column[j] += entry;
+            squares += entry * entry;
+        }
+        largest_row = fmax(largest_row, row);
+    }
+    for (size_t j = 0; j < size; j++)
+        largest_column = fmax(largest_column, column[j]);
+    return fmin(sqrt(squares), sqrt(largest_row * largest_column));
+}
+
+static void multiply(double *restrict out, const double *restrict a, const double *restrict b, size_t size)
+{
+    memset(out, 0, size * size * sizeof *out);
+    for (size_t i = 0; i < size; i++)
+        for (size_t k = 0; k < size; k++) {
+            const double factor = a[i * size + k];
+            for (size_t j = 0; j < size; j++)
+                out[i * size + j] += factor * b[k * size + j];
+        }
+}
+
+/* Walks back over the states after each step, with the product of the matrices of all later ones. */
+static double walked_back(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
+                          const double *states, const double *local)
+{
+    const size_t size = 2 * p->moving;
+    double *rest = numbers(size * size), *matrix = numbers(size * size), *product = numbers(size * size),
+           *work = numbers(5 * size), sum = 0;
+    for (size_t i = 0; i < size; i++)
+        rest[i * size + i] = 1;
+    for (uint64_t i = n; i-- > 0;) {
+        sum += local[i] * (i + 1 < n ? norm_bound(rest, size, work) : 1);
+        step_matrix(c, p, m, h, (double)i * h, states + i * size, matrix, work);
+        multiply(product, rest, matrix, size);
+        double *const swapped = rest;
+        rest = product;
+        product = swapped;
+    }
+    free(rest);
+    free(matrix);
+    free(product);
+    free(work);
+    return sum;
+}
+
+double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
+                      double *end)
+{
+    const size_t size = 2 * p->moving;
+    const bool linear = c->fastest > 0;
+    size_t most_links;
+    local_rounding l = {.rate = stiffest(p, &most_links)};
+    l.links = (double)most_links;
+    double *states = numbers(linear ? 0 : n * size), *local = numbers(n), *work = numbers(3 * size), sum = 0;
+    scene_start(p, end);
+    for (uint64_t i = 0; i < n; i++) {
+        if (!linear)
+            memcpy(states + i * size, end, size * sizeof *end);
+        step(p, m, h, (double)i * h, end, work);
+        local[i] = added(c, p, &l, h, end);
+        sum += local[i];
+    }
+    const double all = linear ? sum * carried(c, m, h, n) : walked_back(c, p, m, h, n, states, local);
+    free(states);
+    free(local);
+    free(work);
+    return all;
+}

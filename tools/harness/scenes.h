@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The catalogue of hard scenes, and the equation of a scene written down a second time, for the witnesses: forces link by
+ * link, the methods as textbooks have them, and what rounding can do to their steps.
+ *
+ * A scene is a vector y here: the positions of all coordinates that are not pinned, then their velocities. Distances are
+ * Euclidean in (x, v/omega), omega a rate that the case names.
+ */
+#ifndef HARNESS_SCENES_H
+#define HARNESS_SCENES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <springstep/scene.h>
+
+/* A definition with its arrays. Particles that are pinned do not move. */
+typedef struct scene_problem {
+    spring_scene_def def;
+    double *position, *velocity, *mass;
+    uint8_t *pinned;
+    spring_link *link;
+    size_t moving;      /* coordinates that are not pinned; y has twice as many numbers */
+    size_t *coordinate; /* [moving] particle*axes + axis */
+    double *room;       /* position, velocity, force and its size, [axes*particles] each, axis by axis */
+} scene_problem;
+
+typedef struct scene_case scene_case;
+
+struct scene_case {
+    const char *name;
+    const char *purpose; /* what it is there to break */
+    void (*build)(const scene_case *c, scene_problem *p);
+    size_t count;       /* of what there can be any number of */
+    double duration;    /* [s] */
+    uint64_t steps[3];  /* by spring_method: the largest step is duration/steps; 0: not with this method */
+    double omega;       /* [1/s] */
+    double length;      /* [m] of the motion: tolerances are relative to it */
+    double callback;    /* [m/s^2] largest sum of the sizes of all terms in the callback, over mass */
+    size_t known;       /* leading components of y at the end that are known, to all digits of a double */
+    double digits[4];   /* they */
+    const char *closed; /* name of a closed form of ... */
+    void (*iterate)(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
+                    double *y);                                               /* ... the method's steps */
+    void (*solution)(const scene_case *c, const scene_problem *p, double *y); /* ... the true end */
+    double slowest, fastest; /* [1/s] of a linear scene: rates of its modes; fastest 0: not linear */
+    bool peers;              /* compare with GSL and SUNDIALS */
+    bool slow;               /* more than a tenth of a second: not in the quick catalogue */
+};
+
+extern const scene_case scene_cases[];
+extern const size_t scene_case_count;
+
+void scene_problem_init(scene_problem *p, const scene_case *c); /* exits without memory */
+void scene_problem_clear(scene_problem *p);
+
+void scene_start(const scene_problem *p, double *y);
+
+/* dy/dt, for the solvers of ode.h; data is a scene_problem. */
+void scene_derivative(double t, const double *y, double *dy, const void *data);
+
+/* n steps of a method as textbooks write it, from the start, in doubles. Returns what rounding can have done to the end
+ * [m], the distance to the same steps in exact arithmetic, whoever takes them in doubles.
+ *
+ * A step of a method adds at most, with u = 2^-53, F the sum of the sizes of all terms of the acceleration, L the most
+ * links of a particle and z = fastest rate times h,
+ *
+ *     u (1 + z^2)^2 (4 |y| + 4 h |v| + (10 + L) h |F|/omega)
+ *
+ * (x is rounded once, v twice with leapfrog, products with h once more; a link is rounded at most eight times, mass and
+ * gravity once each, the sum of links L - 1 times; within a step that is carried on by at most 1 + z^2 twice). The steps
+ * that follow carry it on by at most the norm of the product of their matrices, which are formed by differences. Of a
+ * linear scene that norm is known: see carried() in scenes.c. */
+double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
+                      double *end);
+
+/* |a - b| over the leading `known` components of y; 0: over all */
+double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b,
+                      size_t known);
+
+#endif
