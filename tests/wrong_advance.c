@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring_advance() gone wrong, for a spring-validate that must notice: linked with -Dspring_advance=wrong_advance.
- * The environment variable WRONG says in which way.
+ * spring_advance() and spring_scene_advance() gone wrong, for a spring-validate that must notice: linked with
+ * -Dspring_advance=wrong_advance and the like. The environment variable WRONG says in which way.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #undef spring_advance
-#include <springstep/spring.h>
+#undef spring_scene_advance
+#include <springstep/scene.h>
 
 spring_status wrong_advance(spring_state *s, const spring_params *p, spring_method m, double dt, uint64_t n);
 
@@ -27,5 +28,39 @@ spring_status wrong_advance(spring_state *s, const spring_params *p, spring_meth
         s->x *= 1 + 1e-5;
     if (strcmp(way, "v off") == 0)
         s->v *= 1 + 1e-5;
+    return status;
+}
+
+/* Of all particles, as many as there are. */
+static void scale(spring_scene *s, spring_quantity q, double factor)
+{
+    double x[3] = {0};
+    for (size_t i = 0; spring_scene_get(s, q, x, 3, i, 1) == SPRING_OK; i++) {
+        for (int axis = 0; axis < 3; axis++)
+            x[axis] *= factor;
+        spring_scene_set(s, q, x, 3, i, 1);
+    }
+}
+
+spring_status wrong_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
+
+spring_status wrong_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n)
+{
+    const char *way = getenv("WRONG");
+    if (strcmp(way, "refused") == 0)
+        return SPRING_EINVAL;
+    if (strcmp(way, "lost") == 0)
+        return SPRING_ENONFINITE;
+    if (strcmp(way, "unmoved") == 0)
+        return SPRING_OK;
+    if (strcmp(way, "lower order") ==
+        0) /* RK4 becomes leapfrog, leapfrog becomes Euler, Euler a shorter run */
+        return m == SPRING_EULER ? spring_scene_advance(s, m, dt, n - 1)
+                                 : spring_scene_advance(s, (spring_method)(m - 1), dt, n);
+    const spring_status status = spring_scene_advance(s, m, dt, n);
+    if (strcmp(way, "x off") == 0)
+        scale(s, SPRING_POSITION, 1 + 1e-5);
+    if (strcmp(way, "v off") == 0)
+        scale(s, SPRING_VELOCITY, 1 + 1e-5);
     return status;
 }

@@ -16,6 +16,8 @@
 #include "harness/cases.h"
 #include "harness/ode.h"
 #include "harness/reference.h"
+#include "harness/scenes.h"
+#include "validate.h"
 
 static const char **case_names; /* ended by NULL */
 static int only_case = -1;
@@ -48,22 +50,13 @@ static const cli_program program = {
 static cli_table *table;
 static unsigned failures;
 
-typedef struct finding {
-    const validation_case *of;
-    const char *method, *witness, *reason;
-    double dt;
-    uint64_t steps;
-    double error, bound, uncertainty;
-    uint64_t evaluations;
-} finding;
-
-static void judge(const finding *f)
+void judge(const finding *f)
 {
     const bool pass = f->error <= f->bound; /* false for NaN */
     failures += !pass;
-    cli_row(table, "%s\t%s\t%s\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%s\t%s\t%.17g\t%" PRIu64, f->of->name,
+    cli_row(table, "%s\t%s\t%s\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%s\t%s\t%.17g\t%" PRIu64 "\t%s", f->of,
             f->method, f->witness, f->dt, f->steps, f->error, f->bound, pass ? "pass" : "fail", f->reason,
-            f->uncertainty, f->evaluations);
+            f->uncertainty, f->evaluations, f->scene ? "scene" : "spring");
 }
 
 /* ------------------------------------------------------------------------ multiple precision, segment by segment */
@@ -113,7 +106,7 @@ static void against_references(const validation_case *c, spring_method m)
     double rounding, truncation;
     reference_bounds_end(bounds, &rounding, &truncation);
 
-    finding f = {.of = c, .method = spring_method_name(m), .dt = first.dt, .steps = first.n};
+    finding f = {.of = c->name, .method = spring_method_name(m), .dt = first.dt, .steps = first.n};
     if (m != SPRING_EXACT) {
         f.witness = "iterate";
         f.error = reference_distance(&iterate, got);
@@ -157,7 +150,8 @@ static void against_rk4(const validation_case *c, const char *witness,
     reference_bounds *bounds = reference_bounds_new(&s.p, start);
     reference_bounds_add(bounds, &s.p, SPRING_RK4, s.dt, n * our_steps_a_step);
     reference_bounds_end(bounds, &rounding, &truncation);
-    finding f = {.of = c, .method = "rk4", .witness = witness, .dt = s.dt, .steps = n * our_steps_a_step};
+    finding f = {
+        .of = c->name, .method = "rk4", .witness = witness, .dt = s.dt, .steps = n * our_steps_a_step};
     const char *message = solve(&o, y, s.dt * our_steps_a_step, n);
     if (message != NULL)
         cli_fail(CLI_FAILED, "%s: %s: %s", c->name, witness, message);
@@ -172,12 +166,12 @@ static void against_rk4(const validation_case *c, const char *witness,
 
 typedef const char *adaptive_solver(ode *o, double *y, double duration, double tolerance);
 
-static const char *adams(ode *o, double *y, double duration, double tolerance)
+const char *adams(ode *o, double *y, double duration, double tolerance)
 {
     return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
 }
 
-static const char *bdf(ode *o, double *y, double duration, double tolerance)
+const char *bdf(ode *o, double *y, double duration, double tolerance)
 {
     return ode_cvode(o, y, duration, ODE_BDF, tolerance);
 }
@@ -209,7 +203,7 @@ static void against_adaptive(const validation_case *c, const char *witness, adap
     reference_exact(&truth, &s.p, duration);
     spring_state got = start;
     spring_advance(&got, &s.p, SPRING_EXACT, s.dt, s.n);
-    finding f = {.of = c, .method = "exact", .witness = witness, .dt = s.dt, .steps = s.n};
+    finding f = {.of = c->name, .method = "exact", .witness = witness, .dt = s.dt, .steps = s.n};
     f.error = hypot(got.x - y[1][0], (got.v - y[1][1]) / omega);
     f.uncertainty = hypot(y[0][0] - y[1][0], (y[0][1] - y[1][1]) / omega);
     f.bound = 2 * f.uncertainty + tolerance * size + closed_form_bound(&truth, &s, duration);
@@ -235,11 +229,13 @@ static void run_case(const validation_case *c)
 
 static void name_cases(void)
 {
-    case_names = calloc(case_count + 1, sizeof *case_names);
+    case_names = calloc(case_count + scene_case_count + 1, sizeof *case_names);
     if (case_names == NULL)
         exit(CLI_FAILED);
     for (size_t i = 0; i < case_count; i++)
         case_names[i] = cases[i].name;
+    for (size_t i = 0; i < scene_case_count; i++)
+        case_names[case_count + i] = scene_cases[i].name;
     options[0].choices = case_names;
 }
 
@@ -250,7 +246,7 @@ int main(int argc, char **argv)
     table = cli_open_output();
     cli_columns(table, list_only ? "case purpose"
                                  : "case method witness dt_s steps error bound verdict reason uncertainty "
-                                   "force_evaluations");
+                                   "force_evaluations shape");
     for (size_t i = 0; i < case_count; i++) {
         if (only_case >= 0 && i != (size_t)only_case)
             continue;
@@ -258,7 +254,17 @@ int main(int argc, char **argv)
             cli_row(table, "%s\t%s", cases[i].name, cases[i].purpose);
         else if (!quick || !cases[i].slow || only_case >= 0)
             run_case(&cases[i]);
-        cli_progress((double)(i + 1) / (double)case_count);
+        cli_progress((double)(i + 1) / (double)(case_count + scene_case_count));
+    }
+    for (size_t i = 0; i < scene_case_count; i++) {
+        const scene_case *c = &scene_cases[i];
+        if (only_case >= 0 && case_count + i != (size_t)only_case)
+            continue;
+        if (list_only)
+            cli_row(table, "%s\t%s", c->name, c->purpose);
+        else if (!quick || !c->slow || only_case >= 0)
+            validate_scene(c);
+        cli_progress((double)(case_count + i + 1) / (double)(case_count + scene_case_count));
     }
     cli_finish();
     free(case_names);
