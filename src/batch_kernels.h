@@ -87,44 +87,50 @@ SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing
     };
 }
 
-/* Stores the springs of a group that may advance. */
-SPRING_APART void store_valid(const batch_block *b, size_t i, const real *x, const real *v, enum sharing w,
-                              enum sharing g)
+/* Stores the springs of a group that may advance; false if one keeps its state. */
+SPRING_APART bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
+                              enum sharing w, enum sharing g)
 {
     scalar x1[group], v1[group];
-    memcpy(x1, x, sizeof x1);
-    memcpy(v1, v, sizeof v1);
-    for (size_t j = 0; j < group; j++) {
+    memcpy(x1, x, many * sizeof *x);
+    memcpy(v1, v, many * sizeof *v);
+    bool all = true;
+    for (size_t j = 0; j < many * lanes; j++) {
         const bool finite = isfinite(x1[j]) && isfinite(v1[j]);
         if (finite && !(w == EACH && b->w[i + j] < 0) && !(g == EACH && b->g[i + j] < 0)) {
             b->x[i + j] = x1[j];
             b->v[i + j] = v1[j];
+        } else {
+            all = false;
         }
     }
+    return all;
 }
 
-/* Stores a group; false if a spring keeps its state. */
-SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, const real *v, enum sharing w,
-                               enum sharing g)
+/* Stores a group; false if a spring keeps its state. Whether one might have to is asked for all of them at once: a sum is
+   not finite if a part of it is not, nor is it if it overflows, and a sign is set if a rate is negative, or -0. */
+SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
+                               enum sharing w, enum sharing g)
 {
-    truth wrong = {0};
+    real sum = x[0] + v[0];
+    truth signs = {0};
     SPRING_UNROLL
-    for (size_t k = 0; k < vectors; k++) {
-        wrong |= not_finite(x[k]) | not_finite(v[k]);
+    for (size_t k = 0; k < many; k++) {
+        if (k > 0)
+            sum += x[k] + v[k];
         if (w == EACH)
-            wrong |= rate(b->w, i + k * lanes, w) < 0;
+            signs |= sign_bit(load(b->w + i + k * lanes));
         if (g == EACH)
-            wrong |= rate(b->g, i + k * lanes, g) < 0;
+            signs |= sign_bit(load(b->g + i + k * lanes));
     }
-    if (SPRING_RARE(any(wrong))) {
+    if (SPRING_RARE(any(not_finite(sum) | signs))) {
         real x1[vectors], v1[vectors]; /* x and v themselves stay in registers */
-        memcpy(x1, x, sizeof x1);
-        memcpy(v1, v, sizeof v1);
-        store_valid(b, i, x1, v1, w, g);
-        return false;
+        memcpy(x1, x, many * sizeof *x);
+        memcpy(v1, v, many * sizeof *v);
+        return store_valid(b, i, x1, v1, many, w, g);
     }
     SPRING_UNROLL
-    for (size_t k = 0; k < vectors; k++) {
+    for (size_t k = 0; k < many; k++) {
         store(b->x + i + k * lanes, x[k]);
         store(b->v + i + k * lanes, v[k]);
     }
@@ -161,7 +167,7 @@ SPRING_INLINE bool exact_batch(const batch_block *b, bool loaded)
             v[k] = load(b->v + j);
             exact_step(&x[k], &v[k], rates_at(b, j, NONE, NONE, loaded).a, &c, loaded);
         }
-        all &= store_group(b, i, x, v, SHARED, SHARED);
+        all &= store_group(b, i, x, v, vectors, SHARED, SHARED);
     }
     return all;
 }

@@ -1,33 +1,41 @@
 /* SPDX-License-Identifier: MIT */
 /* The loop of a method over a batch, and its twelve kernels. Included by batch_kernels.h, with SPRING_METHOD its name. */
 
-SPRING_INLINE bool METHOD(batch)(const batch_block *b, enum sharing w, enum sharing g, bool loaded)
+/* many: vectors in a group. A single step needs no more than one: there is nothing to wait for but the next group, which
+   the processor begins by itself. */
+SPRING_INLINE bool METHOD(groups)(const batch_block *b, enum sharing w, enum sharing g, bool loaded,
+                                  size_t many)
 {
     const real h = splat(b->dt);
     bool all = true;
-    for (size_t i = 0; i < b->count; i += group) {
+    for (size_t i = 0; i < b->count; i += many * lanes) {
         METHOD(coefficients) c[vectors];
         real x[vectors], v[vectors];
         SPRING_UNROLL
-        for (size_t k = 0; k < vectors; k++) {
+        for (size_t k = 0; k < many; k++) {
             const size_t j = i + k * lanes;
             c[k] = METHOD(prepare)(rates_at(b, j, w, g, loaded), h);
             x[k] = load(b->x + j);
             v[k] = load(b->v + j);
         }
-        uint64_t left = b->n;
+        uint64_t left = many == 1 ? 1 : b->n;
         do {
             uint64_t some = left < check_interval ? left : check_interval;
             left -= some;
             for (; some > 0; some--) {
                 SPRING_UNROLL
-                for (size_t k = 0; k < vectors; k++)
+                for (size_t k = 0; k < many; k++)
                     METHOD(step)(&x[k], &v[k], &c[k], g != NONE, loaded);
             }
         } while (left > 0 && !all_lost(x, v));
-        all &= store_group(b, i, x, v, w, g);
+        all &= store_group(b, i, x, v, many, w, g);
     }
     return all;
+}
+
+SPRING_INLINE bool METHOD(batch)(const batch_block *b, enum sharing w, enum sharing g, bool loaded)
+{
+    return b->n == 1 ? METHOD(groups)(b, w, g, loaded, 1) : METHOD(groups)(b, w, g, loaded, vectors);
 }
 
 #define BATCH_KERNEL(w, g)                                     \

@@ -13,6 +13,11 @@ SPRING_INLINE truth not_finite(real a)
     return !(a - a == 0);
 }
 
+SPRING_INLINE truth sign_bit(real a)
+{
+    return signbit(a) != 0;
+}
+
 SPRING_INLINE bool any(truth t)
 {
     return t;

@@ -15,6 +15,11 @@ SPRING_INLINE truth not_finite(real a)
     return (truth)(a - a);
 }
 
+SPRING_INLINE truth sign_bit(real a)
+{
+    return (truth)a & (truth)splat(-(scalar)0);
+}
+
 /* Is any bit set? */
 SPRING_INLINE bool any(truth t)
 {
