@@ -40,7 +40,7 @@ static void evaluate(const scene_kernels *kernels, const scene *s, size_t x, siz
             .offset = place->offset,
             .first = place->first,
             .end = place->end,
-            .present = place->equal ? scene_bytes_at(s, p->row_present) + place->start : NULL,
+            .present = place->equal ? scene_bytes_at(s, p->row_present) + place->present : NULL,
             .stiffness = scene_array(s, p->row_stiffness) + place->numbers,
             .rest = scene_array(s, p->row_rest) + place->numbers,
             .damping = damped ? scene_array(s, p->row_damping) + place->numbers : NULL,
@@ -105,25 +105,29 @@ static scene_motion motion(const scene *s, double dt, uint32_t from, uint32_t to
     return m;
 }
 
+/* The times of a step: never a sum of steps, and the end of one is the begin of the next, to the bit. */
+typedef struct span {
+    double begin, middle, end;
+} span;
+
 /* One step from a frame, whose forces are known, to a frame; whether the forces at its end are known, too. */
 typedef struct outcome {
     bool finite, force_kept;
 } outcome;
 
-static outcome euler(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, double t, double dt)
+static outcome euler(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t, double dt)
 {
     (void)t;
     const scene_motion m = motion(s, dt, from, to);
     return (outcome){kernels->euler(&m), false};
 }
 
-static outcome leapfrog(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, double t,
-                        double dt)
+static outcome leapfrog(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t, double dt)
 {
     const scene_plan *p = &s->plan;
     const scene_motion first = motion(s, dt, from, to), last = motion(s, dt, to, to);
     bool finite = kernels->kick_drift(&first);
-    evaluate(kernels, s, p->x[to], p->v[to], t + dt);
+    evaluate(kernels, s, p->x[to], p->v[to], t.end);
     if (!velocity_forces(s)) {
         finite &= kernels->kick(&last);
         return (outcome){finite, true};
@@ -132,19 +136,19 @@ static outcome leapfrog(const scene_kernels *kernels, scene *s, uint32_t from, u
     for (uint32_t a = 0; a < p->axes; a++)
         predict.v[a] = scene_axis(s, p->predicted, a);
     kernels->kick(&predict);
-    evaluate(kernels, s, p->x[to], p->predicted, t + dt);
+    evaluate(kernels, s, p->x[to], p->predicted, t.end);
     finite &= kernels->kick(&last);
     return (outcome){finite, false};
 }
 
-static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, double t, double dt)
+static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t, double dt)
 {
     const scene_plan *p = &s->plan;
-    const double later[] = {dt / 2, dt / 2, dt};
+    const double times[] = {t.middle, t.middle, t.end};
     scene_motion stage = motion(s, dt, from, p->work);
     for (int k = 0; k < 3; k++) {
         kernels->rk4_stage[k](&stage);
-        evaluate(kernels, s, p->x[p->work], p->v[p->work], t + later[k]);
+        evaluate(kernels, s, p->x[p->work], p->v[p->work], times[k]);
         for (uint32_t a = 0; a < p->axes; a++)
             stage.stage_v[a] = stage.v[a];
     }
@@ -154,7 +158,7 @@ static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32
     return (outcome){kernels->rk4_end(&end), false};
 }
 
-typedef outcome scene_step(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, double t,
+typedef outcome scene_step(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t,
                            double dt);
 
 static bool finite_state(const scene *s)
@@ -202,9 +206,10 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
     uint32_t from = s->frame;
     const uint32_t to = undo ? 1 - from : from;
     for (uint64_t i = 0; i < n; i++) {
-        const double t = t0 + (double)(before + i) * dt;
+        const double done = (double)(before + i);
+        const span t = {t0 + done * dt, t0 + (done + 0.5) * dt, t0 + (double)(before + i + 1) * dt};
         if (!s->force_kept)
-            evaluate(kernels, s, s->plan.x[from], s->plan.v[from], t);
+            evaluate(kernels, s, s->plan.x[from], s->plan.v[from], t.begin);
         const outcome end = step[m](kernels, s, from, to, t, dt);
         s->force_kept = end.force_kept;
         if (!end.finite) {

@@ -35,15 +35,16 @@ typedef struct row_place {
     bool equal;
     size_t start;   /* of its places among those of all rows */
     size_t numbers; /* of its numbers among those of all rows */
+    size_t present; /* of its bytes, if it is equal */
 } row_place;
 
 /* What a scene consists of, and where: offsets in bytes from its start, 0 for what it does not have. */
 typedef struct scene_plan {
     uint32_t axes, flags, methods;
     size_t particles, links;
-    size_t stride;       /* elements from one axis of a quantity to the next */
-    size_t row_places, row_numbers; /* in all rows together */
-    size_t list_links;   /* that lie in no row */
+    size_t stride;                             /* elements from one axis of a quantity to the next */
+    size_t row_places, row_numbers, row_bytes; /* in all rows together */
+    size_t list_links;                         /* that lie in no row */
     uint32_t rows;
     row_place row[most_rows]; /* by ascending offset */
     size_t x[most_frames], v[most_frames];

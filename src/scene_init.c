@@ -187,12 +187,6 @@ static uint32_t offset_of(const spring_link *link)
     return link->a < link->b ? link->b - link->a : link->a - link->b;
 }
 
-/* On one axis a link has a direction: negative where it runs from the upper end to the lower. */
-static scalar rest_of(const spring_link *link, uint32_t axes)
-{
-    return axes == 1 && link->a > link->b ? -(scalar)link->rest : (scalar)link->rest;
-}
-
 typedef struct candidate { /* for a row */
     uint32_t offset;       /* 0: free */
     uint32_t first, last, count;
@@ -204,7 +198,7 @@ enum { candidates = 256, probes = 8 };
 
 static bool equal_links(const spring_link *a, const spring_link *b)
 {
-    return a->stiffness == b->stiffness && a->damping == b->damping && rest_of(a, 1) == rest_of(b, 1) &&
+    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest &&
            (a->a > a->b) == (b->a > b->b);
 }
 
@@ -247,7 +241,7 @@ static void plan_rows(const scene_def *def, scene_plan *plan)
         size_t at = plan->rows++;
         for (; at > 0 && plan->row[at - 1].offset > c->offset; at--)
             plan->row[at] = plan->row[at - 1];
-        plan->row[at] = (row_place){c->offset, c->first, c->last + 1, c->equal && !editable, 0, 0};
+        plan->row[at] = (row_place){c->offset, c->first, c->last + 1, c->equal && !editable, 0, 0, 0};
         plan->list_links -= c->count;
     }
     for (uint32_t r = 0; r < plan->rows; r++) {
@@ -255,8 +249,10 @@ static void plan_rows(const scene_def *def, scene_plan *plan)
         const size_t places = (row->end - row->first + 2 * padding + padding - 1) / padding * padding;
         row->start = plan->row_places;
         row->numbers = plan->row_numbers;
+        row->present = plan->row_bytes;
         plan->row_places += places;
         plan->row_numbers += row->equal ? padding : places;
+        plan->row_bytes += row->equal ? places : 0;
     }
 }
 
@@ -298,7 +294,7 @@ static void plan_memory(const scene_def *def, scene_plan *plan)
     plan->sum_v = rk4 ? take(plan, vector, sizeof(scalar)) : 0;
     plan->inverse_mass =
         def->mass != NULL || def->pinned != NULL ? take(plan, plan->stride, sizeof(scalar)) : 0;
-    plan->row_present = take(plan, plan->row_places, 1);
+    plan->row_present = take(plan, plan->row_bytes, 1);
     plan->row_stiffness = take(plan, plan->row_numbers, sizeof(scalar));
     plan->row_rest = take(plan, plan->row_numbers, sizeof(scalar));
     plan->row_damping = damped ? take(plan, plan->row_numbers, sizeof(scalar)) : 0;
@@ -371,7 +367,7 @@ static void place(scene *s, size_t index, const spring_link *link)
 {
     const placed_link at = scene_link(s, index);
     *at.stiffness = (scalar)link->stiffness;
-    *at.rest = at.a < at.b ? rest_of(link, s->plan.axes) : (scalar)link->rest;
+    *at.rest = s->plan.axes == 1 && at.a != link->a ? -(scalar)link->rest : (scalar)link->rest;
     if (at.damping != NULL)
         *at.damping = (scalar)link->damping;
 }
@@ -399,7 +395,7 @@ static void fill_links(scene *s, const scene_def *def)
             listed++;
         }
         if (row != NULL && row->equal)
-            scene_bytes_at(s, s->plan.row_present)[slot[i]] = -1;
+            scene_bytes_at(s, s->plan.row_present)[row->present + slot[i] - row->start] = -1;
         place(s, i, link);
         s->damped_links += (scalar)link->damping > 0;
     }

@@ -215,10 +215,14 @@ typedef struct particle_vector { /* what is the same on every axis */
     real drag; /* [1/s] */
 } particle_vector;
 
+static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
 SPRING_INLINE particle_vector particles_at(const scene_motion *s, size_t i)
 {
-    const real inverse_mass =
-        s->inverse_mass != NULL ? load(s->inverse_mass + i) : splat(s->inverse_mass_all);
+    real inverse_mass = s->inverse_mass != NULL ? load(s->inverse_mass + i) : splat(s->inverse_mass_all);
+    if (i + lanes > s->particles) /* what fills the last vector stays where it is, and finite */
+        inverse_mass =
+            select_real(load(lane_number) < splat((scalar)(s->particles - i)), inverse_mass, splat(0));
     return (particle_vector){inverse_mass, s->drag * inverse_mass};
 }
 
