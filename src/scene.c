@@ -62,16 +62,16 @@ static void evaluate(const scene_kernels *kernels, const scene *s, size_t x, siz
         s->force(s->user, t, p->particles, links.x, links.v, links.force);
 }
 
-static double time_of(const scene *s, double steps)
+static double time_of(const scene *s)
 {
-    return s->t0 + ((double)s->steps + steps) * s->dt;
+    return s->t0 + (double)s->steps * s->dt;
 }
 
 /* Forces of the state, unless they are at hand. They are kept in memory of the scene that is no part of its state. */
 static void update_force(const scene_kernels *kernels, scene *s)
 {
     if (!s->force_kept)
-        evaluate(kernels, s, s->plan.x[s->frame], s->plan.v[s->frame], time_of(s, 0));
+        evaluate(kernels, s, s->plan.x[s->frame], s->plan.v[s->frame], time_of(s));
     s->force_kept = true;
 }
 
@@ -201,7 +201,7 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
         return SPRING_ENONFINITE;
     const bool undo = (s->plan.flags & SPRING_SCENE_NO_UNDO) == 0;
     const bool same_run = s->dt == dt;
-    const double t0 = same_run ? s->t0 : time_of(s, 0);
+    const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
     uint32_t from = s->frame;
     const uint32_t to = undo ? 1 - from : from;
@@ -287,7 +287,7 @@ double SCENE(stable_step)(const scene *s, spring_method m)
 
 double SCENE(time)(const scene *s)
 {
-    return s != NULL ? time_of(s, 0) : NAN;
+    return s != NULL ? time_of(s) : NAN;
 }
 
 /* How a link is drawn out: its length, and how fast that grows. On one axis both have the sign of the link. */
