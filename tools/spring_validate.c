@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-validate: every method on every hard case, against independent witnesses.
+ * spring-validate: every method on every hard case, against independent witnesses; scenes are in validate_scene.c.
  *
  * For each case and method: the same method in exact arithmetic (what differs is rounding), the true solution (what
  * differs is rounding and truncation), and other people's solvers. Every bound is derived, and says from what.
@@ -33,17 +33,24 @@ static cli_option options[] = {
 static const cli_program program = {
     .name = "spring-validate",
     .summary = "Check every method on a catalogue of hard cases against independent witnesses.",
-    .details = "Columns: case, method, witness, dt_s, steps, error and bound (both [m], distances in (x, "
-               "v/omega)), verdict\n"
-               "(pass, fail, skip), reason (what the bound is made of), uncertainty (of the witness [m]: the "
-               "difference to a\n"
-               "ten times coarser run of its own; 0 for closed forms in multiple precision) and "
-               "force_evaluations (of the\n"
-               "witness; 0 where it has none). Witnesses: iterate, the same method in 107-digit arithmetic; "
-               "solution, the\n"
-               "true solution in 107 digits; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Status "
-               "1 if any check\n"
-               "fails.",
+    .details =
+        "Columns: case, method, witness, dt_s, steps, error and bound (both [m], distances in (x, "
+        "v/omega)), verdict\n"
+        "(pass, fail, skip), reason (what the bound is made of), uncertainty (of the witness [m]: the "
+        "difference to a\n"
+        "ten times coarser run of its own; 0 for closed forms in multiple precision), "
+        "force_evaluations (of the\n"
+        "witness; 0 where it has none) and shape (spring or scene). Witnesses of springs: iterate, the "
+        "same method in\n"
+        "107-digit arithmetic; solution, the true solution in 107 digits; gsl-rk4, arkode-rk4, "
+        "gsl-rk8pd, cvode-adams,\n"
+        "cvode-bdf. Of scenes: definition, the same method from a second program; modes and "
+        "reduced-mass, its closed\n"
+        "form in linear scenes; digits and formula, the true solution; gsl-rk4, arkode-rk4, gsl-rk8pd, "
+        "cvode-adams.\n"
+        "Against a true solution each scene has rows for two steps, h and h/2, and one for the value "
+        "extrapolated from\n"
+        "h/2 and h/4. Status 1 if any check fails.",
     .options = options,
 };
 

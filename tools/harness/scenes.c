@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double *numbers(size_t count)
+void *scene_room(size_t count, size_t size)
 {
-    double *array = calloc(count + 1, sizeof *array);
+    void *array = calloc(count + 1, size); /* no array is empty */
     if (array == NULL) {
         fputs("scenes: out of memory\n", stderr);
         exit(EXIT_FAILURE);
@@ -18,12 +18,17 @@ static double *numbers(size_t count)
     return array;
 }
 
+static double *numbers(size_t count)
+{
+    return scene_room(count, sizeof(double));
+}
+
 void scene_problem_init(scene_problem *p, const scene_case *c)
 {
     *p = (scene_problem){.moving = 0};
     c->build(c, p);
     const size_t axes = p->def.axes, particles = p->def.particles;
-    p->coordinate = (size_t *)numbers(axes * particles);
+    p->coordinate = scene_room(axes * particles, sizeof *p->coordinate);
     p->room = numbers(4 * axes * particles);
     for (size_t i = 0; i < axes * particles; i++)
         if (!p->pinned[i / axes])
@@ -212,10 +217,17 @@ static void step(const scene_problem *p, spring_method m, double h, double t, do
 
 /* ----------------------------------------------------------------------------------------------------- rounding */
 
-/* The rate of the stiffest particle, by Gershgorin's circles as in scene.h, and the most links of one. */
-static double stiffest(const scene_problem *p, size_t *most_links)
+typedef struct roundings { /* what the formula in scenes.h calls ... */
+    double rate;           /* [1/s] z/h */
+    double links;          /* L */
+    double state;          /* D */
+} roundings;
+
+/* The fastest rate by Gershgorin's circles, or that of the case if a callback is faster. */
+static roundings count_roundings(const scene_case *c, const scene_problem *p)
 {
-    double *sum = numbers(p->def.particles), *links = numbers(p->def.particles), most = 0, highest = 0;
+    double *sum = numbers(p->def.particles), *links = numbers(p->def.particles), highest = 0;
+    roundings r = {.state = p->def.drag > 0 ? 4 : 2};
     for (size_t i = 0; i < p->def.links; i++) {
         const spring_link *l = &p->link[i];
         sum[l->a] += 2 * l->stiffness;
@@ -224,22 +236,17 @@ static double stiffest(const scene_problem *p, size_t *most_links)
         links[l->b]++;
     }
     for (size_t i = 0; i < p->def.particles; i++) {
-        most = fmax(most, links[i]);
+        r.links = fmax(r.links, links[i]);
         highest = fmax(highest, p->pinned[i] ? 0 : sum[i] / p->mass[i]);
     }
+    r.rate = fmax(c->omega, sqrt(highest));
     free(sum);
     free(links);
-    *most_links = (size_t)most;
-    return sqrt(highest);
+    return r;
 }
 
-typedef struct local_rounding {
-    double rate; /* [1/s] stiffest */
-    double links;
-} local_rounding;
-
-/* What a step adds that ends in y, right after the forces there were computed: their sizes are in p->room. */
-static double added(const scene_case *c, const scene_problem *p, const local_rounding *l, double h,
+/* By a step that ends in y, right after the forces there were computed: their sizes are in p->room. */
+static double added(const scene_case *c, const scene_problem *p, const roundings *r, double h,
                     const double *y)
 {
     const size_t axes = p->def.axes;
@@ -253,18 +260,18 @@ static double added(const scene_case *c, const scene_problem *p, const local_rou
         speed += v * v;
         force += F * F;
     }
-    const double unit = DBL_EPSILON / 2, z = l->rate * h;
+    const double unit = DBL_EPSILON / 2, z = r->rate * h;
     return unit * pow(1 + z * z, 2) *
-           (4 * sqrt(state) + 4 * h * sqrt(speed) + (10 + l->links) * h * sqrt(force) / c->omega);
+           (r->state * sqrt(state) + 4 * h * sqrt(speed) + (15 + r->links) * h * sqrt(force) / c->omega);
 }
 
 /* Of a linear scene: n steps of a mode have at most the norm 1/sqrt(1 - z^2/4), (1 + z^2)^(n/2), 1 in (x, v/rate). In
    (x, v/omega) that is larger by the ratio of the rates, but a slow mode cannot do more than drift for as long. */
 static double carried(const scene_case *c, spring_method m, double h, uint64_t n)
 {
-    const double z = c->fastest * h;
+    const double z = c->fastest * h, duration = (double)n * h;
     const double norm[] = {exp((double)n / 2 * log1p(z * z)), 1 / sqrt(1 - z * z / 4), 1};
-    const double slow = fmin(c->omega / c->slowest, 1 + c->omega * c->duration);
+    const double slow = fmin(c->omega / c->slowest, 1 + c->omega * duration);
     return norm[m] * fmax(1, fmax(slow, c->fastest / c->omega));
 }
 
@@ -346,21 +353,21 @@ double scene_rounding(const scene_case *c, const scene_problem *p, spring_method
 {
     const size_t size = 2 * p->moving;
     const bool linear = c->fastest > 0;
-    size_t most_links;
-    local_rounding l = {.rate = stiffest(p, &most_links)};
-    l.links = (double)most_links;
+    const roundings r = count_roundings(c, p);
     double *states = numbers(linear ? 0 : n * size), *local = numbers(n), *work = numbers(3 * size), sum = 0;
     scene_start(p, end);
     for (uint64_t i = 0; i < n; i++) {
         if (!linear)
             memcpy(states + i * size, end, size * sizeof *end);
         step(p, m, h, (double)i * h, end, work);
-        local[i] = added(c, p, &l, h, end);
-        sum += local[i];
+        local[i] = added(c, p, &r, h, end);
+        if (linear)
+            sum += local[i] * carried(c, m, h, n - 1 - i);
     }
-    const double all = linear ? sum * carried(c, m, h, n) : walked_back(c, p, m, h, n, states, local);
+    if (!linear)
+        sum = walked_back(c, p, m, h, n, states, local);
     free(states);
     free(local);
     free(work);
-    return all;
+    return sum;
 }

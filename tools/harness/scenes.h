@@ -51,6 +51,8 @@ struct scene_case {
 extern const scene_case scene_cases[];
 extern const size_t scene_case_count;
 
+void *scene_room(size_t count, size_t size); /* zeros; exits without memory */
+
 void scene_problem_init(scene_problem *p, const scene_case *c); /* exits without memory */
 void scene_problem_clear(scene_problem *p);
 
@@ -62,15 +64,15 @@ void scene_derivative(double t, const double *y, double *dy, const void *data);
 /* n steps of a method as textbooks write it, from the start, in doubles. Returns what rounding can have done to the end
  * [m], the distance to the same steps in exact arithmetic, whoever takes them in doubles.
  *
- * A step of a method adds at most, with u = 2^-53, F the sum of the sizes of all terms of the acceleration, L the most
- * links of a particle and z = fastest rate times h,
+ * A step adds at most, with u = 2^-53, F the sum of the sizes of all terms of the acceleration, L the most links of a
+ * particle and z the fastest rate times h,
  *
- *     u (1 + z^2)^2 (4 |y| + 4 h |v| + (10 + L) h |F|/omega)
+ *     u (1 + z^2)^2 (D |y| + 4 h |v| + (15 + L) h |F|/omega),   D = 2, with drag 4
  *
- * (x is rounded once, v twice with leapfrog, products with h once more; a link is rounded at most eight times, mass and
- * gravity once each, the sum of links L - 1 times; within a step that is carried on by at most 1 + z^2 twice). The steps
- * that follow carry it on by at most the norm of the product of their matrices, which are formed by differences. Of a
- * linear scene that norm is known: see carried() in scenes.c. */
+ * (x is rounded once and v twice with leapfrog, where drag divides v by what is itself rounded; h v once, after v; a link
+ * at most eight times, mass and gravity once each, their sum L times, RK4's sum of stages five times; within a step that
+ * is carried on by at most 1 + z^2 twice). The steps that follow carry it on by at most the norm of the product of their
+ * matrices, which are formed by differences. Of a linear scene that norm is known: see carried() in scenes.c. */
 double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
                       double *end);
 
