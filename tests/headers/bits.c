@@ -11,6 +11,7 @@
 
 #include <springstep/batch.h>
 #include <springstep/clock.h>
+#include <springstep/scene.h>
 #include <springstep/spring.h>
 
 static void print(double value)
@@ -58,6 +59,90 @@ static void print_batches(const char *name, spring_method m, bool damped, bool l
            spring_status_string(status), hashf, spring_status_string(statusf));
 }
 
+static uint64_t digest_all(uint64_t hash, const double *numbers, size_t how_many)
+{
+    for (size_t i = 0; i < how_many; i++)
+        hash = digest(hash, &numbers[i], sizeof numbers[i]);
+    return hash;
+}
+
+enum { particles = 7 * 5, most_links = 6 * particles };
+
+/* A sheet of 7 x 5, or a height field. Jumbled, its links and their strengths have no order. */
+static size_t make_sheet(uint32_t axes, bool jumbled, double *position, uint8_t *pinned, spring_link *link)
+{
+    spring_grid grid = {
+        .count = {7, 5},
+        .axes = axes,
+        .height = axes == 1,
+        .spacing = 0.1,
+        .stretch = 1.1,
+        .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+        .stiffness = 70,
+        .damping = jumbled ? 0.02 : 0,
+        .pinned = SPRING_GRID_FIRST_X,
+    };
+    size_t count, links;
+    spring_grid_size(&grid, &count, &links);
+    spring_grid_fill(&grid, position, pinned, link);
+    for (size_t i = 0; jumbled && i < links; i++) {
+        const size_t other = (i * 37 + 11) % links;
+        const spring_link old = link[i];
+        link[i] = link[other];
+        link[other] = old;
+        link[i].stiffness += (double)(i % 5);
+    }
+    for (size_t i = 0; i < count * axes; i++)
+        position[i] += (double)(i * 29 % 17) / 331; /* no product: nothing to fuse here */
+    return links;
+}
+
+#define SCENE_BITS(type)                                                                                \
+    static uint64_t type##_bits(const double *position, const uint8_t *pinned, const spring_link *link, \
+                                size_t links, uint32_t axes, spring_method m)                           \
+    {                                                                                                   \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 16];                              \
+        const type##_def def = {.axes = axes,                                                           \
+                                .methods = 1u << m,                                                     \
+                                .particles = particles,                                                 \
+                                .links = links,                                                         \
+                                .position = position,                                                   \
+                                .mass_all = 0.3,                                                        \
+                                .pinned = pinned,                                                       \
+                                .link = link,                                                           \
+                                .gravity = {0.3, -9.81, 0.1},                                           \
+                                .drag = 0.07};                                                          \
+        type *s;                                                                                        \
+        double out[2][3 * particles] = {{0}};                                                           \
+        if (type##_init(memory, sizeof memory, &def, &s) != SPRING_OK ||                                \
+            type##_advance(s, m, 1e-3, 300) != SPRING_OK)                                               \
+            return 0;                                                                                   \
+        type##_get(s, SPRING_POSITION, out[0], 0, 0, particles);                                        \
+        type##_get(s, SPRING_VELOCITY, out[1], 0, 0, particles);                                        \
+        const spring_scene_energies e = type##_energy(s);                                               \
+        const double more[] = {e.kinetic, e.elastic, e.gravity, type##_stable_step(s, m),               \
+                               type##_tension(s, 5)};                                                   \
+        return digest_all(digest_all(UINT64_C(0xcbf29ce484222325), out[0], 6 * particles), more, 5);    \
+    }
+
+SCENE_BITS(spring_scene)
+SCENE_BITS(spring_scenef)
+
+static void print_scenes(spring_method m)
+{
+    double position[3 * particles];
+    uint8_t pinned[particles];
+    spring_link link[most_links];
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int jumbled = 0; jumbled < 2; jumbled++) {
+            const size_t links = make_sheet(axes, jumbled, position, pinned, link);
+            printf("scene-%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n",
+                   jumbled ? "list" : "rows", axes, spring_method_name(m),
+                   spring_scene_bits(position, pinned, link, links, axes, m),
+                   spring_scenef_bits(position, pinned, link, links, axes, m));
+        }
+}
+
 int main(void)
 {
     static const struct {
@@ -93,6 +178,9 @@ int main(void)
         print_batches("both", methods[j], true, true, SPRING_SHARED_ACCEL);
         print_batches("same", methods[j], true, true, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
     }
+
+    for (size_t j = 0; j < sizeof methods / sizeof methods[0]; j++)
+        print_scenes(methods[j]);
 
     spring_clock clock = {0};
     double alpha = 0;
