@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: MIT */
+/* The stable step: its formula, that it is stable, and not much too small. Hard scenes. */
+#include <stdio.h>
+
+#include "test_scene.h"
+
+/* -------------------------------------------------------------------------------------------------------- formula */
+
+/* From the header, over all particles in turn. */
+static double stable_step_of(const scene_def *def, spring_method method)
+{
+    double L = 0, G = 0, K = 0;
+    bool damped = false;
+    for (size_t i = 0; i < def->particles; i++) {
+        double stiffness = 0, damping = 0;
+        for (size_t j = 0; j < def->links; j++) {
+            const spring_link *link = &def->link[j];
+            if (link->a != i && link->b != i)
+                continue;
+            const double ends = pinned_in(def, link->a == i ? link->b : link->a) ? 1 : 2;
+            stiffness += ends * link->stiffness;
+            damping += ends * link->damping;
+        }
+        damped = damped || damping > 0;
+        if (pinned_in(def, i))
+            continue;
+        L = fmax(L, stiffness / mass_in(def, i));
+        G = fmax(G, (damping + def->drag) / mass_in(def, i));
+        K = fmax(K, stiffness);
+    }
+    if (method == SPRING_LEAPFROG)
+        return damped ? fmin(2 / sqrt(L), 2 / G) : 2 / sqrt(L);
+    if (method == SPRING_RK4)
+        return 2.61 / fmax(sqrt(L), G);
+    return K > 0 ? fmin(def->drag / K, 2 / G) : 2 / G;
+}
+
+static void formula(void)
+{
+    static model m;
+    static const uint32_t grids[][3] = {{23, 1, 1}, {7, 5, 1}, {3, 4, 3}};
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < feature_masks; features++) {
+            build(&m, grids[features % 3], axes, features);
+            scene *s = scene_of(&m.def);
+            for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
+                const double want = stable_step_of(&m.def, (spring_method)method);
+                CHECK_CLOSE(SCENE(stable_step)(s, (spring_method)method), want, 60 * EPS * want,
+                            "a sum of at most 50 links, and ten roundings");
+            }
+            CHECK(isnan(SCENE(stable_step)(s, SPRING_EXACT)) &&
+                      isnan(SCENE(stable_step)(s, (spring_method)9)) &&
+                      isnan(SCENE(stable_step)(NULL, SPRING_RK4)),
+                  "bad input");
+            free(s);
+        }
+}
+
+static void nothing_to_be_unstable_with(void)
+{
+    const double x[] = {0, 1};
+    const scene_def def = {.axes = 1, .methods = all_methods, .particles = 2, .position = x};
+    scene *s = scene_of(&def);
+    for (int method = SPRING_EULER; method <= SPRING_RK4; method++)
+        CHECK(SCENE(stable_step)(s, (spring_method)method) == INFINITY, "no force");
+    free(s);
+}
+
+/* -------------------------------------------------------------------------------------- stable, and how far from it */
+
+enum { LINK_DAMPING = 1, WITH_DRAG = 2 };
+
+typedef struct thing {
+    const char *name;
+    spring_grid grid;
+} thing;
+
+static const thing things[] = {
+    {"rope",
+     {.count = {17},
+      .spacing = 0.2,
+      .stretch = 1.1,
+      .stiffness = 310,
+      .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X}},
+    {"cloth",
+     {.count = {9, 9}, .spacing = 0.2, .stretch = 1.1, .families = 7, .stiffness = 310, .pinned = 15}},
+    {"jelly",
+     {.count = {4, 4, 4},
+      .spacing = 0.2,
+      .stretch = 1,
+      .families = 3,
+      .stiffness = 310,
+      .pinned = SPRING_GRID_FIRST_Z}},
+    {"chain",
+     {.count = {20},
+      .axes = 1,
+      .spacing = 0.2,
+      .stretch = 1.1,
+      .stiffness = 310,
+      .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X}},
+    {"water",
+     {.count = {11, 11}, .height = true, .spacing = 1, .families = 7, .stiffness = 310, .pinned = 15}},
+};
+enum { rope, cloth, jelly, chain, water, thing_count };
+
+/* A thing at its place; its particles have velocities in all directions, small, but far above rounding. */
+static void build_thing(model *m, const thing *what, unsigned how)
+{
+    spring_grid g = what->grid;
+    g.damping = how & LINK_DAMPING ? 4.3 : 0;
+    const uint32_t axes = g.height ? 1 : g.axes == 0 ? 3 : g.axes;
+    const double small = sizeof(scalar) == 4 ? 1e-2 : 1e-6; /* [m/s] */
+    size_t particles = 0, links = 0;
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links,
+          "fits");
+    spring_grid_fill(&g, m->position, m->pinned, m->link);
+    for (size_t i = 0; i < particles; i++) {
+        m->mass[i] = 0.7;
+        for (uint32_t a = 0; a < axes; a++)
+            m->velocity[i * axes + a] = m->pinned[i] ? 0 : random_uniform(-small, small);
+    }
+    m->def = (scene_def){.axes = axes,
+                         .methods = all_methods,
+                         .particles = particles,
+                         .links = links,
+                         .position = m->position,
+                         .velocity = m->velocity,
+                         .mass = m->mass,
+                         .pinned = m->pinned,
+                         .link = m->link,
+                         .drag = how & WITH_DRAG ? 1.9 : 0};
+}
+
+/* How much the small velocities have grown after n steps of dt, from n/2 on; INFINITY: overflow. */
+static double growth(const model *m, spring_method method, double dt, uint64_t n)
+{
+    static state y;
+    scene *s = scene_of(&m->def);
+    double size[2] = {0, 0};
+    bool finite = true;
+    for (int part = 0; part < 2; part++)
+        for (uint64_t i = 0; i < n / 2 && finite; i += 10) {
+            finite = SCENE(advance)(s, method, dt, 10) == SPRING_OK;
+            get_state(s, m->def.particles, &y);
+            for (size_t j = 0; j < m->def.particles * m->def.axes; j++)
+                size[part] = fmax(size[part], fabs(y.v[j]));
+        }
+    free(s);
+    return finite ? size[1] / size[0] : INFINITY;
+}
+
+static void stable_below(void)
+{
+    static model m;
+    for (int w = 0; w < thing_count; w++)
+        for (unsigned how = 0; how < 4; how++)
+            for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
+                build_thing(&m, &things[w], how);
+                scene *s = scene_of(&m.def);
+                const double step = SCENE(stable_step)(s, (spring_method)method);
+                free(s);
+                CHECK(step > 0 || (method == SPRING_EULER && !(how & WITH_DRAG)),
+                      "only Euler without drag has none");
+                if (step > 0)
+                    CHECK_BELOW(
+                        growth(&m, (spring_method)method, 0.95 * step, 4000), 1.5,
+                        "modes of constant amplitude, in step and out of step, seen for 2000 steps twice");
+            }
+}
+
+#ifndef SPRING_FLOAT
+
+/* The limit is where small velocities begin to grow; by bisection. */
+static double measured_limit(const model *m, spring_method method, double stable)
+{
+    double low = stable, high = 4 * stable;
+    while (high - low > 0.02 * stable) {
+        const double middle = (low + high) / 2;
+        if (growth(m, method, middle, 2000) > 3)
+            high = middle;
+        else
+            low = middle;
+    }
+    return low;
+}
+
+/* The frequency of the fastest mode of a height field [1/s], by power iteration. */
+static double fastest_mode(const model *m)
+{
+    static double x[most], force[most];
+    static const double still[most];
+    double size = 0;
+    for (size_t i = 0; i < m->def.particles; i++)
+        x[i] = m->pinned[i] ? 0 : random_uniform(-1, 1);
+    for (int k = 0; k < 1000; k++) {
+        memset(force, 0, sizeof force);
+        plain_forces(&m->def, 1, x, still, force, NULL);
+        size = 0;
+        for (size_t i = 0; i < m->def.particles; i++)
+            size = hypot(size, m->pinned[i] ? 0 : force[i] / m->mass[i]);
+        for (size_t i = 0; i < m->def.particles; i++)
+            x[i] = m->pinned[i] ? 0 : force[i] / m->mass[i] / size;
+    }
+    return sqrt(size);
+}
+
+static void not_much_too_small(void)
+{
+    static model m;
+    const int which[] = {cloth, water};
+    for (int w = 0; w < 2; w++)
+        for (int method = SPRING_LEAPFROG; method <= SPRING_RK4; method++) {
+            build_thing(&m, &things[which[w]], 0);
+            scene *s = scene_of(&m.def);
+            const double step = SCENE(stable_step)(s, (spring_method)method);
+            free(s);
+            const double limit = measured_limit(&m, (spring_method)method, step);
+            printf("# %s, %s: the limit is %.2f times the stable step\n", things[which[w]].name,
+                   spring_method_name((spring_method)method), limit / step);
+            CHECK(limit >= 0.99 * step && limit <= 2 * step, "a safe step, and not half of what could be");
+            CHECK(growth(&m, (spring_method)method, 1.1 * limit, 4000) > 100,
+                  "beyond the limit it does blow up");
+            if (which[w] == water) {
+                const double theory = (method == SPRING_LEAPFROG ? 2 : 2 * sqrt(2)) / fastest_mode(&m);
+                CHECK_CLOSE(limit, theory, 0.03 * theory, "growth by 3 in 2000 steps, bisected to 2 %");
+            }
+        }
+}
+
+#endif
+
+/* ----------------------------------------------------------------------------------------------------- hard scenes */
+
+/* A rope that hangs from its first particle. */
+static void build_rope(model *m, uint32_t n, double stiffness, double damping)
+{
+    const spring_grid g = {.count = {n},
+                           .spacing = 0.1,
+                           .stiffness = stiffness,
+                           .damping = damping,
+                           .pinned = SPRING_GRID_FIRST_X};
+    size_t particles, links;
+    spring_grid_size(&g, &particles, &links);
+    spring_grid_fill(&g, m->position, m->pinned, m->link);
+    memset(m->velocity, 0, sizeof m->velocity);
+    for (size_t i = 0; i < n; i++)
+        m->mass[i] = 0.02;
+    m->def = (scene_def){.methods = all_methods,
+                         .particles = particles,
+                         .links = links,
+                         .position = m->position,
+                         .velocity = m->velocity,
+                         .mass = m->mass,
+                         .pinned = m->pinned,
+                         .link = m->link,
+                         .gravity = {0, -9.81, 0}};
+}
+
+static double total_energy(const scene *s)
+{
+    const spring_scene_energies e = SCENE(energy)(s);
+    return e.kinetic + e.elastic + e.gravity;
+}
+
+/* Stable, so its energy stays near what it was: leapfrog errs by a fraction of order (dt omega)^2 of what moves. */
+static void check_energy(const model *m, double duration)
+{
+    scene *s = scene_of(&m->def);
+    const double dt = 0.1 * SCENE(stable_step)(s, SPRING_LEAPFROG), before = total_energy(s);
+    double moving = 0, worst = 0;
+    for (double t = 0; t < duration; t += 20 * dt) {
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 20) == SPRING_OK, "stable");
+        const spring_scene_energies e = SCENE(energy)(s);
+        moving = fmax(moving, e.kinetic + e.elastic);
+        worst = fmax(worst, fabs(total_energy(s) - before));
+    }
+    CHECK_BELOW(worst, 0.04 * moving, "(dt omega)^2 = 0.2^2 of the energy that moves");
+    free(s);
+}
+
+static void mass_ratio(void)
+{
+    static model m;
+    build_rope(&m, 30, 4000, 0);
+    m.mass[29] = 200; /* [kg] on a rope of beads of 20 g */
+    check_energy(&m, 0.5);
+}
+
+static void stiffness_ratio(void)
+{
+    static model m;
+    build_rope(&m, 30, 3, 0);
+    for (size_t i = 0; i < m.def.links; i += 2)
+        m.link[i].stiffness = 3e6;
+    for (size_t i = 0; i < m.def.particles; i++)
+        m.mass[i] = 0.7;
+    check_energy(&m, 0.05);
+}
+
+/* Inside out, or in one place: it may start so, and with friction it ends at rest with its links drawn out. */
+static void inverted_and_collapsed(void)
+{
+    static model m;
+    for (int collapsed = 0; collapsed < 2; collapsed++) {
+        build_thing(&m, &things[jelly], LINK_DAMPING | WITH_DRAG);
+        for (size_t j = 0; j < 3 * m.def.particles; j++)
+            m.position[j] =
+                collapsed ? 0.5 + 1e-9 * random_uniform(-1, 1) : -m.position[j] + random_uniform(-0.01, 0.01);
+        scene *s = scene_of(&m.def);
+        const double before = total_energy(s), dt = 0.3 * SCENE(stable_step)(s, SPRING_LEAPFROG);
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 4000) == SPRING_OK, "no NaN");
+        CHECK(all_finite(s, m.def.particles, 3) && total_energy(s) < before, "friction takes energy");
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK && SCENE(at_rest)(s, 1e-3, 1e-1),
+              "and ends at rest");
+        free(s);
+    }
+}
+
+static void poke_hard(void *user, double t, size_t particles, const scalar *const x[3],
+                      const scalar *const v[3], scalar *const force[3])
+{
+    (void)t, (void)particles, (void)x, (void)v;
+    force[2][40] += *(const scalar *)user;
+}
+
+static void poked(void)
+{
+    static model m;
+    build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
+    scalar poke = (scalar)1e6; /* [N] */
+    m.def.force = poke_hard;
+    m.def.user = &poke;
+    m.def.flags = SPRING_SCENE_FORCE_STILL;
+    scene *s = scene_of(&m.def);
+    const double dt = 0.5 * SCENE(stable_step)(s, SPRING_LEAPFROG);
+    double v[3], all[3 * most], momentum = 0;
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
+    SCENE(get)(s, SPRING_VELOCITY, all, 0, 0, m.def.particles);
+    for (size_t i = 0; i < m.def.particles; i++)
+        momentum += 0.7 * all[3 * i + 2];
+    CHECK(momentum > 0.2 * dt * 1e6 && momentum < dt * 1e6,
+          "what drag and the pins leave of force times time");
+    poke = 0;
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 30000) == SPRING_OK, "stable");
+    SCENE(get)(s, SPRING_VELOCITY, v, 0, 40, 1);
+    CHECK(all_finite(s, m.def.particles, 3) && fabs(v[2]) < 1e-2 * 1e6 * dt, "it swings out");
+    free(s);
+}
+
+/* A frame that took 2 s: far beyond the stable step the scene may blow up, but says so, and is as it was. */
+static void late_frame(void)
+{
+    static model m;
+    for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
+        build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
+        scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
+        CHECK(SCENE(advance)(s, (spring_method)method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
+        CHECK(same_bits(s, twin, m.def.particles, 3), "and is as it was");
+        const double dt = 0.5 * SCENE(stable_step)(s, (spring_method)method);
+        CHECK(SCENE(advance)(s, (spring_method)method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK,
+              "so do it in small steps");
+        free(s);
+        free(twin);
+    }
+}
+
+/* 10^6 links without order: making the scene takes time in proportion to the links, or this would take hours. */
+static void many_links(void)
+{
+    enum { particles = 200000, links = 1000000 };
+    spring_link *link = malloc(links * sizeof *link);
+    double *x = malloc(3 * particles * sizeof *x);
+    for (size_t i = 0; i < 3 * particles; i++)
+        x[i] = random_uniform(0, 100);
+    for (size_t i = 0; i < links; i++) {
+        const uint32_t a = (uint32_t)(random_bits() % particles),
+                       b = (uint32_t)(random_bits() % (particles - 1));
+        link[i] = (spring_link){a, b < a ? b : b + 1, random_uniform(0, 1), 1.5, 0};
+    }
+    const scene_def def = {
+        .particles = particles, .links = links, .position = x, .link = link, .mass_all = 3};
+    scene *s = scene_of(&def);
+    const double dt = 0.5 * SCENE(stable_step)(s, SPRING_LEAPFROG);
+    const double before = total_energy(s);
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 3) == SPRING_OK, "stable");
+    CHECK_CLOSE(total_energy(s), before, 0.1 * before, "of order (dt omega)^2/8 at most");
+    CHECK(isfinite(SCENE(tension)(s, links - 1)), "the last one, too");
+    free(s);
+    free(x);
+    free(link);
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"the formula of the stable step", formula},
+        {"no force", nothing_to_be_unstable_with},
+        {"stable at 0.95 of the stable step", stable_below},
+#ifndef SPRING_FLOAT
+        {"the limit is at most twice as large", not_much_too_small},
+#endif
+        {"mass ratio 10^4", mass_ratio},
+        {"stiffness ratio 10^6", stiffness_ratio},
+        {"inverted and collapsed", inverted_and_collapsed},
+        {"a poke of 10^6 N", poked},
+        {"a frame that took 2 s", late_frame},
+        {"10^6 links", many_links},
+    };
+    return RUN_TESTS("scene_limits", tests);
+}
