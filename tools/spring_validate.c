@@ -26,7 +26,7 @@ static bool list_only, quick;
 static cli_option options[] = {
     {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "only this case; --list names them"},
     {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and what each is there to break"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out cases that take more than a second, unless named"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out the cases that take long, unless named"},
     {.name = NULL},
 };
 
@@ -48,9 +48,10 @@ static const cli_program program = {
         "reduced-mass, its closed\n"
         "form in linear scenes; digits and formula, the true solution; gsl-rk4, arkode-rk4, gsl-rk8pd, "
         "cvode-adams.\n"
-        "Against a true solution each scene has rows for two steps, h and h/2, and one for the value "
-        "extrapolated from\n"
-        "h/2 and h/4. Status 1 if any check fails.",
+        "Against a true solution (the first solver, where there is none) each scene has a row for a step, "
+        "one for "
+        "half of\n"
+        "it and one for the value extrapolated from both. Status 1 if any check fails.",
     .options = options,
 };
 

@@ -2,15 +2,21 @@
 /*
  * The part of spring-validate for scenes.
  *
- * Every method takes n, 2n and 4n steps. With an error C h^p + D h^(p+1) + ... (y_4n - y_2n)/(2^p - 1) is the error of
- * y_4n but for the second term, and y_4n plus that is the extrapolated value. Two such values, from n, 2n and 2n, 4n
- * steps, differ by (2^(p+1) - 1) times what is wrong with the better one. So the bound on the extrapolated value is
+ * Every method takes n, 2n and 4n steps, h = duration/n. Let R = 2^p, p its order, and its error C h^p + D h^(p+1) + ...
+ * Extrapolated values, y_2n + (y_2n - y_n)/(R - 1) and the same from 4n and 2n, are wrong by multiples of D h^(p+1) and
+ * differ by
  *
- *     2/(2^(p+1) - 1) of that difference + rounding            (2: h is not infinitely small)
+ *     b = |D| h^(p+1) (2R - 1)/(4R (R - 1))
  *
- * and that on a run is its distance to the extrapolated value, and that bound. No witness enters the bounds. A method of
- * order p - 1 would miss the first by a factor of 3.5 (leapfrog) and 2.2 (RK4), so they are a check of the order as
- * well: the extrapolated value's error is how far the errors at h and h/2 are from 2^p : 1.
+ * With C from y_n and y_2n alone, and D from b, taken twice since h is not infinitely small, the bounds are
+ *
+ *     y_2n            |y_2n - y_n|/(R - 1)        + 2 b 2R/(2R - 1)
+ *     y_4n            |y_2n - y_n|/(R - 1)/R      + 2 b (3R - 1)/(R (2R - 1))
+ *     extrapolated                                  2 b/(2R - 1)
+ *
+ * and rounding. No witness enters them. The second holds only if the error really falls by R, and the third says how far
+ * from R: a method of order p - 1 would miss it by factors of 3.5 (leapfrog) and 2.2 (RK4). Steps are small enough, and
+ * not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
  */
 #include <math.h>
 #include <stdlib.h>
@@ -25,9 +31,12 @@ typedef struct trial {
     const scene_problem *p;
     spring_method m;
     double *run[3], *best[2]; /* n, 2n, 4n steps; extrapolated from the first and the last two */
+    double b;                 /* [m] the distance of those */
     double rounding;          /* [m] of n steps */
-    double open;              /* [m] bound on the error of best[1] */
+    double rounding_of_all;   /* [m] of every run, and of what is extrapolated from them */
 } trial;
+
+static const double ratios[] = {2, 4, 16}; /* 2^order, by spring_method */
 
 static void *vectors(const scene_problem *p, size_t count)
 {
@@ -91,17 +100,28 @@ static void against_same(const trial *t, const char *witness, const double *y, i
     judge(&f);
 }
 
-/* The true solution, as far as the witness knows it. Of rows for runs there are two, at h and h/2. */
+/* The true solution, as far as the witness knows it: y_2n and y_4n if runs, and in any case the extrapolated value. */
 static void against_solution(const trial *t, const char *witness, const double *y, size_t known, bool runs,
                              double uncertainty, double witness_bound, uint64_t evaluations)
 {
+    const double R = ratios[t->m];
+    const double first = scene_distance(t->c, t->p, t->run[1], t->run[0], known) / (R - 1);
+    const struct {
+        const double *got;
+        int run_index;
+        double bound;
+        const char *reason;
+    } rows[] = {
+        {t->run[1], 1, first + 4 * R / (2 * R - 1) * t->b, "truncation measured at 2h and h"},
+        {t->run[2], 2, first / R + 2 * (3 * R - 1) / (R * (2 * R - 1)) * t->b,
+         "truncation measured at 4h and 2h, smaller by 2^order"},
+        {t->best[1], 2, 2 / (2 * R - 1) * t->b, "extrapolated: truncation of the next order"},
+    };
     for (int i = runs ? 0 : 2; i < 3; i++) {
-        const double *got = i < 2 ? t->run[i] : t->best[1];
-        finding f = row(t, witness, i);
-        f.error = scene_distance(t->c, t->p, got, y, known);
-        f.bound = scene_distance(t->c, t->p, got, t->best[1], known) + t->open + witness_bound;
-        f.reason = i < 2 ? "distance to the extrapolated value + what that is wrong by"
-                         : "extrapolated: what the error in the next power of h leaves";
+        finding f = row(t, witness, rows[i].run_index);
+        f.error = scene_distance(t->c, t->p, rows[i].got, y, known);
+        f.bound = rows[i].bound + t->rounding_of_all + witness_bound;
+        f.reason = rows[i].reason;
         f.uncertainty = uncertainty;
         f.evaluations = evaluations;
         judge(&f);
@@ -110,17 +130,16 @@ static void against_solution(const trial *t, const char *witness, const double *
 
 static void try_method(trial *t)
 {
-    static const double ratios[] = {2, 4, 16}; /* 2^p */
-    const double ratio = ratios[t->m];
+    const double R = ratios[t->m];
     for (int i = 0; i < 3; i++)
         run(t->p, t->m, step_of(t, i), t->c->steps[t->m] << i, t->run[i]);
-    for (int b = 0; b < 2; b++)
+    for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < 2 * t->p->moving; i++)
-            t->best[b][i] = t->run[b + 1][i] + (t->run[b + 1][i] - t->run[b][i]) / (ratio - 1);
+            t->best[k][i] = t->run[k + 1][i] + (t->run[k + 1][i] - t->run[k][i]) / (R - 1);
+    t->b = scene_distance(t->c, t->p, t->best[0], t->best[1], 0);
     /* Four times the steps are four times the rounding, and what carries it on differs little; twice that. The
-       extrapolated value has it ratio/(ratio - 1) times from 4n steps, and 1/(ratio - 1) times from 2n. */
-    const double rounding = 8 * t->rounding * (ratio + 1) / (ratio - 1);
-    t->open = 2 / (2 * ratio - 1) * scene_distance(t->c, t->p, t->best[0], t->best[1], 0) + rounding;
+       extrapolated value has it R/(R - 1) times from 4n steps, and 1/(R - 1) times from 2n. */
+    t->rounding_of_all = 8 * t->rounding * (R + 1) / (R - 1);
 }
 
 /* -------------------------------------------------------------------------------------- other people's solvers */
@@ -207,9 +226,10 @@ static void solutions(const trial *t, const adaptive *solvers, size_t solver_cou
         against_solution(t, c->closed, y, 0, true, 0, 0, 0);
         free(y);
     }
+    const bool unknown = c->known == 0 && c->solution == NULL; /* then the first solver stands in */
     for (const adaptive *a = solvers; a < solvers + solver_count; a++)
-        against_solution(t, a->name, a->y, 0, false, a->uncertainty, 2 * a->uncertainty + finest * c->length,
-                         a->evaluations);
+        against_solution(t, a->name, a->y, 0, unknown && a == solvers, a->uncertainty,
+                         2 * a->uncertainty + finest * c->length, a->evaluations);
 }
 
 void validate_scene(const scene_case *c)
