@@ -82,8 +82,8 @@ static size_t make_sheet(uint32_t axes, bool jumbled, double *position, uint8_t 
         .damping = jumbled ? 0.02 : 0,
         .pinned = SPRING_GRID_FIRST_X,
     };
-    size_t count, links;
-    spring_grid_size(&grid, &count, &links);
+    size_t nodes, links;
+    spring_grid_size(&grid, &nodes, &links);
     spring_grid_fill(&grid, position, pinned, link);
     for (size_t i = 0; jumbled && i < links; i++) {
         const size_t other = (i * 37 + 11) % links;
@@ -92,7 +92,7 @@ static size_t make_sheet(uint32_t axes, bool jumbled, double *position, uint8_t 
         link[other] = old;
         link[i].stiffness += (double)(i % 5);
     }
-    for (size_t i = 0; i < count * axes; i++)
+    for (size_t i = 0; i < nodes * axes; i++)
         position[i] += (double)(i * 29 % 17) / 331; /* no product: nothing to fuse here */
     return links;
 }
