@@ -86,6 +86,29 @@ static void few_particles(void)
             }
 }
 
+/* Equal links share their numbers; one that differs in one number must not. */
+static void one_odd_link(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int odd = 0; odd < 4; odd++)
+            for (int k = 0; k < kernel_count; k++) {
+                if (kernels_of(k) == NULL)
+                    continue;
+                build(&m, (uint32_t[]){30, 1, 1}, axes, DAMPED);
+                spring_link *link = &m.link[random_bits() % m.def.links];
+                if (odd == 0)
+                    link->rest *= 2;
+                else if (odd == 1)
+                    link->stiffness *= 2;
+                else if (odd == 2)
+                    link->damping *= 2;
+                else
+                    reverse(link);
+                check_forces(&m, kernels_of(k));
+            }
+}
+
 /* On one axis a link is a linear spring, with a direction. */
 static void one_axis_direction(void)
 {
@@ -280,6 +303,7 @@ int main(void)
     static const test tests[] = {
         {"forces against a plain loop", against_a_plain_loop},
         {"1 to 40 particles", few_particles},
+        {"one odd link in a row", one_odd_link},
         {"one axis has a direction", one_axis_direction},
         {"the same bits with every instruction set", same_bits_everywhere},
         {"editable scenes have the same bits", edit_and_public_function},

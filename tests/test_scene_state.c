@@ -510,6 +510,30 @@ static void edited_links(void)
             }
 }
 
+/* Links that lose their damping cost no more than links that never had any. */
+static void damping_taken_away(void)
+{
+    static model m;
+    wind w = calm(2, 0);
+    build(&m, sheet, 2, DAMPED);
+    m.def.flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_STILL;
+    m.def.force = blow;
+    m.def.user = &w;
+    scene *s = scene_of(&m.def);
+    for (size_t i = 0; i < m.def.links; i++) {
+        m.link[i].damping = 0;
+        SCENE(set_link)(s, i, &m.link[i]);
+    }
+    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    CHECK(w.calls == 1 + 4, "nothing left that uses velocities: one evaluation a step");
+    m.link[0].damping = 0.1;
+    SCENE(set_link)(s, 0, &m.link[0]);
+    w.calls = 0;
+    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    CHECK(w.calls == 3 * 4, "and three where something does");
+    free(s);
+}
+
 /* A cut in a rope: what hung falls. */
 static void cut_rope(void)
 {
@@ -684,6 +708,7 @@ int main(void)
         {"bad ranges", bad_ranges},
         {"moving pins", moving_pins},
         {"edited links", edited_links},
+        {"damping taken away", damping_taken_away},
         {"a cut rope", cut_rope},
         {"bad edits", bad_edits},
         {"a link turned round", turned_link},
