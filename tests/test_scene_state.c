@@ -306,6 +306,29 @@ static void failures(void)
         }
 }
 
+/* The last kick of leapfrog overflows where all before it was finite: stiffness times the way of a step. */
+static void velocity_alone_overflows(void)
+{
+    const double large = sizeof(scalar) == 4 ? 1e20 : 1e160; /* its square is infinite */
+    const double x[] = {0, 0.5}, v[] = {0, large};
+    const uint8_t pinned[] = {1, 0};
+    for (unsigned damped = 0; damped < 2; damped++) {
+        const spring_link link = {0, 1, 0.5, large, damped ? 1e-3 : 0};
+        const scene_def def = {.axes = 1,
+                               .particles = 2,
+                               .links = 1,
+                               .position = x,
+                               .velocity = v,
+                               .pinned = pinned,
+                               .link = &link};
+        scene *s = scene_of(&def), *twin = scene_of(&def);
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 1, 1) == SPRING_ENONFINITE, "noticed in the same step");
+        CHECK(same_bits(s, twin, 2, 1), "as it was");
+        free(s);
+        free(twin);
+    }
+}
+
 static void without_undo(void)
 {
     static model m;
@@ -703,6 +726,7 @@ int main(void)
         {"time is not accumulated", time_is_not_accumulated},
         {"nothing to do", nothing_to_do},
         {"a failed call leaves everything as it was", failures},
+        {"velocity alone overflows", velocity_alone_overflows},
         {"without undo", without_undo},
         {"strides and ranges", strides_and_ranges},
         {"bad ranges", bad_ranges},
