@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits of a batch, for each vector and precision; the kernels are in bench_limits_kernels.h. GNU C. */
+/* The limits of batches and scenes, for each vector and precision; the kernels are in bench_limits_kernels.h. GNU C. */
 #include "bench_limits.h"
+
+#include <math.h>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 /* An empty instruction that may change a vector, for all the compiler knows: it has to be in a register then, and what
    was loaded before and is stored afterwards cannot be left out. */
@@ -29,9 +35,15 @@ static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.99
 
 #define SCALAR double
 #define BYTES  16
+#if defined(__x86_64__)
+#define ROOT(a) _mm_sqrt_pd((__m128d)(a))
+#endif
 #include "bench_limits_kernels.h"
 #define SCALAR float
 #define BYTES  16
+#if defined(__x86_64__)
+#define ROOT(a) _mm_sqrt_ps((__m128)(a))
+#endif
 #include "bench_limits_kernels.h"
 
 #if defined(__x86_64__)
@@ -42,11 +54,13 @@ static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.99
 #pragma GCC push_options
 #pragma GCC target("avx2")
 #endif
-#define SCALAR double
-#define BYTES  32
+#define SCALAR  double
+#define BYTES   32
+#define ROOT(a) _mm256_sqrt_pd((__m256d)(a))
 #include "bench_limits_kernels.h"
-#define SCALAR float
-#define BYTES  32
+#define SCALAR  float
+#define BYTES   32
+#define ROOT(a) _mm256_sqrt_ps((__m256)(a))
 #include "bench_limits_kernels.h"
 #if defined(__clang__)
 #pragma clang attribute pop
@@ -54,11 +68,13 @@ static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.99
 #else
 #pragma GCC target("avx512f,avx512dq")
 #endif
-#define SCALAR double
-#define BYTES  64
+#define SCALAR  double
+#define BYTES   64
+#define ROOT(a) _mm512_sqrt_pd((__m512d)(a))
 #include "bench_limits_kernels.h"
-#define SCALAR float
-#define BYTES  64
+#define SCALAR  float
+#define BYTES   64
+#define ROOT(a) _mm512_sqrt_ps((__m512)(a))
 #include "bench_limits_kernels.h"
 #if defined(__clang__)
 #pragma clang attribute pop

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What no batch can be faster than: kernels that only move the memory, and kernels that only do the arithmetic.
+ * What no batch and no scene can be faster than: kernels that only move the memory, and kernels that only do the
+ * arithmetic.
  *
  * streams     reads x, v and the parameters that are there, one by one, and writes x and v as they were.
+ * read        reads memory.
  * arithmetic  does the multiplications and additions of a step and nothing else: states and coefficients stay in
  *             registers, on as many independent vectors as run best.
+ * links       does what the force of a link takes: differences, length, quotient, both ends' sums; all in registers.
  *
  * Like the library's they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the processor has is used.
  */
@@ -25,6 +28,9 @@ typedef struct bench_limits {
     size_t springs; /* that the arithmetic is done for, at once */
     void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by: there is w, g, a */
     void (*arithmetic[4][2][2])(uint64_t steps);                      /* by method, damped, loaded */
+    void (*read)(const void *memory, size_t bytes, uint64_t times);   /* up to the next whole vector */
+    size_t together;                                                  /* links that are computed at once */
+    void (*links[3])(uint64_t times);                                 /* by axes - 1 */
 } bench_limits;
 
 /** The limits in the widest vectors; single: of float instead of double. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits in one vector and precision; see bench_limits.h. Included by bench_limits.c with SCALAR and BYTES set. */
+/* The limits in one vector and precision; see bench_limits.h. Included by bench_limits.c with SCALAR and BYTES set, and ROOT
+   where there is an instruction for it. */
 
 typedef SCALAR NAME(real) __attribute__((vector_size(BYTES)));
 typedef SCALAR NAME(unaligned) __attribute__((vector_size(BYTES), aligned(sizeof(SCALAR)), may_alias));
@@ -45,6 +46,73 @@ STREAM(1, 0, 1)
 STREAM(1, 1, 0)
 STREAM(1, 1, 1)
 #undef STREAM
+
+static void NAME(read)(const void *memory, size_t bytes, uint64_t times)
+{
+    const NAME(unaligned) *const from = memory;
+    for (; times > 0; times--) {
+        for (size_t i = 0; i < (bytes + BYTES - 1) / BYTES; i++) {
+            real r = from[i];
+            TOUCH(r);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ links */
+
+INLINE real NAME(root)(real a)
+{
+#ifdef ROOT
+    return (real)ROOT(a);
+#else
+    for (size_t i = 0; i < BYTES / sizeof(SCALAR); i++)
+        a[i] = (SCALAR)sqrt((double)a[i]);
+    return a;
+#endif
+}
+
+INLINE void NAME(link)(uint64_t times, int axes)
+{
+    const real k = (SCALAR)coefficient[0] - (real){0}, rest = (SCALAR)coefficient[1] - (real){0};
+    real from[3], to[3], force_from[3], force_to[3];
+    UNROLL
+    for (int a = 0; a < axes; a++) {
+        from[a] = (SCALAR)start[0] - (real){0};
+        to[a] = (SCALAR)start[1] - (real){0};
+        force_from[a] = force_to[a] = (real){0};
+    }
+    for (; times > 0; times--) {
+        real way[3], square = {0};
+        UNROLL
+        for (int a = 0; a < axes; a++) {
+            TOUCH(to[a]); /* another link, for all the compiler knows */
+            way[a] = to[a] - from[a];
+            square += way[a] * way[a];
+        }
+        const real scale = axes == 1 ? k * (way[0] - rest) : k * (1 - rest / NAME(root)(square));
+        UNROLL
+        for (int a = 0; a < axes; a++) {
+            const real force = axes == 1 ? scale : scale * way[a];
+            force_from[a] += force;
+            force_to[a] -= force;
+        }
+    }
+    UNROLL
+    for (int a = 0; a < axes; a++) {
+        TOUCH(force_from[a]);
+        TOUCH(force_to[a]);
+    }
+}
+
+#define LINK(axes)                                \
+    static void NAME(link_##axes)(uint64_t times) \
+    {                                             \
+        NAME(link)(times, axes);                  \
+    }
+LINK(1)
+LINK(2)
+LINK(3)
+#undef LINK
 
 /* ------------------------------------------------------------------------------------------------------- arithmetic */
 
@@ -156,9 +224,13 @@ static const bench_limits NAME(limits) = {
     .streams = {{{NAME(stream_000), NAME(stream_001)}, {NAME(stream_010), NAME(stream_011)}},
                 {{NAME(stream_100), NAME(stream_101)}, {NAME(stream_110), NAME(stream_111)}}},
     .arithmetic = {RUNS(euler), RUNS(leapfrog), RUNS(rk4), RUNS(exact)}, /* in the order of spring_method */
+    .read = NAME(read),
+    .together = BYTES / sizeof(SCALAR),
+    .links = {NAME(link_1), NAME(link_2), NAME(link_3)},
 };
 #undef RUNS
 
 #undef real
 #undef SCALAR
 #undef BYTES
+#undef ROOT

@@ -15,7 +15,8 @@
 #include "cli.h"
 #include "timing.h"
 
-static const char *const parts[] = {"spring", "batch", NULL}, *const precisions[] = {"double", "float", NULL};
+static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double",
+                                                                                              "float", NULL};
 static int only_part = -1, only_kernel = -1, only_precision = -1;
 static uint64_t only_count, calls;
 static bool quick;
@@ -27,12 +28,13 @@ static const char *kernels[most_rows + 1]; /* each name once, ended by NULL */
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
-     .help = "spring (one at a time) or batch"},
+     .help = "spring (one at a time), batch or scene"},
     {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
      .help = "only the rows of this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
-    {"count", CLI_COUNT, .count = &only_count, .value = "N", .help = "only rows of so many springs"},
+    {"count", CLI_COUNT, .count = &only_count, .value = "N",
+     .help = "only rows of so many springs, or links"},
     {"calls", CLI_COUNT, .count = &calls, .value = "N",
      .help = "only make so many calls, for tools that count instructions"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
@@ -44,29 +46,39 @@ static const double noisy_spread = 0.05; /* --help says it, too */
 static const cli_program program = {
     .name = "spring-bench",
     .summary = "What a step of a spring costs, beside a limit measured in the same run.",
-    .details = "Columns: kernel, precision, count (springs), ns_per_spring_step, limit_ns, ratio (of the\n"
-               "two), spread, verdict, goal_ratio and goal_ns (what the library promises; inf: nothing),\n"
-               "limit (its name).\n\n"
-               "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
-               "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
-               "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
-               "Euler; kick, drift, kick; the four stages of rk4. \"textbook\": the formula of an\n"
-               "underdamped spring, exp, cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
-               "\"ordinary\", is leapfrog from an ordinary start.\n\n"
-               "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
-               "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
-               "1e-310 m (float: 1e-41); _unaligned: arrays that begin 8 bytes after a multiple of 64.\n"
-               "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
-               "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
-               "does the multiplications and additions of a step in registers, with ready coefficients.\n"
-               "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
-               "parameters of the closed form it is the textbook's formula; for settled and unaligned,\n"
-               "the same kernel without that.\n\n"
-               "Figures are medians of samples, in processor time, that alternate with those of the\n"
-               "limit. spread is the distance between the quartiles over the median, the larger one of\n"
-               "kernel and limit. verdict is ok, noisy (spread above 0.05: the machine was busy, the row\n"
-               "proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
-               "judge.",
+    .details =
+        "Columns: kernel, precision, count (springs; links of a scene), ns_per_spring_step, limit_ns,\n"
+        "ratio (of the two), spread, verdict, goal_ratio and goal_ns (what the library promises;\n"
+        "inf: nothing), limit (its name), baseline_ns (the plain loop of a scene; nan: none), speedup\n"
+        "(how much faster the library is), goal_speedup.\n\n"
+        "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
+        "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
+        "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
+        "Euler; kick, drift, kick; the four stages of rk4. \"textbook\": the formula of an\n"
+        "underdamped spring, exp, cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
+        "\"ordinary\", is leapfrog from an ordinary start.\n\n"
+        "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
+        "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
+        "1e-310 m (float: 1e-41); _unaligned: arrays that begin 8 bytes after a multiple of 64.\n"
+        "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
+        "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
+        "does the multiplications and additions of a step in registers, with ready coefficients.\n"
+        "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
+        "parameters of the closed form it is the textbook's formula; for settled and unaligned,\n"
+        "the same kernel without that.\n\n"
+        "Part scene: METHOD_SHAPE_N is spring_scene_advance() by N steps a call: a sheet or a block of\n"
+        "jelly with structural, shear and bend links, or water, a height field; with gravity and\n"
+        "pinned edges. _links_shuffled: links in random order; _shuffled: particles numbered at random,\n"
+        "too. Limits: \"streams\" reads and writes the state and reads forces and links; \"arithmetic\"\n"
+        "does that of the links, each once, in registers. Baseline: a loop over an array of links and\n"
+        "one of particles. float's limit is the same scene in double; that of a feature (_drag,\n"
+        "_damping, ...) or of another method is \"leapfrog\" without it. init_SHAPE is\n"
+        "spring_scene_init(), beside reading the links of its definition.\n\n"
+        "Figures are medians of samples, in processor time, that alternate with those of the\n"
+        "limit. spread is the distance between the quartiles over the median, the larger one of\n"
+        "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the row\n"
+        "proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
+        "judge.",
     .options = options,
 };
 
@@ -83,7 +95,7 @@ void bench_add(const bench_row *row)
 
 /* ---------------------------------------------------------------------------------------------------- the samples */
 
-enum { most_samples = 51, timed = 1 + bench_most_limits }; /* the kernel, its limits */
+enum { most_samples = 51, timed = bench_baseline + 1 }; /* the kernel, its limits, the baseline */
 
 /* As many calls as fill the time. */
 static uint64_t calls_for(const bench_row *r, int which, double time_ns)
@@ -114,37 +126,43 @@ static figure summarise(double *samples, size_t count)
 /* Measures and writes one row. */
 static void measure(cli_table *table, const bench_row *r)
 {
-    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 3e7 : 4e8;
-    const size_t least = quick ? 3 : 11, most = quick ? 9 : most_samples;
-    int used = 1;
-    while (used < timed && r->limits[used - 1] != NULL)
-        used++;
+    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 3e7 : 2.5e8;
+    const size_t few = 3, least = quick ? few : 11, most = quick ? 9 : most_samples;
+    bool is_used[timed] = {true, [bench_baseline] = r->baseline != NULL};
+    for (int k = 0; k < bench_most_limits; k++)
+        is_used[1 + k] = r->limits[k] != NULL;
     double samples[timed][most_samples];
     uint64_t n[timed];
-    for (int k = 0; k < used; k++)
-        n[k] = calls_for(r, k, sample_ns);
+    for (int k = 0; k < timed; k++)
+        n[k] = is_used[k] ? calls_for(r, k, sample_ns) : 0;
     size_t count = 0;
     const double begin = timing_now();
-    for (; count < least || (count < most && timing_now() - begin < row_ns); count++)
-        for (int k = 0; k < used; k++)
-            samples[k][count] = r->time(r, k, n[k]) / (double)n[k] / (double)r->count / (double)r->steps;
+    for (double spent = 0;
+         count < few || (count < least && spent < 5 * row_ns) || (count < most && spent < row_ns);
+         spent = timing_now() - begin) {
+        for (int k = 0; k < timed; k++)
+            if (is_used[k])
+                samples[k][count] = r->time(r, k, n[k]) / (double)n[k] / (double)r->count / (double)r->steps;
+        count++;
+    }
     figure figures[timed];
-    for (int k = 0; k < used; k++)
-        figures[k] = summarise(samples[k], count);
+    for (int k = 0; k < timed; k++)
+        figures[k] = is_used[k] ? summarise(samples[k], count) : (figure){NAN, 0};
     int slowest = 1;
-    for (int k = 2; k < used; k++)
+    for (int k = 2; k <= bench_most_limits; k++)
         if (figures[k].median > figures[slowest].median)
             slowest = k;
-    const figure ours = figures[0], limit = figures[slowest];
-    const double ratio = ours.median / limit.median, spread = fmax(ours.spread, limit.spread);
+    const figure ours = figures[0], limit = figures[slowest], baseline = figures[bench_baseline];
+    const double ratio = ours.median / limit.median, speedup = baseline.median / ours.median;
+    const double spread = fmax(fmax(ours.spread, limit.spread), baseline.spread);
     const bool noisy = !(spread <= noisy_spread);
-    const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns;
-    cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s", r->kernel, r->precision,
-            r->count, ours.median, limit.median, ratio, spread,
+    const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns && !(speedup < r->goal_speedup);
+    cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%.4g",
+            r->kernel, r->precision, r->count, ours.median, limit.median, ratio, spread,
             noisy   ? "noisy"
             : holds ? "ok"
                     : "above_goal",
-            r->goal_ratio, r->goal_ns, r->limits[slowest - 1]);
+            r->goal_ratio, r->goal_ns, r->limits[slowest - 1], baseline.median, speedup, r->goal_speedup);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the table */
@@ -152,7 +170,7 @@ static void measure(cli_table *table, const bench_row *r)
 static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
-           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) &&
+           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
            (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
@@ -161,12 +179,14 @@ int main(int argc, char **argv)
 {
     bench_add_springs();
     bench_add_batches();
+    bench_add_scenes();
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
     cli_columns(
         table,
-        "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit");
+        "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
+        "baseline_ns speedup goal_speedup");
     for (size_t i = 0; i < row_count; i++) {
         cli_progress((double)i / (double)row_count);
         if (!wanted(&rows[i]))

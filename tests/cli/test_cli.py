@@ -675,14 +675,20 @@ def test_bench():
     small = table(BENCH, '--quick', '--part', 'batch', '--count', '1000')
     sizes = table(BENCH, '--quick', '--kernel', 'leapfrog_batch_16')
     spring = table(BENCH, '--quick', '--part', 'spring', '--kernel', 'rk4')
-    for rows in (small, sizes, spring):
+    scenes = table(BENCH, '--quick', '--part', 'scene', '--count', '7002')
+    for rows in (small, sizes, spring, scenes):
         equal(list(rows[0])[:len(fixed)], fixed, 'bench: columns')
         check(all(float(r[name]) > 0 for r in rows for name in ('ns_per_spring_step', 'limit_ns')), 'bench: time passes', rows)
         check(all(abs(float(r['ratio']) - float(r['ns_per_spring_step']) / float(r['limit_ns'])) <= 2e-3 * float(r['ratio'])
                   for r in rows), 'bench: ratio, of figures with four digits', rows)
         check(all((r['verdict'] == 'noisy') == (float(r['spread']) > 0.05) for r in rows if r['spread'] != '0.05'),
               'bench: noisy is a spread above 0.05', rows)
-        excess = [(r, max(float(r['ratio']) / float(r['goal_ratio']), float(r['ns_per_spring_step']) / float(r['goal_ns'])))
+        for r in rows:
+            check(r['speedup'] == r['baseline_ns'] == 'nan' or
+                  abs(float(r['speedup']) - float(r['baseline_ns']) / float(r['ns_per_spring_step'])) <= 2e-3 * float(r['speedup']),
+                  'bench: speedup, of figures with four digits', r)
+        excess = [(r, max(float(r['ratio']) / float(r['goal_ratio']), float(r['ns_per_spring_step']) / float(r['goal_ns']),
+                          float(r['goal_speedup']) / float(r['speedup']) if r['speedup'] != 'nan' else 0))
                   for r in rows if r['verdict'] != 'noisy']
         check(all((r['verdict'] == 'above_goal') == (x > 1) for r, x in excess if abs(x - 1) > 2e-3),
               'bench: above_goal is one, to four digits', excess)
@@ -692,6 +698,10 @@ def test_bench():
     equal([(r['precision'], int(r['count'])) for r in sizes],
           [(p, 10**k) for p in ('double', 'float') for k in range(3, 8)], 'bench: counts and precisions')
     equal([(r['kernel'], r['count'], r['limit']) for r in spring], [('rk4', '1', 'loop')], 'bench: one spring')
+    check({'leapfrog_sheet_1', 'leapfrog_sheet_16', 'leapfrog_sheet_16_shuffled', 'rk4_sheet_16', 'leapfrog_sheet_16_damping',
+           'init_sheet'} <= {r['kernel'] for r in scenes}, 'bench: scenes of 35 x 35 particles, 7002 links', scenes)
+    equal({(r['limit'], r['speedup'] != 'nan') for r in scenes if r['kernel'] == 'leapfrog_sheet_16'},
+          {('arithmetic', True), ('double', False)}, 'bench: a scene has limits and a plain loop, a float one double')
     equal(table(BENCH, '--calls', '1', '--count', '1000'), [], 'bench: --calls measures nothing')
     result = run(BENCH, '--part', 'scenery')
     check(result.returncode == 2 and '"scenery"' in result.stderr and 'batch' in result.stderr, 'bench: another part', result)
