@@ -329,6 +329,20 @@ static void velocity_alone_overflows(void)
     }
 }
 
+/* A particle that falls at its final speed is all there is: an unstable step is no failure where nothing departs from it. */
+static void steady_fall(void)
+{
+    const double x[] = {0}, v[] = {-2};
+    const scene_def def = {
+        .axes = 1, .particles = 1, .position = x, .velocity = v, .gravity = {-4}, .drag = 2};
+    scene *s = scene_of(&def);
+    double now;
+    CHECK(SCENE(advance)(s, SPRING_EULER, 2, 2000) == SPRING_OK, "-4 - 2 (-2) is 0, exactly");
+    SCENE(get)(s, SPRING_VELOCITY, &now, 0, 0, 1);
+    CHECK_BITS(now, -2, "-4 - 2 (-2) is 0, exactly");
+    free(s);
+}
+
 static void without_undo(void)
 {
     static model m;
@@ -727,6 +741,7 @@ int main(void)
         {"nothing to do", nothing_to_do},
         {"a failed call leaves everything as it was", failures},
         {"velocity alone overflows", velocity_alone_overflows},
+        {"a steady fall", steady_fall},
         {"without undo", without_undo},
         {"strides and ranges", strides_and_ranges},
         {"bad ranges", bad_ranges},
