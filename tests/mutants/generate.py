@@ -18,7 +18,7 @@ TOKEN = re.compile(
     r"""(?P<skip>/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|^[ \t]*\#(?:\\\n|[^\n])*|\s+)
       | (?P<number>(?:0[xX][0-9a-fA-F.]+(?:[pP][+-]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[uUlLfF]*)
       | (?P<word>[A-Za-z_]\w*)
-      | (?P<operator>->|\+\+|--|[-+*/<>=!]=|&&|\|\||.)""",
+      | (?P<operator>->|\+\+|--|<<|>>|[-+*/<>=!]=|&&|\|\||.)""",
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
 
@@ -37,6 +37,8 @@ CHANGES = {
     "<=": ["<", ">"],
     ">": [">=", "<="],
     ">=": [">", "<"],
+    "<<": [">>"],
+    ">>": ["<<"],
     "==": ["!="],
     "!=": ["=="],
     "&&": ["||"],
@@ -46,12 +48,7 @@ CHANGES = {
     "false": ["true"],
     "fabs": [""],
 }
-ALWAYS_BINARY = set(CHANGES) - set("+-*/!") - {"true", "false", "fabs"}
-
-# What a pointer is declared with, besides the spring_ types of the headers.
-TYPE = re.compile(r"char|const|double|float|bool|void|size_t|u?int\d+_t|uintptr_t|real|truth|scalar|batch|propagator|"
-                  r"batch_(block|kernels?)|(\w+_)?coefficients|"
-                  r"spring_(state|params|rates|roots|clock|method_row|propagator)")
+NO_TYPES = {"return", "else", "case", "goto", "sizeof"}
 
 
 class Mutant(NamedTuple):
@@ -82,36 +79,47 @@ def other_number(text):
     return str(int(value * 1.001)) if whole else repr(value * 1.001)
 
 
-def operand_ends_with(token):
-    """Is what follows this token a binary operator?"""
-    return token is not None and (
-        token[0] == "number"
-        or token[1] in (")", "]")
-        or (token[0] == "word" and token[1] != "return" and not TYPE.fullmatch(token[1]))
-    )
+def binary(tokens, i):
+    """Is this operator one of two operands? clang-format puts a space behind such, and none behind others."""
+    return tokens[i][3] < tokens[i + 1][2]
+
+
+def declares(tokens, name):
+    """Is this name one that is being declared?"""
+    before = tokens[name - 1]
+    if before[0] == "word":
+        return before[1] not in NO_TYPES
+    if before[1] == "*":
+        return not binary(tokens, name - 1)
+    if before[1] != ",":
+        return False
+    depth, first = 0, name - 1  # one more of a declaration of several, or of the operands of an expression?
+    while depth > 0 or tokens[first - 1][1] not in (";", "{", "}", "("):
+        first -= 1
+        depth += (tokens[first][1] in (")", "}", "]")) - (tokens[first][1] in ("(", "{", "["))
+    second = first + 1
+    while tokens[second][1] == "*" and not binary(tokens, second):
+        second += 1
+    return tokens[first][0] == tokens[second][0] == "word" and tokens[first][1] not in NO_TYPES
 
 
 def size_of_array(tokens, i):
     """Is this number between the brackets of a declaration?"""
-    if tokens[i - 1][1] != "[":
+    if tokens[i - 1][1] != "[" or tokens[i + 1][1] != "]":
         return False
-    if [t[1] for t in tokens[i + 1 : i + 4]] == ["]", "=", "{"]:
+    if [t[1] for t in tokens[i + 2 : i + 4]] == ["=", "{"]:
         return True
     first = i - 1
     while tokens[first - 1][1] == "]":
         first -= 3
-    before = tokens[first - 2][1]
-    return before == "*" or TYPE.fullmatch(before) is not None
+    return declares(tokens, first - 1)
 
 
 def changes(tokens, i):
     kind, text = tokens[i][:2]
-    before = tokens[i - 1] if i > 0 else None
     if kind == "number":
         return [] if size_of_array(tokens, i) else [other_number(text)]
-    if text in ("+", "-", "*", "/", "&"):
-        if operand_ends_with(before):
-            return CHANGES.get(text, [])
+    if text in ("+", "-", "*", "/") and not binary(tokens, i):
         return [""] if text == "-" else []
     return CHANGES.get(text, [])
 
@@ -123,7 +131,7 @@ def owner_of(head):
         return "enum"
     for i, word in enumerate(words):
         if word in ("(", "=", "[") and i > 0 and head[i - 1][0] == "word":
-            made = words[i - 1] in ("BATCH", "METHOD") and i + 1 < len(words)  # a name made by a macro
+            made = words[i - 1] in ("BATCH", "METHOD", "SCENE") and i + 1 < len(words)  # a name made by a macro
             return words[i + 1] if made else words[i - 1]
     return words[-1] if words else ""
 

@@ -2,17 +2,21 @@
 # SPDX-License-Identifier: MIT
 """Applies mutants one at a time to a copy of the tree and runs the quick suite until a program fails.
 
-usage: run.py [--sample] [-o FILE] [PATTERN]...
+usage: run.py [--sample] [--new TABLE] [-o FILE] [PATTERN]...
+       run.py --merge TABLE... [-o FILE]
 
-  --sample   all mutants written by hand and a fixed twelfth of the generated ones
-  -o FILE    write the table to FILE instead of standard output
-  PATTERN    only mutants whose names contain one of these
+  --sample      a fixed quarter of the mutants written by hand and a fixed twentieth of the generated ones
+  --new TABLE   only mutants that have no row in TABLE
+  -o FILE       write the table to FILE instead of standard output
+  PATTERN       only mutants whose names contain one of these
+  --merge       run nothing: of each mutant that there is, the last row among the TABLEs
 
-The mutants are those of generate.py and of by_hand.toml. mutants.tsv beside this file is the table of the last full run,
-which the report shows. Columns: mutant, by (generator or hand), killed_by (program and test point), verdict
+The mutants are those of generate.py and of by_hand.toml. mutants.tsv beside this file is the table which the report
+shows; it is merged of several runs. Columns: mutant, by (generator or hand), killed_by (program and test point), verdict
 (killed, equivalent, survived), reason (why it is equivalent, or what was meant to break), caught_by_validate (does
-spring-validate --quick see it? yes or no for mutants that change a trajectory, "-" for others), line (of source).
-Those known to be equivalent, and why, are in equivalent.tsv.
+spring-validate --quick see it? yes or no for mutants that change a trajectory, "-" for others), line (of source), date
+(of the run). The comment "present" says how many mutants there are. Those known to be equivalent, and why, are in
+equivalent.tsv.
 
 Status 1 if a mutant survives, if one that is listed as equivalent is killed, if spring-validate misses a trajectory
 mutant written by hand, or if a list names a mutant or a line that there is not. The last line on standard error is
@@ -43,7 +47,8 @@ import generate
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 VALIDATE = "validate"
-SAMPLE = 12
+SAMPLE_BY_HAND, SAMPLE_GENERATED = 4, 20
+COLUMNS = ("mutant", "by", "killed_by", "verdict", "reason", "caught_by_validate", "line", "date")
 
 # Where a generated mutant changes a trajectory: the steps, and not the limits of stability.
 STEPPERS = ("euler.h", "leapfrog.h", "rk4.h", "exact.h", "exact.c", "loops.h")
@@ -53,7 +58,16 @@ NOT_STEPS = ("exact_stable_step",)
 # concern the others, is tried with all of them, by the tests that look at vectors.
 NARROW, WIDE = "build", "build-wide"
 ONLY_NARROW = "-Dc_args=-DSPRING_X86_64=0"
-OF_VECTORS = re.compile("batch")
+OF_VECTORS = re.compile("batch|scene")
+WITH_VECTORS = re.compile("src/(real_vector|processor|batch_kernels|batch_loop|scene_kernels)")
+
+# Which programs a file concerns; no other calls what is in it. A file that is not here concerns all.
+CONCERNS = {
+    "src/batch": re.compile("batch|fuzz-api|validate"),
+    "src/scene": re.compile("scene|fuzz-api|validate"),
+    "src/grid": re.compile("scene|fuzz-api|validate"),
+    "src/real_vector": re.compile("batch|scene|fuzz-api|validate"),
+}
 
 
 class Mutant(NamedTuple):
@@ -96,17 +110,20 @@ def written_by_hand():
         )
 
 
+def rows_of(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader((row for row in file if not row.startswith("#")), delimiter="\t",
+                                   quoting=csv.QUOTE_NONE))
+
+
 def known_equivalents(mutants):
     """From equivalent.tsv: name, line of source, reason. A name that no longer means that line is an error."""
     lines = {mutant.name: mutant.line for mutant in mutants}
     reasons = {}
-    with open(HERE / "equivalent.tsv", encoding="utf-8", newline="") as file:
-        rows = csv.DictReader((row for row in file if not row.startswith("#")), delimiter="\t",
-                              quoting=csv.QUOTE_NONE)
-        for row in rows:
-            if lines.get(row["mutant"]) != row["line"]:
-                sys.exit(f"equivalent.tsv: there is no {row['mutant']} in the line: {row['line']}")
-            reasons[row["mutant"]] = row["reason"]
+    for row in rows_of(HERE / "equivalent.tsv"):
+        if lines.get(row["mutant"]) != row["line"]:
+            sys.exit(f"equivalent.tsv: there is no {row['mutant']} in the line: {row['line']}")
+        reasons[row["mutant"]] = row["reason"]
     return reasons
 
 
@@ -171,18 +188,24 @@ def programs_of(build):
             sys.exit(f"{program.name} fails without any mutant: {failure}")
         duration = time.monotonic() - start
         timed.append((round(4 * duration), program._replace(limit=max(5, 10 * duration))))
-    return [program for _, program in sorted(timed, key=lambda pair: (pair[0], pair[1].name))]
+    return [program for _, program in sorted(timed, key=lambda pair: (pair[1].name == VALIDATE, pair[0], pair[1].name))]
 
 
 def build_with_flags(tree, name, flags):
     build = tree / name
     for command in (["meson", "setup", str(build), str(tree), "-Dtests=enabled", "-Dreport=disabled", "-Ddebug=false",
-                     *flags],
+                     "-Doptimization=1", *flags],
                     ["ninja", "-C", str(build)]):
         done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
         if done.returncode != 0:
             sys.exit(done.stdout + done.stderr)
     return build
+
+
+def concerns(mutant, build, program):
+    if build == WIDE:
+        return WITH_VECTORS.match(mutant.file)
+    return all(pattern.match(program.name) for start, pattern in CONCERNS.items() if mutant.file.startswith(start))
 
 
 def try_mutant(mutant, tree, programs):
@@ -195,7 +218,7 @@ def try_mutant(mutant, tree, programs):
         for name, program in programs:
             build = tree / name
             wanted = mutant.trajectory and program.name == VALIDATE
-            if killed_by and not wanted or name == WIDE and not mutant.file.startswith("src/"):
+            if killed_by and not wanted or not concerns(mutant, name, program):
                 continue
             before = stamps(build, program.targets)
             built = make(build, program.targets)
@@ -237,12 +260,10 @@ def run(mutants, equivalent, table):
         counts = {"killed": 0, "equivalent": 0, "survived": 0}
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             for mutant, killed_by, caught in pool.map(work, mutants):
-                reason = equivalent.get(mutant.name, mutant.reason)
-                verdict = "killed" if killed_by else "equivalent" if mutant.name in equivalent else "survived"
-                counts[verdict] += 1
-                print(mutant.name, "hand" if mutant.by_hand else "generator", killed_by or "-", verdict, reason, caught, mutant.line, sep="\t", file=table,
-                      flush=True)
-                if verdict == "survived":
+                row = row_of(mutant, killed_by or "-", caught, datetime.date.today(), equivalent)
+                write_row(row, table)
+                counts[row["verdict"]] += 1
+                if row["verdict"] == "survived":
                     failures.append(f"{mutant.name} survived: {mutant.line}")
                 elif killed_by and mutant.name in equivalent:
                     failures.append(f"{mutant.name} is listed as equivalent, and killed by {killed_by}")
@@ -255,6 +276,31 @@ def run(mutants, equivalent, table):
     return 1 if failures or sum(counts.values()) == 0 else 0
 
 
+def row_of(mutant, killed_by, caught, date, equivalent):
+    verdict = "killed" if killed_by != "-" else "equivalent" if mutant.name in equivalent else "survived"
+    reason = equivalent.get(mutant.name, mutant.reason)
+    values = (mutant.name, "hand" if mutant.by_hand else "generator", killed_by, verdict, reason, caught, mutant.line, date)
+    return dict(zip(COLUMNS, values))
+
+
+def write_row(row, table):
+    print(*row.values(), sep="\t", file=table, flush=True)
+
+
+def merge(tables, mutants, equivalent, table):
+    """Of each mutant the last row, if it was in the same line of source."""
+    rows = {(row["mutant"], row["line"]): row for rows in tables for row in rows}
+    for mutant in mutants:
+        row = rows.get((mutant.name, mutant.line))
+        if row is not None:
+            write_row(row_of(mutant, row["killed_by"], row["caught_by_validate"], row["date"], equivalent), table)
+    return 0
+
+
+def in_sample(mutant):
+    return zlib.crc32(mutant.name.encode()) % (SAMPLE_BY_HAND if mutant.by_hand else SAMPLE_GENERATED) == 0
+
+
 def version():
     header = (ROOT / "include/springstep/version.h").read_text(encoding="utf-8")
     return re.search('SPRING_VERSION "(.*)"', header).group(1)
@@ -263,20 +309,26 @@ def version():
 def main():
     parser = argparse.ArgumentParser(add_help=True, usage=__doc__)
     parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--new")
+    parser.add_argument("--merge", action="store_true")
     parser.add_argument("-o", dest="output")
-    parser.add_argument("patterns", nargs="*")
+    parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     mutants = [*written_by_hand(), *generated()]
     equivalent = known_equivalents(mutants)
-    chosen = [
-        mutant for mutant in mutants
-        if (not options.sample or mutant.by_hand or zlib.crc32(mutant.name.encode()) % SAMPLE == 0)
-        and (not options.patterns or any(pattern in mutant.name for pattern in options.patterns))
-    ]
-    table = open(options.output, "w", encoding="utf-8") if options.output else sys.stdout
-    with table:
-        print(f"# command: tests/mutants/run.py\n# version: {version()}\n# date: {datetime.date.today()}", file=table)
-        print("mutant\tby\tkilled_by\tverdict\treason\tcaught_by_validate\tline", file=table)
+    known = {row["mutant"] for row in rows_of(options.new)} if options.new else set()
+    tables = [rows_of(path) for path in options.names] if options.merge else []
+    with open(options.output, "w", encoding="utf-8") if options.output else sys.stdout as table:
+        print(f"# command: tests/mutants/run.py\n# version: {version()}\n# date: {datetime.date.today()}\n"
+              f"# present: {len(mutants)}", file=table)
+        print(*COLUMNS, sep="\t", file=table)
+        if options.merge:
+            return merge(tables, mutants, equivalent, table)
+        chosen = [
+            mutant for mutant in mutants
+            if (not options.sample or in_sample(mutant)) and mutant.name not in known
+            and (not options.names or any(pattern in mutant.name for pattern in options.names))
+        ]
         return run(chosen, equivalent, table)
 
 
