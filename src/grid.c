@@ -39,6 +39,11 @@ static uint32_t axes_of(const spring_grid *g)
     return g->height ? 1 : g->axes == 0 ? 3 : g->axes;
 }
 
+static double stretch_of(const spring_grid *g)
+{
+    return g->stretch == 0 ? 1 : g->stretch;
+}
+
 static bool wanted(const spring_grid *g, const direction *d)
 {
     return ((g->families == 0 ? SPRING_GRID_STRUCTURAL : g->families) & d->family) != 0;
@@ -56,8 +61,13 @@ static bool valid(const spring_grid *g)
          a++) /* nothing may lie along an axis that is not there */
         if (count_of(g, a) > 1)
             return false;
-    return g->spacing > 0 && isfinite(g->spacing) && g->stretch >= 0 && isfinite(g->stretch) &&
-           g->stiffness >= 0 && isfinite(g->stiffness) && g->damping >= 0 && isfinite(g->damping);
+    const double longest = 4; /* spacings: no link is longer */
+    for (int a = 0; a < 3; a++)
+        if (!isfinite(count_of(g, a) * g->spacing))
+            return false;
+    return g->spacing > 0 && isfinite(longest * g->spacing / stretch_of(g)) && g->stretch >= 0 &&
+           isfinite(g->stretch) && g->stiffness >= 0 && isfinite(g->stiffness) && g->damping >= 0 &&
+           isfinite(g->damping);
 }
 
 /* Links in one direction: as many as there are places for them along each axis. */
@@ -104,8 +114,8 @@ static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t i
 {
     uint32_t other = index, stride = 1;
     for (int a = 0; a < 3; a++) {
-        const uint32_t there = at[a] + (uint32_t)d->step[a]; /* wraps around below 0 */
-        if (there >= count_of(g, a))
+        const int64_t there = (int64_t)at[a] + d->step[a];
+        if (there < 0 || there >= count_of(g, a))
             return index;
         other += (uint32_t)d->step[a] * stride;
         stride *= count_of(g, a);
@@ -117,7 +127,7 @@ static spring_link make_link(const spring_grid *g, uint32_t a, uint32_t b, const
 {
     const int *s = d->step;
     const double length = g->height ? 0 : g->spacing * sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-    return (spring_link){a, b, length / (g->stretch == 0 ? 1 : g->stretch), g->stiffness, g->damping};
+    return (spring_link){a, b, length / stretch_of(g), g->stiffness, g->damping};
 }
 
 spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link)

@@ -20,24 +20,37 @@
 
 typedef struct leapfrog_coefficients {
     real h, K, A, q;
-    real keep, lose; /* 1/(1 + q) = keep + lose, see leapfrog_solve() */
+    real keep, lose; /* 1/(1 + q) = keep + lose, see leapfrog_share_of() */
 } leapfrog_coefficients;
 
 /* u/(1 + q) as u - u q/(1 + q) while q <= 1: rounding 1 + q, or its reciprocal, would be an error of the same sign in
    every step, and the amplitude of a lightly damped spring would drift by n eps/2. Beyond, u times the reciprocal,
    since the difference would cancel. One formula for both: keep u + lose u, (keep, lose) = (1, -q/(1 + q)) or
    (1/(1 + q), 0). */
+typedef struct leapfrog_share {
+    real keep, lose;
+} leapfrog_share;
+
+SPRING_INLINE leapfrog_share leapfrog_share_of(real q)
+{
+    const truth light = magnitude(q) <= 1;
+    return (leapfrog_share){
+        select_real(light, splat(1), 1 / (1 + q)),
+        select_real(light, 0 - q / (1 + q), splat(0)),
+    };
+}
+
 SPRING_INLINE leapfrog_coefficients leapfrog_prepare(spring_rates r, real h)
 {
     const real half = h / 2, q = half * r.g;
-    const truth light = magnitude(q) <= 1;
+    const leapfrog_share share = leapfrog_share_of(q);
     return (leapfrog_coefficients){
         .h = h,
         .K = half * r.w,
         .A = half * r.a + 0,
         .q = q,
-        .keep = select_real(light, splat(1), 1 / (1 + q)),
-        .lose = select_real(light, 0 - q / (1 + q), splat(0)),
+        .keep = share.keep,
+        .lose = share.lose,
     };
 }
 

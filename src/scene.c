@@ -67,12 +67,14 @@ static double time_of(const scene *s)
     return s->t0 + (double)s->steps * s->dt;
 }
 
-/* Forces of the state, unless they are at hand. They are kept in memory of the scene that is no part of its state. */
-static void update_force(const scene_kernels *kernels, scene *s)
+/* Forces of the state, unless they are at hand, in memory of the scene that is no part of its state. Those of a callback
+   are not kept: what *user holds may change before the next step. */
+static void update_force(scene *s)
 {
-    if (!s->force_kept)
-        evaluate(kernels, s, s->plan.x[s->frame], s->plan.v[s->frame], time_of(s));
-    s->force_kept = true;
+    if (s->force_kept)
+        return;
+    evaluate(best_kernels(), s, s->plan.x[s->frame], s->plan.v[s->frame], time_of(s));
+    s->force_kept = s->force == NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------ methods */
@@ -195,7 +197,7 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
         return SPRING_EINVAL;
     if ((s->plan.methods & 1u << m) == 0)
         return SPRING_EUNSUPPORTED;
-    if (n == 0 || dt == 0)
+    if (n == 0 || (scalar)dt == 0)
         return SPRING_OK;
     if (s->broken && !repaired(s))
         return SPRING_ENONFINITE;
@@ -203,6 +205,8 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
+    if (!isfinite(t0 + (double)(before + n) * dt))
+        return SPRING_ENONFINITE;
     uint32_t from = s->frame;
     const uint32_t to = undo ? 1 - from : from;
     for (uint64_t i = 0; i < n; i++) {
@@ -338,19 +342,18 @@ bool SCENE(at_rest)(const scene *s, double v_tol, double a_tol)
 {
     if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_state(s))
         return false;
-    update_force(best_kernels(), (scene *)(uintptr_t)s);
+    update_force((scene *)(uintptr_t)s);
     const scene_motion m = motion(s, 0, s->frame, s->frame);
     for (size_t i = 0; i < m.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
-        double speed = 0, acceleration = 0;
+        double speed = 0, acceleration = 0; /* squared */
         for (uint32_t a = 0; a < m.axes; a++) {
-            const double v = (double)m.v0[a][i];
-            speed = hypot(speed, v);
-            if (inverse > 0)
-                acceleration =
-                    hypot(acceleration, inverse * ((double)m.force[a][i] - s->drag * v) + s->gravity[a]);
+            const double v = (double)m.v0[a][i], force = (double)m.force[a][i] - s->drag * v;
+            const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
+            speed += v * v;
+            acceleration += felt * felt;
         }
-        if (!(speed <= v_tol) || !(acceleration <= a_tol))
+        if (!(sqrt(speed) <= v_tol) || !(sqrt(acceleration) <= a_tol))
             return false;
     }
     return true;

@@ -367,7 +367,8 @@ static void place(scene *s, size_t index, const spring_link *link)
 {
     const placed_link at = scene_link(s, index);
     *at.stiffness = (scalar)link->stiffness;
-    *at.rest = s->plan.axes == 1 && at.a != link->a ? -(scalar)link->rest : (scalar)link->rest;
+    const scalar rest = (scalar)fabs(link->rest); /* -0.0 would turn a link on one axis */
+    *at.rest = s->plan.axes == 1 && at.a != link->a ? -rest : rest;
     if (at.damping != NULL)
         *at.damping = (scalar)link->damping;
 }

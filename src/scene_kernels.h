@@ -12,6 +12,7 @@
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
+#include "leapfrog.h"
 #include "real.h"
 
 #include <stddef.h>
@@ -86,15 +87,11 @@ extern const scene_kernels SCENE(v128), SCENE(v256), SCENE(v512); /* by bytes of
 
 /* ---------------------------------------------------------------------------------------------------------- links */
 
-/* The force of a link on one of its ends is this times the way to the other end; 0 where both are at one place.
-   k (1 - rest/length) + c (relative velocity . way)/length^2 */
-SPRING_INLINE real pull(uint32_t axes, const real *way, const real *relative, real k, real rest, real c,
-                        bool damped)
+/* The force of a link on one of its ends is this times the way to the other end: k (1 - rest/length), and with damping
+   c (relative velocity . way)/length^2. Not a number where both are at one place: see to_force(). */
+SPRING_INLINE real pull(uint32_t axes, const real *way, const real *relative, real square, real k, real rest,
+                        real c, bool damped)
 {
-    real square = way[0] * way[0];
-    SPRING_UNROLL
-    for (uint32_t a = 1; a < axes; a++)
-        square += way[a] * way[a];
     real scale = k * (1 - rest / root(square));
     if (damped) {
         real rate = way[0] * relative[0];
@@ -103,7 +100,27 @@ SPRING_INLINE real pull(uint32_t axes, const real *way, const real *relative, re
             rate += way[a] * relative[a];
         scale += c * (rate / square);
     }
-    return select_real(square > 0, scale, splat(0));
+    return scale;
+}
+
+/* Turns the way from one end of a link to the other into the force on the one. Where there is no link, or no direction,
+   that is 0, selected and not multiplied: particles that are not joined may be infinitely far apart. */
+SPRING_INLINE void to_force(uint32_t axes, real *way, const real *relative, truth joined, real k, real rest,
+                            real c, bool damped)
+{
+    if (axes == 1) {
+        const real pull = k * (way[0] - rest);
+        way[0] = select_real(joined, damped ? pull + c * relative[0] : pull, splat(0));
+        return;
+    }
+    real square = way[0] * way[0];
+    SPRING_UNROLL
+    for (uint32_t a = 1; a < axes; a++)
+        square += way[a] * way[a];
+    const real scale = pull(axes, way, relative, square, k, rest, c, damped);
+    SPRING_UNROLL
+    for (uint32_t a = 0; a < axes; a++)
+        way[a] = select_real(joined & (square > 0), scale * way[a], splat(0));
 }
 
 /* Adds what one side of a row does to the vector of particles from i; offset is negative for the lower neighbours. */
@@ -112,14 +129,9 @@ SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff
 {
     const ptrdiff_t at = (offset > 0 ? i : i + offset) - row->first + padding;
     const ptrdiff_t number = row->present != NULL ? 0 : at;
+    const real k = load(row->stiffness + number), c = damped ? load(row->damping + number) : splat(0);
     const real rest = load(row->rest + number);
-    real k = load(row->stiffness + number), c = damped ? load(row->damping + number) : splat(0);
-    if (row->present != NULL) {
-        const truth present = load_truth(row->present + at);
-        k = select_real(present, k, splat(0));
-        if (damped)
-            c = select_real(present, c, splat(0));
-    }
+    const truth joined = row->present != NULL ? load_truth(row->present + at) : (k > 0) | (c > 0);
     real way[3], relative[3];
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++) {
@@ -127,17 +139,11 @@ SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff
         if (damped)
             relative[a] = load(s->v[a] + i + offset) - v[a];
     }
-    if (axes == 1) {
-        real f = k * (offset > 0 ? way[0] - rest : way[0] + rest);
-        if (damped)
-            f += c * relative[0];
-        force[0] += f;
-        return;
-    }
-    const real scale = pull(axes, way, relative, k, rest, c, damped);
+    /* On one axis the rest length has the direction from the lower end to the upper. */
+    to_force(axes, way, relative, joined, k, axes == 1 && offset < 0 ? -rest : rest, c, damped);
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++)
-        force[a] += scale * way[a];
+        force[a] += way[a];
 }
 
 SPRING_INLINE void rows(const scene_links *s, uint32_t axes, bool damped)
@@ -188,17 +194,10 @@ SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
                 w[a] = load(&way[a][j]);
                 r[a] = damped ? load(&relative[a][j]) : splat(0);
             }
-            if (axes == 1) {
-                real f = k * (w[0] - rest);
-                if (damped)
-                    f += c * r[0];
-                store(&way[0][j], f);
-            } else {
-                const real scale = pull(axes, w, r, k, rest, c, damped);
-                SPRING_UNROLL
-                for (uint32_t a = 0; a < axes; a++)
-                    store(&way[a][j], scale * w[a]);
-            }
+            to_force(axes, w, r, (k > 0) | (c > 0), k, rest, c, damped);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                store(&way[a][j], w[a]);
         }
         for (uint32_t a = 0; a < axes; a++)
             for (size_t j = 0; j < count; j++) {
@@ -226,11 +225,11 @@ SPRING_INLINE particle_vector particles_at(const scene_motion *s, size_t i)
     return (particle_vector){inverse_mass, s->drag * inverse_mass};
 }
 
-/* Without drag. */
+/* Without drag. A particle that is pinned feels no force, not even an infinite one. */
 SPRING_INLINE real acceleration(const scene_motion *s, const particle_vector *p, uint32_t a, size_t i)
 {
-    const real fall = select_real(p->inverse_mass > 0, splat(s->gravity[a]), splat(0));
-    return p->inverse_mass * load(s->force[a] + i) + fall;
+    const real free = p->inverse_mass * load(s->force[a] + i) + s->gravity[a];
+    return select_real(p->inverse_mass > 0, free, splat(0));
 }
 
 #define FOR_EACH_VECTOR(s, i) for (size_t i = 0; i < (s)->particles; i += lanes)
@@ -280,9 +279,10 @@ static bool kick(const scene_motion *s)
     FOR_EACH_VECTOR(s, i)
     {
         const particle_vector p = particles_at(s, i);
-        const real solve = 1 + half * p.drag;
+        const leapfrog_share share = leapfrog_share_of(half * p.drag);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real v1 = (load(s->v0[a] + i) + half * acceleration(s, &p, a, i)) / solve;
+            const real u = load(s->v0[a] + i) + half * acceleration(s, &p, a, i);
+            const real v1 = s->drag != 0 ? share.keep * u + share.lose * u : u;
             store(s->v[a] + i, v1);
             wrong |= not_finite(v1);
         }

@@ -4,7 +4,7 @@
  *
  *     x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'
  *
- *     double x[1000], v[1000], omega2[1000];                         // yours, of any alignment
+ *     double x[1000], v[1000], omega2[1000];                         // yours; aligned as any array of double is
  *     const double gamma = 0.3;
  *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma, .shared = SPRING_SHARED_GAMMA};
  *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
@@ -59,11 +59,13 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  *
  * Each spring for itself: one that would become non-finite keeps its state, and all others advance. So does one that
  * spring_advance() would refuse, because its state or one of its own parameters is not finite or a parameter is negative.
- * What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0 change nothing.
+ * What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0 change nothing,
+ * and the springs are not looked at.
  *
  * SPRING_EXACT is one evaluation over n dt. With omega2 shared and gamma shared or NULL its coefficients are computed
  * once, and a spring costs six multiplications and two additions; otherwise each spring costs a spring_step_exact().
- * In float the coefficients are computed in double and rounded once.
+ * In float, shared coefficients are computed in double and rounded once, and a spring with parameters of its own is moved
+ * in double and rounded at the end: here, and only here, sharing changes the last bit.
  *
  * Far below 1e-308 (1e-38 in float) numbers become denormal, as a damped spring's do when it has settled, and on many
  * processors slow. Nothing is cut off here, since that would change bits: leave settled springs out, or let the

@@ -11,15 +11,15 @@
  *     spring_scene_bytes(&def, &bytes);
  *     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);          // a multiple of SPRING_SCENE_ALIGN
  *     spring_scene_init(memory, bytes, &def, &scene);
- *     const double dt = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+ *     const double dt = fmin(1.0 / 240, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG));
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
  * What holds for every function here, beside what spring.h says:
  *  - Only what the definition sets is stored and computed; README.md says what each feature takes in bytes and time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
- *  - The block of memory holds no pointer to itself: memcpy() of its bytes to another place with the same alignment, in
- *    the same build, is a working scene. So a snapshot is a memcpy(), and rolling back another. The callback and its
- *    user pointer are copied as they are.
+ *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another place
+ *    with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a memcpy(),
+ *    and rolling back another. The callback and its user pointer are copied as they are.
  *  - Distinct scenes may be used by distinct threads at once; one scene by one at a time, functions on a const scene
  *    included, since they may compute and keep forces.
  *  - The same bits with every compiler, instruction set and vector length, as far as the callback does its part.
@@ -54,34 +54,38 @@ typedef struct spring_link {
 
 /* Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
    [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL. It must depend on nothing but its
-   arguments and *user, or advance(10) is not 10 times advance(1). */
+   arguments and *user, or advance(10) is not 10 times advance(1), and must not call a function on its own scene. After a
+   change of what *user holds call spring_scene_set_force() again: a force may have been kept (SPRING_SCENE_FORCE_STILL). */
 typedef void spring_force_fn(void *user, double t, size_t particles, const double *const position[3],
                              const double *const velocity[3], double *const force[3]);
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
-/* flags */
-#define SPRING_SCENE_EDITABLE UINT32_C(1) /* spring_scene_set_link() is allowed */
-#define SPRING_SCENE_NO_UNDO \
-    UINT32_C(2) /* no copy of the state: a failed advance leaves the scene unusable until */
-                /* positions and velocities have been set again */
-#define SPRING_SCENE_FORCE_STILL \
-    UINT32_C(4) /* no callback will use velocities: leapfrog need not predict them */
+/* flags: */
+
+/* spring_scene_set_link() is allowed. Each link has numbers of its own, equal to others or not. */
+#define SPRING_SCENE_EDITABLE UINT32_C(1)
+
+/* No second copy of the state. An advance that fails loses it, and none succeeds until every position and velocity is
+   finite again, by spring_scene_set(). */
+#define SPRING_SCENE_NO_UNDO UINT32_C(2)
+
+/* No callback will use velocities. Leapfrog need not predict them, in time and, where no link is damped, in memory, and
+   keeps the force at the end of a step for the next. */
+#define SPRING_SCENE_FORCE_STILL UINT32_C(4)
 
 /* Zero-initialise; what is not set is neither stored nor computed. Every array is copied. */
 typedef struct spring_scene_def {
-    uint32_t axes;  /* 1, 2 or 3; 0 means 3 */
-    uint32_t flags; /* SPRING_SCENE_... */
-    uint32_t
-        methods; /* 1u << SPRING_EULER | ...: what will be used; 0: Euler and leapfrog. RK4 costs memory */
-    size_t particles;       /* >= 1 */
-    size_t links;           /* */
-    const double *position; /* [particles*axes] x0 y0 z0 x1 ... [m] */
-    const double *velocity; /* [particles*axes] [m/s]; NULL: at rest */
-    const double *mass;     /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
-    double mass_all;        /* [kg]; 0 means 1 */
-    const uint8_t
-        *pinned; /* [particles]; non-zero: feels no force, moves with the velocity it is given; NULL: none */
+    uint32_t axes;           /* 1, 2 or 3; 0 means 3 */
+    uint32_t flags;          /* SPRING_SCENE_... */
+    uint32_t methods;        /* 1u << SPRING_EULER | ...: which will be used; 0: Euler and leapfrog */
+    size_t particles;        /* from 1 to nearly 2^32 */
+    size_t links;            /* less than 2^29 */
+    const double *position;  /* [particles*axes] x0 y0 z0 x1 ... [m] */
+    const double *velocity;  /* [particles*axes] [m/s]; NULL: at rest */
+    const double *mass;      /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
+    double mass_all;         /* [kg]; 0 means 1 */
+    const uint8_t *pinned;   /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
     const spring_link *link; /* [links] */
     double gravity[3];       /* [m/s^2] */
     double drag;             /* [N s/m] >= 0, on every particle */
@@ -95,8 +99,9 @@ typedef struct spring_scene spring_scene;
  * Is a definition valid?
  *
  * @param[out] field  name of the first field that is not, such as "mass" or "link.a"; NULL if all are. May be NULL
- * @param[out] index  of the particle or link, 0 where there is none. May be NULL
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: an index of a particle is too large, or a count for this machine;
+ * @param[out] index  of the particle or link, of gravity the axis, else 0. May be NULL
+ * @return SPRING_OK; SPRING_EINVAL: also where a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or drag/mass is
+ *         not finite in the precision of the scene; SPRING_ERANGE: an index of a particle is too large, or a count;
  *         SPRING_EUNSUPPORTED: the closed form among the methods
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
@@ -137,23 +142,24 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * @param[in] m   one of the methods of the definition
  * @param[in] dt  finite step [s]; negative runs backwards
  * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the closed form, or a method that the definition does not have;
- *         SPRING_ENONFINITE: the state would become infinite or NaN, noticed at the step where it does
+ *         SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
  *                Solving Ordinary Differential Equations I (1993), section II.1
  */
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * A step that is safe: below it a method is stable, as long as no link is compressed below half its rest length, and the
- * callback is not stiffer than the links.
+ * A stable step, from the stiffness of the links: below it no motion about rest grows, as long as no link is compressed
+ * below half its rest length.
  *
  * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
- * G the same of damping plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
- * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with, K the largest sum of 2 stiffness.
- * A bound, not the limit: that is up to 1.2 times larger on a height field, 1.5 times on cloth.
+ * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
+ * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness.
+ * A bound: the limit itself is about 1.2 times larger on a height field, 1.5 times on cloth. Links that spin or swing far
+ * can gain energy from the step by resonance closer to it: take half. The callback is not looked at.
  *
- * @return [s]; 0: never stable; INFINITY: no force to be unstable with; NaN for bad input or the closed form
- * @par Source    Gershgorin's circles
+ * @return [s]; 0: never stable; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
+ * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
  */
 SPRING_API double spring_scene_stable_step(const spring_scene *s, spring_method m);
 
@@ -176,10 +182,12 @@ typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantit
 /**
  * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
  *
- * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions.
+ * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin, set
+ * its velocity, (target - position)/(n dt) before n steps: where its position is set it jumps, and link damping sees none
+ * of it.
  *
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
- * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number that is not finite;
+ * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number to be set that is not finite;
  *         SPRING_ERANGE: there are not so many particles
  */
 SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out,
@@ -198,7 +206,7 @@ SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_force_fn
 /**
  * Change a link of an editable scene; stiffness 0 and damping 0 cut it.
  *
- * @param[in] link  a and b as defined
+ * @param[in] link  a and b as defined; swapped they mean the same, but on one axis, where that turns the link
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EUNSUPPORTED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
@@ -272,8 +280,7 @@ typedef struct spring_grid {
     uint32_t axes;     /* of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
     bool height;       /* a height field: axes = 1, across the grid; positions and rest lengths are 0 */
     double spacing;    /* [m] > 0 from one particle to the next */
-    double
-        stretch; /* of every link, its length over its rest length > 0; 0 means 1. More than 1 is tension */
+    double stretch;    /* length over rest length of every link > 0; 0 means 1; above 1 is tension */
     uint32_t families; /* SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
     double stiffness;  /* [N/m] of every link */
     double damping;    /* [N s/m] */
