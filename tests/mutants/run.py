@@ -54,11 +54,12 @@ COLUMNS = ("mutant", "by", "killed_by", "verdict", "reason", "caught_by_validate
 STEPPERS = ("euler.h", "leapfrog.h", "rk4.h", "exact.h", "exact.c", "loops.h")
 NOT_STEPS = ("exact_stable_step",)
 
-# Most mutants are tried where only vectors of 16 bytes are compiled: a fourth of the work. What survives there, and may
-# concern the others, is tried with all of them, by the tests that look at vectors.
+# Mutants are tried where only vectors of 16 bytes are compiled: a fourth of the work. What survives there, and may concern
+# the others, is tried with all of them, by the tests that look at vectors, in a build that is made when it is needed.
 NARROW, WIDE = "build", "build-wide"
 ONLY_NARROW = "-Dc_args=-DSPRING_X86_64=0"
 OF_VECTORS = re.compile("batch|scene")
+WIDE_PROGRAMS = {}  # by tree
 WITH_VECTORS = re.compile("src/(real_vector|processor|batch_kernels|batch_loop|scene_kernels)")
 
 # Which programs a file concerns; no other calls what is in it. A file that is not here concerns all.
@@ -202,36 +203,54 @@ def build_with_flags(tree, name, flags):
     return build
 
 
-def concerns(mutant, build, program):
-    if build == WIDE:
-        return WITH_VECTORS.match(mutant.file)
+def concerns(mutant, program):
     return all(pattern.match(program.name) for start, pattern in CONCERNS.items() if mutant.file.startswith(start))
+
+
+def wide_programs(tree):
+    if not (tree / WIDE).exists():
+        WIDE_PROGRAMS[tree] = [program for program in programs_of(build_with_flags(tree, WIDE, []))
+                               if OF_VECTORS.match(program.name)]
+    return WIDE_PROGRAMS[tree]
+
+
+def try_program(mutant, build, program):
+    """What failed, or "" if nothing did."""
+    before = stamps(build, program.targets)
+    built = make(build, program.targets)
+    if built.returncode != 0:
+        return "does not compile"
+    # The library is shared: a mutant of src/ changes no program. Any other that leaves a program as it was cannot change
+    # what it does.
+    if not mutant.file.startswith("src/") and stamps(build, program.targets) == before:
+        return ""
+    return execute(program, build)
 
 
 def try_mutant(mutant, tree, programs):
     """(killed by, caught by validate) of one mutant in a private tree."""
     path = tree / mutant.file
     original = path.read_text(encoding="utf-8")
-    path.write_text(mutant.text, encoding="utf-8")
     killed_by, caught = "", "-"
     try:
-        for name, program in programs:
-            build = tree / name
+        path.write_text(mutant.text, encoding="utf-8")
+        for program in programs:
             wanted = mutant.trajectory and program.name == VALIDATE
-            if killed_by and not wanted or not concerns(mutant, name, program):
+            if killed_by and not wanted or not concerns(mutant, program):
                 continue
-            before = stamps(build, program.targets)
-            built = make(build, program.targets)
-            # The library is shared: a mutant of src/ changes no program. Any other that leaves a program as it was
-            # cannot change what it does.
-            unchanged = built.returncode == 0 and stamps(build, program.targets) == before
-            if unchanged and not mutant.file.startswith("src/"):
-                continue
-            failure = "does not compile" if built.returncode != 0 else execute(program, build)
+            failure = try_program(mutant, tree / NARROW, program)
             if failure and not killed_by:
                 killed_by = f"{program.name}: {failure}"
             if wanted:
                 caught = "yes" if failure else "no"
+        if not killed_by and WITH_VECTORS.match(mutant.file):
+            path.write_text(original, encoding="utf-8")
+            wide = wide_programs(tree)
+            path.write_text(mutant.text, encoding="utf-8")
+            for program in wide:
+                failure = try_program(mutant, tree / WIDE, program)
+                if failure:
+                    return f"{program.name}: {failure}", caught
     finally:
         path.write_text(original, encoding="utf-8")
     return killed_by, caught
@@ -242,9 +261,7 @@ def run(mutants, equivalent, table):
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         first = pathlib.Path(scratch).resolve() / "0"
         shutil.copytree(ROOT, first, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
-        programs = [(NARROW, program) for program in programs_of(build_with_flags(first, NARROW, [ONLY_NARROW]))]
-        programs += [(WIDE, program) for program in programs_of(build_with_flags(first, WIDE, []))
-                     if OF_VECTORS.match(program.name)]
+        programs = programs_of(build_with_flags(first, NARROW, [ONLY_NARROW]))
         trees = queue.SimpleQueue()
         trees.put(first)
         for i in range(1, os.cpu_count()):
