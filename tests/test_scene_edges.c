@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+/* Scenes where numbers are very large, or nothing is there: what lies next to the rows, pins, time, questions. */
+#include "test_scene.h"
+
+enum { count = 16 };
+
+/* Eight particles in a damped row, and one that is joined to nothing, so far and fast that its distance to the others
+   squared is infinite. Vectors read it, and nobody may notice, whatever their length. */
+static void stranger(void)
+{
+#ifdef SPRING_FLOAT
+    const double far = 1e20, fast = 1e19;
+#else
+    const double far = 1e160, fast = 1e159;
+#endif
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (uint32_t at = 9; at < count; at++)
+            for (int k = 0; k < kernel_count; k++) {
+                double position[3 * count] = {0}, velocity[3 * count] = {0};
+                spring_link link[8];
+                for (uint32_t i = 0; i < 9; i++)
+                    position[axes * i] = 0.7 * i + 0.01 * (i % 3);
+                position[axes * at] = far;
+                velocity[axes * at] = fast;
+                for (uint32_t i = 0; i < 8; i++)
+                    link[i] = (spring_link){i, i + 1, 0.6, 2.7, 0.3};
+                const scene_def def = {.axes = axes,
+                                       .methods = all_methods,
+                                       .particles = count,
+                                       .links = 8,
+                                       .position = position,
+                                       .velocity = velocity,
+                                       .mass_all = 1.3,
+                                       .link = link};
+                if (kernels_of(k) == NULL)
+                    continue;
+                for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+                    scene *s = scene_of(&def);
+                    CHECK(SCENE(advance_with)(kernels_of(k), s, (spring_method)m, 0.01, 5) == SPRING_OK,
+                          "nothing joins them");
+                    double x[3];
+                    SCENE(get)(s, SPRING_POSITION, x, 0, 8, 1);
+                    CHECK(fabs(x[0] - position[axes * 8]) < 0.1, "its neighbours move as ever");
+                    free(s);
+                }
+            }
+}
+
+static void push_without_end(void *user, double t, size_t particles, const scalar *const x[3],
+                             const scalar *const v[3], scalar *const force[3])
+{
+    (void)user, (void)t, (void)particles, (void)x, (void)v;
+    force[0][0] = INFINITY;
+}
+
+/* A pin feels no force, of whatever size. */
+static void infinite_force_on_a_pin(void)
+{
+    const double position[] = {0.2, 0, 0, 1.1, 0, 0}, velocity[] = {0.3, 0, 0, 0, 0, 0};
+    const uint8_t pinned[] = {1, 0};
+    const scene_def def = {.particles = 2,
+                           .methods = all_methods,
+                           .position = position,
+                           .velocity = velocity,
+                           .pinned = pinned,
+                           .force = push_without_end};
+    for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+        scene *s = scene_of(&def);
+        CHECK(SCENE(advance)(s, (spring_method)m, 0.1, 5) == SPRING_OK, "the pin does not feel it");
+        double x[3];
+        SCENE(get)(s, SPRING_POSITION, x, 0, 0, 1);
+        CHECK_CLOSE(x[0], 0.2 + 5 * 0.1 * 0.3, 6 * EPS, "a straight line, rounded once a step");
+        free(s);
+    }
+}
+
+static void time_stays_finite(void)
+{
+#ifdef SPRING_FLOAT
+    const double dt = 1e38, tiny = 1e-50; /* is 0 as a float */
+    const uint64_t n = UINT64_MAX;        /* 1.8e57 s, which a double holds */
+#else
+    const double dt = 1e308, tiny = 0;
+    const uint64_t n = 10;
+#endif
+    const double position[] = {0, 0, 0};
+    const scene_def def = {.particles = 1, .position = position};
+    scene *s = scene_of(&def);
+#ifndef SPRING_FLOAT
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, n) == SPRING_ENONFINITE, "the time would be infinite");
+    CHECK_BITS(SCENE(time)(s), 0, "nothing happened");
+#else
+    (void)n;
+#endif
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "one such step is possible");
+    CHECK_BITS(SCENE(time)(s), dt, "dt");
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK,
+          "a step that is no step in this precision");
+    CHECK_BITS(SCENE(time)(s), dt, "takes no time");
+    free(s);
+}
+
+/* A rest length of -0 is one of 0, and turns no link. */
+static void negative_zero_rest(void)
+{
+    const double position[] = {0.1, 1.2};
+    for (int turned = 0; turned < 2; turned++) {
+        double tension[2];
+        for (int negative = 0; negative < 2; negative++) {
+            const spring_link link = {turned ? 1 : 0, turned ? 0 : 1, negative ? -0.0 : 0.0, 2.7, 0};
+            const scene_def def = {
+                .axes = 1, .particles = 2, .links = 1, .position = position, .link = &link};
+            scene *s = scene_of(&def);
+            tension[negative] = SCENE(tension)(s, 0);
+            free(s);
+        }
+        CHECK_BITS(tension[1], tension[0], "one zero is as good as the other");
+        CHECK_CLOSE(tension[0], turned ? -2.7 * 1.1 : 2.7 * 1.1, 3 * 4 * EPS,
+                    "stiffness (x_b - x_a), four roundings");
+    }
+}
+
+static void push(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                 scalar *const force[3])
+{
+    (void)t, (void)particles, (void)x, (void)v;
+    force[0][0] += (scalar) * (const double *)user;
+}
+
+/* A question about a scene does not freeze what the callback said then. */
+static void questions_keep_no_callback(void)
+{
+    double strength = 0, x[2][3];
+    const double position[] = {0, 0, 0};
+    const scene_def def = {
+        .particles = 1, .position = position, .mass_all = 1.3, .force = push, .user = &strength};
+    for (int asked = 0; asked < 2; asked++) {
+        scene *s = scene_of(&def);
+        strength = 0;
+        SCENE(advance)(s, SPRING_LEAPFROG, 0.1, 1);
+        if (asked)
+            CHECK(SCENE(at_rest)(s, 0, 0), "nothing moves yet");
+        strength = 0.7;
+        SCENE(advance)(s, SPRING_LEAPFROG, 0.1, 1);
+        SCENE(get)(s, SPRING_POSITION, x[asked], 0, 0, 1);
+        free(s);
+    }
+    CHECK_CLOSE(x[0][0], 0.1 * 0.05 * 0.7 / 1.3, 8 * EPS * 0.003, "h h/2 F/m, eight roundings");
+    CHECK_BITS(x[1][0], x[0][0], "asked or not");
+}
+
+/* Light drag over many steps: rounding must not be of the same sign in each, or it adds up to n eps/2. */
+static void drag_without_bias(void)
+{
+    const int n = 200000;
+    const double position[] = {0, 0, 0}, velocity[] = {0.83, -0.59, 0}, h = 1e-3, drag = 0.02;
+    const scene_def def = {
+        .particles = 1, .position = position, .velocity = velocity, .mass_all = 1.3, .drag = drag};
+    scene *s = scene_of(&def);
+    double v[3];
+    SCENE(advance)(s, SPRING_LEAPFROG, h, (uint64_t)n);
+    SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 1);
+    const double q = (double)(scalar)h / 2 * (double)(scalar)drag / 1.3;
+    const double want = exp(n * (log1p(-q) - log1p(q)));
+    /* each step rounds v by at most 4 half eps of it; unbiased, they add up like a walk: six deviations of it. The rest
+       is what rounding q itself, once, does over all steps. */
+    const double bound = 6 * 4 * EPS / 2 * sqrt(n) + 4 * EPS * n * q;
+    CHECK_CLOSE(v[0] / velocity[0], want, bound * want, "a walk of rounding errors");
+    CHECK_CLOSE(v[1] / velocity[1], want, bound * want, "a walk of rounding errors");
+    free(s);
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"a particle far away that is joined to nothing", stranger},
+        {"an infinite force on a pin", infinite_force_on_a_pin},
+        {"time stays finite", time_stays_finite},
+        {"a rest length of -0", negative_zero_rest},
+        {"questions keep no force of a callback", questions_keep_no_callback},
+        {"drag without bias", drag_without_bias},
+    };
+    return RUN_TESTS("scene-edges", tests);
+}
