@@ -126,8 +126,8 @@ static figure summarise(double *samples, size_t count)
 /* Measures and writes one row. */
 static void measure(cli_table *table, const bench_row *r)
 {
-    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 3e7 : 2.5e8;
-    const size_t few = 3, least = quick ? few : 11, most = quick ? 9 : most_samples;
+    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 2e7 : 2.5e8;
+    const size_t few = 3, least = quick ? few : 11, most = quick ? 7 : most_samples;
     bool is_used[timed] = {true, [bench_baseline] = r->baseline != NULL};
     for (int k = 0; k < bench_most_limits; k++)
         is_used[1 + k] = r->limits[k] != NULL;
