@@ -157,8 +157,8 @@ def execute(program, build):
     return "broke off" if program.tap and points != plan else ""
 
 
-def make(build, targets):
-    return subprocess.run(["ninja", "-j1", *targets], cwd=build, stdin=subprocess.DEVNULL, capture_output=True,
+def make(build, targets, jobs=1):
+    return subprocess.run(["ninja", f"-j{jobs}", *targets], cwd=build, stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, check=False)
 
 
@@ -166,16 +166,17 @@ def stamps(build, targets):
     return [(build / target).stat().st_mtime_ns for target in targets]
 
 
-def programs_of(build):
-    """The quick suite: every test whose program is built here, fastest first. All must pass on the tree as it is."""
+def programs_of(build, names=re.compile("")):
+    """The quick suite, built: every test of these names whose program is built here, fastest first. All must pass on the
+    tree as it is."""
     tests = json.loads(subprocess.run(["meson", "introspect", "--tests", str(build)], check=True,
                                       capture_output=True, text=True).stdout)
     outputs = {output for target in json.loads(
         subprocess.run(["meson", "introspect", "--targets", str(build)], check=True, capture_output=True,
                        text=True).stdout) for output in target["filename"]}
-    timed = []
+    programs = []
     for test in tests:
-        if test["cmd"][0] not in outputs or "springstep:mutants" in test["suite"]:
+        if test["cmd"][0] not in outputs or "springstep:mutants" in test["suite"] or not names.match(test["name"]):
             continue
         def inside(word):
             path = pathlib.Path(word)
@@ -183,6 +184,12 @@ def programs_of(build):
         program = Program(test["name"], [inside(word) for word in test["cmd"]],
                           [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in outputs],
                           test["protocol"] == "tap", 600)
+        programs.append(program)
+    built = make(build, sorted({target for program in programs for target in program.targets}), os.cpu_count())
+    if built.returncode != 0:
+        sys.exit(built.stdout + built.stderr)
+    timed = []
+    for program in programs:
         start = time.monotonic()
         failure = execute(program, build)
         if failure:
@@ -192,14 +199,13 @@ def programs_of(build):
     return [program for _, program in sorted(timed, key=lambda pair: (pair[1].name == VALIDATE, pair[0], pair[1].name))]
 
 
-def build_with_flags(tree, name, flags):
+def set_up(tree, name, flags):
     build = tree / name
-    for command in (["meson", "setup", str(build), str(tree), "-Dtests=enabled", "-Dreport=disabled", "-Ddebug=false",
-                     "-Doptimization=1", *flags],
-                    ["ninja", "-C", str(build)]):
-        done = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
-        if done.returncode != 0:
-            sys.exit(done.stdout + done.stderr)
+    done = subprocess.run(["meson", "setup", str(build), str(tree), "-Dtests=enabled", "-Dreport=disabled", "-Ddebug=false",
+                           "-Doptimization=1", *flags],
+                          capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        sys.exit(done.stdout + done.stderr)
     return build
 
 
@@ -209,8 +215,7 @@ def concerns(mutant, program):
 
 def wide_programs(tree):
     if not (tree / WIDE).exists():
-        WIDE_PROGRAMS[tree] = [program for program in programs_of(build_with_flags(tree, WIDE, []))
-                               if OF_VECTORS.match(program.name)]
+        WIDE_PROGRAMS[tree] = programs_of(set_up(tree, WIDE, []), OF_VECTORS)
     return WIDE_PROGRAMS[tree]
 
 
@@ -261,7 +266,7 @@ def run(mutants, equivalent, table):
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         first = pathlib.Path(scratch).resolve() / "0"
         shutil.copytree(ROOT, first, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
-        programs = programs_of(build_with_flags(first, NARROW, [ONLY_NARROW]))
+        programs = programs_of(set_up(first, NARROW, [ONLY_NARROW]))
         trees = queue.SimpleQueue()
         trees.put(first)
         for i in range(1, os.cpu_count()):

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* What is rare in scenes: dampers without springs, a question between an edit and a step, a scene that is lost. */
+#include "test_scene.h"
+
+static void count_calls(void *user, double t, size_t particles, const scalar *const x[3],
+                        const scalar *const v[3], scalar *const force[3])
+{
+    (void)t, (void)particles, (void)x, (void)v, (void)force;
+    ++*(int *)user;
+}
+
+/* One Euler step of a row of dampers alone, each with its own number, against a plain loop. */
+static void dampers_alone(void)
+{
+    static model m;
+    static state y;
+    const double dt = 0.013;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        build(&m, (uint32_t[]){21, 1, 1}, axes, OWN | DAMPED);
+        for (size_t i = 0; i < m.def.links; i++) {
+            m.link[i].stiffness = 0;
+            m.link[i].damping = 0.3 + 0.01 * (double)i;
+        }
+        scene *s = scene_of(&m.def);
+        get_state(s, m.def.particles, &y);
+        double force[3 * most] = {0}, size[most] = {0};
+        plain_forces(&m.def, axes, y.x, y.v, force, size);
+        CHECK(SCENE(advance)(s, SPRING_EULER, dt, 1) == SPRING_OK, "a step");
+        static state end;
+        get_state(s, m.def.particles, &end);
+        for (size_t i = 0; i < m.def.particles * axes; i++) {
+            const double pull = dt * size[i / axes] / m.def.mass_all;
+            CHECK_CLOSE(end.v[i], y.v[i] + dt * force[i] / m.def.mass_all,
+                        EPS * (2 * fabs(y.v[i]) + 24 * pull),
+                        "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
+            CHECK_CLOSE(end.x[i], y.x[i] + dt * y.v[i], EPS * (fabs(y.x[i]) + 2 * dt * fabs(y.v[i])),
+                        "a product and a sum");
+        }
+        free(s);
+    }
+}
+
+/* The stable step is found in the memory of the forces: those of the last step must not be taken from there then. */
+static void question_after_edit(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        build(&m, (uint32_t[]){5, 4, 1}, axes, OWN | EDITABLE | MASSES);
+        scene *asked = scene_of(&m.def), *other = scene_of(&m.def);
+        spring_link link = m.link[3];
+        link.stiffness *= 1.7;
+        for (int i = 0; i < 2; i++) {
+            scene *s = i == 0 ? asked : other;
+            CHECK(SCENE(set_link)(s, 3, &link) == SPRING_OK, "an edit");
+            SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+            if (s == asked)
+                CHECK(SCENE(stable_step)(s, SPRING_LEAPFROG) > 0, "a question");
+            SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+        }
+        CHECK(same_bits(asked, other, m.def.particles, axes), "asking changes nothing");
+        free(asked);
+        free(other);
+    }
+}
+
+/* A callback that looks into a table by position must not be handed NaN. */
+static void callback_is_left_alone(void)
+{
+    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
+    const double position[] = {0.3, -0.9}, fast[] = {10, -20}, at_rest[] = {0, 0}, dt = 0.013;
+    const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
+    for (size_t k = 0; k < 3; k++) {
+        int calls = 0;
+        const scene_def def = {.axes = 1,
+                               .flags = SPRING_SCENE_NO_UNDO,
+                               .methods = all_methods,
+                               .particles = 2,
+                               .position = position,
+                               .velocity = fast,
+                               .mass_all = 1.7,
+                               .force = count_calls,
+                               .user = &calls};
+        scene *s = scene_of(&def);
+        CHECK(SCENE(advance)(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+        CHECK(calls > 0, "the callback was asked before");
+        SCENE(set)(s, SPRING_POSITION, position, 0, 0, 1);
+        SCENE(set)(s, SPRING_VELOCITY, at_rest, 0, 0, 2);
+        calls = 0;
+        CHECK(SCENE(advance)(s, methods[k], dt, 1) == SPRING_ENONFINITE, "one particle is still lost");
+        CHECK(calls == 0, "nothing is computed from what is lost");
+        SCENE(set)(s, SPRING_POSITION, position, 0, 0, 2);
+        CHECK(SCENE(advance)(s, methods[k], dt, 1) == SPRING_OK && calls > 0, "usable again");
+        free(s);
+    }
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"dampers alone", dampers_alone},
+        {"a question after an edit", question_after_edit},
+        {"nothing is computed from what is lost", callback_is_left_alone},
+    };
+    return RUN_TESTS("scene_rare", tests);
+}
