@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: dampers without springs, a question between an edit and a step, a scene that is lost. */
+/* What is rare in scenes: dampers without springs, what comes between two steps that share a force, bad numbers at the
+   end, a scene that is lost. */
 #include "test_scene.h"
 
 static void count_calls(void *user, double t, size_t particles, const scalar *const x[3],
@@ -63,6 +64,52 @@ static void question_after_edit(void)
     }
 }
 
+static void push(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                 scalar *const force[3])
+{
+    (void)user, (void)t, (void)particles, (void)x, (void)v;
+    force[0][2] += (scalar)3.7;
+}
+
+/* A callback that uses no velocities and is set between two leapfrog steps acts in the next half kick. */
+static void callback_between_steps(void)
+{
+    static model m;
+    static state y;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        build(&m, (uint32_t[]){5, 4, 1}, axes, OWN | MASSES);
+        m.def.flags = SPRING_SCENE_FORCE_STILL;
+        scene *s = scene_of(&m.def), *again = scene_of(&m.def);
+        SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+        get_state(s, m.def.particles, &y);
+        set_state(again, m.def.particles, &y);
+        SCENE(set_force)(s, push, NULL);
+        SCENE(set_force)(again, push, NULL);
+        SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+        SCENE(advance)(again, SPRING_LEAPFROG, 0.013, 1);
+        CHECK(same_bits(s, again, m.def.particles, axes), "as if it had been there from this state on");
+        free(s);
+        free(again);
+    }
+}
+
+static void bad_number_at_the_end(void)
+{
+    static model m;
+    static state y;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        build(&m, (uint32_t[]){5, 4, 1}, axes, 0);
+        scene *s = scene_of(&m.def), *other = scene_of(&m.def);
+        for (size_t i = 0; i < m.def.particles * axes; i++)
+            y.x[i] = 7;
+        y.x[m.def.particles * axes - 1] = NAN;
+        CHECK(SCENE(set)(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL, "not a number");
+        CHECK(same_bits(s, other, m.def.particles, axes), "nothing has been set");
+        free(s);
+        free(other);
+    }
+}
+
 /* A callback that looks into a table by position must not be handed NaN. */
 static void callback_is_left_alone(void)
 {
@@ -99,6 +146,8 @@ int main(void)
     static const test tests[] = {
         {"dampers alone", dampers_alone},
         {"a question after an edit", question_after_edit},
+        {"a callback between steps", callback_between_steps},
+        {"a bad number at the end", bad_number_at_the_end},
         {"nothing is computed from what is lost", callback_is_left_alone},
     };
     return RUN_TESTS("scene_rare", tests);
