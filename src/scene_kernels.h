@@ -123,11 +123,12 @@ SPRING_INLINE void to_force(uint32_t axes, real *way, const real *relative, trut
         way[a] = select_real(joined & (square > 0), scale * way[a], splat(0));
 }
 
-/* Adds what one side of a row does to the vector of particles from i; offset is negative for the lower neighbours. */
-SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff_t i, ptrdiff_t offset,
+/* Adds what one side of a row does to the vector of particles from i: the upper neighbours, or the lower. */
+SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff_t i, bool upper,
                              uint32_t axes, bool damped, const real *x, const real *v, real *force)
 {
-    const ptrdiff_t at = (offset > 0 ? i : i + offset) - row->first + padding;
+    const ptrdiff_t offset = upper ? row->offset : -row->offset;
+    const ptrdiff_t at = (upper ? i : i + offset) - row->first + padding;
     const ptrdiff_t number = row->present != NULL ? 0 : at;
     const real k = load(row->stiffness + number), c = damped ? load(row->damping + number) : splat(0);
     const real rest = load(row->rest + number);
@@ -140,34 +141,51 @@ SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff
             relative[a] = load(s->v[a] + i + offset) - v[a];
     }
     /* On one axis the rest length has the direction from the lower end to the upper. */
-    to_force(axes, way, relative, joined, k, axes == 1 && offset < 0 ? -rest : rest, c, damped);
+    to_force(axes, way, relative, joined, k, axes == 1 && !upper ? -rest : rest, c, damped);
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++)
         force[a] += way[a];
 }
 
+/* The vector of particles from i; everywhere: each side of each row reaches all of them. */
+SPRING_INLINE void rows_at(const scene_links *s, ptrdiff_t i, uint32_t axes, bool damped, bool everywhere)
+{
+    real x[3], v[3], force[3];
+    SPRING_UNROLL
+    for (uint32_t a = 0; a < axes; a++) {
+        x[a] = load(s->x[a] + i);
+        if (damped)
+            v[a] = load(s->v[a] + i);
+        force[a] = splat(0);
+    }
+    const scene_row *const end = s->row + s->rows;
+    for (const scene_row *row = s->row; row < end; row++) {
+        if (everywhere || (i + lanes > row->first && i < row->end))
+            pull_side(s, row, i, true, axes, damped, x, v, force);
+        if (everywhere || (i + lanes > row->first + row->offset && i < row->end + row->offset))
+            pull_side(s, row, i, false, axes, damped, x, v, force);
+    }
+    SPRING_UNROLL
+    for (uint32_t a = 0; a < axes; a++)
+        store(s->force[a] + i, force[a]);
+}
+
 SPRING_INLINE void rows(const scene_links *s, uint32_t axes, bool damped)
 {
-    for (ptrdiff_t i = 0; i < (ptrdiff_t)s->particles; i += lanes) {
-        real x[3], v[3], force[3];
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++) {
-            x[a] = load(s->x[a] + i);
-            if (damped)
-                v[a] = load(s->v[a] + i);
-            force[a] = splat(0);
-        }
-        for (size_t r = 0; r < s->rows; r++) {
-            const scene_row *row = &s->row[r];
-            if (i + lanes > row->first && i < row->end)
-                pull_side(s, row, i, row->offset, axes, damped, x, v, force);
-            if (i + lanes > row->first + row->offset && i < row->end + row->offset)
-                pull_side(s, row, i, -row->offset, axes, damped, x, v, force);
-        }
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            store(s->force[a] + i, force[a]);
+    const ptrdiff_t particles = (ptrdiff_t)s->particles;
+    ptrdiff_t from = 0, to = particles; /* between them every side of every row reaches all of a vector */
+    for (size_t r = 0; r < s->rows; r++) {
+        const scene_row *row = &s->row[r];
+        from = row->first + row->offset > from ? row->first + row->offset : from;
+        to = row->end < to ? row->end : to;
     }
+    ptrdiff_t i = 0;
+    for (; i < particles && i < from; i += lanes)
+        rows_at(s, i, axes, damped, false);
+    for (; i + lanes <= to; i += lanes)
+        rows_at(s, i, axes, damped, true);
+    for (; i < particles; i += lanes)
+        rows_at(s, i, axes, damped, false);
 }
 
 enum { block = 64 }; /* links whose ends are gathered together: they stay in the first cache */
@@ -178,13 +196,18 @@ SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
     for (size_t first = 0; first < l->count; first += block) {
         const size_t count = l->count - first < block ? l->count - first : block;
         const uint32_t *from = l->a + first, *to = l->b + first;
-        scalar way[3][block] = {{0}}, relative[3][block] = {{0}};
-        for (uint32_t a = 0; a < axes; a++)
-            for (size_t j = 0; j < count; j++) {
+        scalar way[3][block], relative[3][block];
+        for (size_t j = 0; j < count; j++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
                 way[a][j] = s->x[a][to[j]] - s->x[a][from[j]];
                 if (damped)
                     relative[a][j] = s->v[a][to[j]] - s->v[a][from[j]];
             }
+        }
+        for (size_t j = count; j % lanes != 0; j++) /* what fills the last vector */
+            for (uint32_t a = 0; a < axes; a++)
+                way[a][j] = relative[a][j] = 0;
         for (size_t j = 0; j < count; j += lanes) {
             const real k = load(l->stiffness + first + j), rest = load(l->rest + first + j);
             const real c = damped ? load(l->damping + first + j) : splat(0);
@@ -199,11 +222,13 @@ SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
             for (uint32_t a = 0; a < axes; a++)
                 store(&way[a][j], w[a]);
         }
-        for (uint32_t a = 0; a < axes; a++)
-            for (size_t j = 0; j < count; j++) {
+        for (size_t j = 0; j < count; j++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
                 s->force[a][from[j]] += way[a][j];
                 s->force[a][to[j]] -= way[a][j];
             }
+        }
     }
 }
 
