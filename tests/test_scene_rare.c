@@ -64,6 +64,32 @@ static void question_after_edit(void)
     }
 }
 
+/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart. */
+static void gap(void)
+{
+    enum { particles = 13 };
+    const double far = sizeof(scalar) == 4 ? 3e38 : 1.5e308;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        double position[3 * particles] = {0};
+        spring_link link[particles];
+        size_t links = 0;
+        for (uint32_t i = 0; i < particles; i++) {
+            position[axes * i] = i == 5 ? far : i == 6 ? -far : 0.7 * i;
+            if (i != 4 && i != 5 && i != 6 && i + 1 < particles)
+                link[links++] = (spring_link){i, i + 1, 0.6, 2.7, 0};
+        }
+        const scene_def def = {
+            .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
+        scene *s = scene_of(&def);
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK,
+              "their distance is nobody's business");
+        double x[3];
+        SCENE(get)(s, SPRING_POSITION, x, 0, 5, 1);
+        CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
+        free(s);
+    }
+}
+
 static void push(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
                  scalar *const force[3])
 {
@@ -146,6 +172,7 @@ int main(void)
     static const test tests[] = {
         {"dampers alone", dampers_alone},
         {"a question after an edit", question_after_edit},
+        {"a gap", gap},
         {"a callback between steps", callback_between_steps},
         {"a bad number at the end", bad_number_at_the_end},
         {"nothing is computed from what is lost", callback_is_left_alone},
