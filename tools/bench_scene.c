@@ -69,7 +69,7 @@ static spring_grid grid_of(const subject *s)
         .height = s->shape == WATER,
         .spacing = 0.1,
         .stretch = 1.05, /* so that no sheet crumples: springs that are pressed together need shorter steps */
-        .families = SPRING_GRID_STRUCTURAL | (s->shape != WATER ? SPRING_GRID_SHEAR | SPRING_GRID_BEND : 0),
+        .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
         .stiffness = 20000,
         .damping = s->feature.damping,
         .pinned = SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y,
