@@ -2,7 +2,7 @@
 # How near every check came to failing: its error as a fraction of the bound it had to meet, a dot a row of the table. A
 # dot to the right of the line would be a failure, and would have stopped the report. Errors below a hundred-millionth of
 # their bound, or of 0, are drawn on the left edge.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 720
+call system("dirname '".ARG0."'")."/style.gp" ARG1 1040
 call plots."need.gp" ARG2 "method witness error bound"
 array witnesses[14] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
     "definition", "modes", "reduced-mass", "digits", "formula"]
@@ -36,7 +36,7 @@ do for [i = 1:rows] {
 unset key
 set tmargin 4
 do for [m = 1:4] {
-    set label titles[m] at screen 0.12 + 0.5*((m - 1)%2),0.98 - 0.04*((m - 1)/2) point linetype m pointtype marks[m] offset 1,0
+    set label titles[m] at screen 0.12 + 0.5*((m - 1)%2),0.985 - 0.028*((m - 1)/2) point linetype m pointtype marks[m] offset 1,0
 }
 set lmargin 13
 set arrow from 1,0.5 to 1,rows + 0.5 nohead linetype theory dashtype solid
