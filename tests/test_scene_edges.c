@@ -88,7 +88,8 @@ static void time_stays_finite(void)
 #endif
     CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "one such step is possible");
     CHECK_BITS(SCENE(time)(s), dt, "dt");
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK, "a step that is no step in this precision");
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK,
+          "a step that is no step in this precision");
     CHECK_BITS(SCENE(time)(s), dt, "takes no time");
     free(s);
 }
