@@ -38,15 +38,14 @@ typedef struct spring_state {
     double v; /* [m/s] velocity, at the same time as x */
 } spring_state;
 
-/* What stays. Zero-initialise what is not modelled. Many states may share one. */
+/* What stays. Zero-initialise what is not modelled. Many states may share one. A load that changes with time: set it
+   before each step to its value at t + dt/2 for second order; its value at t gives first order. No method gives more than
+   second order from a load that is sampled once a step. */
 typedef struct spring_params {
     double mass;      /* [kg]    > 0 */
     double stiffness; /* [N/m]   >= 0; 0 is a free particle */
     double damping;   /* [N s/m] >= 0; critical at 2 sqrt(mass stiffness) */
-    double
-        load; /* [N]     a force held constant over the step. A drive that changes with time: set it before each
-                                 step to its value at t + dt/2 for second order; its value at t gives first order.
-                                 No method gives more than second order from a load that is sampled once a step. */
+    double load;      /* [N]     a force held constant over the step */
 } spring_params;
 
 typedef enum spring_method {
