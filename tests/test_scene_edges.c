@@ -164,9 +164,54 @@ static void drag_without_bias(void)
     free(s);
 }
 
+/* Without links drag alone limits Euler's step. */
+static void limit_of_drag_alone(void)
+{
+    const double position[] = {0, 0, 0};
+    const scene_def def = {.particles = 1, .position = position, .mass_all = 1.3, .drag = 0.7};
+    scene *s = scene_of(&def);
+    CHECK_CLOSE(SCENE(stable_step)(s, SPRING_EULER), 2 * 1.3 / 0.7, 4 * 4 * EPS, "2 m/d, four roundings");
+    free(s);
+}
+
+/* What lies behind the numbers to be set is nobody's business. */
+static void set_reads_no_further(void)
+{
+    const double position[] = {0, 0, 0, 1, 1, 1}, in[] = {0.3, 0.4, 0.5, NAN, NAN, NAN};
+    const scene_def def = {.particles = 2, .position = position};
+    scene *s = scene_of(&def);
+    CHECK(SCENE(set)(s, SPRING_POSITION, in, 0, 1, 1) == SPRING_OK, "three numbers, all finite");
+    free(s);
+}
+
+/* 2 stiffness/mass and 2 damping/mass just fit, or just do not. */
+static void largest_link(void)
+{
+#ifdef SPRING_FLOAT
+    const double largest = FLT_MAX;
+#else
+    const double largest = DBL_MAX;
+#endif
+    const double position[] = {0, 0, 0, 1, 1, 1}, mass[] = {1.5, 2};
+    for (int damping = 0; damping < 2; damping++)
+        for (int fits = 0; fits < 2; fits++) {
+            const double value = fits ? largest / 2.5 * 1.5 : largest / 1.9 * 1.5;
+            const spring_link link = {0, 1, 0.7, damping ? 0 : value, damping ? value : 0};
+            const scene_def def = {
+                .particles = 2, .links = 1, .position = position, .mass = mass, .link = &link};
+            const char *field;
+            const spring_status status = SCENE(check)(&def, &field, NULL);
+            CHECK(status == (fits ? SPRING_OK : SPRING_EINVAL), "2/mass of it is finite, or not");
+            CHECK(fits || strcmp(field, damping ? "link.damping" : "link.stiffness") == 0, "and names it");
+        }
+}
+
 int main(void)
 {
     static const test tests[] = {
+        {"drag alone limits the step", limit_of_drag_alone},
+        {"set reads no further", set_reads_no_further},
+        {"the largest links", largest_link},
         {"a particle far away that is joined to nothing", stranger},
         {"an infinite force on a pin", infinite_force_on_a_pin},
         {"time stays finite", time_stays_finite},

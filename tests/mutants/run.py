@@ -5,7 +5,7 @@
 usage: run.py [--sample] [--new TABLE] [-o FILE] [PATTERN]...
        run.py --merge TABLE... [-o FILE]
 
-  --sample      a fixed seventh of the mutants written by hand and a fixed thirtieth of the generated ones
+  --sample      of the mutants in mutants.tsv a fixed seventh of those written by hand, a fixed thirtieth of the generated
   --new TABLE   only mutants that have no row in TABLE
   -o FILE       write the table to FILE instead of standard output
   PATTERN       only mutants whose names contain one of these
@@ -319,7 +319,9 @@ def merge(tables, mutants, equivalent, table):
     return 0
 
 
-def in_sample(mutant):
+def in_sample(mutant, table):
+    if (mutant.name, mutant.line) not in table:
+        return False
     return zlib.crc32(mutant.name.encode()) % (SAMPLE_BY_HAND if mutant.by_hand else SAMPLE_GENERATED) == 0
 
 
@@ -340,6 +342,7 @@ def main():
     equivalent = known_equivalents(mutants)
     known = {row["mutant"] for row in rows_of(options.new)} if options.new else set()
     tables = [rows_of(path) for path in options.names] if options.merge else []
+    run_before = {(row["mutant"], row["line"]) for row in rows_of(HERE / "mutants.tsv")} if options.sample else set()
     with open(options.output, "w", encoding="utf-8") if options.output else sys.stdout as table:
         print(f"# command: tests/mutants/run.py\n# version: {version()}\n# date: {datetime.date.today()}\n"
               f"# present: {len(mutants)}", file=table)
@@ -348,7 +351,7 @@ def main():
             return merge(tables, mutants, equivalent, table)
         chosen = [
             mutant for mutant in mutants
-            if (not options.sample or in_sample(mutant)) and mutant.name not in known
+            if (not options.sample or in_sample(mutant, run_before)) and mutant.name not in known
             and (not options.names or any(pattern in mutant.name for pattern in options.names))
         ]
         return run(chosen, equivalent, table)
