@@ -72,16 +72,29 @@ void cli_progress(double fraction)
     }
 }
 
-_Noreturn void cli_fail(cli_status status, const char *format, ...)
+static void print_message(const char *format, va_list arguments)
 {
-    va_list arguments;
-    va_start(arguments, format);
     erase_progress();
     fprintf(stderr, "%s: ", program->name);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
+}
+
+_Noreturn void cli_fail(cli_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(format, arguments);
     va_end(arguments);
     exit((int)status);
+}
+
+void cli_warn(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    print_message(format, arguments);
+    va_end(arguments);
 }
 
 /* ------------------------------------------------------------------------------------------------------ output */
@@ -254,18 +267,30 @@ void cli_columns(cli_table *table, const char *names)
     free(line);
 }
 
+static void put_in_place(cli_table *table)
+{
+    if (table->path[0] == '\0')
+        return;
+    if (rename(table->temporary, table->path) != 0)
+        fail_to_write(table);
+    table->temporary[0] = '\0';
+}
+
+void cli_close(cli_table *table)
+{
+    assert(table == &tables[table_count - 1]);
+    close_stream(table);
+    put_in_place(table);
+    table_count--;
+}
+
 void cli_finish(void)
 {
     erase_progress();
     for (size_t i = 0; i < table_count; i++)
         close_stream(&tables[i]);
-    for (size_t i = 0; i < table_count; i++) {
-        if (tables[i].path[0] == '\0')
-            continue;
-        if (rename(tables[i].temporary, tables[i].path) != 0)
-            fail_to_write(&tables[i]);
-        tables[i].temporary[0] = '\0';
-    }
+    for (size_t i = 0; i < table_count; i++)
+        put_in_place(&tables[i]);
 }
 
 /* ------------------------------------------------------------------------------------------------------ numbers */
@@ -301,6 +326,31 @@ static bool parse_real(const char *text, double *value)
     *value = strtod(text, &end);
     const bool vanished = errno == ERANGE && *value == 0;
     return end != text && *end == '\0' && isfinite(*value) && !vanished;
+}
+
+/* `count` of them, separated by commas; changes nothing otherwise. */
+static bool parse_reals(const char *text, double *values, size_t count)
+{
+    double parsed[8];
+    char *copy = strdup(text), *word = copy;
+    assert(count <= sizeof parsed / sizeof parsed[0]); /* no option has more */
+    if (copy == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    size_t found = 0;
+    while (word != NULL && found < count) {
+        char *comma = strchr(word, ',');
+        if (comma != NULL)
+            *comma = '\0';
+        if (!parse_real(word, &parsed[found]))
+            break;
+        found++;
+        word = comma != NULL ? comma + 1 : NULL;
+    }
+    const bool complete = found == count && word == NULL;
+    if (complete)
+        memcpy(values, parsed, count * sizeof parsed[0]);
+    free(copy);
+    return complete;
 }
 
 static bool parse_choice(const char *text, const char *const *choices, int *value)
@@ -349,8 +399,14 @@ static void print_expectation(FILE *out, const cli_option *o)
         for (int i = 0; o->choices[i] != NULL; i++)
             fprintf(out, "%s %s", i > 0 ? "," : "", o->choices[i]);
         break;
+    case CLI_REALS:
+        fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
+        break;
     case CLI_FILE:
         fputs("the name of a file", out);
+        break;
+    case CLI_FOLDER:
+        fputs("the name of a folder", out);
         break;
     }
 }
@@ -383,7 +439,10 @@ static bool store(const cli_option *o, const char *value)
         return parse_real(value, o->real) && *o->real > 0;
     case CLI_CHOICE:
         return parse_choice(value, o->choices, o->choice);
+    case CLI_REALS:
+        return parse_reals(value, o->real, o->least);
     case CLI_FILE:
+    case CLI_FOLDER:
         *o->file = value;
         return value[0] != '\0';
     }
@@ -459,7 +518,7 @@ static void record(FILE *words, const cli_option *o, const char *value)
         return;
     fprintf(words, " --%s", o->name);
     if (o->kind != CLI_FLAG)
-        fprintf(words, " %s", o->kind == CLI_FILE ? o->value : value);
+        fprintf(words, " %s", o->kind == CLI_FILE || o->kind == CLI_FOLDER ? o->value : value);
 }
 
 static void print_and_exit_if_wanted(void)

@@ -24,8 +24,10 @@ typedef enum cli_kind {
     CLI_REAL,         /* a finite number */
     CLI_NOT_NEGATIVE, /* a finite number >= 0 */
     CLI_POSITIVE,     /* a finite number > 0 */
+    CLI_REALS,        /* as many finite numbers as `least` says, separated by commas */
     CLI_CHOICE,       /* one of a list of words */
-    CLI_FILE          /* the name of a file to write */
+    CLI_FILE,         /* the name of a file to write */
+    CLI_FOLDER        /* the name of a folder to write to */
 } cli_kind;
 
 /* One row of a tool's table of options. What the pointer points to holds the default. Of an option that is given
@@ -36,14 +38,14 @@ typedef struct cli_option {
     union {
         bool *flag;
         uint64_t *count;
-        double *real;
-        int *choice; /* index into choices */
+        double *real; /* CLI_REALS: the first of them */
+        int *choice;  /* index into choices */
         const char **file;
     };
     const char *value; /* what --help calls the value */
     const char *help;
     const char *const *choices; /* CLI_CHOICE: ended by NULL */
-    uint64_t least, most;       /* CLI_COUNT: limits; most = 0 is no limit */
+    uint64_t least, most;       /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
     bool required;
 } cli_option;
 
@@ -61,13 +63,16 @@ extern const char *const cli_methods[];
 void cli_parse(const cli_program *program, int argc, char **argv);
 
 #if defined(__GNUC__)
-#define CLI_PRINTF __attribute__((format(printf, 2, 3)))
+#define CLI_PRINTF(which) __attribute__((format(printf, which, which + 1)))
 #else
-#define CLI_PRINTF
+#define CLI_PRINTF(which)
 #endif
 
 /** Print "program: message", remove the files that are not finished, and exit. */
-_Noreturn void cli_fail(cli_status status, const char *format, ...) CLI_PRINTF;
+_Noreturn void cli_fail(cli_status status, const char *format, ...) CLI_PRINTF(2);
+
+/** Print "program: message". */
+void cli_warn(const char *format, ...) CLI_PRINTF(1);
 
 /* A table of tab-separated values with its stamp: tool, version, command line and compiler, in lines that start with
    "#". The bytes depend on nothing else, so two runs give the same file. */
@@ -85,9 +90,12 @@ cli_table *cli_open_output(void);
  */
 cli_table *cli_open_file(const char *option, const char *path);
 
-void cli_comment(cli_table *table, const char *format, ...) CLI_PRINTF; /* one line, "# " is added */
-void cli_columns(cli_table *table, const char *names);                  /* separated by spaces */
-void cli_row(cli_table *table, const char *format, ...) CLI_PRINTF;     /* one line, "\n" is added */
+void cli_comment(cli_table *table, const char *format, ...) CLI_PRINTF(2); /* one line, "# " is added */
+void cli_columns(cli_table *table, const char *names);                     /* separated by spaces */
+void cli_row(cli_table *table, const char *format, ...) CLI_PRINTF(2);     /* one line, "\n" is added */
+
+/** Close the table that was opened last and give its file its name now. */
+void cli_close(cli_table *table);
 
 /** Close every table and give the files their names. */
 void cli_finish(void);

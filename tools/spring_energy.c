@@ -11,6 +11,7 @@
 #include <springstep/spring.h>
 
 #include "cli.h"
+#include "random.h"
 #include "stepper.h"
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};
@@ -60,23 +61,14 @@ static double energy_error(spring_state s)
     return fabs(spring_energy(&s, &spring) - spring_energy(&start, &spring));
 }
 
-/* Uniform in [0, 1). Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014. */
-static double uniform(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
-}
-
 static bool advance(spring_state *s, uint64_t n)
 {
-    static uint64_t random = 0;
+    static uint64_t state = 0;
     if (!jitter)
         return stepper_advance(&chosen, s, &spring, dt, n) == SPRING_OK;
     bool finite = true;
     for (; finite && n > 0; n--)
-        finite = stepper_advance(&chosen, s, &spring, dt * (0.5 + uniform(&random)), 1) == SPRING_OK;
+        finite = stepper_advance(&chosen, s, &spring, dt * (0.5 + random_unit(&state)), 1) == SPRING_OK;
     return finite;
 }
 
