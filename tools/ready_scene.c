@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+/* Five scenes that are ready to be run; see ready_scene.h. */
+#include "ready_scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+const char *const ready_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
+
+static const ready_settings defaults[] = {
+    /* size, axes, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity, stretch */
+    [READY_ROPE] = {READY_ROPE, 20, 2, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
+    [READY_CLOTH] = {READY_CLOTH, 25, 3, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
+    [READY_JELLY] = {READY_JELLY, 8, 3, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
+    [READY_CHAIN] = {READY_CHAIN, 50, 1, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
+    [READY_WATER] = {READY_WATER, 25, 1, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
+};
+
+ready_settings ready_defaults(ready_kind kind)
+{
+    return defaults[kind];
+}
+
+static void *room(size_t count, size_t size)
+{
+    void *memory = calloc(count, size);
+    if (memory == NULL)
+        cli_fail(CLI_FAILED, "no memory for a scene of this size");
+    return memory;
+}
+
+static spring_grid grid_of(const ready_settings *s)
+{
+    const uint32_t all = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, n = (uint32_t)s->size;
+    const uint32_t all_edges =
+        SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y;
+    spring_grid g = {.axes = (uint32_t)s->axes,
+                     .stiffness = s->stiffness,
+                     .damping = s->damping,
+                     .stretch = s->stretch,
+                     .spacing = s->length / (n - 1),
+                     .families = all};
+    switch (s->kind) {
+    case READY_ROPE:
+        g.count[0] = n;
+        g.families = SPRING_GRID_STRUCTURAL;
+        g.pinned = SPRING_GRID_FIRST_X;
+        break;
+    case READY_CLOTH: /* two of its corners are pinned later on */
+        g.count[0] = g.count[1] = n;
+        break;
+    case READY_JELLY:
+        g.count[0] = g.count[1] = g.count[2] = n;
+        g.pinned = SPRING_GRID_FIRST_Z;
+        break;
+    case READY_CHAIN:
+        g.count[0] = n + 2;
+        g.spacing = s->length / (n + 1);
+        g.families = SPRING_GRID_STRUCTURAL;
+        g.pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X;
+        break;
+    default:
+        g.count[0] = g.count[1] = n;
+        g.pinned = all_edges;
+        if (s->axes == 1) {
+            g.height = true;
+            g.stretch = 1;
+            g.stiffness *= s->stretch > 0 ? 1 - 1 / s->stretch : 1;
+        }
+    }
+    return g;
+}
+
+/* Where the particles of a grid stand, on three axes. */
+static void fill_start(ready_scene *r, double spacing)
+{
+    const uint32_t *n = r->count;
+    double *p = r->start;
+    for (uint32_t k = 0; k < n[2]; k++)
+        for (uint32_t j = 0; j < n[1]; j++)
+            for (uint32_t i = 0; i < n[0]; i++, p += 3) {
+                p[0] = i * spacing;
+                p[1] = j * spacing;
+                p[2] = k * spacing;
+            }
+}
+
+/* Drawn aside at its middle, by half the distance of two masses. */
+static void pluck(ready_scene *r, double spacing)
+{
+    const double end = r->count[0] - 1;
+    for (uint32_t i = 0; i < r->count[0]; i++) {
+        const double aside = spacing * fmin(i, end - i) / end;
+        r->position[i] += aside;
+        r->start[3 * i] += aside;
+    }
+}
+
+void ready_init(ready_scene *r, const ready_settings *s)
+{
+    const spring_grid g = grid_of(s);
+    size_t particles, links;
+    if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
+        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have",
+                 s->size);
+    *r = (ready_scene){
+        .count = {g.count[0], g.count[1] > 0 ? g.count[1] : 1, g.count[2] > 0 ? g.count[2] : 1}};
+    r->start = room(3 * particles, sizeof *r->start);
+    r->position = room(3 * particles, sizeof *r->position);
+    r->pinned = room(particles, sizeof *r->pinned);
+    r->mass = room(particles, sizeof *r->mass);
+    r->link = room(links, sizeof *r->link);
+    spring_grid_fill(&g, r->position, r->pinned, r->link);
+    fill_start(r, g.spacing);
+    r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
+                                .flags = SPRING_SCENE_FORCE_STILL, /* pushes look at the time alone */
+                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+                                .particles = particles,
+                                .links = links,
+                                .position = r->position,
+                                .mass_all = s->mass,
+                                .pinned = r->pinned,
+                                .link = r->link,
+                                .drag = s->drag};
+    if (!isnan(s->gravity))
+        r->def.gravity[s->axes - 1] = -s->gravity;
+    if (s->kind == READY_CLOTH)
+        r->pinned[0] = r->pinned[r->count[0] - 1] = 1;
+    if (s->kind == READY_CHAIN)
+        pluck(r, g.spacing);
+    if (s->kind == READY_ROPE && s->end_mass != s->mass) {
+        for (size_t i = 0; i < particles; i++)
+            r->mass[i] = i + 1 < particles ? s->mass : s->end_mass;
+        r->def.mass = r->mass;
+    }
+}
+
+void ready_clear(ready_scene *r)
+{
+    free(r->start);
+    free(r->position);
+    free(r->pinned);
+    free(r->mass);
+    free(r->link);
+}
+
+spring_scene *ready_start(const spring_scene_def *def)
+{
+    const char *field;
+    size_t index, bytes;
+    spring_scene *scene;
+    const spring_status status = spring_scene_check(def, &field, &index);
+    if (status != SPRING_OK)
+        cli_fail(CLI_USAGE, "no such scene: %s %zu is not valid (%s)", field, index,
+                 spring_status_string(status));
+    spring_scene_bytes(def, &bytes);
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    if (memory == NULL || spring_scene_init(memory, bytes, def, &scene) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def->particles, bytes);
+    return scene;
+}
+
+void ready_positions(const ready_scene *r, const spring_scene *s, double *xyz)
+{
+    static const int shown[4][3] = {{0}, {0}, {0, 2}, {0, 1, 2}}; /* by the number of axes: where each goes */
+    const uint32_t axes = r->def.axes;
+    const bool height = axes == 1 && r->count[1] > 1;
+    double *own = room(axes * r->def.particles, sizeof *own);
+    spring_scene_get(s, SPRING_POSITION, own, 0, 0, r->def.particles);
+    memcpy(xyz, r->start, 3 * r->def.particles * sizeof *xyz);
+    for (size_t i = 0; i < r->def.particles; i++)
+        for (uint32_t a = 0; a < axes; a++)
+            xyz[3 * i + (size_t)(height ? 2 : shown[axes][a])] = own[axes * i + a];
+    free(own);
+}

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Five scenes that are ready to be run: what they are made of, and how they look at the start.
+ *
+ *     rope   particles in a row, level, held at one end, with gravity: it swings down
+ *     cloth  a level sheet that hangs on two of its corners, with gravity
+ *     jelly  a block that stands on its lowest layer, with gravity
+ *     chain  masses on a line between two that are fixed, plucked in the middle; it moves along itself
+ *     water  a sheet whose edges are pinned. On one axis it is a height field: each particle moves up and down only
+ *
+ * Source of the water (4 m x 4 m, three families of links of 25 000 N/m, 1 kg a particle, drag 0.5 N s/m): a public study
+ * of the three methods, whose numbers for one spring the report reproduces.
+ */
+#ifndef SPRINGSTEP_READY_SCENE_H
+#define SPRINGSTEP_READY_SCENE_H
+
+#include <springstep/scene.h>
+
+typedef enum ready_kind {
+    READY_ROPE,
+    READY_CLOTH,
+    READY_JELLY,
+    READY_CHAIN,
+    READY_WATER,
+    ready_kinds
+} ready_kind;
+
+/* The words for them, in that order, ended by NULL. */
+extern const char *const ready_names[];
+
+/* NaN, or 0 for a count, where a scene has no such thing. */
+typedef struct ready_settings {
+    ready_kind kind;
+    uint64_t size;    /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
+    uint64_t axes;    /* water: 1 or 3 */
+    double length;    /* [m] > 0 of an edge */
+    double mass;      /* [kg] > 0 of a particle */
+    double end_mass;  /* [kg] > 0 rope: of the last particle */
+    double stiffness; /* [N/m] of a link */
+    double damping;   /* [N s/m] of a link */
+    double drag;      /* [N s/m] of a particle */
+    double gravity;   /* [m/s^2] downwards */
+    double
+        stretch; /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
+                         as stiff across as they are along; else > 1: their stiffness across is 1 - 1/stretch of that */
+} ready_settings;
+
+/* What a scene is made of unless the user says otherwise. */
+ready_settings ready_defaults(ready_kind kind);
+
+/* A definition, and the arrays that it needs. */
+typedef struct ready_scene {
+    spring_scene_def def;
+    uint32_t
+        count[3];  /* particles along x, y, z; particle (i, j, k) has index i + count[0] (j + count[1] k) */
+    double *start; /* [particles*3] x y z [m], z up, whatever axes the scene has */
+    double *position;  /* [particles*axes] */
+    uint8_t *pinned;   /* [particles] */
+    double *mass;      /* [particles] */
+    spring_link *link; /* [links] */
+} ready_scene;
+
+/** Make the definition of a scene. All methods are prepared for. Exits with a message without memory. */
+void ready_init(ready_scene *r, const ready_settings *s);
+void ready_clear(ready_scene *r);
+
+/** A scene of a definition, in memory of its own: release it with free(). Exits with a message if it is not valid. */
+spring_scene *ready_start(const spring_scene_def *def);
+
+/** Positions [particles*3] x y z [m] as in `start`. */
+void ready_positions(const ready_scene *r, const spring_scene *s, double *xyz);
+
+#endif

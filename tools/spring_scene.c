@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-scene: a rope, a cloth, a block of jelly, a chain or a water surface, moved by any method in steps of any length,
+ * for as long as it holds.
+ */
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli.h"
+#include "pushes.h"
+#include "random.h"
+#include "ready_scene.h"
+
+/* ---------------------------------------------------------------------------------------------- the command line */
+
+static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
+
+static int kind, method;
+static uint64_t size, axes, seed = 1;
+static double dt, duration = 5, fps = 60, push_duration = 0.02, rain;
+static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
+static const char *frames, *positions;
+
+/* Physical parameters of the same name as in ready_settings. */
+enum { LENGTH, MASS, END_MASS, STIFFNESS, DAMPING, DRAG, GRAVITY, STRETCH, parameters };
+static double given[parameters] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+static const size_t setting[parameters] = {
+    offsetof(ready_settings, length),   offsetof(ready_settings, mass),
+    offsetof(ready_settings, end_mass), offsetof(ready_settings, stiffness),
+    offsetof(ready_settings, damping),  offsetof(ready_settings, drag),
+    offsetof(ready_settings, gravity),  offsetof(ready_settings, stretch)};
+
+static const cli_option options[] = {
+    {"scene", CLI_CHOICE, .choice = &kind, .choices = ready_names, .required = true, .value = "S",
+     .help = "rope, cloth, jelly, chain or water"},
+    {"method", CLI_CHOICE, .choice = &method, .choices = methods, .required = true, .value = "M",
+     .help = "euler, leapfrog or rk4"},
+    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
+     .help = "step [s] (default: half the stable step of leapfrog)"},
+    {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
+    {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
+     .help = "particles along an edge; of a chain: those that move\n"
+             "(default: rope 20, cloth 25, jelly 8, chain 50, water 25)"},
+    {"axes", CLI_COUNT, .count = &axes, .least = 1, .most = 3, .value = "A",
+     .help = "water only: 1, the default, moves up and down; 3 in all directions"},
+    {"length", CLI_POSITIVE, .real = &given[LENGTH], .value = "L",
+     .help = "of an edge [m] (default: rope 2, cloth 2, jelly 0.7, chain 5, water 4)"},
+    {"mass", CLI_POSITIVE, .real = &given[MASS], .value = "M",
+     .help = "of a particle [kg] (default: rope 0.05, cloth 0.01, jelly 0.01,\n"
+             "chain 0.1, water 1)"},
+    {"end-mass", CLI_POSITIVE, .real = &given[END_MASS], .value = "M",
+     .help = "rope only: of the last particle [kg] (default: as --mass)"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &given[STIFFNESS], .value = "K",
+     .help = "of a link [N/m] (default: rope 2000, cloth 500, jelly 40, chain 100,\n"
+             "water 25000)"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &given[DAMPING], .value = "C",
+     .help = "of a link [N s/m] (default: 0)"},
+    {"drag", CLI_NOT_NEGATIVE, .real = &given[DRAG], .value = "D",
+     .help = "of a particle [N s/m] (default: rope 0.01, cloth 0.01, jelly 0.005,\n"
+             "chain 0, water 0.5)"},
+    {"gravity", CLI_REAL, .real = &given[GRAVITY], .value = "G",
+     .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
+    {"stretch", CLI_POSITIVE, .real = &given[STRETCH], .value = "S",
+     .help = "length of the links over their rest length at the start (default: 1;\n"
+             "water on three axes: 1.25). Of water on one axis links are as stiff\n"
+             "across as along; with S > 1 by the factor 1 - 1/S"},
+    {"poke", CLI_REALS, .real = poke, .least = 5, .value = "T,X,Y,FORCE,AREA",
+     .help = "push down at the time T [s] around (X, Y) [m] with FORCE [N] at most,\n"
+             "spread over a round AREA [m^2]"},
+    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "drops per second (default: 0)"},
+    {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another rain for every N (default: 1)"},
+    {"drop-box", CLI_REALS, .real = box, .least = 2, .value = "T,MASS",
+     .help = "a box of MASS [kg] falls from 1 m and hits the middle at the time T [s]"},
+    {"push-duration", CLI_POSITIVE, .real = &push_duration, .value = "D",
+     .help = "of a poke, a drop, the box [s] (default: 0.02)"},
+    {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second (default: 60)"},
+    {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
+     .help = "write the positions of each frame to DIR/frame-000000.tsv and so on.\n"
+             "DIR is created; older frames in it of the same numbers are replaced"},
+    {"positions", CLI_FILE, .file = &positions, .value = "FILE",
+     .help = "write the positions of all frames to FILE"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-scene",
+    .summary = "A rope, a cloth, a block of jelly, a chain or a water surface through time.",
+    .details =
+        "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
+        "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
+        "the step nearest to it, and one for the end. Of frames: t_s, particle, its place i j k in the\n"
+        "grid, and x_m y_m z_m, z up.\n\n"
+        "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
+        "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
+        "pinned; where no push is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
+        "A push that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain it is\n"
+        "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
+        "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
+        "one particle at 10 m/s; drops come at random times to random places.\n\n"
+        "No step is refused. One that is not below the stable step is remarked on standard error. When the\n"
+        "state overflows the rows end, the time is told, and the status is 1.",
+    .options = options,
+};
+
+static ready_settings chosen_settings(void)
+{
+    ready_settings s = ready_defaults((ready_kind)kind);
+    if (size > 0)
+        s.size = size;
+    if (axes > 0 && s.kind != READY_WATER && axes != s.axes)
+        cli_fail(CLI_USAGE,
+                 "--axes: \"%" PRIu64 "\" is not the %" PRIu64 " of the %s; it should be water's 1 or 3",
+                 axes, s.axes, ready_names[kind]);
+    if (axes == 2 && s.kind == READY_WATER)
+        cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
+    if (axes == 3 && s.kind == READY_WATER) {
+        s.axes = 3;
+        s.stretch = 1.25;
+    }
+    if (!isnan(given[MASS]) && !isnan(s.end_mass))
+        s.end_mass = given[MASS];
+    for (int i = 0; i < parameters; i++) {
+        double *value = (double *)(void *)((char *)&s + setting[i]);
+        if (isnan(given[i]))
+            continue;
+        if (isnan(*value))
+            cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none",
+                     i == GRAVITY ? "gravity" : "end-mass", given[i], ready_names[kind]);
+        *value = given[i];
+    }
+    if (s.kind == READY_WATER && s.axes == 1 && !isnan(given[STRETCH]) && !(s.stretch > 1))
+        cli_fail(CLI_USAGE, "--stretch: \"%g\" gives water no stiffness across; it should be greater than 1",
+                 s.stretch);
+    return s;
+}
+
+/* -------------------------------------------------------------------------------------------------------- pushes */
+
+static const double box_height = 1, drop_speed = 10; /* [m], [m/s] */
+static const double mean_of_profile = 3.0 / 8;       /* of sin^4 over its duration */
+
+static void check_poke(const ready_scene *r)
+{
+    const double *far = &r->start[3 * (r->def.particles - 1)];
+    if (!(poke[0] >= 0))
+        cli_fail(CLI_USAGE, "--poke: \"%g\" is not a time T of at least 0 s", poke[0]);
+    if (!(poke[4] > 0))
+        cli_fail(CLI_USAGE, "--poke: \"%g\" is not an AREA greater than 0 m^2", poke[4]);
+    if (!(poke[1] >= 0 && poke[1] <= far[0] && poke[2] >= 0 && poke[2] <= far[1]))
+        cli_fail(
+            CLI_USAGE,
+            "--poke: \"%g,%g\" is not a place X,Y on the scene; X should be from 0 to %g, Y from 0 to %g m",
+            poke[1], poke[2], far[0], far[1]);
+}
+
+static void check_box(void)
+{
+    if (!(box[0] >= 0))
+        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a time T of at least 0 s", box[0]);
+    if (!(box[1] > 0))
+        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", box[1]);
+}
+
+/* Writes the drops to `list`, unless that is NULL; returns how many there are. */
+static size_t fall(const ready_scene *r, const ready_settings *s, push *list)
+{
+    const double *far = &r->start[3 * (r->def.particles - 1)], edge = s->length / 16;
+    uint64_t state = seed;
+    size_t count = 0;
+    for (double t = 0;; count++) {
+        t -= log(1 - random_unit(&state)) / rain;
+        const double x = far[0] * random_unit(&state), y = far[1] * random_unit(&state);
+        if (!(t < duration))
+            return count;
+        if (list != NULL)
+            list[count] = (push){.start = t,
+                                 .duration = push_duration,
+                                 .x = x,
+                                 .y = y,
+                                 .area = edge * edge,
+                                 .peak = s->mass * drop_speed / (mean_of_profile * push_duration)};
+    }
+}
+
+static pushes *chosen_pushes(const ready_scene *r, const ready_settings *s)
+{
+    const double most_drops = 1e5, area = s->length * s->length / 64;
+    const double *far = &r->start[3 * (r->def.particles - 1)];
+    const bool water_alone = s->kind == READY_WATER && isnan(poke[0]) && isnan(box[0]) && rain == 0;
+    if (!(rain * duration <= most_drops))
+        cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
+                 most_drops, duration, most_drops / duration);
+    const size_t drops = rain > 0 ? fall(r, s, NULL) : 0;
+    push *list = malloc((drops + 2) * sizeof *list);
+    if (list == NULL)
+        cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
+    size_t count = rain > 0 ? fall(r, s, list) : 0;
+    if (!isnan(poke[0])) {
+        check_poke(r);
+        list[count++] = (push){poke[0], push_duration, poke[1], poke[2], poke[3], poke[4], PUSH_ROUND};
+    }
+    if (water_alone)
+        list[count++] = pushes_poke(r, s, push_duration);
+    if (!isnan(box[0])) {
+        check_box();
+        const double momentum = box[1] * sqrt(2 * 9.81 * box_height);
+        list[count++] = (push){
+            box[0], push_duration, far[0] / 2, far[1] / 2, momentum / (mean_of_profile * push_duration),
+            area,   PUSH_SQUARE};
+    }
+    pushes *p = count > 0 ? pushes_new(r, list, count) : NULL;
+    free(list);
+    return p;
+}
+
+/* -------------------------------------------------------------------------------------------------------- frames */
+
+static const char frame_columns[] = "t_s particle i j k x_m y_m z_m";
+static char frame_path[4096];
+
+static void name_frame(uint64_t frame)
+{
+    const int length = snprintf(frame_path, sizeof frame_path, "%s/frame-%06" PRIu64 ".tsv", frames, frame);
+    if (length >= (int)sizeof frame_path)
+        cli_fail(CLI_IO, "--frames: cannot write to \"%s\": %s", frames, strerror(ENAMETOOLONG));
+}
+
+/* Frames of an earlier run would pass for those of this one: those that it writes anew are removed now, in case that it
+   fails, and those behind them stop it. */
+static void prepare_frames(uint64_t count)
+{
+    const uint64_t most = 1000000; /* that six digits can number */
+    if (count > most)
+        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %" PRIu64 " frames in %g s", fps, most, duration);
+    if (mkdir(frames, 0777) != 0 && errno != EEXIST)
+        cli_fail(CLI_IO, "--frames: cannot create \"%s\": %s; it should be a folder, or be in one", frames,
+                 strerror(errno));
+    name_frame(count);
+    if (access(frame_path, F_OK) == 0)
+        cli_fail(CLI_IO, "--frames: \"%s\" is of a longer run; the folder should be empty or of the same",
+                 frame_path);
+    for (uint64_t frame = 0; frame < count; frame++) {
+        name_frame(frame);
+        if (unlink(frame_path) != 0 && errno != ENOENT)
+            cli_fail(CLI_IO, "--frames: cannot replace \"%s\": %s", frame_path, strerror(errno));
+    }
+}
+
+static void write_positions(cli_table *table, const ready_scene *r, double t, const double *xyz)
+{
+    const uint32_t *n = r->count;
+    for (size_t i = 0; i < r->def.particles; i++)
+        cli_row(table, "%.17g\t%zu\t%zu\t%zu\t%zu\t%.17g\t%.17g\t%.17g", t, i, i % n[0], i / n[0] % n[1],
+                i / n[0] / n[1], xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
+}
+
+static void write_frame(uint64_t frame, const ready_scene *r, double t, const double *xyz)
+{
+    name_frame(frame);
+    cli_table *table = cli_open_file("frames", frame_path);
+    cli_columns(table, frame_columns);
+    write_positions(table, r, t, xyz);
+    cli_close(table);
+}
+
+/* ------------------------------------------------------------------------------------------------------- the run */
+
+typedef struct view { /* what is shown of a scene */
+    const ready_scene *ready;
+    const spring_scene *scene;
+    cli_table *rows, *positions;
+    double *xyz; /* [particles*3] */
+} view;
+
+static void write_row(view *v)
+{
+    const spring_scene_energies e = spring_scene_energy(v->scene);
+    double most = 0;
+    ready_positions(v->ready, v->scene, v->xyz);
+    for (size_t i = 0; i < v->ready->def.particles; i++) {
+        const double *p = &v->xyz[3 * i], *q = &v->ready->start[3 * i];
+        most = fmax(most, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
+    }
+    cli_row(v->rows, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
+            e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most);
+}
+
+static void write_pictures(const view *v, uint64_t frame)
+{
+    const double t = spring_scene_time(v->scene);
+    if (frames != NULL)
+        write_frame(frame, v->ready, t, v->xyz);
+    if (v->positions != NULL)
+        write_positions(v->positions, v->ready, t, v->xyz);
+}
+
+/* n steps; returns how many of them the state survived. */
+static uint64_t advance(spring_scene *scene, uint64_t n)
+{
+    const uint64_t leap = UINT64_C(1) << 10;
+    uint64_t done = 0;
+    while (done < n) {
+        const uint64_t some = n - done < leap ? n - done : leap;
+        if (spring_scene_advance(scene, (spring_method)method, dt, some) != SPRING_OK)
+            break;
+        done += some;
+        cli_progress(spring_scene_time(scene) / duration);
+    }
+    while (done < n && spring_scene_advance(scene, (spring_method)method, dt, 1) == SPRING_OK)
+        done++;
+    return done;
+}
+
+/* Returns whether the state survived. */
+static bool run(view *v, spring_scene *scene, uint64_t steps, uint64_t frame_count)
+{
+    uint64_t step = 0;
+    for (uint64_t frame = 0; frame <= frame_count; frame++) {
+        const bool end = frame == frame_count;
+        const uint64_t next = end ? steps : (uint64_t)fmin(rint((double)frame / fps / dt), (double)steps);
+        const uint64_t survived = advance(scene, next - step);
+        const bool moved = next > step;
+        step += survived;
+        if (step < next)
+            return false;
+        if (frame == 0 || moved)
+            write_row(v);
+        if (!end)
+            write_pictures(v, frame);
+    }
+    return true;
+}
+
+static void remark_on_step(const spring_scene *scene)
+{
+    const double stable = spring_scene_stable_step(scene, (spring_method)method);
+    if (stable == 0)
+        cli_warn("--dt: no step is stable with %s in this scene", methods[method]);
+    else if (!(dt < stable))
+        cli_warn("--dt: \"%g\" is not below the stable step of %s in this scene, %g s", dt, methods[method],
+                 stable);
+}
+
+int main(int argc, char **argv)
+{
+    const double most_steps = 9007199254740992; /* 2^53: up to there steps and times are exact in a double */
+    cli_parse(&program, argc, argv);
+    const ready_settings settings = chosen_settings();
+    ready_scene ready;
+    ready_init(&ready, &settings);
+    pushes *p = chosen_pushes(&ready, &settings);
+    if (p != NULL) {
+        ready.def.force = pushes_force;
+        ready.def.user = p;
+    }
+    spring_scene *scene = ready_start(&ready.def);
+    if (dt == 0)
+        dt = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+    if (!(duration / dt <= most_steps))
+        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps of %g s", duration, dt);
+    if (!(duration * fps < most_steps))
+        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than 2^53 frames in %g s", fps, duration);
+    remark_on_step(scene);
+
+    const uint64_t steps = (uint64_t)fmax(rint(duration / dt), 1),
+                   frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
+    if (frames != NULL)
+        prepare_frames(frame_count);
+    view v = {.ready = &ready, .scene = scene, .rows = cli_open_output()};
+    v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
+    v.xyz = malloc(3 * ready.def.particles * sizeof *v.xyz);
+    if (v.xyz == NULL)
+        cli_fail(CLI_FAILED, "no memory for %zu positions", ready.def.particles);
+    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", ready_names[kind], ready.def.particles,
+                ready.def.links);
+    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", methods[method], dt,
+                spring_scene_stable_step(scene, (spring_method)method));
+    cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
+    if (v.positions != NULL)
+        cli_columns(v.positions, frame_columns);
+    const bool survived = run(&v, scene, steps, frame_count);
+    cli_finish();
+    if (!survived)
+        cli_warn("the state overflows at t = %.17g s", spring_scene_time(scene) + dt);
+    free(v.xyz);
+    free(scene);
+    if (p != NULL)
+        pushes_free(p);
+    ready_clear(&ready);
+    return survived ? 0 : CLI_FAILED;
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-scene-map: what becomes of each ready scene with each method, when a frame of 1/60 s is one step, two, three ...
+ *
+ * Method    Each scene as spring-scene makes it, for four seconds. Its energy at every frame is compared with that of
+ *           leapfrog in steps of a sixteenth of its stable step, in parts of the largest kinetic energy there:
+ *           leapfrog's own error is then below 1/256 (z^2/4 of the energy of a mode, z = omega dt <= 2/16).
+ */
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "cli.h"
+#include "pushes.h"
+#include "ready_scene.h"
+
+static const double frame_time = 1.0 / 60; /* [s] */
+static const double push_duration = 0.02;  /* [s] */
+
+static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
+static int only_scene = -1, only_method = -1;
+static bool quick;
+
+static const cli_option options[] = {
+    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = ready_names, .value = "S",
+     .help = "only this scene"},
+    {"method", CLI_CHOICE, .choice = &only_method, .choices = methods, .value = "M",
+     .help = "only this method"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-scene-map",
+    .summary = "What becomes of each ready scene with each method and number of steps a frame.",
+    .details =
+        "Columns: scene, method, particles, links, substeps (steps in a frame of 1/60 s), dt_s, "
+        "stable_step_s\n"
+        "(what the library says), energy_error (the largest difference of the energy at a frame from that\n"
+        "of a run in very short steps, in parts of the largest kinetic energy there) and verdict: fine, up\n"
+        "to 0.05; exploded, where the kinetic energy is more than tenfold the largest, or the state\n"
+        "overflows; else lossy or gaining, by the sign of the difference. The scenes are those that\n"
+        "spring-scene makes by default, for four seconds.",
+    .options = options,
+};
+
+/* ------------------------------------------------------------------------------------------------------- a run */
+
+typedef struct subject {
+    ready_scene ready;
+    pushes *pushes; /* NULL: none */
+    uint64_t frames;
+    double *energy; /* [frames] of the reference */
+    double kinetic; /* the largest in the reference */
+} subject;
+
+typedef struct outcome {
+    double
+        error; /* in parts of the largest kinetic energy, with its sign; infinite where the state overflows */
+    bool exploded;
+} outcome;
+
+static double total(const spring_scene_energies *e)
+{
+    return e->kinetic + e->elastic + e->gravity;
+}
+
+static void run_reference(subject *s)
+{
+    spring_scene *scene = ready_start(&s->ready.def);
+    const double finest = spring_scene_stable_step(scene, SPRING_LEAPFROG) / 16;
+    const uint64_t substeps = (uint64_t)ceil(frame_time / finest);
+    for (uint64_t i = 0; i < s->frames; i++) {
+        if (spring_scene_advance(scene, SPRING_LEAPFROG, frame_time / (double)substeps, substeps) !=
+            SPRING_OK)
+            cli_fail(CLI_FAILED, "the run in very short steps overflows");
+        const spring_scene_energies e = spring_scene_energy(scene);
+        s->energy[i] = total(&e);
+        s->kinetic = fmax(s->kinetic, e.kinetic);
+    }
+    free(scene);
+}
+
+static outcome run(const subject *s, spring_method m, uint64_t substeps)
+{
+    const double much = 10;
+    spring_scene *scene = ready_start(&s->ready.def);
+    outcome o = {0, false};
+    for (uint64_t i = 0; i < s->frames && !o.exploded; i++) {
+        const spring_status status = spring_scene_advance(scene, m, frame_time / (double)substeps, substeps);
+        const spring_scene_energies e = spring_scene_energy(scene);
+        const double error = (total(&e) - s->energy[i]) / s->kinetic;
+        o.exploded = status != SPRING_OK || !(e.kinetic <= much * s->kinetic);
+        if (!(fabs(error) <= fabs(o.error)))
+            o.error = status == SPRING_OK && isfinite(error) ? error : INFINITY;
+    }
+    free(scene);
+    return o;
+}
+
+static const char *verdict_of(outcome o)
+{
+    if (o.exploded)
+        return "exploded";
+    if (fabs(o.error) <= 0.05)
+        return "fine";
+    return o.error < 0 ? "lossy" : "gaining";
+}
+
+/* ------------------------------------------------------------------------------------------------------ the map */
+
+static uint64_t next_number(uint64_t substeps)
+{
+    return quick ? 2 * substeps : substeps + 1 + substeps / 8;
+}
+
+static void map_scene(cli_table *table, ready_kind kind)
+{
+    const uint64_t most_substeps = 64;
+    const ready_settings settings = ready_defaults(kind);
+    subject s = {.frames = quick ? 60 : 240};
+    ready_init(&s.ready, &settings);
+    if (kind == READY_WATER) {
+        push poke = pushes_poke(&s.ready, &settings, push_duration);
+        s.pushes = pushes_new(&s.ready, &poke, 1);
+        s.ready.def.force = pushes_force;
+        s.ready.def.user = s.pushes;
+    }
+    s.energy = calloc(s.frames, sizeof *s.energy);
+    if (s.energy == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    run_reference(&s);
+    spring_scene *scene = ready_start(&s.ready.def);
+    for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
+        if (only_method >= 0 && m != only_method)
+            continue;
+        for (uint64_t n = 1; n <= most_substeps; n = next_number(n)) {
+            const outcome o = run(&s, (spring_method)m, n);
+            cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", ready_names[kind],
+                    methods[m], s.ready.def.particles, s.ready.def.links, n, frame_time / (double)n,
+                    spring_scene_stable_step(scene, (spring_method)m), fabs(o.error), verdict_of(o));
+        }
+    }
+    free(scene);
+    free(s.energy);
+    if (s.pushes != NULL)
+        pushes_free(s.pushes);
+    ready_clear(&s.ready);
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    cli_table *table = cli_open_output();
+    cli_columns(table, "scene method particles links substeps dt_s stable_step_s energy_error verdict");
+    for (int kind = 0; kind < ready_kinds; kind++) {
+        if (only_scene < 0 || kind == only_scene)
+            map_scene(table, (ready_kind)kind);
+        cli_progress((kind + 1.0) / ready_kinds);
+    }
+    cli_finish();
+    return 0;
+}
