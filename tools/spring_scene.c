@@ -43,7 +43,7 @@ static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &method, .choices = methods, .required = true, .value = "M",
      .help = "euler, leapfrog or rk4"},
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
-     .help = "step [s] (default: half the stable step of leapfrog)"},
+     .help = "step [s] (default: half the stable step of leapfrog, at most 1/fps)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move\n"
@@ -105,7 +105,7 @@ static const cli_program program = {
         "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
         "one particle at 10 m/s; drops come at random times to random places.\n\n"
         "No step is refused. One that is not below the stable step is remarked on standard error. When the\n"
-        "state overflows the rows end, the time is told, and the status is 1.",
+        "energy overflows the rows end, the time is told, and the status is 1.",
     .options = options,
 };
 
@@ -272,9 +272,11 @@ static void write_frame(uint64_t frame, const ready_scene *r, double t, const do
 
 /* ------------------------------------------------------------------------------------------------------- the run */
 
-typedef struct view { /* what is shown of a scene */
+typedef struct view { /* a scene, and what is shown of it */
     const ready_scene *ready;
-    const spring_scene *scene;
+    spring_scene *scene;
+    void *saved;  /* a copy, to return to */
+    size_t bytes; /* of both */
     cli_table *rows, *positions;
     double *xyz; /* [particles*3] */
 } view;
@@ -301,39 +303,48 @@ static void write_pictures(const view *v, uint64_t frame)
         write_positions(v->positions, v->ready, t, v->xyz);
 }
 
-/* n steps; returns how many of them the state survived. */
-static uint64_t advance(spring_scene *scene, uint64_t n)
+/* Takes n steps, or none if the state or its energy would overflow. */
+static bool take(view *v, uint64_t n)
 {
-    const uint64_t leap = UINT64_C(1) << 10;
-    uint64_t done = 0;
-    while (done < n) {
-        const uint64_t some = n - done < leap ? n - done : leap;
-        if (spring_scene_advance(scene, (spring_method)method, dt, some) != SPRING_OK)
-            break;
-        done += some;
-        cli_progress(spring_scene_time(scene) / duration);
-    }
-    while (done < n && spring_scene_advance(scene, (spring_method)method, dt, 1) == SPRING_OK)
-        done++;
-    return done;
+    memcpy(v->saved, v->scene, v->bytes);
+    const spring_status status = spring_scene_advance(v->scene, (spring_method)method, dt, n);
+    const spring_scene_energies e = spring_scene_energy(v->scene);
+    const bool holds = status == SPRING_OK && isfinite(e.kinetic + e.elastic + e.gravity);
+    if (!holds)
+        memcpy(v->scene, v->saved, v->bytes);
+    return holds;
 }
 
-/* Returns whether the state survived. */
-static bool run(view *v, spring_scene *scene, uint64_t steps, uint64_t frame_count)
+/* Takes n steps, or as many as the scene survives; returns whether that is all of them. */
+static bool advance(view *v, uint64_t n)
+{
+    const uint64_t leap = 1024;
+    for (; n > leap; n -= leap) {
+        if (!take(v, leap))
+            break;
+        cli_progress(spring_scene_time(v->scene) / duration);
+    }
+    if (n <= leap && take(v, n))
+        return true;
+    while (take(v, 1))
+        ;
+    return false;
+}
+
+/* Returns whether the scene survived. */
+static bool run(view *v, uint64_t steps, uint64_t frame_count)
 {
     uint64_t step = 0;
     for (uint64_t frame = 0; frame <= frame_count; frame++) {
         const bool end = frame == frame_count;
         const uint64_t next = end ? steps : (uint64_t)fmin(rint((double)frame / fps / dt), (double)steps);
-        const uint64_t survived = advance(scene, next - step);
-        const bool moved = next > step;
-        step += survived;
-        if (step < next)
+        if (!advance(v, next - step))
             return false;
-        if (frame == 0 || moved)
+        if (frame == 0 || next > step)
             write_row(v);
         if (!end)
             write_pictures(v, frame);
+        step = next;
     }
     return true;
 }
@@ -346,6 +357,25 @@ static void remark_on_step(const spring_scene *scene)
     else if (!(dt < stable))
         cli_warn("--dt: \"%g\" is not below the stable step of %s in this scene, %g s", dt, methods[method],
                  stable);
+}
+
+static view open_view(const ready_scene *ready, spring_scene *scene)
+{
+    view v = {.ready = ready, .scene = scene, .rows = cli_open_output()};
+    v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
+    spring_scene_bytes(&ready->def, &v.bytes);
+    v.saved = aligned_alloc(SPRING_SCENE_ALIGN, v.bytes);
+    v.xyz = malloc(3 * ready->def.particles * sizeof *v.xyz);
+    if (v.saved == NULL || v.xyz == NULL)
+        cli_fail(CLI_FAILED, "no memory for %zu particles", ready->def.particles);
+    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", ready_names[kind], ready->def.particles,
+                ready->def.links);
+    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", methods[method], dt,
+                spring_scene_stable_step(scene, (spring_method)method));
+    cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
+    if (v.positions != NULL)
+        cli_columns(v.positions, frame_columns);
+    return v;
 }
 
 int main(int argc, char **argv)
@@ -362,7 +392,7 @@ int main(int argc, char **argv)
     }
     spring_scene *scene = ready_start(&ready.def);
     if (dt == 0)
-        dt = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+        dt = fmin(0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG), 1 / fps);
     if (!(duration / dt <= most_steps))
         cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps of %g s", duration, dt);
     if (!(duration * fps < most_steps))
@@ -373,23 +403,13 @@ int main(int argc, char **argv)
                    frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
     if (frames != NULL)
         prepare_frames(frame_count);
-    view v = {.ready = &ready, .scene = scene, .rows = cli_open_output()};
-    v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
-    v.xyz = malloc(3 * ready.def.particles * sizeof *v.xyz);
-    if (v.xyz == NULL)
-        cli_fail(CLI_FAILED, "no memory for %zu positions", ready.def.particles);
-    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", ready_names[kind], ready.def.particles,
-                ready.def.links);
-    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", methods[method], dt,
-                spring_scene_stable_step(scene, (spring_method)method));
-    cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
-    if (v.positions != NULL)
-        cli_columns(v.positions, frame_columns);
-    const bool survived = run(&v, scene, steps, frame_count);
+    view v = open_view(&ready, scene);
+    const bool survived = run(&v, steps, frame_count);
     cli_finish();
     if (!survived)
-        cli_warn("the state overflows at t = %.17g s", spring_scene_time(scene) + dt);
+        cli_warn("the scene blows up: its energy overflows at t = %.17g s", spring_scene_time(scene) + dt);
     free(v.xyz);
+    free(v.saved);
     free(scene);
     if (p != NULL)
         pushes_free(p);
