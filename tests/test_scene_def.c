@@ -319,8 +319,13 @@ static void check_grid(const spring_grid *g)
     static uint8_t pinned[most];
     static spring_link link[most_links];
     size_t particles = 0, links = 0;
-    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links,
+    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles < most && links < most_links,
           "fits");
+    for (size_t i = 0; i < 3 * most; i++)
+        position[i] = -77;
+    memset(pinned, 77, sizeof pinned);
+    memset(link, 77, sizeof link);
+    const spring_link untouched = link[0];
     CHECK(spring_grid_fill(g, position, pinned, link) == SPRING_OK, "as many");
     int count[3];
     for (int a = 0; a < 3; a++)
@@ -330,6 +335,9 @@ static void check_grid(const spring_grid *g)
                           : g->axes == 0 ? 3
                                          : g->axes,
                    families = g->families == 0 ? 1 : g->families;
+    CHECK(position[particles * axes] == -77 && pinned[particles] == 77 &&
+              memcmp(&link[links], &untouched, sizeof untouched) == 0,
+          "and no more");
     int at[most][3];
     for (int i = 0; i < (int)particles; i++) {
         bool face = false;
@@ -413,6 +421,38 @@ static void bad_grids(void)
           "pins and links are optional");
 }
 
+/* As many particles as indices can tell apart, as long as doubles reach; one more, or a little longer, is refused. */
+static void grids_at_the_limits(void)
+{
+    size_t particles = 0, links = 0;
+    spring_grid g = {.count = {65535, 65537}, .spacing = 0.5, .stiffness = 0.3};
+    if (sizeof(size_t) > sizeof(uint32_t)) /* more links than 32 bits can count */
+        CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles == UINT32_MAX &&
+                  links == UINT64_C(65534) * 65537 + UINT64_C(65535) * 65536,
+              "2^32 - 1 particles, in rows and columns");
+    const uint32_t too_many[][3] = {
+        {1u << 16, 1u << 15, 2}, {1u << 16, 1u << 15, 4}, {1u << 31, 1u << 31, 4}};
+    for (size_t i = 0; i < sizeof too_many / sizeof too_many[0]; i++) {
+        memcpy(g.count, too_many[i], sizeof g.count);
+        CHECK(spring_grid_size(&g, &particles, &links) == SPRING_ERANGE, "2^32, 2^33 and 2^64 particles");
+    }
+    for (int a = 0; a < 3; a++) {
+        g = (spring_grid){.spacing = DBL_MAX / 4.5, .stiffness = 0};
+        g.count[a] = 4;
+        CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles == 4 && links == 3,
+              "places and links are finite, and springs need not pull");
+        g.count[a] = 8;
+        g.spacing = DBL_MAX / 9;
+        CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK, "so are these");
+        g.spacing = DBL_MAX / 6;
+        CHECK(spring_grid_size(&g, &particles, &links) == SPRING_EINVAL, "7/6 DBL_MAX is infinite");
+    }
+    g = (spring_grid){.count = {4}, .spacing = 1e300, .stretch = 1e-10};
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_EINVAL, "rest lengths would be infinite");
+    g.stretch = 1e-7;
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK, "1e307 is finite");
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -420,6 +460,7 @@ int main(void)
         {"memory too small or misaligned", bad_memory}, {"bytes of a particle", bytes_of_a_particle},
         {"bytes of a link", bytes_of_a_link},           {"bytes of a scene", bytes_of_a_scene},
         {"ropes, sheets and blocks", every_grid},       {"bad grids", bad_grids},
+        {"grids at the limits", grids_at_the_limits},
     };
     return RUN_TESTS("scene_def", tests);
 }

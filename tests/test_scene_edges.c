@@ -164,6 +164,50 @@ static void drag_without_bias(void)
     free(s);
 }
 
+/* Drag of 1 kg/s is drag like any other. */
+static void drag_of_one(void)
+{
+    const double position[] = {0, 0, 0}, velocity[] = {0.83, -0.59, 0.2}, h = 0.25, q = h / 2 / 1.3;
+    const scene_def def = {
+        .particles = 1, .position = position, .velocity = velocity, .mass_all = 1.3, .drag = 1};
+    scene *s = scene_of(&def);
+    double v[3];
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, h, 1) == SPRING_OK, "a step");
+    SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 1);
+    for (int a = 0; a < 3; a++)
+        CHECK_CLOSE(v[a], velocity[a] * (1 - q) / (1 + q), 8 * EPS * fabs(velocity[a]),
+                    "the rounded start, q twice, and six roundings");
+    free(s);
+}
+
+/* A single link with a damper among others without: leapfrog predicts the velocity for it, and Euler feels it. */
+static void one_damper(void)
+{
+    const double x0[] = {0.2, 1.3}, v0[] = {0, -0.7}, k = 2.7, c = 0.4, m = 1.3, rest = 0.6, h = 0.125;
+    const uint8_t pinned[] = {1, 0};
+    for (int method = SPRING_EULER; method <= SPRING_LEAPFROG; method++) {
+        const spring_link link[] = {{0, 1, rest, k / 2, 0}, {0, 1, rest, k / 2, c}};
+        const scene_def def = {.axes = 1,
+                               .particles = 2,
+                               .links = 2,
+                               .position = x0,
+                               .velocity = v0,
+                               .mass_all = m,
+                               .pinned = pinned,
+                               .link = link};
+        scene *s = scene_of(&def);
+        double v[2], want = v0[1] - h * (k * (x0[1] - x0[0] - rest) + c * v0[1]) / m;
+        if (method == SPRING_LEAPFROG) {
+            const double half = (v0[1] + want) / 2, pull = k * (x0[1] + h * half - x0[0] - rest);
+            want = half - h / 2 * (pull + c * (half - h / 2 * (pull + c * half) / m)) / m;
+        }
+        CHECK(SCENE(advance)(s, (spring_method)method, h, 1) == SPRING_OK, "a step");
+        SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 2);
+        CHECK_CLOSE(v[1], want, 12 * EPS, "a kick, or three, of four roundings of numbers below 2");
+        free(s);
+    }
+}
+
 /* Without links drag alone limits Euler's step. */
 static void limit_of_drag_alone(void)
 {
@@ -218,6 +262,8 @@ int main(void)
         {"a rest length of -0", negative_zero_rest},
         {"questions keep no force of a callback", questions_keep_no_callback},
         {"drag without bias", drag_without_bias},
+        {"drag of 1", drag_of_one},
+        {"one damper", one_damper},
     };
     return RUN_TESTS("scene-edges", tests);
 }

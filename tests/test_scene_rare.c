@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: dampers without springs, what comes between two steps that share a force, bad numbers at the
+/* What is rare in scenes: springs or dampers alone, what comes between two steps that share a force, bad numbers at the
    end, a scene that is lost. */
 #include "test_scene.h"
 
@@ -10,35 +10,39 @@ static void count_calls(void *user, double t, size_t particles, const scalar *co
     ++*(int *)user;
 }
 
-/* One Euler step of a row of dampers alone, each with its own number, against a plain loop. */
-static void dampers_alone(void)
+/* One Euler step of springs alone, or dampers alone, each with its own small number, in a row or a list, against a plain
+   loop. */
+static void weak_links(void)
 {
     static model m;
-    static state y;
+    static state y, end;
     const double dt = 0.013;
-    for (uint32_t axes = 1; axes <= 3; axes++) {
-        build(&m, (uint32_t[]){21, 1, 1}, axes, OWN | DAMPED);
-        for (size_t i = 0; i < m.def.links; i++) {
-            m.link[i].stiffness = 0;
-            m.link[i].damping = 0.3 + 0.01 * (double)i;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned how = 0; how < 4; how++) {
+            const bool dampers = how % 2 != 0;
+            build(&m, (uint32_t[]){21, 1, 1}, axes, OWN | (how / 2 != 0 ? SHUFFLED : 0));
+            for (size_t i = 0; i < m.def.links; i++) {
+                const double number = 0.3 + 0.01 * (double)i;
+                m.link[i].stiffness = dampers ? 0 : number;
+                m.link[i].damping = dampers ? number : 0;
+            }
+            scene *s = scene_of(&m.def);
+            CHECK((s->plan.rows == 0) == (how / 2 != 0), "without order there are no rows");
+            get_state(s, m.def.particles, &y);
+            double force[3 * most] = {0}, size[most] = {0};
+            plain_forces(&m.def, axes, y.x, y.v, force, size);
+            CHECK(SCENE(advance)(s, SPRING_EULER, dt, 1) == SPRING_OK, "a step");
+            get_state(s, m.def.particles, &end);
+            for (size_t i = 0; i < m.def.particles * axes; i++) {
+                const double pull = dt * size[i / axes] / m.def.mass_all;
+                CHECK_CLOSE(
+                    end.v[i], y.v[i] + dt * force[i] / m.def.mass_all, EPS * (2 * fabs(y.v[i]) + 24 * pull),
+                    "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
+                CHECK_CLOSE(end.x[i], y.x[i] + dt * y.v[i], EPS * (fabs(y.x[i]) + 2 * dt * fabs(y.v[i])),
+                            "a product and a sum");
+            }
+            free(s);
         }
-        scene *s = scene_of(&m.def);
-        get_state(s, m.def.particles, &y);
-        double force[3 * most] = {0}, size[most] = {0};
-        plain_forces(&m.def, axes, y.x, y.v, force, size);
-        CHECK(SCENE(advance)(s, SPRING_EULER, dt, 1) == SPRING_OK, "a step");
-        static state end;
-        get_state(s, m.def.particles, &end);
-        for (size_t i = 0; i < m.def.particles * axes; i++) {
-            const double pull = dt * size[i / axes] / m.def.mass_all;
-            CHECK_CLOSE(end.v[i], y.v[i] + dt * force[i] / m.def.mass_all,
-                        EPS * (2 * fabs(y.v[i]) + 24 * pull),
-                        "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
-            CHECK_CLOSE(end.x[i], y.x[i] + dt * y.v[i], EPS * (fabs(y.x[i]) + 2 * dt * fabs(y.v[i])),
-                        "a product and a sum");
-        }
-        free(s);
-    }
 }
 
 /* The stable step is found in the memory of the forces: those of the last step must not be taken from there then. */
@@ -64,30 +68,41 @@ static void question_after_edit(void)
     }
 }
 
-/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart. */
-static void gap(void)
+enum { OWN_NUMBERS = 1, WITH_DAMPERS = 2, CUT = 4, LISTED = 8 };
+
+/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart; or what joined them, in a row
+   or a list, has been cut. */
+static void check_gap(uint32_t axes, unsigned how)
 {
     enum { particles = 13 };
     const double far = sizeof(scalar) == 4 ? 3e38 : 1.5e308;
-    for (uint32_t axes = 1; axes <= 3; axes++) {
-        double position[3 * particles] = {0};
-        spring_link link[particles];
-        size_t links = 0;
-        for (uint32_t i = 0; i < particles; i++) {
-            position[axes * i] = i == 5 ? far : i == 6 ? -far : 0.7 * i;
-            if (i != 4 && i != 5 && i != 6 && i + 1 < particles)
-                link[links++] = (spring_link){i, i + 1, 0.6, 2.7, 0};
-        }
-        const scene_def def = {
-            .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
-        scene *s = scene_of(&def);
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK,
-              "their distance is nobody's business");
-        double x[3];
-        SCENE(get)(s, SPRING_POSITION, x, 0, 5, 1);
-        CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
-        free(s);
+    double position[3 * particles] = {0};
+    spring_link link[particles];
+    size_t links = 0;
+    for (uint32_t k = 0; k < particles; k++) {
+        const uint32_t i = how & LISTED ? particles - 1 - k : k; /* in descending order they make no row */
+        const bool apart = i == 4 || i == 5 || i == 6;
+        position[axes * i] = i == 5 ? far : i == 6 ? -far : 0.7 * i;
+        if ((!apart || how & CUT) && i + 1 < particles)
+            link[links++] = (spring_link){i, i + 1, 0.6, apart ? 0 : 2.7 + (how & OWN_NUMBERS ? 0.1 * i : 0),
+                                          apart || !(how & WITH_DAMPERS) ? 0 : 0.3};
     }
+    const scene_def def = {
+        .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
+    scene *s = scene_of(&def);
+    CHECK((s->plan.list_links == 0) == !(how & LISTED), "where the links lie");
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
+    double x[3];
+    SCENE(get)(s, SPRING_POSITION, x, 0, 5, 1);
+    CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
+    free(s);
+}
+
+static void gap(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned how = 0; how < 16; how++)
+            check_gap(axes, how);
 }
 
 static void push(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
@@ -170,7 +185,7 @@ static void callback_is_left_alone(void)
 int main(void)
 {
     static const test tests[] = {
-        {"dampers alone", dampers_alone},
+        {"weak springs, weak dampers", weak_links},
         {"a question after an edit", question_after_edit},
         {"a gap", gap},
         {"a callback between steps", callback_between_steps},
