@@ -10,13 +10,15 @@
 
 const char *const ready_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
 
+enum { all_families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND };
+
 static const ready_settings defaults[] = {
-    /* size, axes, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity, stretch */
-    [READY_ROPE] = {READY_ROPE, 20, 2, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
-    [READY_CLOTH] = {READY_CLOTH, 25, 3, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
-    [READY_JELLY] = {READY_JELLY, 8, 3, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
-    [READY_CHAIN] = {READY_CHAIN, 50, 1, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
-    [READY_WATER] = {READY_WATER, 25, 1, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
+    /* size, axes, families, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity, stretch */
+    [READY_ROPE] = {READY_ROPE, 20, 2, SPRING_GRID_STRUCTURAL, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
+    [READY_CLOTH] = {READY_CLOTH, 25, 3, all_families, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
+    [READY_JELLY] = {READY_JELLY, 8, 3, all_families, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
+    [READY_CHAIN] = {READY_CHAIN, 50, 1, SPRING_GRID_STRUCTURAL, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
+    [READY_WATER] = {READY_WATER, 25, 1, all_families, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
 };
 
 ready_settings ready_defaults(ready_kind kind)
@@ -34,7 +36,7 @@ static void *room(size_t count, size_t size)
 
 static spring_grid grid_of(const ready_settings *s)
 {
-    const uint32_t all = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, n = (uint32_t)s->size;
+    const uint32_t n = (uint32_t)s->size;
     const uint32_t all_edges =
         SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y;
     spring_grid g = {.axes = (uint32_t)s->axes,
@@ -42,11 +44,10 @@ static spring_grid grid_of(const ready_settings *s)
                      .damping = s->damping,
                      .stretch = s->stretch,
                      .spacing = s->length / (n - 1),
-                     .families = all};
+                     .families = s->families};
     switch (s->kind) {
     case READY_ROPE:
         g.count[0] = n;
-        g.families = SPRING_GRID_STRUCTURAL;
         g.pinned = SPRING_GRID_FIRST_X;
         break;
     case READY_CLOTH: /* two of its corners are pinned later on */
@@ -59,7 +60,6 @@ static spring_grid grid_of(const ready_settings *s)
     case READY_CHAIN:
         g.count[0] = n + 2;
         g.spacing = s->length / (n + 1);
-        g.families = SPRING_GRID_STRUCTURAL;
         g.pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X;
         break;
     default:

@@ -31,15 +31,16 @@ extern const char *const ready_names[];
 /* NaN, or 0 for a count, where a scene has no such thing. */
 typedef struct ready_settings {
     ready_kind kind;
-    uint64_t size;    /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
-    uint64_t axes;    /* water: 1 or 3 */
-    double length;    /* [m] > 0 of an edge */
-    double mass;      /* [kg] > 0 of a particle */
-    double end_mass;  /* [kg] > 0 rope: of the last particle */
-    double stiffness; /* [N/m] of a link */
-    double damping;   /* [N s/m] of a link */
-    double drag;      /* [N s/m] of a particle */
-    double gravity;   /* [m/s^2] downwards */
+    uint64_t size;     /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
+    uint64_t axes;     /* water: 1 or 3 */
+    uint32_t families; /* of links, SPRING_GRID_...; rope and chain have structural ones alone */
+    double length;     /* [m] > 0 of an edge */
+    double mass;       /* [kg] > 0 of a particle */
+    double end_mass;   /* [kg] > 0 rope: of the last particle */
+    double stiffness;  /* [N/m] of a link */
+    double damping;    /* [N s/m] of a link */
+    double drag;       /* [N s/m] of a particle */
+    double gravity;    /* [m/s^2] downwards */
     double
         stretch; /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
                          as stiff across as they are along; else > 1: their stiffness across is 1 - 1/stretch of that */

@@ -22,7 +22,9 @@
 
 static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
 
-static int kind, method;
+static const char *const links[] = {"all", "structural", NULL};
+
+static int kind, method, link_choice;
 static uint64_t size, axes, seed = 1;
 static double dt, duration = 5, fps = 60, push_duration = 0.02, rain;
 static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
@@ -50,6 +52,9 @@ static const cli_option options[] = {
              "(default: rope 20, cloth 25, jelly 8, chain 50, water 25)"},
     {"axes", CLI_COUNT, .count = &axes, .least = 1, .most = 3, .value = "A",
      .help = "water only: 1, the default, moves up and down; 3 in all directions"},
+    {"links", CLI_CHOICE, .choice = &link_choice, .choices = links, .value = "L",
+     .help = "all, the default: to the next particle, across, and to the one after\n"
+             "the next; or structural: to the next alone, as rope and chain always"},
     {"length", CLI_POSITIVE, .real = &given[LENGTH], .value = "L",
      .help = "of an edge [m] (default: rope 2, cloth 2, jelly 0.7, chain 5, water 4)"},
     {"mass", CLI_POSITIVE, .real = &given[MASS], .value = "M",
@@ -124,6 +129,8 @@ static ready_settings chosen_settings(void)
         s.axes = 3;
         s.stretch = 1.25;
     }
+    if (link_choice == 1)
+        s.families = SPRING_GRID_STRUCTURAL;
     if (!isnan(given[MASS]) && !isnan(s.end_mass))
         s.end_mass = given[MASS];
     for (int i = 0; i < parameters; i++) {

@@ -9,17 +9,19 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli.h"
 #include "pushes.h"
 #include "ready_scene.h"
+#include "timing.h"
 
 static const double frame_time = 1.0 / 60; /* [s] */
 static const double push_duration = 0.02;  /* [s] */
 
 static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
 static int only_scene = -1, only_method = -1;
-static bool quick;
+static bool quick, timed;
 
 static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &only_scene, .choices = ready_names, .value = "S",
@@ -27,6 +29,9 @@ static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &only_method, .choices = methods, .value = "M",
      .help = "only this method"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
+    {"time", CLI_FLAG, .flag = &timed,
+     .help = "instead of the map: the fewest steps a frame from which on all are fine,\n"
+             "and how many particles are moved by them in a millisecond"},
     {.name = NULL},
 };
 
@@ -40,7 +45,10 @@ static const cli_program program = {
         "of a run in very short steps, in parts of the largest kinetic energy there) and verdict: fine, up\n"
         "to 0.05; exploded, where the kinetic energy is more than tenfold the largest, or the state\n"
         "overflows; else lossy or gaining, by the sign of the difference. The scenes are those that\n"
-        "spring-scene makes by default, for four seconds.",
+        "spring-scene makes by default, for four seconds.\n\n"
+        "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms (the time\n"
+        "that a frame of the scene takes, grown until that is about a millisecond: the shortest of five)\n"
+        "and particles_per_ms. A method of which 64 steps a frame are not fine has no row.",
     .options = options,
 };
 
@@ -114,48 +122,136 @@ static uint64_t next_number(uint64_t substeps)
     return quick ? 2 * substeps : substeps + 1 + substeps / 8;
 }
 
-static void map_scene(cli_table *table, ready_kind kind)
+static void begin(subject *s, const ready_settings *settings)
+{
+    *s = (subject){.frames = quick ? 60 : 240};
+    ready_init(&s->ready, settings);
+    if (settings->kind == READY_WATER) {
+        push poke = pushes_poke(&s->ready, settings, push_duration);
+        s->pushes = pushes_new(&s->ready, &poke, 1);
+        s->ready.def.force = pushes_force;
+        s->ready.def.user = s->pushes;
+    }
+    s->energy = calloc(s->frames, sizeof *s->energy);
+    if (s->energy == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+}
+
+static void end(subject *s)
+{
+    free(s->energy);
+    if (s->pushes != NULL)
+        pushes_free(s->pushes);
+    ready_clear(&s->ready);
+}
+
+static double stable_step(const subject *s, spring_method m)
+{
+    spring_scene *scene = ready_start(&s->ready.def);
+    const double step = spring_scene_stable_step(scene, m);
+    free(scene);
+    return step;
+}
+
+/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine, or 0. */
+static uint64_t map_method(cli_table *table, const subject *s, ready_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
-    const ready_settings settings = ready_defaults(kind);
-    subject s = {.frames = quick ? 60 : 240};
-    ready_init(&s.ready, &settings);
-    if (kind == READY_WATER) {
-        push poke = pushes_poke(&s.ready, &settings, push_duration);
-        s.pushes = pushes_new(&s.ready, &poke, 1);
-        s.ready.def.force = pushes_force;
-        s.ready.def.user = s.pushes;
+    const double stable = stable_step(s, m);
+    uint64_t fewest = 0;
+    for (uint64_t n = 1; n <= most_substeps; n = next_number(n)) {
+        const outcome o = run(s, m, n);
+        const char *verdict = verdict_of(o);
+        if (strcmp(verdict, "fine") != 0)
+            fewest = 0;
+        else if (fewest == 0)
+            fewest = n;
+        if (table != NULL)
+            cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", ready_names[kind],
+                    methods[m], s->ready.def.particles, s->ready.def.links, n, frame_time / (double)n, stable,
+                    fabs(o.error), verdict);
     }
-    s.energy = calloc(s.frames, sizeof *s.energy);
-    if (s.energy == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
+    return fewest;
+}
+
+/* ------------------------------------------------------------------------------------------------------ its time */
+
+/* Milliseconds that the first frames of a scene take, each. */
+static double time_frames(const subject *s, spring_method m, uint64_t substeps)
+{
+    const double long_enough = 5, nanosecond = 1e-6; /* [ms] */
+    double best = INFINITY;
+    uint64_t frames = 1;
+    for (int loops = 0; loops < 5; loops++) {
+        spring_scene *scene = ready_start(&s->ready.def);
+        const double start = timing_busy();
+        for (uint64_t i = 0; i < frames; i++)
+            if (spring_scene_advance(scene, m, frame_time / (double)substeps, substeps) != SPRING_OK)
+                cli_fail(CLI_FAILED, "a scene overflows while it is timed");
+        const double spent = nanosecond * (timing_busy() - start);
+        free(scene);
+        best = fmin(best, spent / (double)frames);
+        if (spent < long_enough) {
+            frames *= 2;
+            loops = -1;
+            best = INFINITY;
+        }
+    }
+    return best;
+}
+
+/* Lets a scene grow, by particles at the same distances, until a frame takes about a millisecond. */
+static void time_method(cli_table *table, ready_kind kind, spring_method m, uint64_t substeps)
+{
+    static const double directions[] = {
+        [READY_ROPE] = 1, [READY_CLOTH] = 2, [READY_JELLY] = 3, [READY_CHAIN] = 1, [READY_WATER] = 2};
+    const double most_size = 1e6;
+    ready_settings settings = ready_defaults(kind);
+    const double spacing = settings.length / (double)settings.size;
+    double frame = 1;
+    for (int i = 0; i < 3; i++) {
+        const double size = (double)settings.size * pow(frame, -1 / directions[kind]);
+        settings.size = (uint64_t)fmin(fmax(size, 3), most_size);
+        settings.length = spacing * (double)settings.size;
+        subject s;
+        begin(&s, &settings);
+        frame = time_frames(&s, m, substeps);
+        if (i == 2)
+            cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", ready_names[kind],
+                    methods[m], substeps, frame_time / (double)substeps, stable_step(&s, m),
+                    s.ready.def.particles, s.ready.def.links, frame, (double)s.ready.def.particles / frame);
+        end(&s);
+    }
+}
+
+static void work_on(cli_table *table, ready_kind kind)
+{
+    const ready_settings settings = ready_defaults(kind);
+    subject s;
+    begin(&s, &settings);
     run_reference(&s);
-    spring_scene *scene = ready_start(&s.ready.def);
     for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
         if (only_method >= 0 && m != only_method)
             continue;
-        for (uint64_t n = 1; n <= most_substeps; n = next_number(n)) {
-            const outcome o = run(&s, (spring_method)m, n);
-            cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", ready_names[kind],
-                    methods[m], s.ready.def.particles, s.ready.def.links, n, frame_time / (double)n,
-                    spring_scene_stable_step(scene, (spring_method)m), fabs(o.error), verdict_of(o));
-        }
+        const uint64_t fewest = map_method(timed ? NULL : table, &s, kind, (spring_method)m);
+        if (timed && fewest > 0)
+            time_method(table, kind, (spring_method)m, fewest);
     }
-    free(scene);
-    free(s.energy);
-    if (s.pushes != NULL)
-        pushes_free(s.pushes);
-    ready_clear(&s.ready);
+    end(&s);
 }
 
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
-    cli_columns(table, "scene method particles links substeps dt_s stable_step_s energy_error verdict");
+    if (timed)
+        timing_stamp(table);
+    cli_columns(table,
+                timed ? "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms"
+                      : "scene method particles links substeps dt_s stable_step_s energy_error verdict");
     for (int kind = 0; kind < ready_kinds; kind++) {
         if (only_scene < 0 || kind == only_scene)
-            map_scene(table, (ready_kind)kind);
+            work_on(table, (ready_kind)kind);
         cli_progress((kind + 1.0) / ready_kinds);
     }
     cli_finish();

@@ -2,7 +2,7 @@
 """The command-line tools as their users see them: numbers, columns, messages, exit statuses, files. Prints TAP.
 
 Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy PATH/spring-validate PATH/spring-stability
-                   PATH/spring-rounding PATH/spring-bench
+                   PATH/spring-rounding PATH/spring-scene PATH/spring-scene-map PATH/spring-bench
 """
 import math
 import os
@@ -12,14 +12,15 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 
-PATHS = {os.path.basename(path): os.path.abspath(path) for path in sys.argv[1:]}
+from tap import PATHS, check, column, equal, in_shell, parse, run, run_tests, table
+
 BENCH = 'spring-bench'  # measures time: no two runs give the same bytes
 TOOLS = {name: path for name, path in PATHS.items() if name != BENCH}
 ORDER, RUN, ENERGY = BY_METHOD = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
 VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
+SCENE, MAP = 'spring-scene', 'spring-scene-map'
 SEED_RUN = ['--duration', '1000', '--steps', '1e7']
 SHORT = {  # for every tool a run that takes no time
     ORDER: ['--method', 'euler', '--n-max', '50'],
@@ -28,6 +29,8 @@ SHORT = {  # for every tool a run that takes no time
     VALIDATE: ['--case', 'fast-root'],
     STABILITY: ['--map', '--points', '2'],
     ROUNDING: ['--method', 'rk4', '--sum', 'plain', '--steps', '1e4'],
+    SCENE: ['--scene', 'rope', '--method', 'leapfrog', '--duration', '0.1'],
+    MAP: ['--scene', 'chain', '--method', 'rk4', '--quick'],
 }
 COLUMNS = {  # the fixed ones, in their order; others may follow
     ORDER: 'method n dt_s error_m',
@@ -36,51 +39,9 @@ COLUMNS = {  # the fixed ones, in their order; others may follow
     VALIDATE: 'case method witness dt_s steps error bound verdict',
     STABILITY: 'method omega_dt damping_ratio error',  # of --map
     ROUNDING: 'method sum start steps dt_s state_error energy_error',
+    SCENE: 't_s energy_J kinetic_J elastic_J gravity_J max_displacement_m',
+    MAP: 'scene method particles links substeps dt_s stable_step_s energy_error verdict',
 }
-
-count = failures = 0
-
-
-def check(passed, name, detail=''):
-    global count, failures
-    count += 1
-    failures += not passed
-    print(f'{"ok" if passed else "not ok"} {count} - {name}')
-    if not passed and detail:
-        print('\n'.join('# ' + line for line in str(detail).splitlines()), flush=True)
-
-
-def equal(got, want, name):
-    check(got == want, name, f'got  {got!r}\nwant {want!r}')
-
-
-def run(tool, *args, **how):
-    how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
-    return subprocess.run([PATHS[tool], *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
-
-
-def in_shell(script, tool, *args):
-    """Run a script in which "$@" is the tool with its arguments."""
-    return subprocess.run(['sh', '-c', script, 'sh', TOOLS[tool], *args], capture_output=True, text=True, timeout=60,
-                          check=False)
-
-
-def parse(text):
-    """The rows of a table as dictionaries of strings."""
-    lines = [line for line in text.splitlines() if not line.startswith('#')]
-    names = lines[0].split('\t')
-    return [dict(zip(names, line.split('\t'), strict=True)) for line in lines[1:]]
-
-
-def table(tool, *args):
-    result = run(tool, *args)
-    if result.returncode != 0 or result.stderr != '':
-        check(False, f'{tool} {" ".join(args)} runs silently', f'status {result.returncode}\n{result.stderr}')
-    return parse(result.stdout)
-
-
-def column(rows, name):
-    return [float(row[name]) for row in rows]
 
 
 def describe(tool, args):
@@ -147,6 +108,40 @@ def test_bad_usage():
         (ROUNDING, ['--method', 'rk4'], ['--sum', 'missing', 'one of plain, compensated']),
         (ROUNDING, ['--sum', 'plain', '--method', 'euler'], ['--method', '"euler"', 'one of leapfrog, rk4']),
         (ROUNDING, [*SHORT[ROUNDING], '--steps', '9999'], ['--steps', '"9999"', 'from 10000']),
+        *[(SCENE, [*SHORT[SCENE], '--scene', name], ['--scene', f'"{name}"', 'one of rope, cloth, jelly, chain, water'])
+          for name in ('', 'ropes', 'Rope')],
+        (SCENE, ['--scene', 'rope'], ['--method', 'missing', 'euler, leapfrog, rk4']),
+        (SCENE, ['--method', 'rk4'], ['--scene', 'missing', 'rope']),
+        (SCENE, [*SHORT[SCENE], '--method', 'exact'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
+        *[(SCENE, [*SHORT[SCENE], '--size', n], ['--size', f'"{n}"', 'from 2 to 4000']) for n in ('1', '4001', '2.5')],
+        *[(SCENE, [*SHORT[SCENE], option, x], [option, f'"{x}"', positive])
+          for option in ('--dt', '--duration', '--length', '--mass', '--fps', '--stretch', '--push-duration') for x in ('0', '-1', 'nan')],
+        *[(SCENE, [*SHORT[SCENE], option, x], [option, f'"{x}"', 'a finite number of at least 0'])
+          for option in ('--stiffness', '--damping', '--drag', '--rain') for x in ('-1', 'inf')],
+        *[(SCENE, [*SHORT[SCENE], '--poke', x], ['--poke', f'"{x}"', '5 finite numbers', 'T,X,Y,FORCE,AREA'])
+          for x in ('', '0,1,0,1', '0,1,0,1,1,1', '0,1,0,1,', ',0,1,0,1', '0 1 0 1 1', '0,1,0,1,nan', '0,,0,1,1')],
+        (SCENE, [*SHORT[SCENE], '--poke', '-1,1,0,1,1'], ['--poke', '"-1"', 'at least 0 s']),
+        (SCENE, [*SHORT[SCENE], '--poke', '0,1,0,1,0'], ['--poke', '"0"', 'greater than 0']),
+        *[(SCENE, [*SHORT[SCENE], '--poke', f'0,{at},1,1'], ['--poke', f'"{at}"', 'X should be from 0 to 2', 'Y from 0 to 0'])
+          for at in ('2.1,0', '-0.1,0', '1,0.5')],
+        (SCENE, [*SHORT[SCENE], '--drop-box', '1'], ['--drop-box', '"1"', '2 finite numbers', 'T,MASS']),
+        (SCENE, [*SHORT[SCENE], '--drop-box', '-1,1'], ['--drop-box', '"-1"', 'at least 0 s']),
+        (SCENE, [*SHORT[SCENE], '--drop-box', '0,0'], ['--drop-box', '"0"', 'greater than 0 kg']),
+        (SCENE, [*SHORT[SCENE], '--rain', '1e7'], ['--rain', '"1e+07"', 'at most 1e+06']),
+        (SCENE, [*SHORT[SCENE], '--axes', '3'], ['--axes', '"3"', '2 of the rope', "water's 1 or 3"]),
+        (SCENE, [*SHORT[SCENE], '--scene', 'water', '--axes', '2'], ['--axes', '"2"', '1 or 3']),
+        (SCENE, [*SHORT[SCENE], '--scene', 'water', '--stretch', '1'], ['--stretch', '"1"', 'greater than 1']),
+        *[(SCENE, [*SHORT[SCENE], '--scene', name, '--gravity', '1'], ['--gravity', '"1"', name]) for name in ('chain', 'water')],
+        *[(SCENE, [*SHORT[SCENE], '--scene', name, '--end-mass', '1'], ['--end-mass', '"1"', name])
+          for name in ('cloth', 'jelly', 'chain', 'water')],
+        (SCENE, [*SHORT[SCENE], '--scene', 'jelly', '--size', '4000'], ['--size', '"4000"', 'more particles or links']),
+        (SCENE, [*SHORT[SCENE], '--mass', '1e-320', '--dt', '1'], ['mass', 'not valid']),
+        (SCENE, [*SHORT[SCENE], '--duration', '1e300'], ['--duration', '"1e+300"', '2^53 steps']),
+        (SCENE, [*SHORT[SCENE], '--fps', '1e300'], ['--fps', '"1e+300"', '2^53 frames']),
+        (SCENE, [*SHORT[SCENE], '--fps', '1e8', '--frames', 'nowhere'], ['--fps', '"1e+08"', '1000000 frames']),
+        (SCENE, [*SHORT[SCENE], '--frames', ''], ['--frames', '""', 'the name of a folder']),
+        (MAP, ['--method', 'exact'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
+        (MAP, ['--scene', 'sea'], ['--scene', '"sea"', 'one of rope']),
     ]
     for tool, args, needles in cases:
         result = run(tool, *args)
@@ -711,15 +706,4 @@ def test_bench():
     check(result.returncode == 2 and '"scenery"' in result.stderr and 'batch' in result.stderr, 'bench: another part', result)
 
 
-def main():
-    for name, test in list(globals().items()):
-        if name.startswith('test_') and test.__code__.co_argcount == 0:
-            test()
-        elif name.startswith('test_'):
-            with tempfile.TemporaryDirectory() as folder:
-                test(folder)
-    print(f'1..{count}')
-    return 1 if failures else 0
-
-
-sys.exit(main())
+sys.exit(run_tests(globals()))
