@@ -2,7 +2,7 @@
 """The command-line tools as their users see them: numbers, columns, messages, exit statuses, files. Prints TAP.
 
 Usage: test_cli.py PATH/spring-order PATH/spring-run PATH/spring-energy PATH/spring-validate PATH/spring-stability
-                   PATH/spring-rounding PATH/spring-scene PATH/spring-scene-map PATH/spring-bench
+                   PATH/spring-rounding PATH/spring-scene PATH/spring-scene-map PATH/spring-bench PATH/spring-work
 """
 import math
 import os
@@ -16,8 +16,8 @@ import time
 
 from tap import PATHS, check, column, equal, in_shell, parse, run, run_tests, table
 
-BENCH = 'spring-bench'  # measures time: no two runs give the same bytes
-TOOLS = {name: path for name, path in PATHS.items() if name != BENCH}
+BENCH, WORK = TIMING = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
+TOOLS = {name: path for name, path in PATHS.items() if name not in TIMING}
 ORDER, RUN, ENERGY = BY_METHOD = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
 VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
 SCENE, MAP = 'spring-scene', 'spring-scene-map'
@@ -667,6 +667,66 @@ def test_rounding():
         rows = table(ROUNDING, '--method', method, '--sum', 'compensated', '--steps', '1e6')[-8:]
         check(all(abs(float(r['state_error']) / float(r['coefficient_error']) - 1) <= 0.05 for r in rows),
               f'rounding: {method}, a decimal step: the coefficient it is', rows)
+
+
+STEPPERS = {'euler', 'leapfrog', 'rk4'}
+
+
+def check_work_rows(problem, rows):
+    fixed = 'problem solver steps force_evaluations time_s error'.split()
+    a_step = {'euler': 1, 'leapfrog': 1, 'rk4': 4, 'gsl-rk4': 11, 'gsl-rk8pd': 13, 'arkode-rk4': 4}
+    equal(list(rows[0])[:len(fixed)], fixed, f'work {problem}: columns')
+    equal({r['problem'] for r in rows}, {problem}, f'work {problem}: --problem')
+    check(all(r[name].isdecimal() for r in rows for name in ('steps', 'force_evaluations')),
+          f'work {problem}: counts are whole numbers', rows)
+    check(all(float(r['time_s']) > 0 and 0 <= float(r['error']) <= 1 for r in rows), f'work {problem}: times and errors', rows)
+    check(a_step.keys() < {r['solver'] for r in rows}, f'work {problem}: all solvers with fixed steps', rows)
+    equal([r for r in rows if r['solver'] in a_step
+           and not 0 <= int(r['force_evaluations']) - a_step[r['solver']] * int(r['steps']) <= 1], [],
+          f'work {problem}: force evaluations of fixed steps, one more at the start')
+    equal([r['force_evaluations'] for r in rows if r['solver'] == 'exact'], ['0'] if problem == 'ideal-1' else [],
+          f'work {problem}: the closed form where there is one')
+
+
+def check_work_cheapest(problem, rows, best, solver, time_s):
+    """The row of the table against all that are exact enough."""
+    enough = [r for r in rows if float(r['error']) <= float(best['error']) and r['effort'] == 'sweep'
+              and (r['solver'] in STEPPERS if solver == 'solver' else r['solver'] not in {*STEPPERS, 'exact'})]
+    least = min((float(r['time_s']) for r in enough), default=math.nan)
+    names = {r['solver'] for r in enough if float(r['time_s']) == least} or {'none'}
+    check(best[solver] in names and best[time_s] == f'{least:.4g}', f'work {problem}: {solver} at {best["error"]}', (best, names, least))
+
+
+def test_work_table(folder):
+    path = os.path.join(folder, 'table.tsv')
+    for problem in ('ideal-1', 'elastic-pendulum'):
+        rows = table(WORK, '--problem', problem, '--quick', '--table', path)
+        check_work_rows(problem, rows)
+        with open(path, encoding='ascii') as file:
+            text = file.read()
+        check(folder not in text and all(f'# {what}:' in text for what in ('compiler', 'flags', 'processor', 'load')),
+              f'work {problem}: the stamp of the table', text)
+        levels = parse(text)
+        equal([(r['problem'], r['error']) for r in levels], [(problem, f'1e-{n}') for n in range(1, 13)], f'work {problem}: levels')
+        for r in levels:
+            check_work_cheapest(problem, rows, r, 'solver', 'time_s')
+            check_work_cheapest(problem, rows, r, 'peer', 'peer_time_s')
+            ratio = float(r['peer_time_s']) / float(r['time_s'])
+            check(math.isnan(ratio) == (r['ratio'] == 'nan') and not abs(float(r['ratio']) - ratio) > 2e-3 * ratio,
+                  f'work {problem}: ratio at {r["error"]}', r)
+
+
+def test_work_crossing():
+    errors = {(r['solver'], int(r['force_evaluations'])): float(r['error'])
+              for r in table(WORK, '--problem', 'ideal-1', '--quick') if r['effort'] == 'crossing'}
+    equal(sorted(errors), [(solver, n) for solver in ('leapfrog', 'rk4') for n in (44, 48)], 'work: where RK4 passes leapfrog')
+    check(errors['leapfrog', 44] < errors['rk4', 44] and errors['rk4', 48] < errors['leapfrog', 48],
+          'work: leapfrog is ahead before, RK4 after', errors)
+
+
+def test_work_usage():
+    result = run(WORK, '--problem', 'ideal-2')
+    check(result.returncode == 2 and '"ideal-2"' in result.stderr and 'ideal-10000' in result.stderr, 'work: another problem', result)
 
 
 def test_bench():

@@ -16,28 +16,48 @@ typedef struct ode {
     size_t size;
     void (*derivative)(double t, const double *y, double *dy, const void *data);
     const void *data;
-    const double *scale;  /* [size] the magnitude of each component: tolerances are relative to it */
-    uint64_t evaluations; /* counted by every solver below */
+    const double *scale;   /* [size] the magnitude of each component: tolerances are relative to it */
+    uint64_t evaluations;  /* counted by every solver below */
+    uint64_t steps;        /* counted likewise: those that were not rejected */
+    double (*clock)(void); /* NULL: time is of no interest */
+    double spent;          /* by that clock, added up by every solver below: without setting up */
 } ode;
+
+static inline void ode_start_clock(ode *o)
+{
+    if (o->clock != NULL)
+        o->spent -= o->clock();
+}
+
+static inline void ode_stop_clock(ode *o)
+{
+    if (o->clock != NULL)
+        o->spent += o->clock();
+}
 
 /* y = (x, v) of one spring, from w, g, a each rounded once; data is a spring_params */
 void ode_spring_derivative(double t, const double *y, double *dy, const void *data);
 
-/* n calls of apply(h). Each is two RK4 steps of h/2 in GSL 2.7, which doubles its step. */
+/* n calls of apply(h). Each is two RK4 steps of h/2 in GSL 2.7, which doubles its step, and Prince-Dormand 8(9). */
 const char *ode_gsl_rk4(ode *o, double *y, double h, uint64_t n);
+const char *ode_gsl_rk8pd_fixed(ode *o, double *y, double h, uint64_t n);
 
-/* Prince-Dormand 8(9), adaptive, local tolerance relative to scale. */
+/* The same, adaptive, local tolerance relative to scale. */
+const char *ode_gsl_rk4_adaptive(ode *o, double *y, double duration, double tolerance);
 const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance);
 
 /* CVODE: variable order, variable step, local tolerance relative to scale; no limit on the number of steps. */
 typedef enum ode_cvode_method {
     ODE_ADAMS, /* fixed-point iteration */
-    ODE_BDF    /* Newton iteration, dense matrix */
+    ODE_BDF    /* Newton iteration; dense matrix, of more than a hundred unknowns none: GMRES */
 } ode_cvode_method;
 const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance);
 
 /* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
+
+/* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of steps. */
+const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);
 
 /* The same as ERKStep, which SUNDIALS before 6.7.0 integrates wrongly from the second step on: it treats the table as
    first-same-as-last. Here for the test that knows. */

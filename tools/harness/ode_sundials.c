@@ -11,6 +11,7 @@
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -70,6 +71,9 @@ static void close_session(session *s)
         SUNContext_Free(&s->context);
 }
 
+/* Above, CVODE's manual would have a sparse solver or an iterative one, for a dense matrix takes size^3 operations. */
+static const size_t dense_at_most = 100;
+
 static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_method method,
                                 double tolerance)
 {
@@ -84,6 +88,10 @@ static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_m
         s->nonlinear = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
         if (s->nonlinear == NULL || CVodeSetNonlinearSolver(s->memory, s->nonlinear) != CV_SUCCESS)
             return "CVODE: no fixed-point solver";
+    } else if (o->size > dense_at_most) {
+        s->linear = SUNLinSol_SPGMR(s->y, SUN_PREC_NONE, 0, s->context);
+        if (s->linear == NULL || CVodeSetLinearSolver(s->memory, s->linear, NULL) != CV_SUCCESS)
+            return "CVODE: no iterative solver";
     } else {
         s->matrix = SUNDenseMatrix((sunindextype)o->size, (sunindextype)o->size, s->context);
         s->linear = s->matrix != NULL ? SUNLinSol_Dense(s->y, s->matrix, s->context) : NULL;
@@ -100,8 +108,13 @@ const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method metho
     if (message == NULL)
         message = set_up_cvode(&s, o, duration, method, tolerance);
     double reached = 0;
+    long steps = 0;
+    ode_start_clock(o);
     if (message == NULL && CVode(s.memory, duration, s.y, &reached, CV_NORMAL) < 0)
         message = "CVODE: the integration failed";
+    ode_stop_clock(o);
+    if (message == NULL && CVodeGetNumSteps(s.memory, &steps) == CV_SUCCESS)
+        o->steps += (uint64_t)steps;
     if (s.memory != NULL)
         CVodeFree(&s.memory);
     close_session(&s);
@@ -130,12 +143,42 @@ const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
             ARKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
+    ode_start_clock(o);
     for (uint64_t i = 0; i < n && message == NULL; i++)
         if (ARKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
             message = "ARKStep: the integration failed";
+    ode_stop_clock(o);
+    o->steps += n;
     if (s.memory != NULL)
         ARKStepFree(&s.memory);
     ARKodeButcherTable_Free(table);
+    close_session(&s);
+    return message;
+}
+
+const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance)
+{
+    session s;
+    const char *message = open_session(&s, o, y, tolerance);
+    double t = 0;
+    long steps = 0;
+    if (message == NULL) {
+        s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
+        if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
+            ARKStepSetOrder(s.memory, 4) != ARK_SUCCESS ||
+            ARKStepSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
+            ARKStepSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS ||
+            ARKStepSetStopTime(s.memory, duration) != ARK_SUCCESS)
+            message = "ARKStep: cannot start";
+    }
+    ode_start_clock(o);
+    if (message == NULL && ARKStepEvolve(s.memory, duration, s.y, &t, ARK_NORMAL) < 0)
+        message = "ARKStep: the integration failed";
+    ode_stop_clock(o);
+    if (message == NULL && ARKStepGetNumSteps(s.memory, &steps) == ARK_SUCCESS)
+        o->steps += (uint64_t)steps;
+    if (s.memory != NULL)
+        ARKStepFree(&s.memory);
     close_session(&s);
     return message;
 }
@@ -156,6 +199,7 @@ const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
     for (uint64_t i = 0; i < n && message == NULL; i++)
         if (ERKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
             message = "ERKStep: the integration failed";
+    o->steps += n;
     if (s.memory != NULL)
         ERKStepFree(&s.memory);
     ARKodeButcherTable_Free(table);

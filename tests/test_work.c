@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/* What spring-work stands on: work that is counted, one equation for all, and a truth that is as good as it says. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "work.h"
+
+typedef void work_check(work *w);
+
+/* On every problem of a kind. */
+static void on_each(work_kind kind, work_check *holds)
+{
+    for (size_t i = 0; i < work_problem_count; i++)
+        if (work_problems[i].kind == kind) {
+            work w;
+            work_open(&w, &work_problems[i]);
+            holds(&w);
+            work_close(&w);
+        }
+}
+
+/* Fewer than overflow, with any method. */
+static const uint64_t steps = 37;
+
+static double short_step(const work *w)
+{
+    return spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 50;
+}
+
+static void counts_of_a_scene(work *w)
+{
+    CHECK(work_count(w, SPRING_EULER, 1) == 1, "one force evaluation in one step of Euler");
+    w->duration = (double)steps * short_step(w);
+    CHECK(work_count(w, SPRING_EULER, steps) == steps, "one a step");
+    CHECK(work_count(w, SPRING_LEAPFROG, steps) == steps + 1, "one a step, and one at the start");
+    CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "four stages a step");
+    CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "from the start again, nothing is kept");
+}
+
+/* The scene that counts moves as the one that is timed. */
+static void counted_is_timed(work *w)
+{
+    const size_t count = w->scene.def.axes * w->scene.def.particles;
+    double *timed = scene_room(count, sizeof *timed), *counted = scene_room(count, sizeof *counted);
+    w->duration = (double)steps * short_step(w);
+    for (spring_method m = SPRING_EULER; m <= SPRING_RK4; m++) {
+        memcpy(w->moved, w->fresh, w->bytes);
+        CHECK(spring_scene_advance(w->moved, m, w->duration / (double)steps, steps) == SPRING_OK, "it moves");
+        work_count(w, m, steps);
+        spring_scene_get(w->moved, SPRING_VELOCITY, timed, 0, 0, w->scene.def.particles);
+        spring_scene_get(w->counting, SPRING_VELOCITY, counted, 0, 0, w->scene.def.particles);
+        bool same = true;
+        for (size_t i = 0; i < count; i++)
+            same = same && fabs(timed[i] - counted[i]) <= 0;
+        CHECK(same, "the same velocities, to the bit, with the callback that counts");
+    }
+    free(timed);
+    free(counted);
+}
+
+static void count_calls(void *user, double t, size_t particles, const double *const x[3],
+                        const double *const v[3], double *const force[3])
+{
+    (void)t, (void)particles, (void)x, (void)v, (void)force;
+    ++*(uint64_t *)user;
+}
+
+static void predicted_velocity(void)
+{
+    const double position[] = {0, 0.8};
+    const spring_link link = {0, 1, 0.5, 2.7, 0};
+    uint64_t calls = 0;
+    const spring_scene_def def = {.axes = 1,
+                                  .particles = 2,
+                                  .links = 1,
+                                  .position = position,
+                                  .mass_all = 1.3,
+                                  .link = &link,
+                                  .force = count_calls,
+                                  .user = &calls};
+    size_t bytes;
+    spring_scene *scene;
+    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "a scene");
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    CHECK(spring_scene_init(memory, bytes, &def, &scene) == SPRING_OK, "a scene");
+    CHECK(spring_scene_advance(scene, SPRING_LEAPFROG, 0.013, steps) == SPRING_OK, "it moves");
+    CHECK(calls == 3 * steps, "three a step where a callback may use velocities");
+    free(memory);
+}
+
+/* By the solvers' own counting, of a right-hand side that counts by itself, too. */
+static uint64_t derivatives;
+
+static void counted_derivative(double t, const double *y, double *dy, const void *data)
+{
+    derivatives++;
+    ode_spring_derivative(t, y, dy, data);
+}
+
+static void counts_of_the_peers(void)
+{
+    const spring_params p = {1.3, 2.7, 0.2, 0.4};
+    const double scale[] = {1, 1};
+    for (const work_solver *s = work_solvers; s < work_solvers + work_solver_count; s++) {
+        ode o = {.size = 2, .derivative = counted_derivative, .data = &p, .scale = scale};
+        double y[] = {0.8, -0.9};
+        if (s->side != WORK_PEER)
+            continue;
+        derivatives = 0;
+        CHECK((s->fixed != NULL ? s->fixed(&o, y, 0.013, steps) : s->adaptive(&o, y, 0.5, 1e-6)) == NULL,
+              "it integrates");
+        CHECK(o.evaluations == derivatives, "every evaluation is counted");
+        CHECK(s->fixed != NULL ? o.steps == steps : o.steps > 0, "steps are counted");
+        const uint64_t once = s->fixed == ode_gsl_rk4 ? 11 : s->fixed == ode_gsl_rk8pd_fixed ? 13 : 4;
+        CHECK(s->fixed == NULL || (derivatives >= once * steps && derivatives <= once * steps + 1),
+              "RK4 of GSL: 4 + 3 + 4, for its step is doubled; Prince-Dormand 13; ARKODE's RK4 4");
+    }
+}
+
+/* Each component of dy/dt against the harness, from the sizes of what is added: eight links, sixteen roundings a link. */
+static void one_equation(work *w)
+{
+    double *ours = scene_room(w->size, sizeof *ours), *theirs = scene_room(w->size, sizeof *theirs);
+    double largest = 0, worst = 0;
+    for (const spring_link *l = w->scene.link; l < w->scene.link + w->scene.def.links; l++)
+        largest = fmax(largest, l->stiffness);
+    const double size = 8 * largest / w->scene.mass[0] * fmax(1, w->motion) + 10;
+    for (int at = 0; at < 2; at++) {
+        const double *y = at == 0 ? w->start : w->truth;
+        work_equation_derivative(0.3, y, ours, &w->equation);
+        scene_derivative(0.3, y, theirs, &w->scene);
+        for (size_t i = 0; i < w->size; i++)
+            worst = fmax(worst, fabs(ours[i] - theirs[i]));
+    }
+    CHECK_BELOW(worst, 16 * DBL_EPSILON * size, "the lean right-hand side is the harness's, up to rounding");
+    free(ours);
+    free(theirs);
+}
+
+/* By a stepper of the library, which had no part in the truth: RK4 gets nearer as h^4, until the difference is small. */
+static void truth_of_a_scene(work *w)
+{
+    double *y = scene_room(w->size, sizeof *y);
+    const work_solver *const rk4 = &work_solvers[SPRING_RK4];
+    const uint64_t n =
+        (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 64)) + 1;
+    CHECK_BELOW(w->uncertainty, 1e-12, "the truth is good for every error of the table");
+    CHECK_CLOSE(work_error(w, w->truth), 5 * w->uncertainty, 0, "no error below what the truth is known to");
+    CHECK(work_run(w, rk4, (work_effort){.steps = n}, 1, y).failure == NULL, "it moves");
+    const double coarse = work_error(w, y);
+    work_run(w, rk4, (work_effort){.steps = 2 * n}, 1, y);
+    CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, 0.1,
+                "fourth order, toward the truth: terms of the next one are h times smaller");
+    y[0] = NAN;
+    CHECK(!(work_error(w, y) <= 1), "NaN is no small error");
+    free(y);
+}
+
+static void truth_of_a_spring(work *w)
+{
+    spring_state s = w->problem->start;
+    const spring_params *p = &w->problem->p;
+    const double zeta = p->damping / (2 * p->mass * w->omega);
+    const double bound = 4 * DBL_EPSILON * (1 + w->omega * w->duration * fmax(1, zeta));
+    spring_step_exact(&s, p, w->duration);
+    const double y[] = {s.x, s.v};
+    CHECK_BELOW(work_error(w, y), bound, "the bound of the closed form");
+    CHECK_BELOW(work_energy_error(w, y), 2 * bound, "energy is the square of that");
+}
+
+static void scenes_count(void)
+{
+    on_each(WORK_SCENE, counts_of_a_scene);
+}
+
+static void scenes_counted(void)
+{
+    on_each(WORK_SCENE, counted_is_timed);
+}
+
+static void scenes_equation(void)
+{
+    on_each(WORK_SCENE, one_equation);
+}
+
+static void scenes_truth(void)
+{
+    on_each(WORK_SCENE, truth_of_a_scene);
+}
+
+static void springs_truth(void)
+{
+    on_each(WORK_SPRING, truth_of_a_spring);
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"force evaluations of scenes, by a callback", scenes_count},
+        {"a scene that counts moves like one that does not", scenes_counted},
+        {"leapfrog with a callback that may use velocities", predicted_velocity},
+        {"force evaluations of GSL and SUNDIALS", counts_of_the_peers},
+        {"one equation of a scene", scenes_equation},
+        {"the true end of a scene", scenes_truth},
+        {"the true end of a spring", springs_truth},
+    };
+    return RUN_TESTS("work", tests);
+}

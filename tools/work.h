@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What spring-work compares: problems, which are opened one at a time, and solvers, which are run on the one that is open.
+ *
+ * The state of a problem is a vector y, positions before velocities. Distances are Euclidean in (x, v/omega), and errors
+ * are distances to the true end relative to the size of the motion.
+ */
+#ifndef SPRINGSTEP_WORK_H
+#define SPRINGSTEP_WORK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <springstep/scene.h>
+
+#include "harness/ode.h"
+#include "harness/reference.h"
+#include "harness/scenes.h"
+#include "work_equation.h"
+
+typedef enum work_kind {
+    WORK_SPRING, /* one spring, for spring_advance() */
+    WORK_SEED,   /* the seed study's, beside which no peers run */
+    WORK_SCENE   /* for spring_scene_advance() */
+} work_kind;
+
+typedef struct work_problem {
+    const char *name;
+    work_kind kind;
+    double duration; /* [s] */
+    double longest;  /* [s] a sweep ends with the first run that takes longer */
+
+    /* a spring */
+    spring_params p;
+    spring_state start;
+    double finest;    /* [s] step of a sweep */
+    uint64_t periods; /* more than 0: look for the crossing of leapfrog and RK4 */
+
+    /* a scene: a case of the harness, or one of its own */
+    const char *harness;
+    const scene_case *own;
+    uint64_t reference_steps;
+} work_problem;
+
+extern const work_problem work_problems[];
+extern const size_t work_problem_count;
+
+/* A problem that is open. */
+typedef struct work {
+    const work_problem *problem;
+    size_t size; /* numbers in y */
+    double *start, *truth;
+    double *scale; /* [size] magnitudes, for the tolerances of the peers */
+    double duration, omega;
+    double motion;           /* [m] amplitude, or half the largest distance of a scene from its start */
+    double uncertainty;      /* of the truth, relative to motion */
+    double coarsest, finest; /* [s] steps of a sweep */
+    double (*clock)(void);   /* [ns] by which runs are timed */
+
+    /* what peers integrate */
+    void (*derivative)(double t, const double *y, double *dy, const void *data);
+    const void *data;
+
+    reference exact; /* of a spring */
+
+    /* of a scene: as the library moves it, as it was at the start, and with calls counted */
+    scene_problem scene;
+    work_equation equation;
+    spring_scene *moved, *fresh, *counting;
+    spring_scene_def counted; /* the definition of the last */
+    size_t bytes, counting_bytes;
+    uint64_t calls; /* of its callback */
+    double *gathered;
+} work;
+
+void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED where it cannot be done */
+void work_close(work *w);
+
+/* Relative to the motion; never below what the truth is known to. */
+double work_error(const work *w, const double *y);
+
+/* |energy - true energy| relative to that at the start, of a spring; NaN of a scene. */
+double work_energy_error(const work *w, const double *y);
+
+typedef struct work_effort { /* what is varied: one of them */
+    uint64_t steps;
+    double tolerance;
+} work_effort;
+
+typedef enum work_side {
+    WORK_STEPPER, /* of the library */
+    WORK_CLOSED,  /* the closed form: no stepper */
+    WORK_STAGES,  /* the seed's arithmetic, on the seed's problem */
+    WORK_PEER
+} work_side;
+
+typedef struct work_result {
+    const char *failure;  /* NULL: none */
+    double spent;         /* [s] in all runs, without setting up */
+    uint64_t steps;       /* of one run */
+    uint64_t evaluations; /* of one run; of the library's scenes see work_count() */
+} work_result;
+
+typedef struct work_solver work_solver;
+
+struct work_solver {
+    const char *name;
+    work_side side;
+    spring_method method; /* of a stepper and the closed form */
+    uint64_t a_step; /* force evaluations that a step of one spring stands for: there is nothing to count */
+    /* of a peer, one of them; ODE_... for CVODE */
+    const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
+    const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
+};
+
+extern const work_solver work_solvers[];
+extern const size_t work_solver_count;
+
+bool work_applies(const work *w, const work_solver *s);
+
+/* Run a solver from the start, so many times; y is the end. */
+work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs, double *y);
+
+/* Force evaluations of so many steps of a scene, counted by a callback in a scene that is otherwise the same. */
+uint64_t work_count(work *w, spring_method m, uint64_t steps);
+
+#endif

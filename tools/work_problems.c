@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The problems of spring-work; see work.h.
+ *
+ * Truth     Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once more with
+ *           half as many: the difference, and the distance to the digits that the harness knows, is its uncertainty.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "timing.h"
+#include "work.h"
+
+/* --------------------------------------------------------------------------------------------------- two sheets */
+
+/* At rest where the grid puts it, all particles of one mass. */
+static void make_sheet(scene_problem *p, const spring_grid *g, double mass)
+{
+    size_t particles, links;
+    const uint32_t axes = g->height ? 1 : g->axes;
+    if (spring_grid_size(g, &particles, &links) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no grid");
+    p->position = scene_room(axes * particles, sizeof *p->position);
+    p->velocity = scene_room(axes * particles, sizeof *p->velocity);
+    p->mass = scene_room(particles, sizeof *p->mass);
+    p->pinned = scene_room(particles, sizeof *p->pinned);
+    p->link = scene_room(links, sizeof *p->link);
+    for (size_t i = 0; i < particles; i++)
+        p->mass[i] = mass;
+    spring_grid_fill(g, p->position, p->pinned, p->link);
+    p->def = (spring_scene_def){.axes = axes,
+                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+                                .particles = particles,
+                                .links = links,
+                                .position = p->position,
+                                .velocity = p->velocity,
+                                .mass_all = mass,
+                                .pinned = p->pinned,
+                                .link = p->link};
+}
+
+enum { SIDE = 25 }; /* particles along an edge of a sheet */
+
+#define ALL_FAMILIES SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND
+
+/* Hangs by one edge, falls from the horizontal. */
+static void build_cloth(const scene_case *c, scene_problem *p)
+{
+    const spring_grid g = {.count = {SIDE, SIDE, 1},
+                           .axes = 3,
+                           .spacing = 0.04,
+                           .stretch = 1.01,
+                           .families = ALL_FAMILIES,
+                           .stiffness = 60,
+                           .pinned = SPRING_GRID_FIRST_Y};
+    (void)c;
+    make_sheet(p, &g, 0.003);
+    p->def.gravity[1] = -1.7;
+    p->def.gravity[2] = -9.66;
+    p->def.drag = 0.001;
+}
+
+/* The sheet of water of the seed study: 4 m x 4 m, masses of 1 kg, 25 000 N/m, drag. Poked near a corner. */
+static void build_water(const scene_case *c, scene_problem *p)
+{
+    const double spacing = 4.0 / (SIDE - 1), wide = 0.5, at[] = {1.4, 1.7}; /* [m] */
+    const spring_grid g = {.count = {SIDE, SIDE, 1},
+                           .height = true,
+                           .spacing = spacing,
+                           .families = ALL_FAMILIES,
+                           .stiffness = 25000,
+                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
+                                     SPRING_GRID_LAST_Y};
+    make_sheet(p, &g, 1);
+    p->def.drag = 0.5;
+    for (size_t i = 0; i < p->def.particles; i++)
+        if (!p->pinned[i]) {
+            const double x = spacing * (double)(i % SIDE) - at[0], y = spacing * (double)(i / SIDE) - at[1];
+            p->position[i] = -c->length * exp(-(x * x + y * y) / (wide * wide));
+        }
+}
+
+static const scene_case cloth = {
+    .name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
+static const scene_case water = {
+    .name = "water", .build = build_water, .duration = 0.25, .omega = 77, .length = 0.1};
+
+/* ------------------------------------------------------------------------------------------------- the problems */
+
+#define PERIODS(n) ((n)*6.283185307179586 / 1.4411533842457842) /* [s] of sqrt(2.7/1.3) */
+#define SPRING     .kind = WORK_SPRING, .start = {0.8, -0.9}, .longest = 0.01
+
+const work_problem work_problems[] = {
+    {"seed-1000s", WORK_SEED, 1000, INFINITY, .p = {1, 1, 0, 0}, .start = {1, 0}, .finest = 1e-4},
+    {"ideal-1", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(1), .finest = 1e-5, .periods = 1},
+    {"ideal-10", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(10), .finest = 5e-5, .periods = 10},
+    {"ideal-100", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(100), .finest = 2e-4},
+    {"ideal-10000", WORK_SPRING, PERIODS(10000), 0.08, .p = {1.3, 2.7, 0, 0}, .start = {0.8, -0.9},
+     .finest = 2e-3},
+    {"damped", SPRING, .p = {1.3, 2.7, 0.4, 0}, .duration = PERIODS(5), .finest = 2e-5},
+    {"loaded", SPRING, .p = {1.3, 2.7, 0.1, 0.9}, .duration = PERIODS(10), .finest = 5e-5},
+    {"stiff", SPRING, .p = {1.3, 2.7, 370, 0}, .duration = 100, .finest = 1e-4},
+    {"duffing", WORK_SCENE, .longest = 0.01, .harness = "duffing-period", .reference_steps = 512},
+    {"elastic-pendulum", WORK_SCENE, .longest = 0.01, .harness = "elastic-pendulum", .reference_steps = 2048},
+    {"stiff-and-soft", WORK_SCENE, .longest = 0.01, .harness = "stiff-and-soft-1", .reference_steps = 1024},
+    {"cloth", WORK_SCENE, .longest = 0.06, .own = &cloth, .reference_steps = 1024},
+    {"water", WORK_SCENE, .longest = 0.06, .own = &water, .reference_steps = 2048},
+};
+const size_t work_problem_count = sizeof work_problems / sizeof work_problems[0];
+
+/* ---------------------------------------------------------------------------------------------------- one spring */
+
+static double energy(const spring_params *p, const double *y)
+{
+    const double x = y[0] - p->load / p->stiffness;
+    return (p->mass * y[1] * y[1] + p->stiffness * x * x) / 2;
+}
+
+static void open_spring(work *w)
+{
+    const spring_params *p = &w->problem->p;
+    const spring_state s = w->problem->start;
+    w->duration = w->problem->duration;
+    w->omega = sqrt(p->stiffness / p->mass);
+    w->motion = hypot(s.x - p->load / p->stiffness, s.v / w->omega);
+    w->start[0] = s.x;
+    w->start[1] = s.v;
+    reference_init(&w->exact);
+    reference_start(&w->exact, p, s);
+    reference_exact(&w->exact, p, w->duration);
+    w->truth[0] = mpfr_get_d(w->exact.x, MPFR_RNDN);
+    w->truth[1] = mpfr_get_d(w->exact.v, MPFR_RNDN);
+    /* four steps a period, or what is stable where damping is strong */
+    w->coarsest = fmin(1.5 / w->omega, 2 * p->mass / p->damping);
+    w->finest = w->problem->finest;
+    w->derivative = ode_spring_derivative;
+    w->data = p;
+}
+
+/* ------------------------------------------------------------------------------------------------------- a scene */
+
+static const scene_case *case_of(const work_problem *problem)
+{
+    for (size_t i = 0; i < scene_case_count && problem->own == NULL; i++)
+        if (strcmp(scene_cases[i].name, problem->harness) == 0)
+            return &scene_cases[i];
+    return problem->own;
+}
+
+static spring_scene *make_scene(const spring_scene_def *def, size_t *bytes)
+{
+    spring_scene *scene = NULL;
+    if (spring_scene_bytes(def, bytes) != SPRING_OK)
+        cli_fail(CLI_FAILED, "a scene that is none");
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
+    if (memory == NULL || spring_scene_init(memory, *bytes, def, &scene) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu links", def->links);
+    return scene;
+}
+
+static void count_call(void *user, double t, size_t particles, const double *const position[3],
+                       const double *const velocity[3], double *const force[3])
+{
+    work *w = user;
+    const spring_scene_def *def = &w->scene.def;
+    w->calls++;
+    if (def->force != NULL)
+        def->force(def->user, t, particles, position, velocity, force);
+}
+
+static void make_scenes(work *w)
+{
+    spring_scene_def def = w->scene.def;
+    w->moved = make_scene(&def, &w->bytes);
+    w->fresh = make_scene(&def, &w->bytes);
+    if (def.force == NULL)
+        def.flags |= SPRING_SCENE_FORCE_STILL; /* so that counting adds no evaluation */
+    def.force = count_call;
+    def.user = w;
+    w->counted = def;
+    w->counting = make_scene(&def, &w->counting_bytes);
+}
+
+uint64_t work_count(work *w, spring_method m, uint64_t steps)
+{
+    spring_scene *scene;
+    w->calls = 0;
+    spring_scene_init(w->counting, w->counting_bytes, &w->counted, &scene);
+    spring_scene_advance(scene, m, w->duration / (double)steps, steps);
+    return w->calls;
+}
+
+static double distance(const work *w, const double *a, const double *b)
+{
+    return scene_distance(&(scene_case){.omega = w->omega}, &w->scene, a, b, 0);
+}
+
+enum { PARTS = 32 }; /* of the reference run: where the motion is looked at */
+
+/* In n steps; no equation here depends on time. Returns the largest distance from the start. */
+static double refer(const work *w, uint64_t n, double *y)
+{
+    ode o = {.size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale};
+    double largest = 0;
+    memcpy(y, w->start, w->size * sizeof *y);
+    for (int i = 0; i < PARTS; i++) {
+        const char *message = ode_gsl_rk8pd_fixed(&o, y, w->duration / (double)n, n / PARTS);
+        if (message != NULL)
+            cli_fail(CLI_FAILED, "%s: no reference: %s", w->problem->name, message);
+        largest = fmax(largest, distance(w, y, w->start));
+    }
+    return largest;
+}
+
+static void find_truth(work *w, const scene_case *c)
+{
+    double *coarse = scene_room(w->size, sizeof *coarse), unknown;
+    refer(w, w->problem->reference_steps / 2, coarse);
+    w->motion = refer(w, w->problem->reference_steps, w->truth) / 2;
+    unknown = distance(w, w->truth, coarse);
+    if (c->known > 0)
+        unknown = fmax(unknown, scene_distance(c, &w->scene, w->truth, c->digits, c->known));
+    w->uncertainty = unknown / w->motion;
+    if (!(w->uncertainty <= 1e-9))
+        cli_fail(CLI_FAILED, "%s: its reference is uncertain by %g", w->problem->name, w->uncertainty);
+    free(coarse);
+}
+
+static void open_scene(work *w)
+{
+    const scene_case *c = case_of(w->problem);
+    if (c == NULL)
+        cli_fail(CLI_FAILED, "no scene \"%s\"", w->problem->harness);
+    scene_problem_init(&w->scene, c);
+    work_equation_init(&w->equation, &w->scene);
+    make_scenes(w);
+    w->size = 2 * w->scene.moving;
+    w->duration = c->duration;
+    w->omega = c->omega;
+    w->start = scene_room(w->size, sizeof *w->start);
+    w->truth = scene_room(w->size, sizeof *w->truth);
+    w->scale = scene_room(w->size, sizeof *w->scale);
+    w->gathered = scene_room(w->scene.def.axes * w->scene.def.particles, sizeof *w->gathered);
+    for (size_t i = 0; i < w->size; i++)
+        w->scale[i] = c->length * (i < w->scene.moving ? 1 : c->omega);
+    scene_start(&w->scene, w->start);
+    w->derivative = work_equation_derivative;
+    w->data = &w->equation;
+    find_truth(w, c);
+    /* callbacks are not in the stable step; high orders can take longer steps than leapfrog */
+    w->coarsest = fmin(4 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);
+    w->finest = 0;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- both */
+
+void work_open(work *w, const work_problem *problem)
+{
+    *w = (work){.problem = problem, .size = 2, .clock = timing_now};
+    if (problem->kind == WORK_SCENE) {
+        open_scene(w);
+        return;
+    }
+    w->start = scene_room(w->size, sizeof *w->start);
+    w->truth = scene_room(w->size, sizeof *w->truth);
+    w->scale = scene_room(w->size, sizeof *w->scale);
+    open_spring(w);
+    w->scale[0] = w->motion;
+    w->scale[1] = w->motion * w->omega;
+}
+
+void work_close(work *w)
+{
+    free(w->start);
+    free(w->truth);
+    free(w->scale);
+    if (w->problem->kind != WORK_SCENE) {
+        reference_clear(&w->exact);
+        return;
+    }
+    scene_problem_clear(&w->scene);
+    work_equation_clear(&w->equation);
+    free(w->moved);
+    free(w->fresh);
+    free(w->counting);
+    free(w->gathered);
+}
+
+double work_error(const work *w, const double *y)
+{
+    const double resolved = 5; /* uncertainties: the error is within a quarter where it is more than that */
+    if (w->problem->kind != WORK_SCENE)
+        return reference_distance(&w->exact, (spring_state){y[0], y[1]}) / w->motion;
+    const double error = distance(w, y, w->truth) / w->motion;
+    return error > (resolved - 1) * w->uncertainty || isnan(error) ? error : resolved * w->uncertainty;
+}
+
+double work_energy_error(const work *w, const double *y)
+{
+    const spring_params *p = &w->problem->p;
+    if (w->problem->kind == WORK_SCENE)
+        return NAN;
+    return fabs(energy(p, y) - energy(p, w->truth)) / energy(p, w->start);
+}
