@@ -19,6 +19,7 @@
  * not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,6 +198,302 @@ static void solve_adaptive(adaptive *a, const scene_case *c, const scene_problem
     free(scale);
 }
 
+/* ------------------------------------------------------------------------------------------------- modes of sheets */
+
+/*
+ * A mode is followed step by step through the phase of its amplitude q, the projection of the motion on its shape: the
+ * angle of (q, -p/(omega s)), p the projection of the velocity, s the ratio of axes that the method gives the ellipse. It
+ * starts with an amplitude of 1 m over the whole phase, so that its path in (x, v/omega) is 1 m long: distances along it
+ * [m] are relative errors of the frequency, too.
+ *
+ * With a = P pi/(N - 1), b = Q pi/(N - 1) the frequency on an infinite lattice is
+ *
+ *     omega^2 = k/m sum over d of (2 - 2 cos d)
+ *
+ * with d = a, b of structural links, d = a + b, a - b of shear, d = 2a, 2b of bend links. That of long waves has d^2 for
+ * 2 - 2 cos d, which is too much by at most d^4/12.
+ */
+typedef struct sheet_mode {
+    unsigned P, Q, N;
+    char kind[16];
+    double stiffness_over_mass; /* [1/s^2] across the sheet */
+    double omega;               /* [1/s] */
+    double uncertainty;         /* of omega, relative */
+    double compared;            /* [1/s] long waves, or the infinite lattice where it is not the relation */
+    double comparison_bound;    /* relative */
+    const char *comparison;     /* what that is made of */
+    double nonlinear;           /* relative change of omega by an amplitude of 1 m, at most */
+    double *shape;              /* [N*N], squares add up to 1 */
+} sheet_mode;
+
+static bool has_all_families(const sheet_mode *s)
+{
+    return strcmp(s->kind, "mirrored") == 0 || strcmp(s->kind, "all") == 0;
+}
+
+/* sum of 2 - 2 cos d, d^2 or d^4 */
+static double lattice_sum(const sheet_mode *s, int power)
+{
+    const double unit = acos(-1) / (s->N - 1), a = s->P * unit, b = s->Q * unit;
+    const double d[] = {a, b, a + b, a - b, 2 * a, 2 * b};
+    double sum = 0;
+    for (int i = 0; i < (has_all_families(s) ? 6 : 2); i++)
+        sum += power == 0 ? 4 * pow(sin(d[i] / 2), 2) : pow(d[i], power);
+    return sum;
+}
+
+/* m/k times what links of all families do to a sheet of heights u, from the stencil; 0 at the edges. */
+static void pull_sheet(unsigned N, const double *u, double *force)
+{
+    static const int way[][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
+    const int n = (int)N;
+    memset(force, 0, (size_t)N * N * sizeof *force);
+    for (int y = 1; y < n - 1; y++)
+        for (int x = 1; x < n - 1; x++)
+            for (int i = 0; i < 12; i++) {
+                const int sign = i < 6 ? 1 : -1, ox = x + sign * way[i % 6][0], oy = y + sign * way[i % 6][1];
+                if (ox >= 0 && ox < n && oy >= 0 && oy < n)
+                    force[y * n + x] += u[y * n + x] - u[oy * n + ox];
+            }
+}
+
+static double dot(size_t count, const double *a, const double *b)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void normalise(size_t count, double *u)
+{
+    const double size = sqrt(dot(count, u, u));
+    for (size_t i = 0; i < count; i++)
+        u[i] /= size;
+}
+
+/* u becomes the solution of pull_sheet(u) = right, by conjugate gradients; work has room for three sheets. */
+static void solve_sheet(unsigned N, const double *right, double *u, double *work)
+{
+    const size_t count = (size_t)N * N;
+    double *rest = work, *direction = work + count, *image = work + 2 * count;
+    pull_sheet(N, u, image);
+    for (size_t i = 0; i < count; i++)
+        direction[i] = rest[i] = right[i] - image[i];
+    double square = dot(count, rest, rest);
+    const double enough = 1e-26 * dot(count, right, right);
+    for (size_t k = 0; k < count && square > enough; k++) {
+        pull_sheet(N, direction, image);
+        const double along = square / dot(count, direction, image), before = square;
+        for (size_t i = 0; i < count; i++) {
+            u[i] += along * direction[i];
+            rest[i] -= along * image[i];
+        }
+        square = dot(count, rest, rest);
+        for (size_t i = 0; i < count; i++)
+            direction[i] = rest[i] + square / before * direction[i];
+    }
+}
+
+/* Keeps the part of u with the symmetry of sin(Pa x) sin(Qa y) - sin(Qa x) sin(Pa y), or the first alone if P = Q: turned
+   by half a turn, with x and y swapped, and if P and Q are both even or odd with x mirrored. Rounding would let slower
+   modes in. */
+static void keep_symmetry(const sheet_mode *s, double *u, double *work)
+{
+    const size_t N = s->N, last = N - 1;
+    const double turned = (s->P + s->Q) % 2 == 0 ? 1 : -1, swapped = s->P == s->Q ? 1 : -1,
+                 mirrored = s->P % 2 == 1 ? 1 : -1;
+    for (int image = 0; image < ((s->P + s->Q) % 2 == 0 ? 3 : 2); image++) {
+        memcpy(work, u, N * N * sizeof *u);
+        for (size_t y = 0; y < N; y++)
+            for (size_t x = 0; x < N; x++) {
+                const double other = image == 0   ? turned * work[(last - y) * N + last - x]
+                                     : image == 1 ? swapped * work[x * N + y]
+                                                  : mirrored * work[y * N + last - x];
+                u[y * N + x] = (work[y * N + x] + other) / 2;
+            }
+    }
+}
+
+/* The slowest mode of that symmetry by inverse iteration. Its Rayleigh quotient is wrong by at most the residual. */
+static void find_mode(sheet_mode *s)
+{
+    const int most = 100; /* then what is left of other modes is in the uncertainty */
+    const unsigned N = s->N;
+    const size_t count = (size_t)N * N;
+    double *before = malloc(5 * count * sizeof *before), *image = before + count, *work = before + 2 * count;
+    if (before == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    const double enough = 1e-10; /* squared in what the shape does to the projection */
+    double quotient, residual;
+    for (int k = 0;; k++) {
+        keep_symmetry(s, s->shape, before);
+        normalise(count, s->shape);
+        pull_sheet(N, s->shape, image);
+        quotient = dot(count, s->shape, image);
+        for (size_t i = 0; i < count; i++)
+            image[i] -= quotient * s->shape[i];
+        residual = sqrt(dot(count, image, image)) / quotient;
+        if (residual <= enough || k == most)
+            break;
+        memcpy(before, s->shape, count * sizeof *before);
+        for (size_t i = 0; i < count; i++)
+            s->shape[i] /= quotient;
+        solve_sheet(N, before, s->shape, work);
+    }
+    s->omega = sqrt(s->stiffness_over_mass * quotient);
+    s->uncertainty = residual;
+    free(before);
+}
+
+/* Of a case that is one. The shape comes from where the scene starts. */
+static bool mode_of(const scene_case *c, const scene_problem *p, sheet_mode *s)
+{
+    *s = (sheet_mode){.P = 0};
+    if (sscanf(c->name, "%*[a-z]-mode-%u-%u-%15[a-z]-%u", &s->P, &s->Q, s->kind, &s->N) != 4)
+        return false;
+    const size_t axes = p->def.axes, count = (size_t)s->N * s->N;
+    const spring_link *link = p->link;
+    double largest = 0;
+    s->shape = malloc(count * sizeof *s->shape);
+    if (s->shape == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    for (size_t i = 0; i < count; i++)
+        s->shape[i] = p->position[axes * i + axes - 1];
+    normalise(count, s->shape);
+    for (size_t i = 0; i < count; i++)
+        largest = fmax(largest, fabs(s->shape[i]));
+    s->stiffness_over_mass = link->stiffness / p->mass[0];
+    if (axes == 3) { /* the share of its length by which a link is drawn out pulls across it */
+        const double spacing = p->position[3], drawn = 1 - link->rest / spacing;
+        s->stiffness_over_mass *= drawn;
+        const double slope = largest * acos(-1) / (spacing * (s->N - 1));
+        s->nonlinear =
+            slope * slope / 4 / drawn; /* a link is longer by slope^2/2, the frequency changes half as much */
+    }
+    const double lattice = sqrt(s->stiffness_over_mass * lattice_sum(s, 0));
+    s->omega = lattice;
+    s->compared = sqrt(s->stiffness_over_mass * lattice_sum(s, 2));
+    s->comparison_bound = 1 - sqrt(1 - lattice_sum(s, 4) / (12 * lattice_sum(s, 2)));
+    s->comparison = "long waves: d^4/12 of d^2, and the step";
+    if (strcmp(s->kind, "all") == 0) {
+        find_mode(s);
+        s->compared = lattice;
+        s->comparison_bound = 1.0 / (s->N - 1);
+        s->comparison = "infinite lattice: half a spacing at each edge, and the step";
+    }
+    return true;
+}
+
+/* Where the mode is in (q, p/omega), and the phase it has gone through. */
+typedef struct followed {
+    double q, p, phase;
+} followed;
+
+static followed look_at_mode(const trial *t, const sheet_mode *s, const spring_scene *scene, double *room)
+{
+    const size_t axes = t->p->def.axes, count = t->p->def.particles;
+    double *x = room, *v = room + axes * count;
+    followed f = {0, 0, 0};
+    if (spring_scene_get(scene, SPRING_POSITION, x, 0, 0, count) != SPRING_OK ||
+        spring_scene_get(scene, SPRING_VELOCITY, v, 0, 0, count) != SPRING_OK)
+        return (followed){NAN, NAN, NAN};
+    for (size_t i = 0; i < count; i++) {
+        f.q += s->shape[i] * x[axes * i + axes - 1];
+        f.p += s->shape[i] * v[axes * i + axes - 1] / s->omega;
+    }
+    return f;
+}
+
+/* Turn and growth of a mode in a step, and the ratio of axes. */
+typedef struct turn {
+    double angle, growth, axes;
+} turn;
+
+static turn turn_of(spring_method m, double z)
+{
+    if (m == SPRING_LEAPFROG)
+        return (turn){2 * asin(z / 2), 1, sqrt(1 - z * z / 4)};
+    const double along = 1 - z * z / 2 + pow(z, 4) / 24, across = z - pow(z, 3) / 6;
+    return (turn){atan2(across, along), hypot(along, across), 1};
+}
+
+static followed follow(const trial *t, const sheet_mode *s)
+{
+    const spring_scene_def *def = &t->p->def;
+    const double dt = step_of(t, 0), ratio = turn_of(t->m, s->omega * dt).axes;
+    size_t bytes = 0;
+    spring_scene *scene = NULL;
+    followed f = {NAN, NAN, NAN};
+    if (spring_scene_bytes(def, &bytes) != SPRING_OK)
+        return f;
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    double *room = malloc(2 * def->axes * def->particles * sizeof *room);
+    if (memory == NULL || room == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    bool well = spring_scene_init(memory, bytes, def, &scene) == SPRING_OK;
+    if (well)
+        f = look_at_mode(t, s, scene, room);
+    for (uint64_t i = 0; i < t->c->steps[t->m] && well; i++) {
+        well = spring_scene_advance(scene, t->m, dt, 1) == SPRING_OK;
+        followed next = look_at_mode(t, s, scene, room);
+        next.phase = f.phase + atan2(next.q * f.p / ratio - next.p / ratio * f.q,
+                                     next.q * f.q + next.p / ratio * (f.p / ratio));
+        f = next;
+    }
+    free(memory);
+    free(room);
+    return well ? f : (followed){NAN, NAN, NAN};
+}
+
+/* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how far
+   the frequency is from a simpler theory. */
+static void judge_mode(const trial *t, const sheet_mode *s)
+{
+    const double h = step_of(t, 0), n = (double)t->c->steps[t->m], whole = s->omega * t->c->duration;
+    const turn step = turn_of(t->m, s->omega * h);
+    const double size = pow(step.growth, n) / whole, error_of_step = fabs(step.angle / (s->omega * h) - 1);
+    const followed f = follow(t, s);
+    const double requirement = 0.005;
+    finding row_of = row(t, t->c->closed, 0);
+    row_of.uncertainty = s->uncertainty;
+    row_of.error = fabs(f.phase / whole - 1);
+    row_of.bound = requirement;
+    row_of.reason = "frequency: the requirement, half a percent";
+    judge(&row_of);
+    row_of.error = hypot(f.q - size * cos(n * step.angle), f.p + size * step.axes * sin(n * step.angle));
+    row_of.bound = t->rounding + s->uncertainty + s->nonlinear / (whole * whole);
+    row_of.reason = s->nonlinear > 0 ? "motion with this step: rounding, and the amplitude"
+                                     : "motion with this step: rounding";
+    judge(&row_of);
+    row_of.error = fabs(f.phase / t->c->duration / s->compared - 1);
+    row_of.bound = s->comparison_bound + error_of_step;
+    row_of.reason = s->comparison;
+    judge(&row_of);
+}
+
+static void validate_mode(const scene_case *c, scene_problem *p, sheet_mode *s)
+{
+    const size_t axes = p->def.axes;
+    const double lowest = 2 * sin(acos(-1) / (2 * (s->N - 1))), amplitude = 1 / (s->omega * c->duration);
+    scene_case of = *c;
+    of.omega = s->omega;
+    of.slowest = sqrt(2 * s->stiffness_over_mass) * lowest;
+    of.fastest = sqrt((has_all_families(s) ? 24 : 8) * p->link->stiffness / p->mass[0]);
+    for (size_t i = 0; i < p->def.particles; i++)
+        p->position[axes * i + axes - 1] = p->pinned[i] ? 0 : amplitude * s->shape[i];
+    for (int m = SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
+        trial t = {.c = &of, .p = p, .m = (spring_method)m};
+        double *all = vectors(p, 2), *by_definition = all + 2 * p->moving;
+        t.run[0] = all;
+        t.rounding = scene_rounding(&of, p, t.m, step_of(&t, 0), of.steps[m], by_definition);
+        run(p, t.m, step_of(&t, 0), of.steps[m], t.run[0]);
+        against_same(&t, "definition", by_definition, 2, 0);
+        judge_mode(&t, s);
+        free(all);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------------- a case */
 
 static void same_method(const trial *t, const double *by_definition)
@@ -238,7 +535,14 @@ void validate_scene(const scene_case *c)
                           {.name = "cvode-adams", .solve = adams}};
     const size_t solver_count = c->peers ? sizeof solvers / sizeof solvers[0] : 0;
     scene_problem p;
+    sheet_mode mode;
     scene_problem_init(&p, c);
+    if (mode_of(c, &p, &mode)) {
+        validate_mode(c, &p, &mode);
+        free(mode.shape);
+        scene_problem_clear(&p);
+        return;
+    }
     for (adaptive *a = solvers; a < solvers + solver_count; a++)
         solve_adaptive(a, c, &p);
     for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {

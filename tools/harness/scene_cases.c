@@ -12,7 +12,9 @@
  * less than a tenth, and Euler's method amplifies by less than e. They are powers of two where a force depends on time.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "harness/reference.h"
 #include "harness/scenes.h"
@@ -294,6 +296,49 @@ static void build_water(const scene_case *c, scene_problem *p)
     p->def.drag = 0.5;
 }
 
+/* A sheet of 4 m in one of its modes, at rest, N particles along an edge; the name says which: ...-mode-P-Q-KIND-N.
+   Water has structural links alone, or links of all families, or those mirrored at the edges, or it is a sheet in space
+   under tension. All families as spring_grid_fill() makes them have no simple modes: a particle next to the edge lacks the
+   bend link to its mirror image, which has the opposite height. A link twice as stiff to the edge does the same. */
+static void build_mode(const scene_case *c, scene_problem *p)
+{
+    unsigned P = 0, Q = 0, N = 0;
+    char kind[16] = "";
+    if (sscanf(c->name, "%*[a-z]-mode-%u-%u-%15[a-z]-%u", &P, &Q, kind, &N) != 4)
+        exit(EXIT_FAILURE);
+    const bool tension = strcmp(kind, "tension") == 0, mirrored = strcmp(kind, "mirrored") == 0,
+               all = mirrored || strcmp(kind, "all") == 0;
+    const spring_grid g = {.count = {N, N},
+                           .axes = tension ? 3 : 1,
+                           .height = !tension,
+                           .spacing = 4.0 / (N - 1),
+                           .stretch = tension ? 1.25 : 0,
+                           .families = all ? SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND
+                                           : SPRING_GRID_STRUCTURAL,
+                           .stiffness = 25000,
+                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
+                                     SPRING_GRID_LAST_Y};
+    size_t particles, links;
+    if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
+        exit(EXIT_FAILURE);
+    make(p, g.axes, particles, links + (mirrored ? 4 * (N - 2) : 0));
+    spring_grid_fill(&g, p->position, p->pinned, p->link);
+    for (uint32_t i = 1; mirrored && i + 1 < N; i++) {
+        const uint32_t row = i * N, last = N * N - N,
+                       twice[][2] = {
+                           {row, row + 1}, {row + N - 2, row + N - 1}, {i, N + i}, {last - N + i, last + i}};
+        for (int side = 0; side < 4; side++)
+            p->link[links++] = (spring_link){twice[side][0], twice[side][1], 0, 2 * g.stiffness, 0};
+    }
+    for (size_t i = 0; i < particles; i++) {
+        p->mass[i] = 1;
+        if (!p->pinned[i])
+            p->position[g.axes * i + g.axes - 1] =
+                sin(pi * P * (double)(i % N) / (N - 1)) * sin(pi * Q * (double)(i / N) / (N - 1));
+    }
+    p->def.mass_all = 1;
+}
+
 /* ------------------------------------------------------------------------------------------------ linear scenes */
 
 /* n steps of one mode, x'' = -omega^2 x: a rotation and a growth in (x, v/scale). */
@@ -445,6 +490,20 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972
 #define LONG  .duration = 16, STEPS(1024, 512, 512)
 #define BRIEF .duration = 0.125, STEPS(4, 4, 4)
+/* A mode for some eighths of a second. RK4 takes about half its stable step, 2.61/sqrt(8 k/m) with structural links, with all
+   families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step alone makes the frequency of mode (3, 1) at
+   15 x 15 wrong by z^2/24, more than half a percent. .length and .omega follow from the mode. */
+#define MODE(name, purpose, eighths, leapfrog, rk4)                                                       \
+    {                                                                                                     \
+        name, purpose, build_mode, .duration = (eighths) / 8.0,                                           \
+                                   STEPS(0, (eighths) * (leapfrog), (eighths) * (rk4)), .closed = "modes" \
+    }
+#define WAVE(mode, N, eighths)                                                                              \
+    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43), \
+        MODE("water-mode-" mode "-mirrored-" N,                                                             \
+             "the same with all families of links, mirrored at the edges", (eighths) / 2, 121, 75),         \
+        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges",         \
+             (eighths) / 2, 121, 75)
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
@@ -509,6 +568,12 @@ const scene_case scene_cases[] = {
     {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
      STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .closed = "reduced-mass",
      .solution = solve_damped_pair, .peers = true},
+    /* standing waves */
+    WAVE("1-1", "15", 4),
+    WAVE("2-1", "15", 4),
+    WAVE("2-2", "15", 4),
+    WAVE("3-1", "15", 4),
+    MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43),
 };
 
 const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];
