@@ -206,17 +206,18 @@ static void time_method(cli_table *table, ready_kind kind, spring_method m, uint
     static const double directions[] = {
         [READY_ROPE] = 1, [READY_CLOTH] = 2, [READY_JELLY] = 3, [READY_CHAIN] = 1, [READY_WATER] = 2};
     const double most_size = 1e6;
+    const int rounds = 4;
     ready_settings settings = ready_defaults(kind);
     const double spacing = settings.length / (double)settings.size;
     double frame = 1;
-    for (int i = 0; i < 3; i++) {
+    for (int round = 0; round < rounds; round++) {
         const double size = (double)settings.size * pow(frame, -1 / directions[kind]);
         settings.size = (uint64_t)fmin(fmax(size, 3), most_size);
         settings.length = spacing * (double)settings.size;
         subject s;
         begin(&s, &settings);
         frame = time_frames(&s, m, substeps);
-        if (i == 2)
+        if (round == rounds - 1)
             cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", ready_names[kind],
                     methods[m], substeps, frame_time / (double)substeps, stable_step(&s, m),
                     s.ready.def.particles, s.ready.def.links, frame, (double)s.ready.def.particles / frame);

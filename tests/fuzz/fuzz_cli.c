@@ -10,7 +10,7 @@
 #include "fuzz.h"
 
 static uint64_t whole;
-static double number;
+static double number, numbers[3];
 static int choice;
 static const char *file;
 static bool flag;
@@ -21,7 +21,9 @@ static const cli_option options[] = {
     {"not-negative", CLI_NOT_NEGATIVE, .real = &number},
     {"positive", CLI_POSITIVE, .real = &number},
     {"method", CLI_CHOICE, .choice = &choice, .choices = cli_methods},
+    {"reals", CLI_REALS, .real = numbers, .least = 3},
     {"file", CLI_FILE, .file = &file},
+    {"folder", CLI_FOLDER, .file = &file},
     {"flag", CLI_FLAG, .flag = &flag},
     {.name = NULL},
 };
@@ -76,6 +78,30 @@ static void check_real(const char *word)
     }
 }
 
+/* A list is accepted exactly where each of its parts is, and there are three. */
+static void check_reals(const char *word)
+{
+    double values[3] = {1, 2, 3}, value = 0;
+    size_t parts = 0;
+    bool good = true;
+    for (const char *part = word, *end; part != NULL; part = *end == ',' ? end + 1 : NULL) {
+        char text[512];
+        end = part + strcspn(part, ",");
+        memcpy(text, part, (size_t)(end - part));
+        text[end - part] = '\0';
+        good = good && parse_real(text, &value);
+        if (good && parts < 3)
+            numbers[parts] = value;
+        parts++;
+    }
+    must(parse_reals(word, values, 3) == (good && parts == 3), "three numbers, or else", word);
+    if (good && parts == 3)
+        must(memcmp(values, numbers, sizeof values) == 0, "the values are others", word);
+    else
+        must(values[0] == 1 && values[1] == 2 && values[2] == 3, "a list that is refused changes nothing",
+             word);
+}
+
 static void check_options(const char *word)
 {
     for (const cli_option *o = options; o->name != NULL; o++) {
@@ -86,7 +112,7 @@ static void check_options(const char *word)
         must(o->kind != CLI_NOT_NEGATIVE || number >= 0, "a negative number", word);
         must(o->kind != CLI_POSITIVE || number > 0, "not a positive number", word);
         must(o->kind != CLI_CHOICE || strcmp(word, cli_methods[choice]) == 0, "another choice", word);
-        must(o->kind != CLI_FILE || *word != '\0', "no name", word);
+        must((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
     }
     const char *value;
     const cli_option *o = option_of(word, &value);
@@ -107,6 +133,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     program = &fuzzed;
     check_count(word);
     check_real(word);
+    check_reals(word);
     check_options(word);
     return 0;
 }
