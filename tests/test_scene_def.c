@@ -268,6 +268,62 @@ static void bytes_of_a_scene(void)
           "a scene of one particle: the plan and 16 numbers before and after each array");
 }
 
+/* What lies behind the arrays of a definition is not looked at. */
+static void looks_no_further(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < 2; features++) {
+            build(&m, (uint32_t[]){7, 3, 1}, axes, features ? MASSES | PINNED | DRAG : 0);
+            const size_t bytes = bytes_of(&m.def);
+            for (uint32_t a = 0; a < axes; a++) {
+                m.position[m.def.particles * axes + a] = NAN;
+                m.velocity[m.def.particles * axes + a] = INFINITY;
+            }
+            m.mass[m.def.particles] = -1;
+            m.pinned[m.def.particles] = 0;
+            m.link[m.def.links] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
+            CHECK(SCENE(check)(&m.def, NULL, NULL) == SPRING_OK, "what is wrong lies behind");
+            CHECK(bytes_of(&m.def) == bytes, "and takes no room");
+            scene *s = scene_of(&m.def);
+            for (int method = SPRING_EULER; method <= SPRING_RK4; method++)
+                CHECK(SCENE(advance)(s, (spring_method)method, 0.009, 2) == SPRING_OK, "nor does it move");
+            CHECK(SCENE(stable_step)(s, SPRING_LEAPFROG) > 0, "or limit anything");
+            free(s);
+        }
+}
+
+/* As many particles and links as may be asked for, and one more; the lightest and the heaviest mass. */
+static void definitions_at_the_limits(void)
+{
+    build(&good, sheet, 2, MASSES);
+    scene_def *d = &good.def;
+    if (sizeof(size_t) > sizeof(uint32_t)) { /* what is missing then is found first */
+        d->position = NULL;
+        d->particles = UINT32_MAX - padding;
+        check_refused(SPRING_EINVAL, "position", 0);
+        d->particles++;
+        check_refused(SPRING_ERANGE, "particles", 0);
+        build(&good, sheet, 2, MASSES);
+        d->link = NULL;
+        d->links = UINT32_MAX / 8;
+        check_refused(SPRING_EINVAL, "link", 0);
+        d->links++;
+        check_refused(SPRING_ERANGE, "links", 0);
+    }
+    build(&good, sheet, 2, MASSES);
+    d->link = NULL;
+    d->links = 1;
+    check_refused(SPRING_EINVAL, "link", 0);
+    d->links = 0;
+    const double largest = sizeof(scalar) == 4 ? (double)FLT_MAX : DBL_MAX;
+    const double extreme[] = {1.5 / largest, largest};
+    for (int i = 0; i < 2; i++) {
+        good.mass[7] = extreme[i];
+        CHECK(SCENE(check)(d, NULL, NULL) == SPRING_OK, "it and its inverse are finite, and not 0");
+    }
+}
+
 /* ------------------------------------------------------------------------------------------- ropes, sheets, blocks */
 
 static const spring_grid grids[] = {
@@ -456,10 +512,16 @@ static void grids_at_the_limits(void)
 int main(void)
 {
     static const test tests[] = {
-        {"what is refused, and by what name", refused}, {"what is accepted", accepted},
-        {"memory too small or misaligned", bad_memory}, {"bytes of a particle", bytes_of_a_particle},
-        {"bytes of a link", bytes_of_a_link},           {"bytes of a scene", bytes_of_a_scene},
-        {"ropes, sheets and blocks", every_grid},       {"bad grids", bad_grids},
+        {"what is refused, and by what name", refused},
+        {"what is accepted", accepted},
+        {"memory too small or misaligned", bad_memory},
+        {"bytes of a particle", bytes_of_a_particle},
+        {"bytes of a link", bytes_of_a_link},
+        {"bytes of a scene", bytes_of_a_scene},
+        {"looks no further", looks_no_further},
+        {"definitions at the limits", definitions_at_the_limits},
+        {"ropes, sheets and blocks", every_grid},
+        {"bad grids", bad_grids},
         {"grids at the limits", grids_at_the_limits},
     };
     return RUN_TESTS("scene_def", tests);

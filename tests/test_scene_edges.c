@@ -88,6 +88,12 @@ static void time_stays_finite(void)
 #endif
     CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "one such step is possible");
     CHECK_BITS(SCENE(time)(s), dt, "dt");
+#ifndef SPRING_FLOAT
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_ENONFINITE,
+          "a second one of the same run is not");
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, -dt, 1) == SPRING_OK && SCENE(time)(s) == 0, "back it may go");
+    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "and forth");
+#endif
     CHECK(SCENE(advance)(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK,
           "a step that is no step in this precision");
     CHECK_BITS(SCENE(time)(s), dt, "takes no time");
@@ -208,6 +214,97 @@ static void one_damper(void)
     }
 }
 
+static void hold(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                 scalar *const force[3])
+{
+    (void)t, (void)x, (void)v;
+    for (size_t i = 0; i < particles; i++)
+        force[1][i] += *(const scalar *)user;
+}
+
+/* Particles of equal mass that a force holds against gravity are at rest, however many they are. */
+static void at_rest_against_gravity(void)
+{
+    for (size_t particles = 1; particles <= count; particles++) {
+        const double position[3 * count] = {0};
+        scalar weight = 10; /* [N] of 1.25 kg at 8 m/s^2: exact */
+        const scene_def def = {.particles = particles,
+                               .position = position,
+                               .mass_all = 1.25,
+                               .gravity = {0, -8, 0},
+                               .force = hold,
+                               .user = &weight};
+        scene *s = scene_of(&def);
+        CHECK(SCENE(at_rest)(s, 0, 0), "10 N/1.25 kg - 8 m/s^2 is 0, exactly");
+        free(s);
+    }
+}
+
+/* One bad element is enough on any axis there is, and of no interest on others. */
+static void gravity_of_axes(void)
+{
+    const double position[] = {0, 0, 0};
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        const scene_def def = {.axes = axes, .particles = 1, .position = position};
+        scene *s = scene_of(&def);
+        for (uint32_t bad = 0; bad < 3; bad++) {
+            double gravity[] = {0.5, 0.5, 0.5}, v[3] = {0};
+            gravity[bad] = NAN;
+            const spring_status want = bad < axes ? SPRING_EINVAL : SPRING_OK;
+            CHECK(SCENE(set_gravity)(s, gravity) == want, "elements beyond the axes are ignored");
+            SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, 1);
+            SCENE(advance)(s, SPRING_EULER, 0.5, 1);
+            SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 1);
+            for (uint32_t a = 0; a < axes; a++)
+                CHECK_BITS(v[a], want == SPRING_OK ? 0.25 : 0, "as set, or as it was");
+        }
+        free(s);
+    }
+}
+
+/* Weak links limit Euler's step as strong ones do; a single damper limits leapfrog's. */
+static void limits_of_weak_links(void)
+{
+    const double position[] = {0, 1}, k = 0.05, c = 2.3, m = 1.3, drag = 0.03;
+    for (int damper = 0; damper < 2; damper++) {
+        const spring_link link = {0, 1, 0.6, k, damper ? c : 0};
+        const scene_def def = {.axes = 1,
+                               .particles = 2,
+                               .links = 1,
+                               .position = position,
+                               .mass_all = m,
+                               .link = &link,
+                               .drag = drag};
+        scene *s = scene_of(&def);
+        const double G = (drag + (damper ? 2 * c : 0)) / m, omega = sqrt(2 * k / m);
+        const double euler = fmin(drag / (2 * k), 2 / G),
+                     leapfrog = damper ? fmin(2 / omega, 2 / G) : 2 / omega;
+        CHECK(!damper || 2 / G < 1 / omega, "it is the damper that limits");
+        CHECK_CLOSE(SCENE(stable_step)(s, SPRING_EULER), euler, 8 * EPS * euler,
+                    "d/K or 2/G, a few roundings");
+        CHECK_CLOSE(SCENE(stable_step)(s, SPRING_LEAPFROG), leapfrog, 8 * EPS * leapfrog,
+                    "2/omega or 2/G, a few roundings");
+        free(s);
+    }
+}
+
+/* A damped link of length 0 has no direction in which it could grow: it pulls, or pushes, by its stiffness alone. */
+static void tension_at_length_zero(void)
+{
+    const double position[] = {0.3, 0.4, 0.5, 0.3, 0.4, 0.5}, velocity[] = {0, 0, 0, 1, 2, 3};
+    const spring_link link = {0, 1, 0.5, 6, 0.7};
+    for (uint32_t axes = 2; axes <= 3; axes++) {
+        double x[6];
+        for (size_t i = 0; i < 2 * axes; i++)
+            x[i] = position[i % axes];
+        const scene_def def = {
+            .axes = axes, .particles = 2, .links = 1, .position = x, .velocity = velocity, .link = &link};
+        scene *s = scene_of(&def);
+        CHECK_BITS(SCENE(tension)(s, 0), -3, "6 N/m (0 - 0.5 m), exactly");
+        free(s);
+    }
+}
+
 /* Without links drag alone limits Euler's step. */
 static void limit_of_drag_alone(void)
 {
@@ -264,6 +361,10 @@ int main(void)
         {"drag without bias", drag_without_bias},
         {"drag of 1", drag_of_one},
         {"one damper", one_damper},
+        {"at rest against gravity", at_rest_against_gravity},
+        {"gravity on the axes there are", gravity_of_axes},
+        {"limits of weak links", limits_of_weak_links},
+        {"tension at length 0", tension_at_length_zero},
     };
     return RUN_TESTS("scene-edges", tests);
 }

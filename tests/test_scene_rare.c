@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: springs or dampers alone, what comes between two steps that share a force, bad numbers at the
+/* What is rare in scenes: springs or dampers alone, what makes a row of links, what comes between two steps that share a force, bad numbers at the
    end, a scene that is lost. */
 #include "test_scene.h"
 
@@ -43,6 +43,111 @@ static void weak_links(void)
             }
             free(s);
         }
+}
+
+/* So many links of an offset, from particle `first` on, the last of them moved up to particle `last`: rows, or none. */
+static uint32_t rows_of(uint32_t links, uint32_t offset, uint32_t first, uint32_t last)
+{
+    static const double position[3 * 1200];
+    spring_link link[64];
+    for (uint32_t i = 0; i < links; i++) {
+        const uint32_t lower = i + 1 < links ? first + i : last;
+        link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0};
+    }
+    const scene_def def = {
+        .particles = last + offset + 1, .links = links, .position = position, .link = link};
+    scene *s = scene_of(&def);
+    const uint32_t rows = s->plan.rows;
+    CHECK(s->plan.list_links == (rows == 0 ? links : 0), "in a row, or in the list");
+    free(s);
+    return rows;
+}
+
+/* Eight links make a row if they take a quarter of its places. */
+static void what_makes_a_row(void)
+{
+    for (uint32_t first = 0; first < 500; first += 499)
+        for (uint32_t offset = 1; offset <= 256; offset += 255) {
+            CHECK(rows_of(8, offset, first, first + 7) == 1, "eight links");
+            CHECK(rows_of(7, offset, first, first + 6) == 0, "seven links are too few");
+            CHECK(rows_of(10, offset, first, first + 42) == 1, "10 of 43 places, a quarter rounded down");
+            CHECK(rows_of(10, offset, first, first + 43) == 0, "10 of 44 places are less than a quarter");
+        }
+}
+
+/* A step of leapfrog of links alone, against a plain loop: x1 = x + dt (v + dt/2 F/m). */
+static void check_drift(const model *m, const scene *end, const state *start)
+{
+    static state y;
+    const double dt = 0.013, mass = m->def.mass_all;
+    const uint32_t axes = m->def.axes;
+    double force[3 * most] = {0}, size[most] = {0};
+    plain_forces(&m->def, axes, start->x, start->v, force, size);
+    get_state(end, m->def.particles, &y);
+    for (size_t i = 0; i < m->def.particles * axes; i++) {
+        const double half = start->v[i] + dt / 2 * force[i] / mass;
+        const double kick = dt / 2 * size[i / axes] / mass * (40 + (double)m->def.links);
+        CHECK_CLOSE(y.x[i], start->x[i] + dt * half,
+                    EPS * (fabs(start->x[i]) + dt * (3 * fabs(start->v[i]) + kick)),
+                    "a force to 40 eps and one for each link, velocity to 3, the start to 1");
+    }
+}
+
+/* Two links between the same two particles, in the middle of a row. */
+static void parallel_links(void)
+{
+    static model m;
+    static state start;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned own = 0; own <= OWN; own += OWN) {
+            build(&m, (uint32_t[]){21, 1, 1}, axes, own);
+            size_t links = 0;
+            static spring_link link[most_links];
+            for (size_t i = 0; i < m.def.links; i++) {
+                link[links++] = m.link[i];
+                if (i % 7 == 4)
+                    link[links++] = m.link[i];
+            }
+            m.def.link = link;
+            m.def.links = links;
+            scene *s = scene_of(&m.def);
+            get_state(s, m.def.particles, &start);
+            CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
+            check_drift(&m, s, &start);
+            free(s);
+        }
+}
+
+/* More offsets than there is room for rows. */
+static void many_offsets(void)
+{
+    enum { offsets = most_rows + 8, lowers = 10 };
+    static model m;
+    static state start;
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        build(&m, (uint32_t[]){lowers + offsets, 1, 1}, axes, 0);
+        m.def.links = 0;
+        for (uint32_t offset = offsets; offset > 0; offset--)
+            for (uint32_t i = 0; i < lowers; i++)
+                m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
+        scene *s = scene_of(&m.def);
+        CHECK(s->plan.rows == most_rows && s->plan.list_links == (offsets - most_rows) * lowers,
+              "what has no row is in the list");
+        get_state(s, m.def.particles, &start);
+        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
+        check_drift(&m, s, &start);
+        free(s);
+    }
+}
+
+/* A block with diagonals and bending links has sixteen offsets, and each its row. */
+static void rows_of_a_block(void)
+{
+    static model m;
+    build(&m, (uint32_t[]){5, 6, 7}, 3, 0);
+    scene *s = scene_of(&m.def);
+    CHECK(s->plan.rows == 16 && s->plan.list_links == 0, "no link is left for the list");
+    free(s);
 }
 
 /* The stable step is found in the memory of the forces: those of the last step must not be taken from there then. */
@@ -186,6 +291,10 @@ int main(void)
 {
     static const test tests[] = {
         {"weak springs, weak dampers", weak_links},
+        {"what makes a row", what_makes_a_row},
+        {"parallel links", parallel_links},
+        {"many offsets", many_offsets},
+        {"rows of a block", rows_of_a_block},
         {"a question after an edit", question_after_edit},
         {"a gap", gap},
         {"a callback between steps", callback_between_steps},
