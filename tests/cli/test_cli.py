@@ -679,7 +679,7 @@ def check_work_rows(problem, rows):
     equal({r['problem'] for r in rows}, {problem}, f'work {problem}: --problem')
     check(all(r[name].isdecimal() for r in rows for name in ('steps', 'force_evaluations')),
           f'work {problem}: counts are whole numbers', rows)
-    check(all(float(r['time_s']) > 0 and 0 <= float(r['error']) <= 1 for r in rows), f'work {problem}: times and errors', rows)
+    check(all(float(r['time_s']) > 0 and 0 <= float(r['error']) <= 3 for r in rows), f'work {problem}: times and errors', rows)
     check(a_step.keys() < {r['solver'] for r in rows}, f'work {problem}: all solvers with fixed steps', rows)
     equal([r for r in rows if r['solver'] in a_step
            and not 0 <= int(r['force_evaluations']) - a_step[r['solver']] * int(r['steps']) <= 1], [],

@@ -46,6 +46,9 @@ static const char *open_session(session *s, const ode *o, double *y, double tole
     *s = (session){0};
     if (SUNContext_Create(NO_COMMUNICATOR, &s->context) != 0)
         return "SUNDIALS: no context";
+#if SUNDIALS_VERSION_MAJOR >= 7 /* what goes wrong is returned, not printed; before: see each solver */
+    SUNContext_ClearErrHandlers(s->context);
+#endif
     s->y = N_VMake_Serial((sunindextype)o->size, y, s->context);
     s->tolerance = N_VNew_Serial((sunindextype)o->size, s->context);
     if (s->y == NULL || s->tolerance == NULL)
@@ -71,6 +74,25 @@ static void close_session(session *s)
         SUNContext_Free(&s->context);
 }
 
+static void cvode_silently(void *memory)
+{
+#if SUNDIALS_VERSION_MAJOR < 7
+    CVodeSetErrFile(memory, NULL);
+#else
+    (void)memory;
+#endif
+}
+
+static void arkstep_silently(void *memory)
+{
+#if SUNDIALS_VERSION_MAJOR < 7
+    if (memory != NULL)
+        ARKStepSetErrFile(memory, NULL);
+#else
+    (void)memory;
+#endif
+}
+
 /* Above, CVODE's manual would have a sparse solver or an iterative one, for a dense matrix takes size^3 operations. */
 static const size_t dense_at_most = 100;
 
@@ -80,6 +102,7 @@ static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_m
     s->memory = CVodeCreate(method == ODE_ADAMS ? CV_ADAMS : CV_BDF, s->context);
     if (s->memory == NULL || CVodeInit(s->memory, derivative, 0, s->y) != CV_SUCCESS)
         return "CVODE: cannot start";
+    cvode_silently(s->memory);
     if (CVodeSVtolerances(s->memory, tolerance, s->tolerance) != CV_SUCCESS ||
         CVodeSetUserData(s->memory, o) != CV_SUCCESS || CVodeSetMaxNumSteps(s->memory, -1) != CV_SUCCESS ||
         CVodeSetStopTime(s->memory, duration) != CV_SUCCESS)
@@ -138,6 +161,7 @@ const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
     double t = 0;
     if (message == NULL) {
         s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
+        arkstep_silently(s.memory);
         if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
             ARKStepSetTables(s.memory, 4, 0, NULL, table) != ARK_SUCCESS ||
             ARKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
@@ -164,6 +188,7 @@ const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tole
     long steps = 0;
     if (message == NULL) {
         s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
+        arkstep_silently(s.memory);
         if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
             ARKStepSetOrder(s.memory, 4) != ARK_SUCCESS ||
             ARKStepSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
