@@ -1,0 +1,618 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Any bytes as a small scene and what is done to it, in double or (FUZZ_FLOAT) in float: a definition, good or bad, then
+ * steps, changes and questions. Two scenes of the same definition, in memory that held different things, live the same
+ * life, one in calls of n steps, one in n calls; guards lie around their blocks.
+ *
+ * Every choice is a byte, and so are most numbers, in sixteenths; in wild inputs some are extreme, and some any eight bytes.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <springstep/scene.h>
+
+#include "fuzz.h"
+
+#ifdef FUZZ_FLOAT
+#define SCENE(verb) spring_scenef_##verb
+typedef spring_scenef scene;
+typedef spring_scenef_def scene_def;
+typedef float scalar;
+#else
+#define SCENE(verb) spring_scene_##verb
+typedef spring_scene scene;
+typedef spring_scene_def scene_def;
+typedef double scalar;
+#endif
+
+enum { most_particles = 80, most_links = 1000, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };
+
+static void must(bool holds, const char *what)
+{
+    if (holds)
+        return;
+    fprintf(stderr, "fuzz_scene: %s\n", what);
+    abort();
+}
+
+/* ---------------------------------------------------------------------------------------------- bytes as choices */
+
+static const uint8_t *next, *end;
+static bool wild;
+
+static uint8_t take(void)
+{
+    return next < end ? *next++ : 0;
+}
+
+static uint32_t choose(uint32_t count)
+{
+    return take() % count;
+}
+
+static double number(void)
+{
+    static const double extreme[] = {
+        0.0,   -0.0,   INFINITY, -INFINITY, NAN,   DBL_MAX, -DBL_MAX, DBL_MIN, 5e-324, 1e300, 1e-300,
+        1e154, 1e-154, 1e38,     -1e38,     1e-38, FLT_MAX, -FLT_MAX, FLT_MIN, 1e-45,  1e19,  1e-19};
+    const uint32_t extremes = sizeof extreme / sizeof extreme[0], harmless = 228;
+    const uint32_t byte = take();
+    if (byte < harmless || !wild)
+        return (byte - harmless / 2.0) / 16;
+    if (byte < harmless + extremes)
+        return extreme[byte - harmless];
+    double any;
+    uint8_t bits[sizeof any];
+    for (size_t i = 0; i < sizeof bits; i++)
+        bits[i] = take();
+    memcpy(&any, bits, sizeof any);
+    return any;
+}
+
+/* Not negative, as long as the byte is a harmless one. */
+static double size(void)
+{
+    const double any = number();
+    return any < 0 && any > -8 ? -any : any;
+}
+
+/* ---------------------------------------------------------------------------------------------------- definitions */
+
+typedef struct definition {
+    scene_def def;
+    double position[3 * most_particles], velocity[3 * most_particles], mass[most_particles];
+    uint8_t pinned[most_particles];
+    spring_link link[most_links];
+} definition;
+
+#define CALLBACK(name)                                                                        \
+    static void name(void *user, double t, size_t particles, const scalar *const position[3], \
+                     const scalar *const velocity[3], scalar *const force[3])
+
+CALLBACK(still)
+{
+    (void)user, (void)velocity;
+    for (size_t i = 0; i < particles; i++)
+        force[0][i] += (scalar)0.5 * (scalar)sin(t) - position[0][i];
+}
+
+CALLBACK(moving)
+{
+    (void)user, (void)t, (void)position;
+    for (size_t i = 0; i < particles; i++)
+        force[0][i] -= velocity[0][i] * velocity[0][i];
+}
+
+/* A link between any two particles; now and then one that is not there, or to itself. */
+static spring_link any_link(size_t particles)
+{
+    const uint32_t count = (uint32_t)(particles > 1 ? particles : 2), a = choose(count),
+                   b = (a + 1 + choose(count - 1)) % count, other = choose(64) == 63 ? choose(count + 1) : b;
+    return (spring_link){a, other, size(), size(), choose(2) == 0 ? 0 : size()};
+}
+
+static void loose(definition *d)
+{
+    d->def.particles = choose(13);
+    d->def.links = choose(25);
+    for (size_t i = 0; i < 3 * d->def.particles; i++)
+        d->position[i] = number();
+    for (size_t i = 0; i < d->def.links; i++)
+        d->link[i] = any_link(d->def.particles);
+}
+
+static void check_links(const spring_grid *g, const definition *d)
+{
+    for (size_t i = 0; i < d->def.links; i++) {
+        const spring_link *link = &d->link[i];
+        must(link->a < link->b && link->b < d->def.particles && link->stiffness == g->stiffness &&
+                 link->damping == g->damping && link->rest >= 0,
+             "a grid's links join its particles");
+        for (size_t j = i; j > 0 && d->link[j - 1].a == link->a; j--)
+            must(d->link[j - 1].b != link->b, "no two of them join the same");
+    }
+}
+
+/* A grid, or loose links where there is none. Nothing is written behind what it says it needs. */
+static void grid(definition *d)
+{
+    const spring_grid g = {
+        .count = {choose(6), choose(6), choose(4)},
+        .axes = choose(5),
+        .height = choose(2),
+        .spacing = size(),
+        .stretch = size(),
+        .families = choose(9),
+        .stiffness = size(),
+        .damping = choose(2) == 0 ? 0 : size(),
+        .pinned = choose(65),
+    };
+    const spring_link nothing = {77, 77, 77, 77, 77};
+    const double untouched = 77;
+    size_t particles = 0, links = 0;
+    for (size_t i = 0; i < most_links; i++)
+        d->link[i] = nothing;
+    for (size_t i = 0; i < 3 * most_particles; i++)
+        d->position[i] = untouched;
+    const spring_status status = spring_grid_size(&g, &particles, &links);
+    must(status == SPRING_OK || status == SPRING_EINVAL, "a small grid is good or bad");
+    must(status != SPRING_OK || (particles <= most_particles && links < most_links), "few enough");
+    must(spring_grid_fill(&g, d->position, d->pinned, d->link) == status, "both say the same");
+    const uint32_t axes = g.height ? 1 : g.axes == 0 ? 3 : g.axes;
+    const size_t numbers = status == SPRING_OK ? axes * particles : 0;
+    must(d->position[numbers] == untouched || numbers == 3 * most_particles, "no position too many");
+    must(memcmp(&d->link[links], &nothing, sizeof nothing) == 0, "no link too many");
+    if (status != SPRING_OK) {
+        loose(d);
+        return;
+    }
+    d->def.axes = axes;
+    d->def.particles = particles;
+    d->def.links = links;
+    check_links(&g, d);
+}
+
+/* Some links the other way round, some stiffer than the others, some gone. */
+static void disturb(definition *d)
+{
+    const uint32_t how = take(), every = 1 + choose(8);
+    size_t kept = 0;
+    for (size_t i = 0; i < d->def.links; i++) {
+        spring_link link = d->link[i];
+        if (how & 1 && i % every == 0) {
+            link.a = d->link[i].b;
+            link.b = d->link[i].a;
+        }
+        if (how & 2 && i % 3 == 0)
+            link.stiffness += (double)every;
+        if (!(how & 4) || i % 5 != 0)
+            d->link[kept++] = link;
+    }
+    d->def.links = kept;
+}
+
+static void define(definition *d)
+{
+    memset(d, 0, sizeof *d);
+    const uint32_t axes = choose(5), what = take();
+    wild = choose(4) == 0;
+    d->def.flags = choose(9);
+    d->def.methods = choose(4) == 3 ? choose(17) : choose(8);
+    d->def.axes = axes == 4 && choose(8) > 0 ? 1 : axes;
+    if (what & 1)
+        grid(d);
+    else
+        loose(d);
+    disturb(d);
+    for (size_t i = 0; i < d->def.particles; i++) {
+        d->mass[i] = what & 2 ? size() : 1.3;
+        d->pinned[i] = what & 4 ? (uint8_t)choose(2) : d->pinned[i];
+    }
+    for (size_t i = 0; i < 3 * d->def.particles; i++)
+        d->velocity[i] = what & 8 ? number() : 0;
+    for (int i = 0; i < 3; i++)
+        d->def.gravity[i] = what & 16 ? number() : 0;
+    d->def.drag = what & 32 ? size() : 0;
+    d->def.mass_all = what & 64 ? size() : 0;
+    d->def.position = choose(64) == 63 ? NULL : d->position;
+    d->def.velocity = what & 8 ? d->velocity : NULL;
+    d->def.mass = what & 2 ? d->mass : NULL;
+    d->def.pinned = d->pinned;
+    d->def.link = choose(64) == 63 ? NULL : d->link;
+    if (what & 128)
+        d->def.force = choose(2) == 0 || d->def.flags & SPRING_SCENE_FORCE_STILL ? still : moving;
+}
+
+/* --------------------------------------------------------------------------------------------------------- a scene */
+
+/* A block between guards. */
+typedef struct place {
+    uint8_t *all, fill;
+    size_t bytes;
+    scene *s;
+} place;
+
+static place place_for(size_t bytes, uint8_t fill)
+{
+    place p = {aligned_alloc(SPRING_SCENE_ALIGN, bytes + 2 * guard), fill, bytes, NULL};
+    must(p.all != NULL, "memory");
+    memset(p.all, fill, bytes + 2 * guard);
+    return p;
+}
+
+static void check_guards(const place *p)
+{
+    for (size_t i = 0; i < guard; i++)
+        must(p->all[i] == p->fill && p->all[guard + p->bytes + i] == p->fill,
+             "nothing outside the block changes");
+}
+
+typedef struct state {
+    double x[3 * most_particles], v[3 * most_particles], tension[most_links], time;
+} state;
+
+/* All that can be seen of a scene but its forces. */
+static void look(const scene *s, const definition *d, state *y)
+{
+    memset(y, 0, sizeof *y);
+    must(SCENE(get)(s, SPRING_POSITION, y->x, 3, 0, d->def.particles) == SPRING_OK &&
+             SCENE(get)(s, SPRING_VELOCITY, y->v, 3, 0, d->def.particles) == SPRING_OK,
+         "the state can be had");
+    for (size_t i = 0; i < d->def.links; i++)
+        y->tension[i] = SCENE(tension)(s, i);
+    y->time = SCENE(time)(s);
+}
+
+static bool same_numbers(const double *a, const double *b, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i]))) /* NaN has many forms */
+            return false;
+    return true;
+}
+
+static bool same(const state *a, const state *b)
+{
+    return same_numbers(a->x, b->x, sizeof *a / sizeof(double));
+}
+
+static bool finite(const state *y)
+{
+    for (size_t i = 0; i < 3 * most_particles; i++)
+        if (!isfinite(y->x[i]) || !isfinite(y->v[i]))
+            return false;
+    return true;
+}
+
+/* Both scenes, and what is known of them. */
+typedef struct life {
+    definition *d;
+    place one, other;
+    uint32_t axes;
+    bool broken; /* an advance without undo has failed */
+} life;
+
+/* The other one becomes a copy, as a snapshot is taken. */
+static void copy_over(life *l)
+{
+    memcpy(l->other.s, l->one.s, l->one.bytes);
+}
+
+static void must_agree(const life *l)
+{
+    static state a, b;
+    look(l->one.s, l->d, &a);
+    look(l->other.s, l->d, &b);
+    must(same(&a, &b), "the same life, to the bit");
+}
+
+static void advance(life *l)
+{
+    static state before, after;
+    const spring_method m = (spring_method)((int)choose(6) - 1);
+    const double dt = choose(4) == 0 ? number() : number() / 64;
+    const uint64_t n = choose(20);
+    look(l->one.s, l->d, &before);
+    const spring_status status = SCENE(advance)(l->one.s, m, dt, n);
+    look(l->one.s, l->d, &after);
+    must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED ||
+             status == SPRING_ENONFINITE,
+         "no other status is documented");
+    l->broken = l->broken && !finite(&before); /* what was set may be all that was lost */
+    if (l->broken)
+        must(status != SPRING_OK || n == 0 || dt == 0, "a lost scene does not move");
+    else if (status == SPRING_ENONFINITE && l->d->def.flags & SPRING_SCENE_NO_UNDO)
+        l->broken = true;
+    else if (status != SPRING_OK || n == 0 || dt == 0)
+        must(same(&before, &after), "an error, or nothing to do, changes nothing");
+    else
+        must(finite(&after), "the state is finite after SPRING_OK");
+    if (status == SPRING_OK)
+        for (uint64_t i = 0; i < n; i++)
+            must(SCENE(advance)(l->other.s, m, dt, 1) == SPRING_OK, "n steps are n calls");
+    else
+        copy_over(l);
+}
+
+/* A range of particles, in order or beyond them. */
+static void set(life *l)
+{
+    static state before, after;
+    double in[4 * most_particles];
+    const spring_quantity q = (spring_quantity)choose(3);
+    const size_t first = choose(90), count = choose(90), stride = choose(5);
+    const bool fits = first <= l->d->def.particles && count <= l->d->def.particles - first;
+    bool good = true;
+    const size_t apart = stride == 0 ? l->axes : stride;
+    for (size_t i = 0; i < sizeof in / sizeof in[0]; i++)
+        in[i] = 0.25 * (double)(i % 16);
+    for (size_t i = 0; i < count && i < 4; i++) {
+        in[i * apart] = number();
+        good = good && isfinite((scalar)in[i * apart]);
+    }
+    look(l->one.s, l->d, &before);
+    const spring_status status = SCENE(set)(l->one.s, q, in, stride, first, fits ? count : 90);
+    must(SCENE(set)(l->other.s, q, in, stride, first, fits ? count : 90) == status, "the same answer");
+    look(l->one.s, l->d, &after);
+    if (status != SPRING_OK) {
+        must(status == SPRING_EINVAL || status == SPRING_ERANGE, "no other status is documented");
+        must(same(&before, &after), "an error changes nothing");
+        return;
+    }
+    must(good && fits && q <= SPRING_VELOCITY && apart >= l->axes, "it was in order");
+    const double *now = q == SPRING_POSITION ? after.x : after.v;
+    for (size_t i = 0; i < count; i++)
+        for (size_t a = 0; a < l->axes; a++)
+            must(now[3 * (first + i) + a] == (double)(scalar)in[i * apart + a], "what is set is got");
+}
+
+/* All of it, so that a scene that was lost lives again. */
+static void set_all(life *l)
+{
+    double x[3 * most_particles], v[3 * most_particles];
+    for (size_t i = 0; i < 3 * most_particles; i++) {
+        x[i] = 0.5 * (double)(i % 11);
+        v[i] = 0.125 * (double)(i % 5);
+    }
+    for (int i = 0; i < 2; i++) {
+        scene *s = i == 0 ? l->one.s : l->other.s;
+        must(SCENE(set)(s, SPRING_POSITION, x, 0, 0, l->d->def.particles) == SPRING_OK &&
+                 SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, l->d->def.particles) == SPRING_OK,
+             "any finite state will do");
+    }
+    l->broken = false;
+}
+
+static void get(const life *l)
+{
+    static state whole;
+    double out[4 * most_particles + 1];
+    float outf[4 * most_particles + 1];
+    const size_t first = choose(90), count = choose(90), stride = choose(5),
+                 apart = stride == 0 ? l->axes : stride;
+    const spring_quantity q = (spring_quantity)choose(3);
+    for (size_t i = 0; i < sizeof out / sizeof out[0]; i++) {
+        out[i] = 77;
+        outf[i] = 77;
+    }
+    const bool fits = first <= l->d->def.particles && count <= l->d->def.particles - first;
+    const spring_status status = SCENE(get)(l->one.s, q, out, stride, first, count);
+    must(SCENE(getf)(l->one.s, q, outf, stride, first, count) == status, "both say the same");
+    must(status == (q > SPRING_VELOCITY || apart < l->axes ? SPRING_EINVAL
+                    : !fits                                ? SPRING_ERANGE
+                                                           : SPRING_OK),
+         "as documented");
+    look(l->one.s, l->d, &whole);
+    for (size_t i = 0; i < sizeof out / sizeof out[0]; i++) {
+        const bool written = status == SPRING_OK && i < count * apart && i % apart < l->axes;
+        must(written || (out[i] == 77 && outf[i] == 77), "between the particles nothing is written");
+        const double *all = q == SPRING_POSITION ? whole.x : whole.v;
+        must(!written || same_numbers(&out[i], &all[3 * (first + i / apart) + i % apart], 1),
+             "that very particle");
+        if (written && fabs(out[i]) <= (double)FLT_MAX)
+            must(outf[i] == (float)out[i], "in float the same");
+    }
+}
+
+static void set_link(life *l)
+{
+    static state before, after;
+    const size_t index = choose(most_links);
+    spring_link link = any_link(l->d->def.particles);
+    if (index < l->d->def.links && choose(4) > 0) {
+        link.a = l->d->link[index].a;
+        link.b = l->d->link[index].b;
+    }
+    look(l->one.s, l->d, &before);
+    const spring_status status = SCENE(set_link)(l->one.s, index, &link);
+    must(SCENE(set_link)(l->other.s, index, &link) == status, "the same answer");
+    if (status == SPRING_OK) {
+        must(l->d->def.flags & SPRING_SCENE_EDITABLE && index < l->d->def.links, "it may be changed");
+        l->d->link[index] = link;
+        return;
+    }
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
+         "no other status is documented");
+    look(l->one.s, l->d, &after);
+    must(same(&before, &after), "an error changes nothing");
+}
+
+static void set_gravity(life *l)
+{
+    const double gravity[3] = {number(), number(), number()};
+    const spring_status status = SCENE(set_gravity)(l->one.s, gravity);
+    must(SCENE(set_gravity)(l->other.s, gravity) == status, "the same answer");
+    must(status == SPRING_OK || status == SPRING_EINVAL, "no other status is documented");
+    if (status == SPRING_OK)
+        memcpy(l->d->def.gravity, gravity, sizeof gravity);
+}
+
+/* From the definition. Numbers that come near the largest or least of a float are left out. */
+static void check_tensions(const life *l)
+{
+    static state y;
+    const double most = 1e30, least = 1e-30, part = sizeof(scalar) == sizeof(float) ? 1e-5 : 1e-13;
+    look(l->one.s, l->d, &y);
+    for (size_t i = 0; i < l->d->def.links && !wild; i++) {
+        const spring_link *link = &l->d->link[i];
+        double length = 0, rate = 0, reach = link->rest, speed = 0;
+        for (size_t a = 0; a < l->axes; a++) {
+            const double *xa = &y.x[3 * link->a + a], *xb = &y.x[3 * link->b + a];
+            const double *va = &y.v[3 * link->a + a], *vb = &y.v[3 * link->b + a];
+            length = l->axes == 1 ? *xb - *xa : hypot(length, *xb - *xa);
+            rate += (*xb - *xa) * (*vb - *va);
+            reach += fabs(*xa) + fabs(*xb);
+            speed += fabs(*va) + fabs(*vb);
+        }
+        rate = length != 0 ? rate / length : l->axes == 1 ? y.v[3 * link->b] - y.v[3 * link->a] : 0;
+        const double size = link->stiffness * reach + link->damping * speed;
+        const bool tiny =
+            l->axes > 1 && fabs(length) < 1e-6 * reach; /* then the direction of the rate is rounding */
+        const double want = link->stiffness * (length - link->rest) + link->damping * rate;
+        must(!(size < most && size > least && reach * reach < most && !tiny) ||
+                 fabs(y.tension[i] - want) <= part * size,
+             "tension as defined");
+    }
+}
+
+static void ask(const life *l)
+{
+    const spring_scene_energies e = SCENE(energy)(l->one.s);
+    must(!(e.kinetic < 0) && !(e.elastic < 0), "energies of motion and of springs are not negative");
+    for (int m = -1; m < 5; m++) {
+        const double step = SCENE(stable_step)(l->one.s, (spring_method)m);
+        must(m >= SPRING_EULER && m <= SPRING_RK4 ? step >= 0 : isnan(step),
+             "a step, 0 or infinite; NaN for no method");
+    }
+    must(isnan(SCENE(tension)(l->one.s, l->d->def.links)), "there are no more links");
+    const double v_tol = size(), a_tol = size();
+    must(SCENE(at_rest)(l->one.s, v_tol, a_tol) == SCENE(at_rest)(l->other.s, v_tol, a_tol),
+         "the same answer");
+}
+
+/* A few steps of both, on a copy of the old one. A callback may look at the time, which is another. */
+static void goes_on_alike(life *l, const place *p)
+{
+    static state old, made;
+    const double dt = 1.0 / 64;
+    copy_over(l);
+    const spring_status status = SCENE(advance)(l->other.s, SPRING_LEAPFROG, dt, 3);
+    must(SCENE(advance)(p->s, SPRING_LEAPFROG, dt, 3) == status || !isfinite(SCENE(time)(l->one.s) + 3 * dt),
+         "the same answer");
+    look(l->other.s, l->d, &old);
+    look(p->s, l->d, &made);
+    must(status != SPRING_OK || l->d->def.force != NULL ||
+             (same_numbers(made.x, old.x, 3 * most_particles) &&
+              same_numbers(made.v, old.v, 3 * most_particles)),
+         "and move alike");
+    copy_over(l);
+}
+
+/* A new scene of the definition as it has become, put into the same state, goes on alike. */
+static void remake(life *l)
+{
+    static state y, made;
+    look(l->one.s, l->d, &y);
+    if (l->broken || SCENE(check)(&l->d->def, NULL, NULL) != SPRING_OK)
+        return;
+    place p = place_for(l->one.bytes, 0xc3);
+    must(SCENE(init)(p.all + guard, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
+    must(SCENE(set)(p.s, SPRING_POSITION, y.x, 3, 0, l->d->def.particles) == SPRING_OK &&
+             SCENE(set)(p.s, SPRING_VELOCITY, y.v, 3, 0, l->d->def.particles) == SPRING_OK,
+         "a state that was got can be set");
+    look(p.s, l->d, &made);
+    must(same_numbers(made.x, y.x, 3 * most_particles) && same_numbers(made.v, y.v, 3 * most_particles) &&
+             same_numbers(made.tension, y.tension, most_links),
+         "links that were changed are as if made so");
+    goes_on_alike(l, &p);
+    check_guards(&p);
+    free(p.all);
+}
+
+static void live(life *l)
+{
+    for (int call = 0; call < most_calls && next < end; call++) {
+        switch (choose(10)) {
+        case 0:
+            set(l);
+            break;
+        case 1:
+            set_all(l);
+            break;
+        case 2:
+            get(l);
+            break;
+        case 3:
+            set_link(l);
+            break;
+        case 4:
+            set_gravity(l);
+            break;
+        case 5:
+            ask(l);
+            break;
+        case 6:
+            copy_over(l);
+            break;
+        case 7:
+            remake(l);
+            break;
+        default:
+            advance(l);
+        }
+        must_agree(l);
+        check_tensions(l);
+    }
+    check_guards(&l->one);
+    check_guards(&l->other);
+}
+
+/* What the three functions say of a definition agrees; true if it is valid. */
+static bool check_definition(const definition *d, size_t *bytes)
+{
+    const char *field = "unset";
+    size_t index = 0;
+    scene *s = (scene *)1;
+    uint64_t tiny[SPRING_SCENE_ALIGN / sizeof(uint64_t)];
+    const spring_status status = SCENE(check)(&d->def, &field, &index);
+    must((field == NULL) == (status == SPRING_OK), "the culprit is named");
+    must(index == 0 || index < d->def.particles || index < d->def.links || index < 3, "and where it is");
+    must(SCENE(bytes)(&d->def, bytes) == status, "bytes() agrees with check()");
+    if (status == SPRING_OK) {
+        must(*bytes > 0 && *bytes % SPRING_SCENE_ALIGN == 0, "a multiple of the alignment");
+        return true;
+    }
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
+         "no other status");
+    must(SCENE(init)(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL, "no scene of a bad definition");
+    return false;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
+{
+    static definition d;
+    size_t bytes = 0;
+    next = data;
+    end = data + data_size;
+    define(&d);
+    if (!check_definition(&d, &bytes))
+        return 0;
+    life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
+    l.axes = d.def.axes == 0 ? 3 : d.def.axes;
+    must(SCENE(init)(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
+         "too small");
+    must(SCENE(init)(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
+         "not aligned");
+    check_guards(&l.one);
+    must(SCENE(init)(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&
+             SCENE(init)(l.other.all + guard, bytes, &d.def, &l.other.s) == SPRING_OK,
+         "init() agrees with check()");
+    must_agree(&l);
+    live(&l);
+    free(l.one.all);
+    free(l.other.all);
+    return 0;
+}
