@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes the report from its template, its data and its figures: one page that needs no other file.
 
-usage: page.py [--quick] --into FOLDER --cmark PROGRAM FILE.tsv... FILE.svg...
+usage: page.py [--quick] --into FOLDER --cmark PROGRAM FILE.tsv... FILE.svg... FILE.gif...
 
 report.md.in is Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by the names of
 their columns, and a figure from its picture and the comment that opens its script. Whatever is not there - a file, a row,
@@ -10,10 +10,12 @@ files are copied to FOLDER/data.
 """
 
 import argparse
+import base64
 import html
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 
@@ -134,7 +136,22 @@ def palette():
 
 
 def inline(path, label):
-    """A picture for inclusion in the page: its names its own, its colours those of the page, its size the column's."""
+    """What shows a picture in the page, without another file."""
+    return (animation if path.suffix == ".gif" else drawing)(path, html.escape(label))
+
+
+def animation(path, label):
+    """An animation as it is, with its size, which a GIF has behind six bytes, so that the text need not move for it."""
+    content = path.read_bytes()
+    if content[:6] != b"GIF89a":
+        raise DataError(f"{path.name}: not an animation")
+    width, height = struct.unpack_from("<HH", content, 6)
+    source = "data:image/gif;base64," + base64.b64encode(content).decode()
+    return f'<img src="{source}" width="{width}" height="{height}" alt="{label}">'
+
+
+def drawing(path, label):
+    """A drawing: its names its own, its colours those of the page, its size the column's."""
     stem = stem_of(path)
     svg = path.read_text(encoding="utf-8")
     svg = svg[svg.index("<svg") :]
@@ -144,7 +161,7 @@ def inline(path, label):
     svg = re.sub(r"""(["'])black\1""", r"\1currentColor\1", svg)
     for name, rgb in palette().items():
         svg = re.sub(r"rgb\( *%d, *%d, *%d\)" % rgb, f"var(--{name})", svg)
-    return re.sub(r'\n width="\d+" height="\d+"', f'\n role="img" aria-label="{html.escape(label)}"', svg, count=1)
+    return re.sub(r'\n width="\d+" height="\d+"', f'\n role="img" aria-label="{label}"', svg, count=1)
 
 
 def to_html(cmark, markdown):
@@ -156,7 +173,7 @@ def to_html(cmark, markdown):
 def make(arguments):
     """Writes the page and copies its data."""
     tables = {stem_of(path): Table(path) for path in arguments.files if path.suffix == ".tsv"}
-    pictures = {stem_of(path): path for path in arguments.files if path.suffix == ".svg"}
+    pictures = {stem_of(path): path for path in arguments.files if path.suffix in (".svg", ".gif")}
     used = {}
 
     def data(stem):
@@ -199,7 +216,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="mark the page as that of a quick study")
     parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of index.html and data/")
     parser.add_argument("--cmark", required=True, help="the program cmark-gfm")
-    parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv) and pictures (.svg)")
+    parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv), pictures (.svg) and animations (.gif)")
     arguments = parser.parse_args()
     try:
         make(arguments)
