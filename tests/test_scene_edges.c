@@ -247,11 +247,13 @@ static void gravity_of_axes(void)
     for (uint32_t axes = 1; axes <= 3; axes++) {
         const scene_def def = {.axes = axes, .particles = 1, .position = position};
         scene *s = scene_of(&def);
-        for (uint32_t bad = 0; bad < 3; bad++) {
-            double gravity[] = {0.5, 0.5, 0.5}, v[3] = {0};
+        for (uint32_t bad = 0; bad < 4; bad++) {
+            double gravity[] = {0.5, 0.5, 0.5, 7}, v[3] = {0}; /* and one behind */
+            const double time = SCENE(time)(s);
             gravity[bad] = NAN;
             const spring_status want = bad < axes ? SPRING_EINVAL : SPRING_OK;
             CHECK(SCENE(set_gravity)(s, gravity) == want, "elements beyond the axes are ignored");
+            CHECK_BITS(SCENE(time)(s), time, "nothing else changes");
             SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, 1);
             SCENE(advance)(s, SPRING_EULER, 0.5, 1);
             SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 1);
