@@ -4,11 +4,11 @@
 # their bound, or of 0, are drawn on the left edge.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 1040
 call plots."need.gp" ARG2 "method witness error bound"
-array witnesses[14] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
-    "definition", "modes", "reduced-mass", "digits", "formula"]
-array names[14] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nclosed form", "solution,\ndriven", \
+array witnesses[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
+    "definition", "modes", "reduced-mass", "digits", "formula", "dispersion"]
+array names[15] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nclosed form", "solution,\ndriven", \
     "RK4 of GSL", "RK4 of\nARKODE", "GSL rk8pd", "CVODE\nAdams", "CVODE BDF", \
-    "scene, second\nprogram", "scene,\nmodes", "scene,\nreduced mass", "scene,\ndigits", "scene,\nformula"]
+    "scene, second\nprogram", "scene,\nmodes", "scene,\nreduced mass", "scene,\ndigits", "scene,\nformula", "scene,\ndispersion"]
 rows = |witnesses|
 least = 1e-8
 

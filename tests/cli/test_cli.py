@@ -616,14 +616,15 @@ def test_validate():
     check(len(rows) >= 150 and len({row['case'] for row in rows}) >= 25, '--quick: 150 rows, 25 cases', len(rows))
     equal([name for name in names if name not in {row['case'] for row in rows}],
           ['billion-steps', 'chaotic-50', 'van-der-pol-5', 'stiff-and-soft-10', 'heavy-end', 'stiff-links', 'cloth', 'water',
-           'chain-1000'], '--quick leaves out the slow ones')
+           'chain-1000', *(f'water-mode-{mode}-{kind}-{n}' for n in (25, 35) for mode in ('1-1', '2-1', '2-2', '3-1')
+                           for kind in ('structural', 'mirrored', 'all'))], '--quick leaves out the slow ones')
     equal({row['verdict'] for row in rows}, {'pass'}, '--quick: every check holds, none is skipped')
     check(all(0 <= float(r['error']) <= float(r['bound']) < math.inf for r in rows), '--quick: error <= bound')
     check(all(float(r['error']) > 0 for r in rows if r['witness'] == 'solution' and r['method'] == 'euler'
               and r['case'] != 'at-rest'), '--quick: Euler is never right by accident')
     equal({row['witness'] for row in rows},
           {'iterate', 'solution', 'drive', 'gsl-rk4', 'arkode-rk4', 'gsl-rk8pd', 'cvode-adams', 'cvode-bdf',
-           'definition', 'modes', 'reduced-mass', 'digits', 'formula'}, 'all witnesses')
+           'definition', 'modes', 'reduced-mass', 'digits', 'formula', 'dispersion'}, 'all witnesses')
     equal({row['shape'] for row in rows}, {'spring', 'scene'}, 'springs and scenes')
     check(all(row['reason'] for row in rows), 'every bound says what it is made of')
     equal(table(VALIDATE, '--case', 'middle'), [row for row in rows if row['case'] == 'middle'], '--case: that one and no other')

@@ -493,17 +493,20 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 /* A mode for some eighths of a second. RK4 takes about half its stable step, 2.61/sqrt(8 k/m) with structural links, with all
    families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step alone makes the frequency of mode (3, 1) at
    15 x 15 wrong by z^2/24, more than half a percent. .length and .omega follow from the mode. */
-#define MODE(name, purpose, eighths, leapfrog, rk4)                                                       \
-    {                                                                                                     \
-        name, purpose, build_mode, .duration = (eighths) / 8.0,                                           \
-                                   STEPS(0, (eighths) * (leapfrog), (eighths) * (rk4)), .closed = "modes" \
+#define MODE(name, purpose, eighths, leapfrog, rk4, takes_long)                         \
+    {                                                                                   \
+        name, purpose, build_mode, .duration = (eighths) / 8.0,                         \
+                                   STEPS(0, (eighths) * (leapfrog), (eighths) * (rk4)), \
+                                   .closed = "dispersion", .slow = (takes_long)         \
     }
-#define WAVE(mode, N, eighths)                                                                              \
-    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43), \
-        MODE("water-mode-" mode "-mirrored-" N,                                                             \
-             "the same with all families of links, mirrored at the edges", (eighths) / 2, 121, 75),         \
-        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges",         \
-             (eighths) / 2, 121, 75)
+#define WAVE(mode, N, eighths, takes_long)                                                                 \
+    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, \
+         takes_long),                                                                                      \
+        MODE("water-mode-" mode "-mirrored-" N,                                                            \
+             "the same with all families of links, mirrored at the edges", (eighths) / 2, 121, 75,         \
+             takes_long),                                                                                  \
+        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges",        \
+             (eighths) / 2, 121, 75, takes_long)
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
@@ -569,11 +572,19 @@ const scene_case scene_cases[] = {
      STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .closed = "reduced-mass",
      .solution = solve_damped_pair, .peers = true},
     /* standing waves */
-    WAVE("1-1", "15", 4),
-    WAVE("2-1", "15", 4),
-    WAVE("2-2", "15", 4),
-    WAVE("3-1", "15", 4),
-    MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43),
+    WAVE("1-1", "15", 4, false),
+    WAVE("2-1", "15", 4, false),
+    WAVE("2-2", "15", 4, false),
+    WAVE("3-1", "15", 4, false),
+    WAVE("1-1", "25", 4, true),
+    WAVE("2-1", "25", 4, true),
+    WAVE("2-2", "25", 4, true),
+    WAVE("3-1", "25", 4, true),
+    WAVE("1-1", "35", 6, true),
+    WAVE("2-1", "35", 6, true),
+    WAVE("2-2", "35", 6, true),
+    WAVE("3-1", "35", 6, true),
+    MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43, false),
 };
 
 const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];
