@@ -156,7 +156,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
  * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness.
  * A bound: the limit itself is about 1.2 times larger on a height field, 1.5 times on cloth. Links that spin or swing far
- * can gain energy from the step by resonance closer to it: take half. The callback is not looked at.
+ * can gain energy from the step by resonance closer to it: take half, and less where a link turns faster than it would
+ * swing. The callback is not looked at.
  *
  * @return [s]; 0: never stable; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
