@@ -93,6 +93,35 @@ static void check_drift(const model *m, const scene *end, const state *start)
     }
 }
 
+/* Rows that begin and end anywhere, between particles that no link joins, in vectors of every length. */
+static void rows_of_every_length(void)
+{
+    static const uint32_t offsets[] = {1, 5, 40};
+    static model m;
+    static state start;
+    for (uint32_t axes = 1; axes <= 3; axes += 2)
+        for (unsigned how = 0; how < 6; how++)
+            for (uint32_t links = 8; links <= 40; links++) {
+                const uint32_t offset = offsets[how % 3], first = links * 7 % 19, behind = links * 5 % 23;
+                build(&m, (uint32_t[]){first + links + offset + behind, 1, 1}, axes, 0);
+                m.def.links = links;
+                for (uint32_t i = 0; i < links; i++)
+                    m.link[i] =
+                        (spring_link){first + i, first + i + offset, 0.6, how / 3 ? 2.7 + 0.1 * i : 2.7, 0};
+                for (int k = 0; k < kernel_count; k++) {
+                    if (kernels_of(k) == NULL)
+                        continue;
+                    scene *s = scene_of(&m.def);
+                    CHECK(s->plan.rows == 1 && s->plan.row[0].equal == (how / 3 == 0), "a row");
+                    get_state(s, m.def.particles, &start);
+                    CHECK(SCENE(advance_with)(kernels_of(k), s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK,
+                          "a step");
+                    check_drift(&m, s, &start);
+                    free(s);
+                }
+            }
+}
+
 /* Two links between the same two particles, in the middle of a row. */
 static void parallel_links(void)
 {
@@ -292,6 +321,7 @@ int main(void)
     static const test tests[] = {
         {"weak springs, weak dampers", weak_links},
         {"what makes a row", what_makes_a_row},
+        {"rows of every length", rows_of_every_length},
         {"parallel links", parallel_links},
         {"many offsets", many_offsets},
         {"rows of a block", rows_of_a_block},
