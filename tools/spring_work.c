@@ -39,27 +39,22 @@ static const cli_program program = {
     .name = "spring-work",
     .summary = "Time against error of every stepper, beside GSL and SUNDIALS, in one run.",
     .details =
-        "Columns: problem, solver, steps, force_evaluations (of one spring with the library 1 or 4 a step "
-        "by\n"
-        "definition; all others counted), time_s (the shortest of five loops; nothing is set up in them), "
-        "error\n"
-        "(|(x, v/omega) - true| relative to the size of the motion), error_x (|x - true x| [m], nan: a "
-        "scene), effort: sweep (of\n"
-        "steps or tolerances), seed (the number of steps of the seed study), equal (the smallest number of\n"
-        "steps from which on the error in x never exceeds Euler's at 10^7 steps) or crossing (the last "
-        "number\n"
-        "of evaluations with which leapfrog is ahead of RK4, and the next one), tolerance (0 for fixed\n"
-        "steps), energy_error (relative to the energy at the start, nan: a scene) and uncertainty (of the\n"
-        "true end of a scene: an error of five times that is an upper bound, and not resolved).\n"
-        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 "
-        "N/m.\n"
+        "Columns: problem, solver, steps, force_evaluations (of one spring with the library 1 or 4 a\n"
+        "step by definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
+        "in them), error (|(x, v/omega) - true| relative to the size of the motion), error_x (|x - true\n"
+        "x| [m], nan: a scene), effort: sweep (of steps or tolerances), seed (the number of steps of\n"
+        "the seed study), equal (the smallest number of steps from which on the error in x never\n"
+        "exceeds Euler's at 10^7 steps) or crossing (the last number of evaluations with which leapfrog\n"
+        "is ahead of RK4, and the next one), tolerance (0 for fixed steps), energy_error (relative to\n"
+        "the energy at the start, nan: a scene) and uncertainty (of the true end of a scene: an error\n"
+        "of five times that is an upper bound, and not resolved).\n"
+        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
+        "2.7 N/m.\n"
         "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one evaluation\n"
-        "whatever the duration; gsl-rk4 doubles its step, and that is counted. A run that explodes, or is\n"
-        "off by more than three times the size of the motion, has no row. --table: for each error the "
-        "cheapest measured "
-        "row\n"
-        "that has no larger one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
-        "(peer,\n"
+        "whatever the duration; gsl-rk4 doubles its step, and that is counted. A run that explodes, or\n"
+        "is off by more than three times the size of the motion, has no row.\n"
+        "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
+        "finer one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS (peer,\n"
         "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the closed form; nan: none.",
     .options = options,
 };
@@ -190,11 +185,18 @@ static void crossing(cli_table *table, work *w)
 
 /* ---------------------------------------------------------------------------------------------------- the table */
 
+/* No larger error, nor with the next finer steps or tolerance: an error can be small by accident. */
+static bool is_enough(size_t i, double error)
+{
+    const bool last = i + 1 == row_count || rows[i + 1].solver != rows[i].solver;
+    return rows[i].error <= error && (last || rows[i + 1].error <= error);
+}
+
 static const work_row *cheapest(work_side side, double error)
 {
     const work_row *best = NULL;
     for (size_t i = 0; i < row_count; i++)
-        if (rows[i].solver->side == side && rows[i].error <= error &&
+        if (rows[i].solver->side == side && is_enough(i, error) &&
             (best == NULL || rows[i].time < best->time))
             best = &rows[i];
     return best;

@@ -132,8 +132,8 @@ static void open_spring(work *w)
     reference_exact(&w->exact, p, w->duration);
     w->truth[0] = mpfr_get_d(w->exact.x, MPFR_RNDN);
     w->truth[1] = mpfr_get_d(w->exact.v, MPFR_RNDN);
-    /* what high orders can take, in a period or where damping is strong: more than the library's methods are stable with */
-    w->coarsest = fmin(4 / w->omega, 4 * p->mass / p->damping);
+    /* more than anybody's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega */
+    w->coarsest = fmin(6 / w->omega, 6 * p->mass / p->damping);
     w->finest = w->problem->finest;
     w->derivative = ode_spring_derivative;
     w->data = p;
@@ -249,8 +249,8 @@ static void open_scene(work *w)
     w->derivative = work_equation_derivative;
     w->data = &w->equation;
     find_truth(w, c);
-    /* likewise; callbacks are not in the stable step */
-    w->coarsest = fmin(2 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);
+    /* likewise; the stable step is a bound, and takes no notice of callbacks */
+    w->coarsest = fmin(5 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);
     w->finest = 0;
 }
 

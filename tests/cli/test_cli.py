@@ -690,8 +690,11 @@ def check_work_rows(problem, rows):
 
 
 def check_work_cheapest(problem, rows, best, solver, time_s):
-    """The row of the table against all that are exact enough."""
-    enough = [r for r in rows if float(r['error']) <= float(best['error']) and r['effort'] == 'sweep'
+    """The row of the table against all that are exact enough, and so is the next finer one."""
+    sweep = [r for r in rows if r['effort'] == 'sweep']
+    finer = [b if a['solver'] == b['solver'] else a for a, b in zip(sweep, [*sweep[1:], sweep[-1]])]
+    enough = [r for r, next_one in zip(sweep, finer)
+              if max(float(r['error']), float(next_one['error'])) <= float(best['error'])
               and (r['solver'] in STEPPERS if solver == 'solver' else r['solver'] not in {*STEPPERS, 'exact'})]
     least = min((float(r['time_s']) for r in enough), default=math.nan)
     names = {r['solver'] for r in enough if float(r['time_s']) == least} or {'none'}
