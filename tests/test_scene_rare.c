@@ -75,7 +75,7 @@ static void what_makes_a_row(void)
         }
 }
 
-/* A step of leapfrog of links alone, against a plain loop: x1 = x + dt (v + dt/2 F/m). */
+/* A step of leapfrog of links and gravity alone, against a plain loop: x1 = x + dt (v + dt/2 (F/m + g)). */
 static void check_drift(const model *m, const scene *end, const state *start)
 {
     static state y;
@@ -85,8 +85,8 @@ static void check_drift(const model *m, const scene *end, const state *start)
     plain_forces(&m->def, axes, start->x, start->v, force, size);
     get_state(end, m->def.particles, &y);
     for (size_t i = 0; i < m->def.particles * axes; i++) {
-        const double half = start->v[i] + dt / 2 * force[i] / mass;
-        const double kick = dt / 2 * size[i / axes] / mass * (40 + (double)m->def.links);
+        const double half = start->v[i] + dt / 2 * (force[i] / mass + m->def.gravity[i % axes]);
+        const double kick = dt / 2 * (size[i / axes] / mass + 10) * (40 + (double)m->def.links);
         CHECK_CLOSE(y.x[i], start->x[i] + dt * half,
                     EPS * (fabs(start->x[i]) + dt * (3 * fabs(start->v[i]) + kick)),
                     "a force to 40 eps and one for each link, velocity to 3, the start to 1");
@@ -103,7 +103,7 @@ static void rows_of_every_length(void)
         for (unsigned how = 0; how < 6; how++)
             for (uint32_t links = 8; links <= 40; links++) {
                 const uint32_t offset = offsets[how % 3], first = links * 7 % 19, behind = links * 5 % 23;
-                build(&m, (uint32_t[]){first + links + offset + behind, 1, 1}, axes, 0);
+                build(&m, (uint32_t[]){first + links + offset + behind, 1, 1}, axes, GRAVITY);
                 m.def.links = links;
                 for (uint32_t i = 0; i < links; i++)
                     m.link[i] =
@@ -285,6 +285,56 @@ static void bad_number_at_the_end(void)
     }
 }
 
+/* Without undo a scene is lost when one particle is, on one axis. */
+static void lost_on_one_axis(void)
+{
+    const double position[3 * 2] = {0.3, 0.1, -0.2, -0.9, 0.4, 0.6}, still[3] = {0};
+    const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (size_t lost = 0; lost < 2 * axes; lost++) {
+            double velocity[3 * 2] = {0};
+            velocity[lost] = 10;
+            const scene_def def = {.axes = axes,
+                                   .flags = SPRING_SCENE_NO_UNDO,
+                                   .particles = 2,
+                                   .position = position,
+                                   .velocity = velocity};
+            scene *s = scene_of(&def);
+            CHECK(SCENE(advance)(s, SPRING_EULER, huge, 1) == SPRING_ENONFINITE, "overflow");
+            CHECK(!SCENE(at_rest)(s, INFINITY, INFINITY), "what is lost is not at rest");
+            SCENE(set)(s, SPRING_VELOCITY, still, 0, lost / axes, 1);
+            CHECK(SCENE(advance)(s, SPRING_EULER, 0.1, 1) == SPRING_ENONFINITE, "its position is still lost");
+            SCENE(set)(s, SPRING_POSITION, position, 0, 0, 2);
+            CHECK(SCENE(advance)(s, SPRING_EULER, 0.1, 1) == SPRING_OK, "usable again");
+            CHECK(SCENE(at_rest)(s, 0, 0), "and at rest");
+            free(s);
+        }
+}
+
+/* A scene that may use more methods has more memory, and the same steps. */
+static void methods_not_used(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned features = 0; features < EDITABLE; features += 3)
+            for (uint32_t method = SPRING_EULER; method <= SPRING_RK4; method++) {
+                build(&m, (uint32_t[]){7, 5, 1}, axes, features);
+                scene *all = scene_of(&m.def);
+                m.def.methods = 1u << method;
+                m.def.flags = SPRING_SCENE_FORCE_STILL;
+                scene *one = scene_of(&m.def);
+                CHECK_BITS(SCENE(stable_step)(one, SPRING_RK4), SCENE(stable_step)(all, SPRING_RK4),
+                           "nor other limits");
+                for (int i = 0; i < 2; i++) {
+                    SCENE(advance)(all, (spring_method)method, 0.009, 3);
+                    SCENE(advance)(one, (spring_method)method, 0.009, 3);
+                }
+                CHECK(same_bits(one, all, m.def.particles, axes), "the same steps");
+                free(all);
+                free(one);
+            }
+}
+
 /* A callback that looks into a table by position must not be handed NaN. */
 static void callback_is_left_alone(void)
 {
@@ -330,6 +380,8 @@ int main(void)
         {"a callback between steps", callback_between_steps},
         {"a bad number at the end", bad_number_at_the_end},
         {"nothing is computed from what is lost", callback_is_left_alone},
+        {"lost on one axis", lost_on_one_axis},
+        {"methods that are not used", methods_not_used},
     };
     return RUN_TESTS("scene_rare", tests);
 }
