@@ -346,6 +346,7 @@ static void steady_fall(void)
         SCENE(get)(s, SPRING_VELOCITY, now, 0, 0, n);
         for (size_t i = 0; i < n; i++)
             CHECK_BITS(now[i], -2, "-4 - 2 (-2) is 0, exactly");
+        CHECK(SCENE(at_rest)(s, 2, 0) && !SCENE(at_rest)(s, 1.9, 0), "nothing accelerates at 2 m/s");
         free(s);
     }
 }
