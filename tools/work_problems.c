@@ -22,23 +22,8 @@ static void make_sheet(scene_problem *p, const spring_grid *g, double mass)
     const uint32_t axes = g->height ? 1 : g->axes;
     if (spring_grid_size(g, &particles, &links) != SPRING_OK)
         cli_fail(CLI_FAILED, "no grid");
-    p->position = scene_room(axes * particles, sizeof *p->position);
-    p->velocity = scene_room(axes * particles, sizeof *p->velocity);
-    p->mass = scene_room(particles, sizeof *p->mass);
-    p->pinned = scene_room(particles, sizeof *p->pinned);
-    p->link = scene_room(links, sizeof *p->link);
-    for (size_t i = 0; i < particles; i++)
-        p->mass[i] = mass;
+    scene_problem_make(p, axes, particles, links, mass);
     spring_grid_fill(g, p->position, p->pinned, p->link);
-    p->def = (spring_scene_def){.axes = axes,
-                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
-                                .particles = particles,
-                                .links = links,
-                                .position = p->position,
-                                .velocity = p->velocity,
-                                .mass_all = mass,
-                                .pinned = p->pinned,
-                                .link = p->link};
 }
 
 enum { SIDE = 25 }; /* particles along an edge of a sheet */

@@ -22,25 +22,9 @@
 static const double mass = 1.3; /* [kg] */
 static const double pi = 3.14159265358979323846;
 
-/* At the origin, at rest, not pinned; the mass of all is `mass`. */
 static void make(scene_problem *p, uint32_t axes, size_t particles, size_t links)
 {
-    p->position = scene_room(axes * particles, sizeof *p->position);
-    p->velocity = scene_room(axes * particles, sizeof *p->velocity);
-    p->mass = scene_room(particles, sizeof *p->mass);
-    p->pinned = scene_room(particles, sizeof *p->pinned);
-    p->link = scene_room(links, sizeof *p->link);
-    for (size_t i = 0; i < particles; i++)
-        p->mass[i] = mass;
-    p->def = (spring_scene_def){.axes = axes,
-                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
-                                .particles = particles,
-                                .links = links,
-                                .position = p->position,
-                                .velocity = p->velocity,
-                                .mass_all = mass,
-                                .pinned = p->pinned,
-                                .link = p->link};
+    scene_problem_make(p, axes, particles, links, mass);
 }
 
 /* Particles of different mass. */

@@ -23,6 +23,26 @@ static double *numbers(size_t count)
     return scene_room(count, sizeof(double));
 }
 
+void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_t links, double mass)
+{
+    p->position = scene_room(axes * particles, sizeof *p->position);
+    p->velocity = scene_room(axes * particles, sizeof *p->velocity);
+    p->mass = scene_room(particles, sizeof *p->mass);
+    p->pinned = scene_room(particles, sizeof *p->pinned);
+    p->link = scene_room(links, sizeof *p->link);
+    for (size_t i = 0; i < particles; i++)
+        p->mass[i] = mass;
+    p->def = (spring_scene_def){.axes = axes,
+                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+                                .particles = particles,
+                                .links = links,
+                                .position = p->position,
+                                .velocity = p->velocity,
+                                .mass_all = mass,
+                                .pinned = p->pinned,
+                                .link = p->link};
+}
+
 void scene_problem_init(scene_problem *p, const scene_case *c)
 {
     *p = (scene_problem){.moving = 0};

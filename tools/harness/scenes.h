@@ -53,6 +53,8 @@ extern const size_t scene_case_count;
 
 void *scene_room(size_t count, size_t size); /* zeros; exits without memory */
 
+/* At the origin, at rest, not pinned, links of zeros; all have one mass [kg]. Exits without memory. */
+void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_t links, double mass);
 void scene_problem_init(scene_problem *p, const scene_case *c); /* exits without memory */
 void scene_problem_clear(scene_problem *p);
 
