@@ -410,8 +410,11 @@ static void strides_and_ranges(void)
             CHECK_BITS(wide[i], inside ? (double)(scalar)m.position[at] : (double)outside, "no rounding");
             wide[i] += 0.5;
         }
+        double back[3 * most], before[3 * most];
+        SCENE(get)(s, SPRING_VELOCITY, before, 0, 0, n);
         CHECK(SCENE(set)(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK, "back from there");
-        double back[3 * most];
+        SCENE(get)(s, SPRING_VELOCITY, back, 0, 0, n);
+        CHECK(memcmp(back, before, n * axes * sizeof back[0]) == 0, "velocities are left alone");
         SCENE(get)(s, SPRING_POSITION, back, 0, 0, n);
         for (size_t i = 0; i < n * axes; i++) {
             const bool moved = i / axes >= first && i / axes < first + count;
