@@ -170,6 +170,32 @@ static void drag_without_bias(void)
     free(s);
 }
 
+/* Particles of no stated mass have 1 kg, whether some are pinned or not. */
+static void one_kilogram(void)
+{
+    const double x[] = {0, 1.5}, h = 0.25;
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 0.5, 3, 0};
+    for (int pins = 0; pins < 2; pins++) {
+        const scene_def def = {.axes = 1,
+                               .particles = 2,
+                               .links = 1,
+                               .position = x,
+                               .pinned = pins ? pinned : NULL,
+                               .link = &link};
+        scene *s = scene_of(&def);
+        double v[2];
+        SCENE(advance)(s, SPRING_EULER, h, 1);
+        SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 2);
+        CHECK_BITS(v[0], pins ? 0 : h * 3, "3 N on 1 kg, exactly");
+        CHECK_BITS(v[1], -h * 3, "3 N on 1 kg, exactly");
+        const double omega2 = pins ? 3 : 6; /* once where the other end is pinned, else twice */
+        CHECK_CLOSE(SCENE(stable_step)(s, SPRING_LEAPFROG), 2 / sqrt(omega2), 4 * EPS,
+                    "2/omega, three roundings");
+        free(s);
+    }
+}
+
 /* Drag of 1 kg/s is drag like any other. */
 static void drag_of_one(void)
 {
@@ -366,6 +392,7 @@ int main(void)
         {"a rest length of -0", negative_zero_rest},
         {"questions keep no force of a callback", questions_keep_no_callback},
         {"drag without bias", drag_without_bias},
+        {"1 kg", one_kilogram},
         {"drag of 1", drag_of_one},
         {"one damper", one_damper},
         {"at rest against gravity", at_rest_against_gravity},
