@@ -148,7 +148,7 @@ static _Noreturn void fail_to_write(const cli_table *table)
 
 static void close_stream(const cli_table *table)
 {
-    if (fflush(table->stream) != 0 || fclose(table->stream) != 0)
+    if (ferror(table->stream) != 0 || fflush(table->stream) != 0 || fclose(table->stream) != 0)
         fail_to_write(table);
 }
 

@@ -389,6 +389,8 @@ int main(int argc, char **argv)
 {
     const double most_steps = 9007199254740992; /* 2^53: up to there steps and times are exact in a double */
     cli_parse(&program, argc, argv);
+    if (!(duration * fps < most_steps))
+        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than 2^53 frames in %g s", fps, duration);
     const ready_settings settings = chosen_settings();
     ready_scene ready;
     ready_init(&ready, &settings);
@@ -402,8 +404,6 @@ int main(int argc, char **argv)
         dt = fmin(0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG), 1 / fps);
     if (!(duration / dt <= most_steps))
         cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps of %g s", duration, dt);
-    if (!(duration * fps < most_steps))
-        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than 2^53 frames in %g s", fps, duration);
     remark_on_step(scene);
 
     const uint64_t steps = (uint64_t)fmax(rint(duration / dt), 1),
