@@ -169,12 +169,27 @@ static FILE *open_temporary(cli_table *table, mode_t mode)
     return fdopen(fd, "w");
 }
 
+/* The full path of a file that does not exist yet. */
+static bool resolve_new(const char *path, char *full)
+{
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+    snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(name - path) : 1,
+             slash != NULL ? path : ".");
+    if (realpath(folder, full) == NULL)
+        return false;
+    const size_t length = strlen(full);
+    errno = ENAMETOOLONG;
+    return snprintf(full + length, PATH_MAX - length, "/%s", name) < (int)(PATH_MAX - length);
+}
+
 static void open_stream(cli_table *table)
 {
     const char *path = table->name;
     struct stat status;
     const bool exists = stat(path, &status) == 0;
-    if (strncmp(path, "/dev/", 5) == 0 || (exists && !S_ISREG(status.st_mode))) {
+    const bool device = strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
+    if (device || (exists && !S_ISREG(status.st_mode))) {
         table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
     } else if (exists) {
         if (access(path, W_OK) != 0)
@@ -185,8 +200,8 @@ static void open_stream(cli_table *table)
                strlen(path) < PATH_MAX) { /* no link to nowhere */
         const mode_t mask = umask(0);
         umask(mask);
-        strcpy(table->path, path);
-        table->stream = open_temporary(table, 0666 & ~mask);
+        if (resolve_new(path, table->path))
+            table->stream = open_temporary(table, 0666 & ~mask);
     }
     if (table->stream == NULL)
         fail_to_write(table);
@@ -206,6 +221,10 @@ cli_table *cli_open_file(const char *option, const char *path)
         table->stream = stdout;
     else
         open_stream(table);
+    for (size_t i = 0; i + 1 < table_count; i++)
+        if (table->path[0] != '\0' && strcmp(tables[i].path, table->path) == 0)
+            cli_fail(CLI_USAGE, "--%s: \"%s\" is the file of --%s already; it should be another file", option,
+                     name, tables[i].option);
     return table;
 }
 
@@ -497,7 +516,7 @@ static void print_usage(void)
 static const cli_option *option_of(const char *word, const char **value)
 {
     *value = NULL;
-    if (word[0] == '-' && word[1] == 'o') {
+    if (word[0] == '-' && word[1] == 'o' && strncmp(word, "-output", 7) != 0) { /* one dash typed for two */
         if (word[2] != '\0')
             *value = word + 2;
         return &common_options[0];

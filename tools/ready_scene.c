@@ -30,7 +30,7 @@ static void *room(size_t count, size_t size)
 {
     void *memory = calloc(count, size);
     if (memory == NULL)
-        cli_fail(CLI_FAILED, "no memory for a scene of this size");
+        cli_fail(CLI_FAILED, "no memory for a scene of this --size");
     return memory;
 }
 
@@ -154,8 +154,11 @@ spring_scene *ready_start(const spring_scene_def *def)
     spring_scene *scene;
     const spring_status status = spring_scene_check(def, &field, &index);
     if (status != SPRING_OK)
-        cli_fail(CLI_USAGE, "no such scene: %s %zu is not valid (%s)", field, index,
-                 spring_status_string(status));
+        cli_fail(
+            CLI_USAGE,
+            "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
+            "drag/mass should be finite",
+            field, index);
     spring_scene_bytes(def, &bytes);
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
     if (memory == NULL || spring_scene_init(memory, bytes, def, &scene) != SPRING_OK)

@@ -3,6 +3,7 @@
  * spring-scene: a rope, a cloth, a block of jelly, a chain or a water surface, moved by any method in steps of any length,
  * for as long as it holds.
  */
+#include <dirent.h>
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -45,7 +46,8 @@ static const cli_option options[] = {
     {"method", CLI_CHOICE, .choice = &method, .choices = methods, .required = true, .value = "M",
      .help = "euler, leapfrog or rk4"},
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
-     .help = "step [s] (default: half the stable step of leapfrog, at most 1/fps)"},
+     .help = "step [s] (default: the frame in as many steps as make it at most half\n"
+             "the stable step of leapfrog, and an eighth of a push)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move\n"
@@ -74,15 +76,17 @@ static const cli_option options[] = {
      .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
     {"stretch", CLI_POSITIVE, .real = &given[STRETCH], .value = "S",
      .help = "length of the links over their rest length at the start (default: 1;\n"
-             "water on three axes: 1.25). Of water on one axis links are as stiff\n"
-             "across as along; with S > 1 by the factor 1 - 1/S"},
+             "water on three axes: 1.25). Water on one axis has no rest lengths:\n"
+             "S > 1 leaves it the part 1 - 1/S of --stiffness, as much as a sheet\n"
+             "stretched like that has across"},
     {"poke", CLI_REALS, .real = poke, .least = 5, .value = "T,X,Y,FORCE,AREA",
      .help = "push down at the time T [s] around (X, Y) [m] with FORCE [N] at most,\n"
-             "spread over a round AREA [m^2]"},
+             "spread over a round AREA [m^2]; once: the last --poke counts"},
     {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "drops per second (default: 0)"},
     {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another rain for every N (default: 1)"},
     {"drop-box", CLI_REALS, .real = box, .least = 2, .value = "T,MASS",
-     .help = "a box of MASS [kg] falls from 1 m and hits the middle at the time T [s]"},
+     .help = "a box of MASS [kg] falls from 1 m, at 9.81 m/s^2, and hits the middle\n"
+             "at the time T [s]"},
     {"push-duration", CLI_POSITIVE, .real = &push_duration, .value = "D",
      .help = "of a poke, a drop, the box [s] (default: 0.02)"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second (default: 60)"},
@@ -100,8 +104,8 @@ static const cli_program program = {
     .details =
         "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
         "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
-        "the step nearest to it, and one for the end. Of frames: t_s, particle, its place i j k in the\n"
-        "grid, and x_m y_m z_m, z up.\n\n"
+        "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
+        "Of frames: t_s, particle, its place i j k in the grid, and x_m y_m z_m, z up.\n\n"
         "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
         "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
         "pinned; where no push is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
@@ -109,8 +113,9 @@ static const cli_program program = {
         "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
         "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
         "one particle at 10 m/s; drops come at random times to random places.\n\n"
-        "No step is refused. One that is not below the stable step is remarked on standard error. When the\n"
-        "energy overflows the rows end, the time is told, and the status is 1.",
+        "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
+        "so long, D/4 or more, that a push loses or gains by it. When the energy overflows the rows end,\n"
+        "the time is told, and the status is 1.",
     .options = options,
 };
 
@@ -121,8 +126,8 @@ static ready_settings chosen_settings(void)
         s.size = size;
     if (axes > 0 && s.kind != READY_WATER && axes != s.axes)
         cli_fail(CLI_USAGE,
-                 "--axes: \"%" PRIu64 "\" is not the %" PRIu64 " of the %s; it should be water's 1 or 3",
-                 axes, s.axes, ready_names[kind]);
+                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given",
+                 axes, ready_names[kind], s.axes);
     if (axes == 2 && s.kind == READY_WATER)
         cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
     if (axes == 3 && s.kind == READY_WATER) {
@@ -243,16 +248,19 @@ static void name_frame(uint64_t frame)
    fails, and those behind them stop it. */
 static void prepare_frames(uint64_t count)
 {
-    const uint64_t most = 1000000; /* that six digits can number */
-    if (count > most)
-        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %" PRIu64 " frames in %g s", fps, most, duration);
     if (mkdir(frames, 0777) != 0 && errno != EEXIST)
         cli_fail(CLI_IO, "--frames: cannot create \"%s\": %s; it should be a folder, or be in one", frames,
                  strerror(errno));
-    name_frame(count);
-    if (access(frame_path, F_OK) == 0)
-        cli_fail(CLI_IO, "--frames: \"%s\" is of a longer run; the folder should be empty or of the same",
-                 frame_path);
+    DIR *folder = opendir(frames);
+    if (folder == NULL)
+        cli_fail(CLI_IO, "--frames: cannot read \"%s\": %s; it should be a folder", frames, strerror(errno));
+    uint64_t number;
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;)
+        if (sscanf(entry->d_name, "frame-%6" SCNu64 ".tsv", &number) == 1 && number >= count)
+            cli_fail(CLI_IO,
+                     "--frames: \"%s/%s\" is of a longer run; the folder should be empty or of the same",
+                     frames, entry->d_name);
+    closedir(folder);
     for (uint64_t frame = 0; frame < count; frame++) {
         name_frame(frame);
         if (unlink(frame_path) != 0 && errno != ENOENT)
@@ -285,7 +293,8 @@ typedef struct view { /* a scene, and what is shown of it */
     void *saved;  /* a copy, to return to */
     size_t bytes; /* of both */
     cli_table *rows, *positions;
-    double *xyz; /* [particles*3] */
+    double *xyz;    /* [particles*3] */
+    double lost_at; /* [s] when its energy overflowed */
 } view;
 
 static void write_row(view *v)
@@ -317,8 +326,10 @@ static bool take(view *v, uint64_t n)
     const spring_status status = spring_scene_advance(v->scene, (spring_method)method, dt, n);
     const spring_scene_energies e = spring_scene_energy(v->scene);
     const bool holds = status == SPRING_OK && isfinite(e.kinetic + e.elastic + e.gravity);
-    if (!holds)
+    if (!holds) {
         memcpy(v->scene, v->saved, v->bytes);
+        v->lost_at = spring_scene_time(v->scene) + (double)n * dt;
+    }
     return holds;
 }
 
@@ -326,22 +337,25 @@ static bool take(view *v, uint64_t n)
 static bool advance(view *v, uint64_t n)
 {
     const uint64_t leap = 1024;
-    for (; n > leap; n -= leap) {
-        if (!take(v, leap))
-            break;
+    while (n > 0) {
+        const uint64_t some = n < leap ? n : leap;
+        if (!take(v, some)) {
+            for (uint64_t i = 0; i < some && take(v, 1); i++)
+                ;
+            return false;
+        }
+        n -= some;
         cli_progress(spring_scene_time(v->scene) / duration);
     }
-    if (n <= leap && take(v, n))
-        return true;
-    while (take(v, 1))
-        ;
-    return false;
+    return true;
 }
 
 /* Returns whether the scene survived. */
 static bool run(view *v, uint64_t steps, uint64_t frame_count)
 {
     uint64_t step = 0;
+    if (!take(v, 0))
+        return false;
     for (uint64_t frame = 0; frame <= frame_count; frame++) {
         const bool end = frame == frame_count;
         const uint64_t next = end ? steps : (uint64_t)fmin(rint((double)frame / fps / dt), (double)steps);
@@ -356,20 +370,35 @@ static bool run(view *v, uint64_t steps, uint64_t frame_count)
     return true;
 }
 
-static void remark_on_step(const spring_scene *scene)
+/* The steps of a frame are whole, so that frames are equally far apart. */
+static double default_step(const spring_scene *scene, bool pushed)
+{
+    double longest = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+    if (pushed)
+        longest = fmin(longest, push_duration / 8);
+    return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
+}
+
+static void remark_on_step(const spring_scene *scene, bool pushed)
 {
     const double stable = spring_scene_stable_step(scene, (spring_method)method);
     if (stable == 0)
-        cli_warn("--dt: no step is stable with %s in this scene", methods[method]);
+        cli_warn("no step is stable with %s in this scene", methods[method]);
     else if (!(dt < stable))
-        cli_warn("--dt: \"%g\" is not below the stable step of %s in this scene, %g s", dt, methods[method],
-                 stable);
+        cli_warn("the step of %g s is not below the stable step of %s in this scene, %g s", dt,
+                 methods[method], stable);
+    if (pushed && !(dt < push_duration / 4))
+        cli_warn(
+            "the step of %g s is not below a quarter of --push-duration, %g s: pushes lose or gain by it", dt,
+            push_duration / 4);
 }
 
-static view open_view(const ready_scene *ready, spring_scene *scene)
+static view open_view(const ready_scene *ready, spring_scene *scene, uint64_t frame_count)
 {
     view v = {.ready = ready, .scene = scene, .rows = cli_open_output()};
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
+    if (frames != NULL)
+        prepare_frames(frame_count);
     spring_scene_bytes(&ready->def, &v.bytes);
     v.saved = aligned_alloc(SPRING_SCENE_ALIGN, v.bytes);
     v.xyz = malloc(3 * ready->def.particles * sizeof *v.xyz);
@@ -385,12 +414,21 @@ static view open_view(const ready_scene *ready, spring_scene *scene)
     return v;
 }
 
+static void check_amounts(void)
+{
+    const double most_frames = 1e6,
+                 most_steps = 9007199254740992; /* six digits; 2^53: up to there times are exact */
+    if (!(duration * fps < most_frames))
+        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps,
+                 most_frames, duration, most_frames / duration);
+    if (!(duration / dt <= most_steps))
+        cli_fail(CLI_USAGE, "--dt: \"%g\" makes more than 2^53 steps in %g s; it should be at least %g", dt,
+                 duration, duration / most_steps);
+}
+
 int main(int argc, char **argv)
 {
-    const double most_steps = 9007199254740992; /* 2^53: up to there steps and times are exact in a double */
     cli_parse(&program, argc, argv);
-    if (!(duration * fps < most_steps))
-        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than 2^53 frames in %g s", fps, duration);
     const ready_settings settings = chosen_settings();
     ready_scene ready;
     ready_init(&ready, &settings);
@@ -401,20 +439,17 @@ int main(int argc, char **argv)
     }
     spring_scene *scene = ready_start(&ready.def);
     if (dt == 0)
-        dt = fmin(0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG), 1 / fps);
-    if (!(duration / dt <= most_steps))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps of %g s", duration, dt);
-    remark_on_step(scene);
+        dt = default_step(scene, p != NULL);
+    check_amounts();
+    remark_on_step(scene, p != NULL);
 
     const uint64_t steps = (uint64_t)fmax(rint(duration / dt), 1),
                    frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
-    if (frames != NULL)
-        prepare_frames(frame_count);
-    view v = open_view(&ready, scene);
+    view v = open_view(&ready, scene, frame_count);
     const bool survived = run(&v, steps, frame_count);
     cli_finish();
     if (!survived)
-        cli_warn("the scene blows up: its energy overflows at t = %.17g s", spring_scene_time(scene) + dt);
+        cli_warn("the scene blows up: its energy overflows at t = %.17g s", v.lost_at);
     free(v.xyz);
     free(v.saved);
     free(scene);

@@ -30,8 +30,9 @@ static const cli_option options[] = {
      .help = "only this method"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
     {"time", CLI_FLAG, .flag = &timed,
-     .help = "instead of the map: the fewest steps a frame from which on all are fine,\n"
-             "and how many particles are moved by them in a millisecond"},
+     .help = "instead of the map: the fewest steps a frame from which on all are fine\n"
+             "and below the stable step, and how many particles are moved by them in\n"
+             "a millisecond"},
     {.name = NULL},
 };
 
@@ -153,7 +154,8 @@ static double stable_step(const subject *s, spring_method m)
     return step;
 }
 
-/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine, or 0. */
+/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine and below the
+   stable step, or 0: not every scene that is grown from this one would survive longer ones. */
 static uint64_t map_method(cli_table *table, const subject *s, ready_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
@@ -162,7 +164,7 @@ static uint64_t map_method(cli_table *table, const subject *s, ready_kind kind, 
     for (uint64_t n = 1; n <= most_substeps; n = next_number(n)) {
         const outcome o = run(s, m, n);
         const char *verdict = verdict_of(o);
-        if (strcmp(verdict, "fine") != 0)
+        if (strcmp(verdict, "fine") != 0 || !(frame_time / (double)n < stable))
             fewest = 0;
         else if (fewest == 0)
             fewest = n;
@@ -200,7 +202,7 @@ static double time_frames(const subject *s, spring_method m, uint64_t substeps)
     return best;
 }
 
-/* Lets a scene grow, by particles at the same distances, until a frame takes about a millisecond. */
+/* Lets a scene grow, by particles at about the same distances, until a frame takes about a millisecond. */
 static void time_method(cli_table *table, ready_kind kind, spring_method m, uint64_t substeps)
 {
     static const double directions[] = {

@@ -61,7 +61,7 @@ def test_bad_usage():
         *[(tool, [], ['--method', 'missing', methods]) for tool in BY_METHOD],
         *[(tool, ['--method'], ['--method', 'value is missing', methods]) for tool in BY_METHOD],
         *[(tool, [*SHORT[tool], word], [f'"{word}"', 'not an option', f'{tool} --help'])
-          for tool in TOOLS for word in ('foo', '', '-', '--', '-x', '--bogus', '--bogus=1', '--meth', '--outpu', '--vers',
+          for tool in TOOLS for word in ('foo', '', '-', '--', '-x', '-output', '-output=x', '--bogus', '--bogus=1', '--meth', '--outpu', '--vers',
                                          '-help')],
         *[(tool, [*SHORT[tool], '--output', ''], ['--output', '""', 'the name of a file']) for tool in TOOLS],
         *[(tool, [*SHORT[tool], '-o'], ['--output', 'value is missing', 'the name of a file']) for tool in TOOLS],
@@ -87,6 +87,7 @@ def test_bad_usage():
         (RUN, ['--method', 'euler', '--duration', '1'], ['--steps', 'missing', count_53]),
         (RUN, ['--method', 'euler', '--steps', '1'], ['--duration', 'missing', positive]),
         (RUN, [*run_3, '--envelope', 'x', '-o', 'x'], ['--envelope', '"x"', 'another file']),
+        (RUN, [*run_3, '--envelope', './x', '-o', 'x'], ['--envelope', '"./x"', '--output', 'another file']),
         (RUN, [*run_3, '--envelope', '/dev/stdout'], ['--envelope', '"/dev/stdout"', 'another file']),
         *[(ENERGY, ['--method', 'rk4', '--dt', dt], ['--dt', f'"{dt}"', positive]) for dt in ('nan', '0', '-0.01')],
         (ENERGY, ['--method', 'rk4', '--duration', '0.5'], ['--duration', '"0.5"', 'at least 1 s']),
@@ -128,18 +129,17 @@ def test_bad_usage():
         (SCENE, [*SHORT[SCENE], '--drop-box', '-1,1'], ['--drop-box', '"-1"', 'at least 0 s']),
         (SCENE, [*SHORT[SCENE], '--drop-box', '0,0'], ['--drop-box', '"0"', 'greater than 0 kg']),
         (SCENE, [*SHORT[SCENE], '--rain', '1e7'], ['--rain', '"1e+07"', 'at most 1e+06']),
-        (SCENE, [*SHORT[SCENE], '--axes', '3'], ['--axes', '"3"', '2 of the rope', "water's 1 or 3"]),
+        (SCENE, [*SHORT[SCENE], '--axes', '3'], ['--axes', '"3"', 'for water', 'rope it should be 2']),
         (SCENE, [*SHORT[SCENE], '--scene', 'water', '--axes', '2'], ['--axes', '"2"', '1 or 3']),
         (SCENE, [*SHORT[SCENE], '--scene', 'water', '--stretch', '1'], ['--stretch', '"1"', 'greater than 1']),
         *[(SCENE, [*SHORT[SCENE], '--scene', name, '--gravity', '1'], ['--gravity', '"1"', name]) for name in ('chain', 'water')],
         *[(SCENE, [*SHORT[SCENE], '--scene', name, '--end-mass', '1'], ['--end-mass', '"1"', name])
           for name in ('cloth', 'jelly', 'chain', 'water')],
         (SCENE, [*SHORT[SCENE], '--scene', 'jelly', '--size', '4000'], ['--size', '"4000"', 'more particles or links']),
-        (SCENE, [*SHORT[SCENE], '--mass', '1e-320', '--dt', '1'], ['mass', 'not valid']),
-        (SCENE, [*SHORT[SCENE], '--duration', '1e17', '--fps', '1e-3'], ['--duration', '"1e+17"', '2^53 steps']),
-        (SCENE, [*SHORT[SCENE], '--duration', '1e300'], ['--fps', '"60"', '2^53 frames in 1e+300 s']),
-        (SCENE, [*SHORT[SCENE], '--fps', '1e300'], ['--fps', '"1e+300"', '2^53 frames']),
-        (SCENE, [*SHORT[SCENE], '--fps', '1e8', '--frames', 'nowhere'], ['--fps', '"1e+08"', '1000000 frames']),
+        (SCENE, [*SHORT[SCENE], '--mass', '1e-320', '--dt', '1'], ['mass', 'not valid', 'should be finite']),
+        (SCENE, [*SHORT[SCENE], '--duration', '1e4', '--dt', '1e-13'], ['--dt', '"1e-13"', '2^53 steps', 'at least 1.1']),
+        (SCENE, [*SHORT[SCENE], '--duration', '1e5'], ['--fps', '"60"', '1e+06 frames', 'below 10']),
+        (SCENE, [*SHORT[SCENE], '--fps', '1e300'], ['--fps', '"1e+300"', 'below 1e+07']),
         (SCENE, [*SHORT[SCENE], '--frames', ''], ['--frames', '""', 'the name of a folder']),
         (MAP, ['--method', 'exact'], ['--method', '"exact"', 'one of euler, leapfrog, rk4']),
         (MAP, ['--scene', 'sea'], ['--scene', '"sea"', 'one of rope']),
@@ -203,7 +203,7 @@ def test_cannot_write(folder):
             os.close(writer)
             check(result.returncode == 3 and result.stderr.startswith(f'{tool}: cannot write standard output: '),
                   f'a closed pipe: {describe(tool, args)}', result)
-        for path in ('/dev/full', gone, under_file, folder, dangling, 'x' * 300, 'x/' * 3000, './' * 2043 + 'deep'):
+        for path in ('/dev/full', gone, under_file, folder, dangling, 'x' * 300, 'x/' * 3000):
             result = run(tool, *SHORT[tool], '-o', path)
             check(result.returncode == 3 and result.stdout == ''
                   and result.stderr.startswith(f'{tool}: --output: cannot write "{path}": ')
