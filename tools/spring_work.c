@@ -50,11 +50,13 @@ static const cli_program program = {
         "of five times that is an upper bound, and not resolved).\n"
         "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
         "2.7 N/m.\n"
-        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one evaluation\n"
-        "whatever the duration; gsl-rk4 doubles its step, and that is counted. A run that explodes, or\n"
+        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula\n"
+        "whatever the duration, which evaluates no forces; gsl-rk4 doubles its step, and that is counted. A "
+        "run that explodes, or\n"
         "is off by more than three times the size of the motion, has no row.\n"
         "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
-        "finer one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS (peer,\n"
+        "finer one if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
+        "(peer,\n"
         "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the closed form; nan: none.",
     .options = options,
 };
@@ -177,6 +179,9 @@ static void crossing(cli_table *table, work *w)
     while (found > least + 4 &&
            error_after(w, SPRING_RK4, found / 4 - 1) < error_after(w, SPRING_LEAPFROG, found - 4))
         found -= 4;
+    if (found > most)
+        cli_fail(CLI_FAILED, "%s: RK4 is not ahead with %" PRIu64 " evaluations; it should be",
+                 w->problem->name, most);
     for (uint64_t evaluations = found - 4; evaluations <= found; evaluations += 4) {
         measure(table, w, &work_solvers[SPRING_LEAPFROG], (work_effort){.steps = evaluations}, "crossing");
         measure(table, w, &work_solvers[SPRING_RK4], (work_effort){.steps = evaluations / 4}, "crossing");
