@@ -43,6 +43,9 @@ static void refused(void)
     const char *field = "";
     size_t index = 7;
     CHECK(SCENE(check)(d, &field, &index) == SPRING_OK && field == NULL && index == 0, "nothing to name");
+    index = 7;
+    CHECK(SCENE(check)(NULL, &field, &index) == SPRING_EINVAL && strcmp(field, "def") == 0 && index == 0,
+          "no definition");
     memset(good.pinned, 0, sizeof good.pinned);
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
 
@@ -76,6 +79,7 @@ static void refused(void)
 
     REFUSED(good.link[17].a, 30, SPRING_ERANGE, "link.a", 17);
     REFUSED(good.link[18].b, UINT32_MAX, SPRING_ERANGE, "link.b", 18);
+    REFUSED(good.link[18].b, 30, SPRING_ERANGE, "link.b", 18);
     REFUSED(good.link[19].b, good.link[19].a, SPRING_EINVAL, "link.b", 19);
     const double negative[] = {-1e-300, NAN, too_large, -INFINITY};
     for (size_t i = sizeof(scalar) == 4 ? 1 : 0; i < sizeof negative / sizeof negative[0]; i++) {

@@ -169,6 +169,21 @@ static void many_offsets(void)
     }
 }
 
+/* Offsets that meet in the table in which they are counted, since it has fewer places than there are offsets. */
+static void offsets_that_meet(void)
+{
+    enum { lowers = 9, apart = 1024 }; /* a multiple of the places of the table */
+    static const double position[3 * (lowers + 2 * apart + 3)];
+    spring_link link[3 * lowers];
+    for (uint32_t i = 0; i < 3 * lowers; i++)
+        link[i] = (spring_link){i / 3, i / 3 + 3 + i % 3 * apart, 0.6, 2.7, 0};
+    const scene_def def = {
+        .particles = lowers + 2 * apart + 3, .links = 3 * lowers, .position = position, .link = link};
+    scene *s = scene_of(&def);
+    CHECK(s->plan.rows == 3 && s->plan.list_links == 0, "each has its row");
+    free(s);
+}
+
 /* A block with diagonals and bending links has sixteen offsets, and each its row. */
 static void rows_of_a_block(void)
 {
@@ -374,6 +389,7 @@ int main(void)
         {"rows of every length", rows_of_every_length},
         {"parallel links", parallel_links},
         {"many offsets", many_offsets},
+        {"offsets that meet", offsets_that_meet},
         {"rows of a block", rows_of_a_block},
         {"a question after an edit", question_after_edit},
         {"a gap", gap},
