@@ -184,6 +184,27 @@ static void offsets_that_meet(void)
     free(s);
 }
 
+/* One link of every offset: far too few for rows. */
+static void every_offset(void)
+{
+    enum { links = 5000 };
+    double *position = malloc((links + 1) * sizeof *position);
+    spring_link *link = malloc(links * sizeof *link);
+    for (uint32_t i = 0; i <= links; i++)
+        position[i] = i;
+    for (uint32_t i = 0; i < links; i++)
+        link[i] = (spring_link){0, i + 1, 0.5, 2, 0};
+    const scene_def def = {
+        .axes = 1, .particles = links + 1, .links = links, .position = position, .link = link};
+    scene *s = scene_of(&def);
+    CHECK(s->plan.rows == 0, "one link makes no row");
+    for (uint32_t i = 0; i < links; i++)
+        CHECK_BITS(SCENE(tension)(s, i), 2 * (i + 0.5), "2 N/m of (i + 1) m - 0.5 m, exactly");
+    free(s);
+    free(position);
+    free(link);
+}
+
 /* A block with diagonals and bending links has sixteen offsets, and each its row. */
 static void rows_of_a_block(void)
 {
@@ -390,6 +411,7 @@ int main(void)
         {"parallel links", parallel_links},
         {"many offsets", many_offsets},
         {"offsets that meet", offsets_that_meet},
+        {"every offset", every_offset},
         {"rows of a block", rows_of_a_block},
         {"a question after an edit", question_after_edit},
         {"a gap", gap},

@@ -579,6 +579,11 @@ static void damping_taken_away(void)
     w.calls = 0;
     SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
     CHECK(w.calls == 3 * 4, "and three where something does");
+    m.link[0].damping = 0;
+    SCENE(set_link)(s, 0, &m.link[0]);
+    w.calls = 0;
+    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    CHECK(w.calls == 1 + 4, "taken away once more");
     free(s);
 }
 
