@@ -64,10 +64,10 @@ WITH_VECTORS = re.compile("src/(real_vector|processor|batch_kernels|batch_loop|s
 
 # Which programs a file concerns; no other calls what is in it. A file that is not here concerns all.
 CONCERNS = {
-    "src/batch": re.compile("batch|fuzz-api|validate$"),
-    "src/scene": re.compile("scene|fuzz-scene|validate$"),
+    "src/batch": re.compile("batch|plain|fuzz-api|validate$"),
+    "src/scene": re.compile("scene|plain|fuzz-scene|validate$"),
     "src/grid": re.compile("scene|fuzz-scene|validate$"),
-    "src/real_vector": re.compile("batch|scene|fuzz|validate$"),
+    "src/real_vector": re.compile("batch|scene|plain|fuzz|validate$"),
 }
 
 
