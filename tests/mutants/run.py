@@ -9,7 +9,7 @@ usage: run.py [--sample] [--new TABLE] [-o FILE] [PATTERN]...
   --new TABLE   only mutants that have no row in TABLE
   -o FILE       write the table to FILE instead of standard output
   PATTERN       only mutants whose names contain one of these
-  --merge       run nothing: of each mutant that there is, the last row among the TABLEs
+  --merge       run nothing: of each mutant that there is, the last row among the TABLEs, judged as after a run
 
 The mutants are those of generate.py and of by_hand.toml. mutants.tsv beside this file is the table which the report
 shows; it is merged of several runs. Columns: mutant, by (generator or hand), killed_by (program and test point), verdict
@@ -47,6 +47,7 @@ import generate
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 VALIDATE = "validate"
+TIME_LIMIT = "time limit"
 SAMPLE_BY_HAND, SAMPLE_GENERATED = 14, 90
 COLUMNS = ("mutant", "by", "killed_by", "verdict", "reason", "caught_by_validate", "line", "date")
 
@@ -151,7 +152,7 @@ def execute(program, build):
         process.wait()
         timer.cancel()
     if stopped:
-        return "time limit"
+        return TIME_LIMIT
     if process.returncode != 0:
         return f"status {process.returncode}"
     return "broke off" if program.tap and points != plan else ""
@@ -229,7 +230,10 @@ def try_program(mutant, build, program):
     # what it does.
     if not mutant.file.startswith("src/") and stamps(build, program.targets) == before:
         return ""
-    return execute(program, build)
+    failure = execute(program, build)
+    if failure == TIME_LIMIT: # a program that hangs, or a machine that was busy?
+        failure = execute(program._replace(limit=4 * program.limit), build)
+    return failure
 
 
 def try_mutant(mutant, tree, programs):
@@ -262,7 +266,6 @@ def try_mutant(mutant, tree, programs):
 
 
 def run(mutants, equivalent, table):
-    failures = []
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         first = pathlib.Path(scratch).resolve() / "0"
         shutil.copytree(ROOT, first, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
@@ -279,18 +282,25 @@ def run(mutants, equivalent, table):
             finally:
                 trees.put(tree)
 
-        counts = {"killed": 0, "equivalent": 0, "survived": 0}
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            for mutant, killed_by, caught in pool.map(work, mutants):
-                row = row_of(mutant, killed_by or "-", caught, datetime.date.today(), equivalent)
-                write_row(row, table)
-                counts[row["verdict"]] += 1
-                if row["verdict"] == "survived":
-                    failures.append(f"{mutant.name} survived: {mutant.line}")
-                elif killed_by and mutant.name in equivalent:
-                    failures.append(f"{mutant.name} is listed as equivalent, and killed by {killed_by}")
-                elif mutant.by_hand and caught == "no":
-                    failures.append(f"{mutant.name}: spring-validate misses it")
+            rows = (row_of(mutant, killed_by or "-", caught, datetime.date.today(), equivalent)
+                    for mutant, killed_by, caught in pool.map(work, mutants))
+            return write(rows, equivalent, table)
+
+
+def write(rows, equivalent, table):
+    """Writes rows as they come; the status."""
+    counts = {"killed": 0, "equivalent": 0, "survived": 0}
+    failures = []
+    for row in rows:
+        print(*row.values(), sep="\t", file=table, flush=True)
+        counts[row["verdict"]] += 1
+        if row["verdict"] == "survived":
+            failures.append(f"{row['mutant']} survived: {row['line']}")
+        elif row["verdict"] == "killed" and row["mutant"] in equivalent:
+            failures.append(f"{row['mutant']} is listed as equivalent, and killed by {row['killed_by']}")
+        elif row["by"] == "hand" and row["caught_by_validate"] == "no":
+            failures.append(f"{row['mutant']}: spring-validate misses it")
     for failure in failures:
         print("FAILED:", failure, file=sys.stderr)
     print("{killed} killed, {equivalent} equivalent, {survived} survived".format(**counts), file=sys.stderr)
@@ -305,18 +315,13 @@ def row_of(mutant, killed_by, caught, date, equivalent):
     return dict(zip(COLUMNS, values))
 
 
-def write_row(row, table):
-    print(*row.values(), sep="\t", file=table, flush=True)
-
-
 def merge(tables, mutants, equivalent, table):
     """Of each mutant the last row, if it was in the same line of source."""
-    rows = {(row["mutant"], row["line"]): row for rows in tables for row in rows}
-    for mutant in mutants:
-        row = rows.get((mutant.name, mutant.line))
-        if row is not None:
-            write_row(row_of(mutant, row["killed_by"], row["caught_by_validate"], row["date"], equivalent), table)
-    return 0
+    last = {(row["mutant"], row["line"]): row for rows in tables for row in rows}
+    known = ((mutant, last[mutant.name, mutant.line]) for mutant in mutants if (mutant.name, mutant.line) in last)
+    return write((row_of(mutant, row["killed_by"], row["caught_by_validate"] if mutant.trajectory else "-", row["date"],
+                         equivalent)
+                  for mutant, row in known), equivalent, table)
 
 
 def in_sample(mutant, table):
@@ -340,7 +345,7 @@ def main():
     options = parser.parse_args()
     mutants = [*written_by_hand(), *generated()]
     equivalent = known_equivalents(mutants)
-    known = {row["mutant"] for row in rows_of(options.new)} if options.new else set()
+    known = {(row["mutant"], row["line"]) for row in rows_of(options.new)} if options.new else set()
     tables = [rows_of(path) for path in options.names] if options.merge else []
     run_before = {(row["mutant"], row["line"]) for row in rows_of(HERE / "mutants.tsv")} if options.sample else set()
     with open(options.output, "w", encoding="utf-8") if options.output else sys.stdout as table:
@@ -351,7 +356,7 @@ def main():
             return merge(tables, mutants, equivalent, table)
         chosen = [
             mutant for mutant in mutants
-            if (not options.sample or in_sample(mutant, run_before)) and mutant.name not in known
+            if (not options.sample or in_sample(mutant, run_before)) and (mutant.name, mutant.line) not in known
             and (not options.names or any(pattern in mutant.name for pattern in options.names))
         ]
         return run(chosen, equivalent, table)

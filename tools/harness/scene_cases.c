@@ -232,6 +232,35 @@ static void build_stiffness_ratio(const scene_case *c, scene_problem *p)
         p->link[i].stiffness = i % 2 == 0 ? 2.7e6 : 2.7;
 }
 
+/* Four rows of links (equal ones, some of them turned round; of different rest length; with a gap; of different stiffness
+   and damping) and two links that lie in no row; in the plane it falls freely. */
+static void build_patchwork(const scene_case *c, scene_problem *p)
+{
+    const uint32_t axes = (uint32_t)c->count, particles = 12, gap = 6;
+    make(p, axes, particles, 11 + 10 + 8 + 8 + 2);
+    for (uint32_t i = 0; i < particles; i++) {
+        p->pinned[i] = axes == 1 && (i == 0 || i == 7);
+        for (uint32_t d = 0; d < axes; d++) {
+            p->position[axes * i + d] = 0.3 * (d == 0 ? i : i % 3) + 0.05 * sin(2.3 * (3 * i + d));
+            p->velocity[axes * i + d] = p->pinned[i] ? 0 : 0.4 * cos(1.9 * (3 * i + d));
+        }
+    }
+    spring_link *link = p->link;
+    for (uint32_t i = 1; i < particles; i++)
+        *link++ = i % 4 == 0 ? (spring_link){i, i - 1, 0.25, 31, 0} : (spring_link){i - 1, i, 0.25, 31, 0};
+    for (uint32_t i = 2; i < particles; i++)
+        *link++ = (spring_link){i - 2, i, 0.5 + 0.03 * (i % 3), 23, 0};
+    for (uint32_t i = 3; i < particles; i++)
+        if (i != gap)
+            *link++ = (spring_link){i - 3, i, 0.8, 17, 0};
+    for (uint32_t i = 4; i < particles; i++)
+        *link++ = (spring_link){i - 4, i, 1.1, 4.0 * (i % 3), 0.3 * (i % 2)};
+    *link++ = (spring_link){1, 9, 2.1, 12, 0};
+    *link++ = (spring_link){10, 4, 1.9, 14, 0.2};
+    p->def.gravity[axes - 1] = -9.81;
+    p->def.drag = 0.2;
+}
+
 static void make_grid(scene_problem *p, const spring_grid *g)
 {
     size_t particles, links;
@@ -536,6 +565,10 @@ const scene_case scene_cases[] = {
      STEPS(0, 4096, 1024), .omega = 6325, .length = 0.1, .peers = true, .slow = true},
     {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
      STEPS(0, 4096, 1024), .omega = 2038, .length = 0.5, .peers = true, .slow = true},
+    {"patchwork", "rows of links of which none is like the next, on a line", build_patchwork, .count = 1,
+     .duration = 0.5, STEPS(1024, 128, 64), .omega = 21, .length = 0.3, .peers = true},
+    {"patchwork-2d", "the same in the plane, falling", build_patchwork, .count = 2, .duration = 0.5,
+     STEPS(1024, 128, 64), .omega = 21, .length = 0.3, .peers = true},
     {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128),
      .omega = 100, .length = 0.2, .peers = true, .slow = true},
     {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21,
