@@ -174,20 +174,6 @@ static bool finite_state(const scene *s)
     return true;
 }
 
-/* After a failure without undo: has the caller set what was lost? */
-static bool repaired(scene *s)
-{
-    if (!finite_state(s))
-        return false;
-    for (uint32_t a = 0; a < s->plan.axes; a++) { /* what fills the last vectors is lost, too */
-        const size_t rest = (s->plan.stride - padding - s->plan.particles) * sizeof(scalar);
-        memset(scene_axis(s, s->plan.x[s->frame], a) + s->plan.particles, 0, rest);
-        memset(scene_axis(s, s->plan.v[s->frame], a) + s->plan.particles, 0, rest);
-    }
-    s->broken = false;
-    return true;
-}
-
 spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring_method m, double dt,
                                   uint64_t n)
 {
@@ -199,8 +185,9 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
         return SPRING_EUNSUPPORTED;
     if (n == 0 || (scalar)dt == 0)
         return SPRING_OK;
-    if (s->broken && !repaired(s))
+    if (s->broken && !finite_state(s)) /* the caller has not set all that was lost */
         return SPRING_ENONFINITE;
+    s->broken = false;
     const bool undo = (s->plan.flags & SPRING_SCENE_NO_UNDO) == 0;
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);

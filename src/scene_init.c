@@ -64,7 +64,7 @@ static scalar inverse_mass_of(const scene_def *def, size_t i)
 
 static bool mass_valid(double mass)
 {
-    return mass > 0 && fits(mass) && (scalar)(1 / mass) > 0 && fits(1 / mass);
+    return mass > 0 && fits(mass) && fits(1 / mass);
 }
 
 static culprit check_head(const scene_def *def)
