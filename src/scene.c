@@ -28,12 +28,15 @@ static void evaluate(const scene_kernels *kernels, const scene *s, size_t x, siz
     const scene_plan *p = &s->plan;
     const bool damped = s->damped_links > 0;
     scene_row row[most_rows];
-    scene_links links = {.particles = p->particles, .rows = p->rows, .row = row};
-    for (uint32_t a = 0; a < p->axes; a++) {
-        links.x[a] = scene_axis(s, x, a);
-        links.v[a] = scene_axis(s, v, a);
-        links.force[a] = scene_axis(s, p->force, a);
-    }
+    scene_links links = {
+        .particles = p->particles,
+        .stride = p->stride,
+        .x = scene_axis(s, x, 0),
+        .v = scene_axis(s, v, 0),
+        .force = scene_axis(s, p->force, 0),
+        .rows = p->rows,
+        .row = row,
+    };
     for (uint32_t r = 0; r < p->rows; r++) {
         const row_place *place = &p->row[r];
         row[r] = (scene_row){
@@ -58,8 +61,16 @@ static void evaluate(const scene_kernels *kernels, const scene *s, size_t x, siz
         };
         kernels->list[p->axes - 1][damped](&links);
     }
-    if (s->force != NULL)
-        s->force(s->user, t, p->particles, links.x, links.v, links.force);
+    if (s->force != NULL) {
+        const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
+        scalar *force[3] = {NULL};
+        for (uint32_t a = 0; a < p->axes; a++) {
+            position[a] = scene_axis(s, x, a);
+            velocity[a] = scene_axis(s, v, a);
+            force[a] = scene_axis(s, p->force, a);
+        }
+        s->force(s->user, t, p->particles, position, velocity, force);
+    }
 }
 
 static double time_of(const scene *s)
@@ -86,24 +97,22 @@ static scene_motion motion(const scene *s, double dt, uint32_t from, uint32_t to
     scene_motion m = {
         .particles = p->particles,
         .axes = p->axes,
+        .stride = p->stride,
         .inverse_mass = p->inverse_mass != 0 ? scene_array(s, p->inverse_mass) : NULL,
         .inverse_mass_all = (scalar)(1 / s->mass_all),
         .drag = (scalar)s->drag,
         .h = (scalar)dt,
+        .force = scene_axis(s, p->force, 0),
+        .x0 = scene_axis(s, p->x[from], 0),
+        .v0 = scene_axis(s, p->v[from], 0),
+        .x = scene_axis(s, p->x[to], 0),
+        .v = scene_axis(s, p->v[to], 0),
+        .stage_v = scene_axis(s, p->v[from], 0),
+        .sum_x = scene_axis(s, p->sum_x, 0),
+        .sum_v = scene_axis(s, p->sum_v, 0),
     };
-    for (uint32_t a = 0; a < p->axes; a++) {
+    for (uint32_t a = 0; a < p->axes; a++)
         m.gravity[a] = (scalar)s->gravity[a];
-        m.force[a] = scene_axis(s, p->force, a);
-        m.x0[a] = scene_axis(s, p->x[from], a);
-        m.v0[a] = scene_axis(s, p->v[from], a);
-        m.x[a] = scene_axis(s, p->x[to], a);
-        m.v[a] = scene_axis(s, p->v[to], a);
-        m.stage_v[a] = m.v0[a];
-        if (p->sum_x != 0) {
-            m.sum_x[a] = scene_axis(s, p->sum_x, a);
-            m.sum_v[a] = scene_axis(s, p->sum_v, a);
-        }
-    }
     return m;
 }
 
@@ -124,23 +133,24 @@ static outcome euler(const scene_kernels *kernels, scene *s, uint32_t from, uint
     return (outcome){kernels->euler(&m), false};
 }
 
+/* What is not finite any more ends a step at once: a callback is shown nothing else. */
 static outcome leapfrog(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t, double dt)
 {
     const scene_plan *p = &s->plan;
-    const scene_motion first = motion(s, dt, from, to), last = motion(s, dt, to, to);
-    bool finite = kernels->kick_drift(&first);
+    const scene_motion first = motion(s, dt, from, to);
+    scene_motion last = first;
+    last.v0 = last.v;
+    if (!kernels->kick_drift(&first))
+        return (outcome){false, false};
     evaluate(kernels, s, p->x[to], p->v[to], t.end);
-    if (!velocity_forces(s)) {
-        finite &= kernels->kick(&last);
-        return (outcome){finite, true};
-    }
+    if (!velocity_forces(s))
+        return (outcome){kernels->kick(&last), true};
     scene_motion predict = last;
-    for (uint32_t a = 0; a < p->axes; a++)
-        predict.v[a] = scene_axis(s, p->predicted, a);
-    kernels->kick(&predict);
+    predict.v = scene_axis(s, p->predicted, 0);
+    if (!kernels->kick(&predict))
+        return (outcome){false, false};
     evaluate(kernels, s, p->x[to], p->predicted, t.end);
-    finite &= kernels->kick(&last);
-    return (outcome){finite, false};
+    return (outcome){kernels->kick(&last), false};
 }
 
 static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32_t to, span t, double dt)
@@ -149,14 +159,13 @@ static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32
     const double times[] = {t.middle, t.middle, t.end};
     scene_motion stage = motion(s, dt, from, p->work);
     for (int k = 0; k < 3; k++) {
-        kernels->rk4_stage[k](&stage);
+        if (!kernels->rk4_stage[k](&stage))
+            return (outcome){false, false};
         evaluate(kernels, s, p->x[p->work], p->v[p->work], times[k]);
-        for (uint32_t a = 0; a < p->axes; a++)
-            stage.stage_v[a] = stage.v[a];
+        stage.stage_v = stage.v;
     }
     scene_motion end = motion(s, dt, from, to);
-    for (uint32_t a = 0; a < p->axes; a++)
-        end.stage_v[a] = stage.v[a];
+    end.stage_v = stage.v;
     return (outcome){kernels->rk4_end(&end), false};
 }
 
@@ -172,6 +181,17 @@ static bool finite_state(const scene *s)
                 return false;
     }
     return true;
+}
+
+/* After a failure without undo nothing is left of the state, not even what is finite. */
+static void lose(scene *s)
+{
+    const int nan = 0xff; /* in each byte */
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        memset(scene_axis(s, s->plan.x[s->frame], a), nan, s->plan.particles * sizeof(scalar));
+        memset(scene_axis(s, s->plan.v[s->frame], a), nan, s->plan.particles * sizeof(scalar));
+    }
+    s->broken = true;
 }
 
 spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring_method m, double dt,
@@ -205,7 +225,8 @@ spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring
         s->force_kept = end.force_kept;
         if (!end.finite) {
             s->force_kept = false;
-            s->broken = !undo;
+            if (!undo)
+                lose(s);
             return SPRING_ENONFINITE;
         }
         from = to;
@@ -224,34 +245,38 @@ spring_status SCENE(advance)(scene *s, spring_method m, double dt, uint64_t n)
 
 /* ----------------------------------------------------------------------------------------------- the stable step */
 
-/* The largest sum over the links of a particle of twice a quantity of theirs, once where the other end is pinned; times
-   the inverse mass if that is asked for. Uses the memory of the forces. */
-static double largest_sum(scene *s, bool damping, bool by_mass, double each)
+typedef enum link_number { STIFFNESS, DAMPING } link_number;
+
+/* Over the particles that move the largest sum of twice a number of their links, once where the other end is pinned, and
+   of what each particle has of its own; by_mass: times the inverse mass. Uses the memory of the forces. */
+static double largest_sum(scene *s, link_number number, double own, bool by_mass)
 {
     const scalar *inverse_mass = s->plan.inverse_mass != 0 ? scene_array(s, s->plan.inverse_mass) : NULL;
     scalar *sum = scene_axis(s, s->plan.force, 0);
     memset(sum, 0, s->plan.particles * sizeof *sum);
     for (size_t i = 0; i < s->plan.links; i++) {
         const placed_link link = scene_link(s, i);
-        const scalar value = damping ? (link.damping != NULL ? *link.damping : 0) : *link.stiffness;
-        sum[link.a] += inverse_mass != NULL && inverse_mass[link.b] == 0 ? value : 2 * value;
-        sum[link.b] += inverse_mass != NULL && inverse_mass[link.a] == 0 ? value : 2 * value;
+        const scalar *value = number == STIFFNESS ? link.stiffness : link.damping;
+        if (value == NULL)
+            continue;
+        sum[link.a] += inverse_mass != NULL && inverse_mass[link.b] == 0 ? *value : 2 * *value;
+        sum[link.b] += inverse_mass != NULL && inverse_mass[link.a] == 0 ? *value : 2 * *value;
     }
     double largest = 0;
     for (size_t i = 0; i < s->plan.particles; i++) {
-        const double inverse = inverse_mass != NULL ? (double)inverse_mass[i] : 1 / s->mass_all;
+        const double inverse = inverse_mass_at(s, i);
         if (inverse > 0)
-            largest = fmax(largest, ((double)sum[i] + each) * (by_mass ? inverse : 1));
+            largest = fmax(largest, ((double)sum[i] + own) * (by_mass ? inverse : 1));
     }
     s->force_kept = false;
     return largest;
 }
 
-void SCENE(find_limits)(scene *s)
+static void find_limits(scene *s)
 {
-    s->stiffest = largest_sum(s, false, true, 0);
-    s->heaviest_damping = largest_sum(s, true, true, s->drag);
-    s->stiffest_link_sum = largest_sum(s, false, false, 0);
+    s->L = largest_sum(s, STIFFNESS, 0, true);
+    s->G = largest_sum(s, DAMPING, s->drag, true);
+    s->K = largest_sum(s, STIFFNESS, 0, false);
     s->limits_known = true;
 }
 
@@ -262,8 +287,8 @@ double SCENE(stable_step)(const scene *s, spring_method m)
     if (s == NULL || spring_method_name(m) == NULL || m == SPRING_EXACT)
         return NAN;
     if (!s->limits_known)
-        SCENE(find_limits)((scene *)(uintptr_t)s);
-    const double omega = sqrt(s->stiffest), G = s->heaviest_damping, K = s->stiffest_link_sum;
+        find_limits((scene *)(uintptr_t)s);
+    const double omega = sqrt(s->L), G = s->G, K = s->K;
     switch (m) {
     case SPRING_LEAPFROG:
         return s->damped_links > 0 ? fmin(2 / omega, 2 / G) : 2 / omega;
@@ -335,7 +360,8 @@ bool SCENE(at_rest)(const scene *s, double v_tol, double a_tol)
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, acceleration = 0; /* squared */
         for (uint32_t a = 0; a < m.axes; a++) {
-            const double v = (double)m.v0[a][i], force = (double)m.force[a][i] - s->drag * v;
+            const double v = (double)m.v0[a * m.stride + i],
+                         force = (double)m.force[a * m.stride + i] - s->drag * v;
             const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed += v * v;
             acceleration += felt * felt;

@@ -76,10 +76,8 @@ struct spring_scene
     bool force_kept; /* force is that of the state */
     bool broken;     /* an advance without undo has failed */
     bool limits_known;
-    double stiffest, heaviest_damping, stiffest_link_sum; /* L, G and K of spring_scene_stable_step() */
+    double L, G, K; /* [1/s^2], [1/s], [N/m]: see spring_scene_stable_step() */
 };
-
-void SCENE(find_limits)(scene *s);
 
 /* spring_scene_advance() with the instruction set of one's choice, for tests. */
 spring_status SCENE(advance_with)(const scene_kernels *kernels, scene *s, spring_method m, double dt,

@@ -2,10 +2,11 @@
 /*
  * From a definition to a scene: checks, the plan of its memory, and filling it.
  *
- * Rows      The links of an offset, upper minus lower end, make a row if their lower ends ascend in the order of the
- *           links, and at least a quarter of the places between the first and the last is taken: then no place is taken
- *           twice, and the row is cheaper than the list. Offsets are counted in a small table; what does not fit there
- *           goes to the list, as do all links of particles without order.
+ * Rows      The links of an offset, upper minus lower end, make a row as far as their lower ends ascend in the order of
+ *           the links, so that no place is taken twice, if at least a quarter of the places between the first and the
+ *           last is taken: then the row is cheaper than the list. Of too many rows the longest are kept. Offsets are
+ *           counted in a small table. What finds no room there, or in its row, goes to the list, as do all links of
+ *           particles without order.
  */
 #include "scene_block.h"
 
@@ -91,7 +92,7 @@ static culprit check_head(const scene_def *def)
         return invalid("link", 0);
     if (def->mass == NULL && def->mass_all != 0 && !mass_valid(def->mass_all))
         return invalid("mass_all", 0);
-    for (uint32_t a = 0; a < 3; a++)
+    for (uint32_t a = 0; a < axes_of(def); a++)
         if (!fits(def->gravity[a]))
             return invalid("gravity", a);
     return not_negative(def->drag) ? nobody : invalid("drag", 0);
@@ -127,10 +128,10 @@ static const char *wrong_in_link(const spring_link *link)
 /* Of numbers that are too large for the masses at the ends: w or g of rule "bad input" would overflow. */
 static const char *too_much(const spring_link *link, double inverse_a, double inverse_b)
 {
-    const double lightest = 2 * fmax(inverse_a, inverse_b);
-    return !fits(link->stiffness * lightest) ? "link.stiffness"
-           : !fits(link->damping * lightest) ? "link.damping"
-                                             : NULL;
+    const double lightest = fmax(inverse_a, inverse_b);
+    return !fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
+           : !fits(2 * (link->damping * lightest)) ? "link.damping"
+                                                   : NULL;
 }
 
 static culprit check_links(const scene_def *def)
@@ -190,7 +191,7 @@ static uint32_t offset_of(const spring_link *link)
 typedef struct candidate { /* for a row */
     uint32_t offset;       /* 0: free */
     uint32_t first, last, count;
-    bool ascending, equal;
+    bool equal;
     const spring_link *sample;
 } candidate;
 
@@ -205,13 +206,12 @@ static bool equal_links(const spring_link *a, const spring_link *b)
 static void count_link(candidate table[candidates], const spring_link *link)
 {
     const uint32_t offset = offset_of(link), lower = lower_end(link);
-    const uint32_t hash = offset * 2654435761u; /* Knuth's multiplicative hash */
+    const uint32_t hash = offset * 2654435761u >> 24; /* Knuth's multiplicative hash: the high bits */
     for (uint32_t probe = 0; probe < probes; probe++) {
         candidate *c = &table[(hash + probe) % candidates];
         if (c->offset == 0)
-            *c = (candidate){offset, lower, lower, 1, true, true, link};
-        else if (c->offset == offset) {
-            c->ascending = c->ascending && lower > c->last;
+            *c = (candidate){offset, lower, lower, 1, true, link};
+        else if (c->offset == offset && lower > c->last) {
             c->equal = c->equal && equal_links(link, c->sample);
             c->last = lower;
             c->count++;
@@ -224,7 +224,15 @@ static void count_link(candidate table[candidates], const spring_link *link)
 static bool makes_a_row(const candidate *c)
 {
     const uint32_t least = 8, sparsest = 4;
-    return c->ascending && c->count >= least && c->count >= (c->last - c->first + 1) / sparsest;
+    return c->count >= least && c->count >= (c->last - c->first + 1) / sparsest;
+}
+
+static uint32_t longer_rows(const candidate table[candidates], const candidate *than)
+{
+    uint32_t longer = 0;
+    for (const candidate *c = table; c < table + candidates; c++)
+        longer += makes_a_row(c) && (c->count > than->count || (c->count == than->count && c < than));
+    return longer;
 }
 
 static void plan_rows(const scene_def *def, scene_plan *plan)
@@ -234,9 +242,8 @@ static void plan_rows(const scene_def *def, scene_plan *plan)
     for (size_t i = 0; i < def->links; i++)
         count_link(table, &def->link[i]);
     plan->list_links = def->links;
-    for (size_t i = 0; i < candidates && plan->rows < most_rows; i++) {
-        const candidate *c = &table[i];
-        if (!makes_a_row(c))
+    for (const candidate *c = table; c < table + candidates; c++) {
+        if (!makes_a_row(c) || longer_rows(table, c) >= most_rows)
             continue;
         size_t at = plan->rows++;
         for (; at > 0 && plan->row[at - 1].offset > c->offset; at--)
@@ -383,20 +390,23 @@ static void spread(scalar *vector)
 static void fill_links(scene *s, const scene_def *def)
 {
     uint32_t *slot = scene_indices(s, s->plan.slot);
+    uint32_t next[most_rows] = {0}; /* lower end that a row takes, or one above it */
     uint32_t listed = 0;
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
+        const uint32_t lower = lower_end(link);
         const row_place *row = row_of(&s->plan, offset_of(link));
-        if (row != NULL) {
-            slot[i] = (uint32_t)(row->start + padding + lower_end(link) - row->first);
+        if (row != NULL && lower >= next[row - s->plan.row]) {
+            next[row - s->plan.row] = lower + 1;
+            slot[i] = (uint32_t)(row->start + padding + lower - row->first);
+            if (row->equal)
+                scene_bytes_at(s, s->plan.row_present)[row->present + slot[i] - row->start] = -1;
         } else {
             slot[i] = (uint32_t)(s->plan.row_places + listed);
             scene_indices(s, s->plan.list_a)[listed] = link->a;
             scene_indices(s, s->plan.list_b)[listed] = link->b;
             listed++;
         }
-        if (row != NULL && row->equal)
-            scene_bytes_at(s, s->plan.row_present)[row->present + slot[i] - row->start] = -1;
         place(s, i, link);
         s->damped_links += (scalar)link->damping > 0;
     }
@@ -436,7 +446,6 @@ spring_status SCENE(init)(void *memory, size_t bytes, const scene_def *def, scen
     };
     fill_particles(s, def);
     fill_links(s, def);
-    SCENE(find_limits)(s);
     *result = s;
     return SPRING_OK;
 }

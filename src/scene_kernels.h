@@ -46,8 +46,9 @@ typedef struct scene_list {
 
 typedef struct scene_links { /* what a force kernel works on */
     size_t particles;
-    const scalar *x[3], *v[3];
-    scalar *force[3];
+    size_t stride; /* elements from one axis to the next */
+    const scalar *x, *v;
+    scalar *force;
     size_t rows;
     const scene_row *row;
     scene_list list;
@@ -56,16 +57,17 @@ typedef struct scene_links { /* what a force kernel works on */
 typedef struct scene_motion { /* what moves particles; the pointers are set for each kernel, see there */
     size_t particles;
     uint32_t axes;
+    size_t stride;              /* elements from one axis to the next */
     const scalar *inverse_mass; /* NULL: one for all */
     scalar inverse_mass_all;
     scalar gravity[3];
     scalar drag;
     scalar h;
-    const scalar *force[3];
-    const scalar *x0[3], *v0[3]; /* from */
-    scalar *x[3], *v[3];         /* to */
-    const scalar *stage_v[3];    /* RK4: velocity of the stage that `force` belongs to */
-    scalar *sum_x[3], *sum_v[3]; /* RK4: weighted sums of the stages */
+    const scalar *force;
+    const scalar *x0, *v0; /* from */
+    scalar *x, *v;         /* to */
+    const scalar *stage_v; /* RK4: velocity of the stage that `force` belongs to */
+    scalar *sum_x, *sum_v; /* RK4: weighted sums of the stages */
 } scene_motion;
 
 typedef void scene_link_kernel(const scene_links *);
@@ -136,9 +138,9 @@ SPRING_INLINE void pull_side(const scene_links *s, const scene_row *row, ptrdiff
     real way[3], relative[3];
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++) {
-        way[a] = load(s->x[a] + i + offset) - x[a];
+        way[a] = load(s->x + a * s->stride + i + offset) - x[a];
         if (damped)
-            relative[a] = load(s->v[a] + i + offset) - v[a];
+            relative[a] = load(s->v + a * s->stride + i + offset) - v[a];
     }
     /* On one axis the rest length has the direction from the lower end to the upper. */
     to_force(axes, way, relative, joined, k, axes == 1 && !upper ? -rest : rest, c, damped);
@@ -153,9 +155,9 @@ SPRING_INLINE void rows_at(const scene_links *s, ptrdiff_t i, uint32_t axes, boo
     real x[3], v[3], force[3];
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++) {
-        x[a] = load(s->x[a] + i);
+        x[a] = load(s->x + a * s->stride + i);
         if (damped)
-            v[a] = load(s->v[a] + i);
+            v[a] = load(s->v + a * s->stride + i);
         force[a] = splat(0);
     }
     const scene_row *const end = s->row + s->rows;
@@ -167,7 +169,7 @@ SPRING_INLINE void rows_at(const scene_links *s, ptrdiff_t i, uint32_t axes, boo
     }
     SPRING_UNROLL
     for (uint32_t a = 0; a < axes; a++)
-        store(s->force[a] + i, force[a]);
+        store(s->force + a * s->stride + i, force[a]);
 }
 
 SPRING_INLINE void rows(const scene_links *s, uint32_t axes, bool damped)
@@ -200,9 +202,9 @@ SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
         for (size_t j = 0; j < count; j++) {
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
-                way[a][j] = s->x[a][to[j]] - s->x[a][from[j]];
+                way[a][j] = s->x[a * s->stride + to[j]] - s->x[a * s->stride + from[j]];
                 if (damped)
-                    relative[a][j] = s->v[a][to[j]] - s->v[a][from[j]];
+                    relative[a][j] = s->v[a * s->stride + to[j]] - s->v[a * s->stride + from[j]];
             }
         }
         for (size_t j = count; j % lanes != 0; j++) /* what fills the last vector */
@@ -225,8 +227,8 @@ SPRING_INLINE void list(const scene_links *s, uint32_t axes, bool damped)
         for (size_t j = 0; j < count; j++) {
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
-                s->force[a][from[j]] += way[a][j];
-                s->force[a][to[j]] -= way[a][j];
+                s->force[a * s->stride + from[j]] += way[a][j];
+                s->force[a * s->stride + to[j]] -= way[a][j];
             }
         }
     }
@@ -253,7 +255,7 @@ SPRING_INLINE particle_vector particles_at(const scene_motion *s, size_t i)
 /* Without drag. A particle that is pinned feels no force, not even an infinite one. */
 SPRING_INLINE real acceleration(const scene_motion *s, const particle_vector *p, uint32_t a, size_t i)
 {
-    const real free = p->inverse_mass * load(s->force[a] + i) + s->gravity[a];
+    const real free = p->inverse_mass * load(s->force + i) + s->gravity[a];
     return select_real(p->inverse_mass > 0, free, splat(0));
 }
 
@@ -267,11 +269,12 @@ static bool euler(const scene_motion *s)
     {
         const particle_vector p = particles_at(s, i);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real v = load(s->v0[a] + i);
-            const real x1 = load(s->x0[a] + i) + h * v;
-            const real v1 = v + h * (acceleration(s, &p, a, i) - p.drag * v);
-            store(s->x[a] + i, x1);
-            store(s->v[a] + i, v1);
+            const size_t at = a * s->stride + i;
+            const real v = load(s->v0 + at);
+            const real x1 = load(s->x0 + at) + h * v;
+            const real v1 = v + h * (acceleration(s, &p, a, at) - p.drag * v);
+            store(s->x + at, x1);
+            store(s->v + at, v1);
             wrong |= not_finite(x1) | not_finite(v1);
         }
     }
@@ -286,11 +289,12 @@ static bool kick_drift(const scene_motion *s)
     {
         const particle_vector p = particles_at(s, i);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real v = load(s->v0[a] + i);
-            const real v1 = v + half * (acceleration(s, &p, a, i) - p.drag * v);
-            const real x1 = load(s->x0[a] + i) + h * v1;
-            store(s->x[a] + i, x1);
-            store(s->v[a] + i, v1);
+            const size_t at = a * s->stride + i;
+            const real v = load(s->v0 + at);
+            const real v1 = v + half * (acceleration(s, &p, a, at) - p.drag * v);
+            const real x1 = load(s->x0 + at) + h * v1;
+            store(s->x + at, x1);
+            store(s->v + at, v1);
             wrong |= not_finite(x1) | not_finite(v1);
         }
     }
@@ -306,9 +310,10 @@ static bool kick(const scene_motion *s)
         const particle_vector p = particles_at(s, i);
         const leapfrog_share share = leapfrog_share_of(half * p.drag);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real u = load(s->v0[a] + i) + half * acceleration(s, &p, a, i);
+            const size_t at = a * s->stride + i;
+            const real u = load(s->v0 + at) + half * acceleration(s, &p, a, at);
             const real v1 = s->drag != 0 ? share.keep * u + share.lose * u : u;
-            store(s->v[a] + i, v1);
+            store(s->v + at, v1);
             wrong |= not_finite(v1);
         }
     }
@@ -319,19 +324,24 @@ static bool kick(const scene_motion *s)
 SPRING_INLINE bool rk4_stage(const scene_motion *s, bool first, scalar weight, scalar fraction)
 {
     const real step = splat(s->h) * fraction;
+    truth wrong = {0};
     FOR_EACH_VECTOR(s, i)
     {
         const particle_vector p = particles_at(s, i);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real dx = load(s->stage_v[a] + i);
-            const real dv = acceleration(s, &p, a, i) - p.drag * dx;
-            store(s->sum_x[a] + i, first ? dx : load(s->sum_x[a] + i) + weight * dx);
-            store(s->sum_v[a] + i, first ? dv : load(s->sum_v[a] + i) + weight * dv);
-            store(s->x[a] + i, load(s->x0[a] + i) + step * dx);
-            store(s->v[a] + i, load(s->v0[a] + i) + step * dv);
+            const size_t at = a * s->stride + i;
+            const real dx = load(s->stage_v + at);
+            const real dv = acceleration(s, &p, a, at) - p.drag * dx;
+            const real x1 = load(s->x0 + at) + step * dx;
+            const real v1 = load(s->v0 + at) + step * dv;
+            store(s->sum_x + at, first ? dx : load(s->sum_x + at) + weight * dx);
+            store(s->sum_v + at, first ? dv : load(s->sum_v + at) + weight * dv);
+            store(s->x + at, x1);
+            store(s->v + at, v1);
+            wrong |= not_finite(x1) | not_finite(v1);
         }
     }
-    return true;
+    return !any(wrong);
 }
 
 static bool rk4_stage_1(const scene_motion *s)
@@ -357,12 +367,13 @@ static bool rk4_end(const scene_motion *s)
     {
         const particle_vector p = particles_at(s, i);
         for (uint32_t a = 0; a < s->axes; a++) {
-            const real dx = load(s->stage_v[a] + i);
-            const real dv = acceleration(s, &p, a, i) - p.drag * dx;
-            const real x1 = load(s->x0[a] + i) + sixth * (load(s->sum_x[a] + i) + dx);
-            const real v1 = load(s->v0[a] + i) + sixth * (load(s->sum_v[a] + i) + dv);
-            store(s->x[a] + i, x1);
-            store(s->v[a] + i, v1);
+            const size_t at = a * s->stride + i;
+            const real dx = load(s->stage_v + at);
+            const real dv = acceleration(s, &p, a, at) - p.drag * dx;
+            const real x1 = load(s->x0 + at) + sixth * (load(s->sum_x + at) + dx);
+            const real v1 = load(s->v0 + at) + sixth * (load(s->sum_v + at) + dv);
+            store(s->x + at, x1);
+            store(s->v + at, v1);
             wrong |= not_finite(x1) | not_finite(v1);
         }
     }

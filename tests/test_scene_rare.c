@@ -122,24 +122,23 @@ static void rows_of_every_length(void)
             }
 }
 
-/* Two links between the same two particles, in the middle of a row. */
-static void parallel_links(void)
+/* More offsets than there is room for rows. */
+static void many_offsets(void)
 {
+    enum { offsets = most_rows + 8, lowers = 10 };
     static model m;
     static state start;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned own = 0; own <= OWN; own += OWN) {
-            build(&m, (uint32_t[]){21, 1, 1}, axes, own);
-            size_t links = 0;
-            static spring_link link[most_links];
-            for (size_t i = 0; i < m.def.links; i++) {
-                link[links++] = m.link[i];
-                if (i % 7 == 4)
-                    link[links++] = m.link[i];
-            }
-            m.def.link = link;
-            m.def.links = links;
+        for (uint32_t shorter = 0; shorter < 2; shorter++) {
+            build(&m, (uint32_t[]){lowers + offsets, 1, 1}, axes, 0);
+            m.def.links = 0;
+            for (uint32_t offset = offsets; offset > 0; offset--)
+                for (uint32_t i = offset % 5 == 0 ? shorter : 0; i < lowers; i++)
+                    m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
             scene *s = scene_of(&m.def);
+            CHECK(s->plan.rows == most_rows &&
+                      s->plan.list_links == (offsets - most_rows) * (lowers - shorter),
+                  "the longest have rows, what has none is in the list");
             get_state(s, m.def.particles, &start);
             CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
@@ -147,41 +146,58 @@ static void parallel_links(void)
         }
 }
 
-/* More offsets than there is room for rows. */
-static void many_offsets(void)
+/* As many rows as there can be, in the small table in which their offsets are counted: sheets of many widths. */
+static void offsets_that_meet(void)
 {
-    enum { offsets = most_rows + 8, lowers = 10 };
-    static model m;
-    static state start;
-    for (uint32_t axes = 1; axes <= 3; axes++) {
-        build(&m, (uint32_t[]){lowers + offsets, 1, 1}, axes, 0);
-        m.def.links = 0;
-        for (uint32_t offset = offsets; offset > 0; offset--)
-            for (uint32_t i = 0; i < lowers; i++)
-                m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
-        scene *s = scene_of(&m.def);
-        CHECK(s->plan.rows == most_rows && s->plan.list_links == (offsets - most_rows) * lowers,
-              "what has no row is in the list");
-        get_state(s, m.def.particles, &start);
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
-        check_drift(&m, s, &start);
+    static const uint32_t widths[] = {1, 3, 16, 35, 100, 255, 256, 257, 512, 1000, 1024};
+    enum { lowers = 8, widest = 1024 };
+    static const double position[lowers + most_rows * widest];
+    spring_link link[most_rows * lowers];
+    for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
+        for (uint32_t i = 0; i < most_rows * lowers; i++)
+            link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0};
+        const scene_def def = {.axes = 1,
+                               .particles = lowers + most_rows * widths[w],
+                               .links = most_rows * lowers,
+                               .position = position,
+                               .link = link};
+        scene *s = scene_of(&def);
+        CHECK(s->plan.rows == most_rows && s->plan.list_links == 0, "each has its row");
         free(s);
     }
 }
 
-/* Offsets that meet in the table in which they are counted, since it has fewer places than there are offsets. */
-static void offsets_that_meet(void)
+/* Links that break the order of a row: one again, one late, one below the first. They alone lie in the list. */
+static void stray_links(void)
 {
-    enum { lowers = 9, apart = 1024 }; /* a multiple of the places of the table */
-    static const double position[3 * (lowers + 2 * apart + 3)];
-    spring_link link[3 * lowers];
-    for (uint32_t i = 0; i < 3 * lowers; i++)
-        link[i] = (spring_link){i / 3, i / 3 + 3 + i % 3 * apart, 0.6, 2.7, 0};
-    const scene_def def = {
-        .particles = lowers + 2 * apart + 3, .links = 3 * lowers, .position = position, .link = link};
-    scene *s = scene_of(&def);
-    CHECK(s->plan.rows == 3 && s->plan.list_links == 0, "each has its row");
-    free(s);
+    static model m;
+    static state start;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (unsigned own = 0; own <= OWN; own += OWN) {
+            enum { particles = 37, again = 11, late = 22 };
+            static spring_link sorted[particles - 1], link[particles];
+            size_t links = 0;
+            for (uint32_t i = 0; i + 1 < particles; i++)
+                sorted[i] = (spring_link){i, i + 1, 0.6, own != 0 ? 2.7 + 0.1 * i : 2.7, 0};
+            for (uint32_t i = 1; i + 1 < particles; i++) {
+                if (i != late)
+                    link[links++] = sorted[i];
+                if (i == again)
+                    link[links++] = sorted[i];
+                if (i == late + 3)
+                    link[links++] = sorted[late];
+            }
+            link[links++] = sorted[0];
+            build(&m, (uint32_t[]){particles, 1, 1}, axes, 0);
+            m.def.link = link;
+            m.def.links = links;
+            scene *s = scene_of(&m.def);
+            CHECK(s->plan.rows == 1 && s->plan.list_links == 3, "a row, and three beside it");
+            get_state(s, m.def.particles, &start);
+            CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
+            check_drift(&m, s, &start);
+            free(s);
+        }
 }
 
 /* One link of every offset: far too few for rows. */
@@ -321,30 +337,41 @@ static void bad_number_at_the_end(void)
     }
 }
 
-/* Without undo a scene is lost when one particle is, on one axis. */
-static void lost_on_one_axis(void)
+/* Without undo all is lost, whichever particle overflows and on whichever axis, and all has to be set again. */
+static void lost(void)
 {
-    const double position[3 * 2] = {0.3, 0.1, -0.2, -0.9, 0.4, 0.6}, still[3] = {0};
+    enum { particles = 2 };
+    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
+    const double position[3 * particles] = {0.3, 0.1, -0.2, -0.9, 0.4, 0.6}, still[3 * particles] = {0};
     const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (size_t lost = 0; lost < 2 * axes; lost++) {
-            double velocity[3 * 2] = {0};
-            velocity[lost] = 10;
-            const scene_def def = {.axes = axes,
-                                   .flags = SPRING_SCENE_NO_UNDO,
-                                   .particles = 2,
-                                   .position = position,
-                                   .velocity = velocity};
-            scene *s = scene_of(&def);
-            CHECK(SCENE(advance)(s, SPRING_EULER, huge, 1) == SPRING_ENONFINITE, "overflow");
-            CHECK(!SCENE(at_rest)(s, INFINITY, INFINITY), "what is lost is not at rest");
-            SCENE(set)(s, SPRING_VELOCITY, still, 0, lost / axes, 1);
-            CHECK(SCENE(advance)(s, SPRING_EULER, 0.1, 1) == SPRING_ENONFINITE, "its position is still lost");
-            SCENE(set)(s, SPRING_POSITION, position, 0, 0, 2);
-            CHECK(SCENE(advance)(s, SPRING_EULER, 0.1, 1) == SPRING_OK, "usable again");
-            CHECK(SCENE(at_rest)(s, 0, 0), "and at rest");
-            free(s);
-        }
+        for (size_t fast = 0; fast < particles * axes; fast++)
+            for (size_t k = 0; k < 3; k++) {
+                double velocity[3 * particles] = {0}, y[3 * particles];
+                velocity[fast] = 10;
+                const scene_def def = {.axes = axes,
+                                       .flags = SPRING_SCENE_NO_UNDO,
+                                       .methods = all_methods,
+                                       .particles = particles,
+                                       .position = position,
+                                       .velocity = velocity};
+                scene *s = scene_of(&def);
+                CHECK(SCENE(advance)(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+                CHECK(!SCENE(at_rest)(s, INFINITY, INFINITY), "what is lost is not at rest");
+                for (spring_quantity q = SPRING_POSITION; q <= SPRING_VELOCITY; q++) {
+                    SCENE(get)(s, q, y, 0, 0, particles);
+                    for (size_t i = 0; i < particles * axes; i++)
+                        CHECK(isnan(y[i]), "nothing is left");
+                    for (size_t i = 0; i < particles; i++) {
+                        CHECK(SCENE(advance)(s, methods[k], 0.1, 1) == SPRING_ENONFINITE,
+                              "not all is set again");
+                        SCENE(set)(s, q, q == SPRING_POSITION ? position + i * axes : still, 0, i, 1);
+                    }
+                }
+                CHECK(SCENE(advance)(s, methods[k], 0.1, 1) == SPRING_OK, "usable again");
+                CHECK(SCENE(at_rest)(s, 0, 0), "and at rest");
+                free(s);
+            }
 }
 
 /* A scene that may use more methods has more memory, and the same steps. */
@@ -402,15 +429,63 @@ static void callback_is_left_alone(void)
     }
 }
 
+static void ask_finite(void *user, double t, size_t particles, const scalar *const x[3],
+                       const scalar *const v[3], scalar *const force[3])
+{
+    (void)t;
+    for (size_t i = 0; i < particles; i++) {
+        *(bool *)user &= isfinite(x[0][i]) && isfinite(v[0][i]);
+        force[0][i] += (scalar)-0.3 * v[0][i];
+    }
+}
+
+/* Nor must it in the step in which a scene overflows, wherever in the step that is. */
+static void finite_for_callbacks(void)
+{
+    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
+    const double position[] = {0, 1.5}, fastest = sizeof(scalar) == 4 ? 1e38 : 1e300;
+    for (unsigned how = 0; how < 4; how++)
+        for (size_t k = 0; k < 3; k++)
+            for (double dt = 0.1; dt < fastest; dt *= 7.3) {
+                bool finite = true;
+                const spring_link link = {0, 1, 1, 100, how % 2 != 0 ? 0.7 : 0};
+                const scene_def def = {.axes = 1,
+                                       .flags = how / 2 != 0 ? SPRING_SCENE_NO_UNDO : 0,
+                                       .methods = all_methods,
+                                       .particles = 2,
+                                       .links = 1,
+                                       .position = position,
+                                       .link = &link,
+                                       .force = ask_finite,
+                                       .user = &finite};
+                scene *s = scene_of(&def);
+                CHECK(SCENE(advance)(s, methods[k], dt, 4000) == SPRING_ENONFINITE || dt < 1, "overflow");
+                CHECK(finite, "the callback sees finite numbers alone");
+                free(s);
+            }
+}
+
+/* Where only a product or a sum on the way would overflow. */
+static void extreme_numbers(void)
+{
+    const double position[2] = {0, 1}, mass = sizeof(scalar) == 4 ? 4e-39 : 6e-309; /* 2/mass is infinite */
+    const spring_link link = {0, 1, 1, 0, 0};
+    scene_def def = {
+        .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = mass, .link = &link};
+    CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "a link that does not pull is not too stiff");
+    def.gravity[1] = NAN;
+    CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "gravity beyond the axes is not looked at");
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"weak springs, weak dampers", weak_links},
         {"what makes a row", what_makes_a_row},
         {"rows of every length", rows_of_every_length},
-        {"parallel links", parallel_links},
         {"many offsets", many_offsets},
         {"offsets that meet", offsets_that_meet},
+        {"stray links", stray_links},
         {"every offset", every_offset},
         {"rows of a block", rows_of_a_block},
         {"a question after an edit", question_after_edit},
@@ -418,7 +493,9 @@ int main(void)
         {"a callback between steps", callback_between_steps},
         {"a bad number at the end", bad_number_at_the_end},
         {"nothing is computed from what is lost", callback_is_left_alone},
-        {"lost on one axis", lost_on_one_axis},
+        {"finite numbers for callbacks", finite_for_callbacks},
+        {"lost", lost},
+        {"numbers that cancel", extreme_numbers},
         {"methods that are not used", methods_not_used},
     };
     return RUN_TESTS("scene_rare", tests);
