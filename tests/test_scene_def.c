@@ -270,6 +270,8 @@ static void bytes_of_a_scene(void)
     const scene_def def = {.axes = 1, .methods = 1u << SPRING_EULER, .particles = 1, .position = x};
     CHECK(bytes_of(&def) <= 8192,
           "a scene of one particle: the plan and 16 numbers before and after each array");
+    const scene_def usual = {.particles = 1, .position = (double[3]){0}, .pinned = (uint8_t[1]){0}};
+    CHECK(bytes_of(&usual) <= (sizeof(scalar) == 4 ? 6000 : 10000), "README.md: about so many");
 }
 
 /* What lies behind the arrays of a definition is not looked at. */

@@ -15,7 +15,8 @@
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
  * What holds for every function here, beside what spring.h says:
- *  - Only what the definition sets is stored and computed; README.md says what each feature takes in bytes and time.
+ *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_STILL, no memory; README.md says what
+ *    each feature takes in bytes and time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
  *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another place
  *    with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a memcpy(),
@@ -42,9 +43,9 @@ extern "C" {
 
 #define SPRING_SCENE_ALIGN 64 /* of the memory of a scene [bytes] */
 
-/* A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest); on more it
-   pulls both ends along the line between them with stiffness (length - rest) + damping (rate of length). Where both
-   ends are at the same place that line has no direction, and there is no force. */
+/* A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest) + damping
+   (v_b - v_a); on more it pulls both ends along the line between them with stiffness (length - rest) + damping (rate of
+   length). Where both ends are at the same place that line has no direction, and there is no force. */
 typedef struct spring_link {
     uint32_t a, b;    /*         indices of two different particles */
     double rest;      /* [m]     length at which it does not pull >= 0 */
@@ -53,9 +54,10 @@ typedef struct spring_link {
 } spring_link;
 
 /* Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
-   [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL. It must depend on nothing but its
-   arguments and *user, or advance(10) is not 10 times advance(1), and must not call a function on its own scene. After a
-   change of what *user holds call spring_scene_set_force() again: a force may have been kept (SPRING_SCENE_FORCE_STILL). */
+   [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL, and all numbers are finite. It must
+   depend on nothing but its arguments and *user, or advance(10) is not 10 times advance(1), and must not call a function
+   on its own scene. After a change of what *user holds call spring_scene_set_force() again: a force may have been kept
+   (SPRING_SCENE_FORCE_STILL). */
 typedef void spring_force_fn(void *user, double t, size_t particles, const double *const position[3],
                              const double *const velocity[3], double *const force[3]);
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
@@ -66,15 +68,16 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /* spring_scene_set_link() is allowed. Each link has numbers of its own, equal to others or not. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/* No second copy of the state. An advance that fails loses it, and none succeeds until every position and velocity is
-   finite again, by spring_scene_set(). */
+/* No second copy of the state. An advance that fails loses it: positions and velocities are NaN then, and no step succeeds
+   until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/* No callback will use velocities. Leapfrog need not predict them, in time and, where no link is damped, in memory, and
-   keeps the force at the end of a step for the next. */
+/* No callback uses velocities, or there is none and none is going to be set. Leapfrog need not predict velocities then: no
+   time for that, and no memory either where no link is damped or can be changed. It keeps the force at the end of a step for
+   the next. */
 #define SPRING_SCENE_FORCE_STILL UINT32_C(4)
 
-/* Zero-initialise; what is not set is neither stored nor computed. Every array is copied. */
+/* Zero-initialise what is not modelled. Every array is copied. */
 typedef struct spring_scene_def {
     uint32_t axes;           /* 1, 2 or 3; 0 means 3 */
     uint32_t flags;          /* SPRING_SCENE_... */
@@ -86,8 +89,8 @@ typedef struct spring_scene_def {
     const double *mass;      /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
     double mass_all;         /* [kg]; 0 means 1 */
     const uint8_t *pinned;   /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
-    const spring_link *link; /* [links] */
-    double gravity[3];       /* [m/s^2] */
+    const spring_link *link; /* [links]; best in the order of their particles, see README.md */
+    double gravity[3];       /* [m/s^2]; elements beyond the axes are ignored */
     double drag;             /* [N s/m] >= 0, on every particle */
     spring_force_fn *force;  /* NULL: none */
     void *user;              /* handed to force */
@@ -140,7 +143,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
  * @param[in] m   one of the methods of the definition
- * @param[in] dt  finite step [s]; negative runs backwards
+ * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag
  * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the closed form, or a method that the definition does not have;
  *         SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
@@ -149,17 +152,18 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * A stable step, from the stiffness of the links: below it no motion about rest grows, as long as no link is compressed
- * below half its rest length.
+ * A stable step, from the stiffness of the links: below it the method makes no motion about rest grow, as long as no link
+ * is compressed below half its rest length.
  *
  * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
  * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
  * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness.
- * A bound: the limit itself is about 1.2 times larger on a height field, 1.5 times on cloth. Links that spin or swing far
- * can gain energy from the step by resonance closer to it: take half, and less where a link turns faster than it would
- * swing. The callback is not looked at.
+ * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on cloth,
+ * twice on jelly; with heavy damping it may be several times larger. Links that spin or swing far can gain energy from the
+ * step by resonance closer to it: take half, and less where a link turns faster than it would swing. The callback is not
+ * looked at.
  *
- * @return [s]; 0: never stable; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
+ * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
  */
 SPRING_API double spring_scene_stable_step(const spring_scene *s, spring_method m);
@@ -212,7 +216,8 @@ SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_force_fn
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
 
-/** The force along a link [N], > 0 pulls; its damping included. NaN for bad input. */
+/** The force along a link [N], > 0 pulls; its damping included. At length 0, where no force acts, that of its stiffness.
+    NaN for bad input. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /* ------------------------------------------------------------------------------------------------- the float twin */
@@ -266,7 +271,7 @@ SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 #define SPRING_GRID_SHEAR      UINT32_C(2) /* across the faces and through the middle of each cell */
 #define SPRING_GRID_BEND       UINT32_C(4) /* to the particle after the next */
 
-/* faces whose particles are pinned: first or last along x, y, z */
+/* faces whose particles are pinned: first or last along x, y, z; of a sheet first and last along z are all of it */
 #define SPRING_GRID_FIRST_X UINT32_C(1)
 #define SPRING_GRID_LAST_X  UINT32_C(2)
 #define SPRING_GRID_FIRST_Y UINT32_C(4)
@@ -280,7 +285,7 @@ typedef struct spring_grid {
     uint32_t count[3]; /* particles along x, y, z; 0 means 1 */
     uint32_t axes;     /* of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
     bool height;       /* a height field: axes = 1, across the grid; positions and rest lengths are 0 */
-    double spacing;    /* [m] > 0 from one particle to the next */
+    double spacing;    /* [m] > 0 from one particle to the next, of a height field too */
     double stretch;    /* length over rest length of every link > 0; 0 means 1; above 1 is tension */
     uint32_t families; /* SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
     double stiffness;  /* [N/m] of every link */
