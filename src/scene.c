@@ -141,14 +141,14 @@ static outcome leapfrog(const scene_kernels *kernels, scene *s, uint32_t from, u
     scene_motion last = first;
     last.v0 = last.v;
     if (!kernels->kick_drift(&first))
-        return (outcome){false, false};
+        return (outcome){.finite = false};
     evaluate(kernels, s, p->x[to], p->v[to], t.end);
     if (!velocity_forces(s))
         return (outcome){kernels->kick(&last), true};
     scene_motion predict = last;
     predict.v = scene_axis(s, p->predicted, 0);
     if (!kernels->kick(&predict))
-        return (outcome){false, false};
+        return (outcome){.finite = false};
     evaluate(kernels, s, p->x[to], p->predicted, t.end);
     return (outcome){kernels->kick(&last), false};
 }
@@ -160,7 +160,7 @@ static outcome rk4(const scene_kernels *kernels, scene *s, uint32_t from, uint32
     scene_motion stage = motion(s, dt, from, p->work);
     for (int k = 0; k < 3; k++) {
         if (!kernels->rk4_stage[k](&stage))
-            return (outcome){false, false};
+            return (outcome){.finite = false};
         evaluate(kernels, s, p->x[p->work], p->v[p->work], times[k]);
         stage.stage_v = stage.v;
     }

@@ -324,7 +324,7 @@ static spring_status make_plan(const scene_def *def, scene_plan *plan)
         .methods = methods_of(def),
         .particles = def->particles,
         .links = def->links,
-        .stride = (def->particles + padding - 1) / padding * padding + 2 * padding,
+        .stride = (def->particles + padding - 1) / padding * padding + padding,
     };
     plan_rows(def, plan);
     plan_memory(def, plan);

@@ -271,7 +271,7 @@ static void bytes_of_a_scene(void)
     CHECK(bytes_of(&def) <= 8192,
           "a scene of one particle: the plan and 16 numbers before and after each array");
     const scene_def usual = {.particles = 1, .position = (double[3]){0}, .pinned = (uint8_t[1]){0}};
-    CHECK(bytes_of(&usual) <= (sizeof(scalar) == 4 ? 6000 : 10000), "README.md: about so many");
+    CHECK(bytes_of(&usual) <= (sizeof(scalar) == 4 ? 5000 : 8000), "README.md: about so many");
 }
 
 /* What lies behind the arrays of a definition is not looked at. */
