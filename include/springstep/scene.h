@@ -143,7 +143,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
  * @param[in] m   one of the methods of the definition
- * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag
+ * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag; 0, or
+ *                in float what rounds to 0, does nothing
  * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the closed form, or a method that the definition does not have;
  *         SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,

@@ -323,10 +323,10 @@ static void advance(life *l)
          "no other status is documented");
     l->broken = l->broken && !finite(&before); /* what was set may be all that was lost */
     if (l->broken)
-        must(status != SPRING_OK || n == 0 || dt == 0, "a lost scene does not move");
+        must(status != SPRING_OK || n == 0 || (scalar)dt == 0, "a lost scene does not move");
     else if (status == SPRING_ENONFINITE && l->d->def.flags & SPRING_SCENE_NO_UNDO)
         l->broken = true;
-    else if (status != SPRING_OK || n == 0 || dt == 0)
+    else if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
         must(same(&before, &after), "an error, or nothing to do, changes nothing");
     else
         must(finite(&after), "the state is finite after SPRING_OK");
