@@ -442,7 +442,7 @@ static void ask_finite(void *user, double t, size_t particles, const scalar *con
     }
 }
 
-/* Nor must it in the step in which a scene overflows, wherever in the step that is. */
+/* A callback is not handed infinite numbers or NaN in the step in which a scene overflows, wherever in the step that is. */
 static void finite_for_callbacks(void)
 {
     const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
@@ -468,16 +468,26 @@ static void finite_for_callbacks(void)
             }
 }
 
-/* Where only a product or a sum on the way would overflow. */
-static void extreme_numbers(void)
+/* Twice the inverse mass overflows, and twice the stiffness over the mass does not. */
+static void light_particles(void)
 {
-    const double position[2] = {0, 1}, mass = sizeof(scalar) == 4 ? 4e-39 : 6e-309; /* 2/mass is infinite */
+    const double position[] = {0, 1}, mass = sizeof(scalar) == 4 ? 4e-39 : 6e-309;
     const spring_link link = {0, 1, 1, 0, 0};
-    scene_def def = {
+    const scene_def def = {
         .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = mass, .link = &link};
     CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "a link that does not pull is not too stiff");
-    def.gravity[1] = NAN;
-    CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "gravity beyond the axes is not looked at");
+}
+
+static void gravity_beyond_the_axes(void)
+{
+    const double position[] = {0, 1, 2};
+    for (uint32_t axes = 1; axes < 3; axes++) {
+        scene_def def = {.axes = axes, .particles = 1, .position = position};
+        def.gravity[axes] = NAN;
+        CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "not looked at");
+        def.gravity[axes - 1] = NAN;
+        CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_EINVAL, "and within them it is");
+    }
 }
 
 int main(void)
@@ -498,7 +508,8 @@ int main(void)
         {"nothing is computed from what is lost", callback_is_left_alone},
         {"finite numbers for callbacks", finite_for_callbacks},
         {"lost", lost},
-        {"numbers that cancel", extreme_numbers},
+        {"light particles", light_particles},
+        {"gravity beyond the axes", gravity_beyond_the_axes},
         {"methods that are not used", methods_not_used},
     };
     return RUN_TESTS("scene_rare", tests);
