@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "work.h"
+#include "work/work.h"
 
 typedef void work_check(work *w);
 

@@ -10,9 +10,9 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
-#include "random.h"
-#include "stepper.h"
+#include "common/cli.h"
+#include "common/random.h"
+#include "common/stepper.h"
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};
 static const spring_state start = {.x = 1, .v = 0};

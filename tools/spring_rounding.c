@@ -9,7 +9,7 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "harness/compensated.h"
 #include "harness/reference.h"
 

@@ -10,8 +10,8 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
-#include "stepper.h"
+#include "common/cli.h"
+#include "common/stepper.h"
 
 static stepper chosen;
 static double duration;

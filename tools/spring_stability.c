@@ -14,7 +14,7 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 static uint64_t points = 64;
 static bool map;

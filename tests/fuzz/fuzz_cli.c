@@ -3,7 +3,7 @@
  * Any bytes as a word of the command line: numbers are read strictly, and as strtod() reads them. The tools' common
  * part is included, to reach what it keeps to itself.
  */
-#include "../../tools/cli.c"
+#include "../../tools/common/cli.c"
 
 #include <float.h>
 

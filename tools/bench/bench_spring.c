@@ -6,7 +6,7 @@
  * or left out.
  */
 #include "bench.h"
-#include "timing.h"
+#include "common/timing.h"
 
 #include <stdio.h>
 

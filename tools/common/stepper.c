@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A method together with the arithmetic it is computed in: see stepper.h. */
-#include "stepper.h"
+#include "common/stepper.h"
 
 #include <math.h>
 #include <stddef.h>

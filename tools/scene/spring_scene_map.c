@@ -11,10 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "pushes.h"
 #include "ready_scene.h"
-#include "timing.h"
+#include "common/timing.h"
 
 static const double frame_time = 1.0 / 60; /* [s] */
 static const double push_duration = 0.02;  /* [s] */

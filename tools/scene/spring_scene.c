@@ -14,9 +14,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "pushes.h"
-#include "random.h"
+#include "common/random.h"
 #include "ready_scene.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */

@@ -5,7 +5,7 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 typedef struct stepper {
     int method;     /* spring_method; int, as the target of an option */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 typedef struct share {
     uint32_t particle;

@@ -12,7 +12,7 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "harness/cases.h"
 #include "harness/ode.h"
 #include "harness/reference.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 const char *const ready_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
 

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
-#include "timing.h"
+#include "common/cli.h"
+#include "common/timing.h"
 #include "work.h"
 
 /* --------------------------------------------------------------------------------------------------- two sheets */

@@ -14,9 +14,9 @@
 
 #include <springstep/spring.h>
 
-#include "cli.h"
+#include "common/cli.h"
 #include "equal_error.h"
-#include "stepper.h"
+#include "common/stepper.h"
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};
 static const spring_state start = {.x = 1, .v = 0};

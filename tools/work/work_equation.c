@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving,
                 uint32_t held, const uint32_t *number)

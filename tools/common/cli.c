@@ -6,7 +6,7 @@
  * to: a script that says --step would change its meaning with the next option that begins so.
  */
 #define _XOPEN_SOURCE 700 /* POSIX 2008 with realpath() */
-#include "cli.h"
+#include "common/cli.h"
 
 #include <assert.h>
 #include <ctype.h>

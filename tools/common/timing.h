@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_TIMING_H
 #define SPRINGSTEP_TIMING_H
 
-#include "cli.h"
+#include "common/cli.h"
 
 double timing_now(void); /* [ns], from a clock that only runs forward */
 double timing_busy(

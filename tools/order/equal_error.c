@@ -23,7 +23,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "cli.h"
+#include "common/cli.h"
 
 typedef struct iterate {
     double log_growth, phase; /* after all n steps: n log(rho), n phi */

@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
-#include "equal_error.h"
-#include "timing.h"
+#include "common/cli.h"
+#include "order/equal_error.h"
+#include "common/timing.h"
 #include "work.h"
 
 /* -------------------------------------------------------------------------------------------- the command line */

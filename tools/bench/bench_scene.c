@@ -13,8 +13,8 @@
 
 #include "bench.h"
 #include "bench_limits.h"
-#include "cli.h"
-#include "timing.h"
+#include "common/cli.h"
+#include "common/timing.h"
 
 typedef enum scene_shape { SHEET, JELLY, WATER } scene_shape;
 typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED } scene_order; /* SHUFFLED: the particles, too */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What tools that measure time share; see timing.h. */
 #define _DEFAULT_SOURCE /* clock_gettime, getloadavg */
-#include "timing.h"
+#include "common/timing.h"
 
 #include <stdio.h>
 #include <stdlib.h>

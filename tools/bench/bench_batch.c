@@ -11,8 +11,8 @@
 
 #include "bench.h"
 #include "bench_limits.h"
-#include "cli.h"
-#include "timing.h"
+#include "common/cli.h"
+#include "common/timing.h"
 
 enum { alignment = 64 }; /* bytes: the widest vector, a line of the cache */
 

@@ -12,8 +12,8 @@
 #include <string.h>
 
 #include "bench.h"
-#include "cli.h"
-#include "timing.h"
+#include "common/cli.h"
+#include "common/timing.h"
 
 static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double",
                                                                                               "float", NULL};
