@@ -3,13 +3,14 @@
  * Many springs: checks, choice of the kernel, and what does not fill a group of vectors.
  */
 #include "batch_kernels.h"
-#include "processor.h"
+#include "propagator.h"
+#include "simd/targets.h"
 
 enum { largest_group = 128 }; /* springs: eight vectors of 64 bytes, in float */
 
 static const uint32_t known_bits = SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
 
-static bool shared(const batch *b, uint32_t bit)
+static bool shared(const spring_batch *b, uint32_t bit)
 {
     return (b->shared & bit) != 0;
 }
@@ -21,7 +22,7 @@ static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_c
 }
 
 /* Does an array of parameters, if there is one, leave the state alone? */
-static bool apart(const batch *b, const scalar *parameter, uint32_t bit)
+static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, uint32_t bit)
 {
     const size_t count = shared(b, bit) ? 1 : b->count;
     return parameter == NULL ||
@@ -29,20 +30,20 @@ static bool apart(const batch *b, const scalar *parameter, uint32_t bit)
 }
 
 /* A parameter of all springs has to be valid before anything happens; one spring's is that spring's business. */
-static bool shared_valid(const batch *b, const scalar *parameter, uint32_t bit, scalar least)
+static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
     return parameter == NULL || !shared(b, bit) || (isfinite(*parameter) && *parameter >= least);
 }
 
-static bool batch_valid(const batch *b)
+static bool batch_valid(const spring_batch *b)
 {
     if ((b->shared & ~known_bits) != 0)
         return false;
     if (b->count == 0)
         return true;
     return b->x != NULL && b->v != NULL && b->omega2 != NULL && b->count <= SIZE_MAX / sizeof(scalar) &&
-           !overlap(b->x, b->count, b->v, b->count) && apart(b, b->omega2, SPRING_SHARED_OMEGA2) &&
-           apart(b, b->gamma, SPRING_SHARED_GAMMA) && apart(b, b->accel, SPRING_SHARED_ACCEL) &&
+           !overlap(b->x, b->count, b->v, b->count) && leaves_state_alone(b, b->omega2, SPRING_SHARED_OMEGA2) &&
+           leaves_state_alone(b, b->gamma, SPRING_SHARED_GAMMA) && leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
            shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) &&
            shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
            shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -INFINITY);
@@ -54,7 +55,7 @@ static scalar element(const scalar *p, size_t i, bool shared)
 }
 
 /* The single spring that spring i is. */
-static spring_params spring_at(const batch *b, size_t i)
+static spring_params spring_at(const spring_batch *b, size_t i)
 {
     return (spring_params){
         .mass = 1,
@@ -65,40 +66,39 @@ static spring_params spring_at(const batch *b, size_t i)
 }
 
 /* Why some springs have kept their state: it, or their parameters, was not valid, or would not have stayed finite. */
-static spring_status reason(const batch *b)
+static spring_status reason(const spring_batch *b)
 {
     for (size_t i = 0; i < b->count; i++) {
         const spring_params p = spring_at(b, i);
-        spring_state s = {(double)b->x[i], (double)b->v[i]};
-        if (spring_advance(&s, &p, SPRING_EULER, 0, 0) != SPRING_OK)
+        if (!isfinite(b->x[i]) || !isfinite(b->v[i]) || !spring_params_valid(&p))
             return SPRING_EINVAL;
     }
     return SPRING_ENONFINITE;
 }
 
-static const batch_kernels *best_kernels(void)
+static const batch_kernels *best_batch_kernels(void)
 {
-    return SPRING_BEST_KERNELS(&BATCH(v128), &BATCH(v256), &BATCH(v512));
+    return SPRING_BEST_KERNELS(&spring_batch_v128, &spring_batch_v256, &spring_batch_v512);
 }
 
 /* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
    group is given up when all of them are lost. */
-static bool advance_rest(batch_kernel *kernel, size_t size, const batch *b, const batch_block *all,
+static bool advance_tail(batch_kernel *kernel, size_t size, const spring_batch *b, const batch_block *all,
                          size_t first)
 {
     scalar x[largest_group] = {0}, v[largest_group] = {0}, w[largest_group] = {0}, g[largest_group] = {0},
            a[largest_group] = {0};
     const size_t count = b->count - first, bytes = count * sizeof(scalar);
-    batch_block rest = *all;
-    rest.count = size;
-    rest.x = memcpy(x, b->x + first, bytes);
-    rest.v = memcpy(v, b->v + first, bytes);
+    batch_block tail = *all;
+    tail.count = size;
+    tail.x = memcpy(x, b->x + first, bytes);
+    tail.v = memcpy(v, b->v + first, bytes);
     if (!shared(b, SPRING_SHARED_OMEGA2))
-        rest.w = memcpy(w, b->omega2 + first, bytes);
+        tail.w = memcpy(w, b->omega2 + first, bytes);
     if (b->gamma != NULL && !shared(b, SPRING_SHARED_GAMMA))
-        rest.g = memcpy(g, b->gamma + first, bytes);
+        tail.g = memcpy(g, b->gamma + first, bytes);
     if (b->accel != NULL && !shared(b, SPRING_SHARED_ACCEL))
-        rest.a = memcpy(a, b->accel + first, bytes);
+        tail.a = memcpy(a, b->accel + first, bytes);
     for (size_t i = count; i < size; i++) {
         x[i] = x[0];
         v[i] = v[0];
@@ -106,13 +106,13 @@ static bool advance_rest(batch_kernel *kernel, size_t size, const batch *b, cons
         g[i] = g[0];
         a[i] = a[0];
     }
-    const bool done = kernel(&rest);
+    const bool done = kernel(&tail);
     memcpy(b->x + first, x, bytes);
     memcpy(b->v + first, v, bytes);
     return done;
 }
 
-static bool run(batch_kernel *kernel, size_t size, const batch *b, batch_block block)
+static bool run(batch_kernel *kernel, size_t size, const spring_batch *b, batch_block block)
 {
     scalar same[largest_group];
     block.count = b->count - b->count % size;
@@ -130,18 +130,18 @@ static bool run(batch_kernel *kernel, size_t size, const batch *b, batch_block b
     }
     bool done = kernel(&block);
     if (block.count < b->count)
-        done &= advance_rest(kernel, size, b, &block, block.count);
+        done &= advance_tail(kernel, size, b, &block, block.count);
     return done;
 }
 
-/* Every spring by its own closed form. */
-static bool advance_exact(const batch *b, scalar dt, uint64_t n)
+/* Each spring by itself, in double. */
+static bool advance_each(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
 {
     bool done = true;
     for (size_t i = 0; i < b->count; i++) {
         const spring_params p = spring_at(b, i);
         spring_state s = {(double)b->x[i], (double)b->v[i]};
-        const bool advanced = spring_advance(&s, &p, SPRING_EXACT, (double)dt, n) == SPRING_OK;
+        const bool advanced = spring_advance(&s, &p, m, (double)dt, n) == SPRING_OK;
         const scalar x = (scalar)s.x, v = (scalar)s.v;
         if (advanced && isfinite(x) && isfinite(v)) {
             b->x[i] = x;
@@ -153,35 +153,37 @@ static bool advance_exact(const batch *b, scalar dt, uint64_t n)
     return done;
 }
 
-spring_status BATCH(advance_with)(const batch_kernels *kernels, const batch *b, spring_method m, scalar dt,
-                                  uint64_t n)
+spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
+                                        uint64_t n)
 {
-    if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL || !isfinite(dt))
+    const spring_method_info *info = spring_method_describe(m);
+    if (b == NULL || !batch_valid(b) || info == NULL || !isfinite(dt))
         return SPRING_EINVAL;
+    if (!info->springs)
+        return SPRING_EUNSUPPORTED;
     if (b->count == 0 || n == 0 || dt == 0)
         return SPRING_OK;
     const bool w_shared = shared(b, SPRING_SHARED_OMEGA2), loaded = b->accel != NULL;
     const enum sharing g = b->gamma == NULL ? NONE : shared(b, SPRING_SHARED_GAMMA) ? SHARED : EACH;
-    bool done;
-    if (m != SPRING_EXACT) {
-        done = run(kernels->steps[m][w_shared ? SHARED : EACH][g][loaded], kernels->group, b,
-                   (batch_block){.dt = dt, .n = n});
-    } else if (w_shared && g != EACH) {
+    batch_kernel *kernel = kernels->method[m]->kernel[w_shared ? SHARED : EACH][g][loaded];
+    if (kernel == NULL)
+        return advance_each(b, m, dt, n) ? SPRING_OK : reason(b);
+    batch_block block = {.dt = dt, .n = n};
+    spring_propagator propagator;
+    if (m == SPRING_EXACT) {
         const spring_params p = spring_at(b, 0);
-        const spring_propagator y = spring_propagator_of(&p, (double)dt * (double)n, loaded);
-        done = run(kernels->exact[loaded], kernels->group, b, (batch_block){.propagator = &y});
-    } else {
-        done = advance_exact(b, dt, n);
+        propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
+        block.propagator = &propagator;
     }
-    return done ? SPRING_OK : reason(b);
+    return run(kernel, kernels->group, b, block) ? SPRING_OK : reason(b);
 }
 
-spring_status BATCH(advance)(const batch *b, spring_method m, scalar dt, uint64_t n)
+spring_status spring_batch_advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
 {
-    return BATCH(advance_with)(best_kernels(), b, m, dt, n);
+    return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
 }
 
-scalar BATCH(stable_step)(const batch *b, spring_method m)
+scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
     if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
         return NAN;

@@ -4,25 +4,17 @@
  *
  * Method    A group of a few vectors is loaded, with its coefficients, into registers, takes all its steps there, and is
  *           stored: several independent chains of operations keep the processor busy, and memory is read once however many
- *           steps there are. Since nothing is stored before the end, undoing a spring costs nothing.
- *           Included by batch_v128.c, batch_v256.c, batch_v512.c and their float twins, one for each vector length, and by
- *           batch.c for the declarations.
+ *           steps there are. Since nothing is stored before the end, rolling a spring back costs nothing.
+ *           batch.c includes this for the declarations, kernels.h for each vector length and precision.
  */
 #ifndef SPRINGSTEP_BATCH_KERNELS_H
 #define SPRINGSTEP_BATCH_KERNELS_H
 
-#include "exact.h"
-#include "real.h"
+#include "rates.h"
+#include "simd/real.h"
+#include "twins.h"
 
-#include <springstep/batch.h>
-
-#ifdef SPRING_FLOAT
-#define BATCH(name) spring_batchf_##name
-typedef spring_batchf batch;
-#else
-#define BATCH(name) spring_batch_##name
-typedef spring_batch batch;
-#endif
+struct spring_propagator;
 
 /* What a kernel works on. count is a multiple of the group. */
 typedef struct batch_block {
@@ -32,48 +24,36 @@ typedef struct batch_block {
     size_t a_step; /* 1: an element a spring; 0: a holds a vector of equal elements, for all */
     scalar dt;
     uint64_t n;
-    const spring_propagator *propagator; /* for the closed form, of w, g and n dt */
+    const struct spring_propagator *propagator; /* of the exact solution, for w, g and n dt */
 } batch_block;
 
 typedef bool batch_kernel(const batch_block *b); /* false: at least one spring has kept its state */
 
 enum sharing { SHARED, EACH, NONE }; /* one element for all, one each, not modelled */
 
+typedef struct batch_method {
+    batch_kernel *kernel[2][3][2]; /* by sharing of w, sharing of g, loaded; NULL: each spring by spring_advance() */
+} batch_method;
+
 typedef struct batch_kernels {
-    size_t group;                    /* springs that are advanced together */
-    batch_kernel *steps[3][2][3][2]; /* by method, sharing of w, sharing of g, loaded */
-    batch_kernel *exact[2];          /* by loaded; w and g shared */
+    size_t group; /* springs that are advanced together */
+    const batch_method *method[SPRING_METHOD_COUNT];
 } batch_kernels;
 
-extern const batch_kernels BATCH(v128), BATCH(v256), BATCH(v512); /* by bytes of a vector */
+extern const batch_kernels spring_batch_v128, spring_batch_v256, spring_batch_v512; /* by bits of a vector */
 
-/* spring_batch_advance() with the instruction set of one's choice, for tests. */
-spring_status BATCH(advance_with)(const batch_kernels *kernels, const batch *b, spring_method m, scalar dt,
-                                  uint64_t n);
+/* spring_batch_advance() with a given instruction set, for tests. */
+spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
+                                        uint64_t n);
 
 #ifdef SPRING_VECTOR
-
-#include "euler.h"
-#include "leapfrog.h"
-#include "rk4.h"
 
 /* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, else 16). */
 enum { vectors = SPRING_VECTOR == 64 ? 8 : 4, group = vectors * lanes };
 
-/* Steps between two looks at whether there is anything left to advance. */
-static const uint64_t check_interval = 4096;
-
-#if defined(__GNUC__)
-#define SPRING_RARE(condition) __builtin_expect(condition, 0)
-#define SPRING_APART           static __attribute__((noinline)) /* kept out of the code that runs */
-#else
-#define SPRING_RARE(condition) (condition)
-#define SPRING_APART           static
-#endif
-
 SPRING_INLINE real rate(const scalar *p, size_t i, enum sharing s)
 {
-    return s == NONE ? splat(0) : (s == SHARED ? splat(*p) : load(p + i)) + 0;
+    return s == NONE ? splat(0) : (s == SHARED ? splat(*p) : vec_load(p + i)) + 0;
 }
 
 /* The rates of the vector of springs from i. */
@@ -88,7 +68,7 @@ SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing
 }
 
 /* Stores the springs of a group that may advance; false if one keeps its state. */
-SPRING_APART bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
+SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
                               enum sharing w, enum sharing g)
 {
     scalar x1[group], v1[group];
@@ -113,17 +93,17 @@ SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, co
                                enum sharing w, enum sharing g)
 {
     real sum = x[0] + v[0];
-    truth signs = {0};
+    mask signs = {0};
     SPRING_UNROLL
     for (size_t k = 0; k < many; k++) {
         if (k > 0)
             sum += x[k] + v[k];
         if (w == EACH)
-            signs |= sign_bit(load(b->w + i + k * lanes));
+            signs |= sign_bit(vec_load(b->w + i + k * lanes));
         if (g == EACH)
-            signs |= sign_bit(load(b->g + i + k * lanes));
+            signs |= sign_bit(vec_load(b->g + i + k * lanes));
     }
-    if (SPRING_RARE(any(not_finite(sum) | signs))) {
+    if (SPRING_UNLIKELY(any(not_finite(sum) | signs))) {
         real x1[vectors], v1[vectors]; /* x and v themselves stay in registers */
         memcpy(x1, x, many * sizeof *x);
         memcpy(v1, v, many * sizeof *v);
@@ -131,8 +111,8 @@ SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, co
     }
     SPRING_UNROLL
     for (size_t k = 0; k < many; k++) {
-        store(b->x + i + k * lanes, x[k]);
-        store(b->v + i + k * lanes, v[k]);
+        vec_store(b->x + i + k * lanes, x[k]);
+        vec_store(b->v + i + k * lanes, v[k]);
     }
     return true;
 }
@@ -140,67 +120,12 @@ SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, co
 /* Is no spring of a group finite any more? */
 SPRING_INLINE bool all_lost(const real *x, const real *v)
 {
-    truth finite = {0};
+    mask finite = {0};
     SPRING_UNROLL
     for (size_t k = 0; k < vectors; k++)
         finite |= (x[k] - x[k] == 0) & (v[k] - v[k] == 0);
     return !any(finite);
 }
-
-#define SPRING_METHOD euler
-#include "batch_loop.h"
-#define SPRING_METHOD leapfrog
-#include "batch_loop.h"
-#define SPRING_METHOD rk4
-#include "batch_loop.h"
-
-SPRING_INLINE bool exact_batch(const batch_block *b, bool loaded)
-{
-    const exact_coefficients c = exact_prepare(b->propagator);
-    bool all = true;
-    for (size_t i = 0; i < b->count; i += group) {
-        real x[vectors], v[vectors];
-        SPRING_UNROLL
-        for (size_t k = 0; k < vectors; k++) {
-            const size_t j = i + k * lanes;
-            x[k] = load(b->x + j);
-            v[k] = load(b->v + j);
-            exact_step(&x[k], &v[k], rates_at(b, j, NONE, NONE, loaded).a, &c, loaded);
-        }
-        all &= store_group(b, i, x, v, vectors, SHARED, SHARED);
-    }
-    return all;
-}
-
-static bool exact(const batch_block *b)
-{
-    return exact_batch(b, false);
-}
-
-static bool exact_loaded(const batch_block *b)
-{
-    return exact_batch(b, true);
-}
-
-#define BATCH_ROW(m, w, g)                    \
-    {                                         \
-        m##_##w##_##g, m##_##w##_##g##_loaded \
-    }
-#define BATCH_TABLE(m, w)                                                     \
-    {                                                                         \
-        BATCH_ROW(m, w, SHARED), BATCH_ROW(m, w, EACH), BATCH_ROW(m, w, NONE) \
-    }
-#define BATCH_STEPS(m)                               \
-    {                                                \
-        BATCH_TABLE(m, SHARED), BATCH_TABLE(m, EACH) \
-    }
-#define BATCH_KERNELS                                                         \
-    {                                                                         \
-        group, {BATCH_STEPS(euler), BATCH_STEPS(leapfrog), BATCH_STEPS(rk4)}, \
-        {                                                                     \
-            exact, exact_loaded                                               \
-        }                                                                     \
-    }
 
 #endif
 

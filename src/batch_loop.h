@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The loop of a method over a batch, and its twelve kernels. Included by batch_kernels.h, with SPRING_METHOD its name. */
+/* The loop of a method over a batch, and its twelve kernels. Included by a method's header, with SPRING_METHOD its name. */
 
 /* many: vectors in a group. A single step needs no more than one: there is nothing to wait for but the next group, which
    the processor begins by itself. */
@@ -15,12 +15,12 @@ SPRING_INLINE bool METHOD(groups)(const batch_block *b, enum sharing w, enum sha
         for (size_t k = 0; k < many; k++) {
             const size_t j = i + k * lanes;
             c[k] = METHOD(prepare)(rates_at(b, j, w, g, loaded), h);
-            x[k] = load(b->x + j);
-            v[k] = load(b->v + j);
+            x[k] = vec_load(b->x + j);
+            v[k] = vec_load(b->v + j);
         }
         uint64_t left = many == 1 ? 1 : b->n;
         do {
-            uint64_t some = left < check_interval ? left : check_interval;
+            uint64_t some = left < SPRING_CHECK_INTERVAL ? left : SPRING_CHECK_INTERVAL;
             left -= some;
             for (; some > 0; some--) {
                 SPRING_UNROLL
@@ -33,7 +33,7 @@ SPRING_INLINE bool METHOD(groups)(const batch_block *b, enum sharing w, enum sha
     return all;
 }
 
-SPRING_INLINE bool METHOD(batch)(const batch_block *b, enum sharing w, enum sharing g, bool loaded)
+SPRING_INLINE bool METHOD(springs)(const batch_block *b, enum sharing w, enum sharing g, bool loaded)
 {
     return b->n == 1 ? METHOD(groups)(b, w, g, loaded, 1) : METHOD(groups)(b, w, g, loaded, vectors);
 }
@@ -41,19 +41,29 @@ SPRING_INLINE bool METHOD(batch)(const batch_block *b, enum sharing w, enum shar
 #define BATCH_KERNEL(w, g)                                     \
     static bool METHOD(w##_##g)(const batch_block *b)          \
     {                                                          \
-        return METHOD(batch)(b, w, g, false);                  \
+        return METHOD(springs)(b, w, g, false);                \
     }                                                          \
     static bool METHOD(w##_##g##_loaded)(const batch_block *b) \
     {                                                          \
-        return METHOD(batch)(b, w, g, true);                   \
+        return METHOD(springs)(b, w, g, true);                 \
     }
-
 BATCH_KERNEL(SHARED, SHARED)
 BATCH_KERNEL(SHARED, EACH)
 BATCH_KERNEL(SHARED, NONE)
 BATCH_KERNEL(EACH, SHARED)
 BATCH_KERNEL(EACH, EACH)
 BATCH_KERNEL(EACH, NONE)
-
 #undef BATCH_KERNEL
+
+/* clang-format off */
+#define BATCH_KERNEL(w, g) [g] = {METHOD(w##_##g), METHOD(w##_##g##_loaded)}
+static const batch_method METHOD(batch) = {
+    .kernel = {
+        [SHARED] = {BATCH_KERNEL(SHARED, SHARED), BATCH_KERNEL(SHARED, EACH), BATCH_KERNEL(SHARED, NONE)},
+        [EACH] = {BATCH_KERNEL(EACH, SHARED), BATCH_KERNEL(EACH, EACH), BATCH_KERNEL(EACH, NONE)},
+    },
+};
+#undef BATCH_KERNEL
+/* clang-format on */
+
 #undef SPRING_METHOD

@@ -6,7 +6,7 @@
  *           rounding of one addition.
  * Source    G. Fiedler, Fix your timestep (2004)
  */
-#include "arithmetic.h"
+#include "simd/arithmetic.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -12,7 +12,7 @@
 #ifndef SPRINGSTEP_EULER_H
 #define SPRINGSTEP_EULER_H
 
-#include "real.h"
+#include "method.h"
 
 typedef struct euler_coefficients {
     real h, hw, hg, ha;
@@ -33,5 +33,50 @@ SPRING_INLINE void euler_step(real *x, real *v, const euler_coefficients *c, boo
     *x += c->h * *v;
     *v -= pull;
 }
+
+#if defined(SPRING_SHAPE_ONE)
+#define SPRING_METHOD euler
+#include "one_loop.h"
+
+void spring_step_euler(spring_state *s, const spring_params *p, double dt)
+{
+    euler_one_step(s, p, dt);
+}
+
+static double euler_stable_step(const spring_roots *r)
+{
+    if (r->overdamped)
+        return 2 / spring_fast_root(r);
+    if (r->w > 0)
+        return 2 * r->b / r->w;
+    return INFINITY;
+}
+
+static const one_method euler_one = {
+    .info = {.name = "euler", .order = 1, .forces_per_step = 1, .springs = true, .scenes = true},
+    .kernel = spring_step_euler,
+    .loop = {{euler_plain, euler_loaded}, {euler_damped, euler_damped_loaded}},
+    .at_once = SPRING_CHECK_INTERVAL,
+    .stable_step = euler_stable_step,
+};
+
+#elif defined(SPRING_SHAPE_BATCH)
+#define SPRING_METHOD euler
+#include "batch_loop.h"
+
+#elif defined(SPRING_SHAPE_SCENE)
+static scene_outcome euler_scene_step(const scene_step *s)
+{
+    const scene_motion m = scene_motion_of(s);
+    return (scene_outcome){.finite = s->kernels->stage(&m)};
+}
+
+static double euler_scene_stable_step(const scene_bounds *b)
+{
+    return b->stiffness_sum > 0 ? fmin(b->drag / b->stiffness_sum, 2 / b->damping) : 2 / b->damping;
+}
+
+static const scene_method euler_scene = {.step = euler_scene_step, .stable_step = euler_scene_stable_step};
+#endif
 
 #endif

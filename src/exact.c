@@ -23,7 +23,6 @@
 #include <stddef.h>
 
 #include "exact.h"
-#include "method.h"
 
 typedef struct propagator {
     double half;    /* e^(-pt/2) or e^(-bt/2): every entry below still lacks its square */
@@ -120,11 +119,3 @@ void spring_step_exact(spring_state *s, const spring_params *p, double dt)
 {
     *s = spring_exact(*s, p, dt);
 }
-
-static double exact_stable_step(const spring_roots *r)
-{
-    (void)r;
-    return INFINITY;
-}
-
-const spring_method_row spring_method_exact = {"exact", NULL, exact_stable_step};

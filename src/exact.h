@@ -1,23 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The closed form as a step: what exact.c computes once from a spring and a time, and how it moves any state.
+ * The exact (closed-form) solution as a method: what exact.c computes once from a spring and a time, and how that moves
+ * any state.
  *
  * Method    x1 = e ((e F) x + (e H) v) + P a,   v1 = e ((e G) v - (e w H) x) + e (e H) a,   e the square root of the decay
  */
 #ifndef SPRINGSTEP_EXACT_H
 #define SPRINGSTEP_EXACT_H
 
-#include "real.h"
-
-#include <springstep/spring.h>
-
-typedef struct spring_propagator {
-    double half;           /* e^(-bt/2), or of the root that lasts */
-    double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
-} spring_propagator;
-
-spring_propagator spring_propagator_of(const spring_params *p, double t,
-                                       bool loaded); /* without loaded, P = 0 */
+#include "method.h"
+#include "propagator.h"
 
 typedef struct exact_coefficients {
     real half, F, G, H, wH, P;
@@ -41,5 +33,65 @@ SPRING_INLINE void exact_step(real *x, real *v, real a, const exact_coefficients
         *v = select_real(a != 0, *v + c->half * (c->H * a), *v);
     }
 }
+
+#if defined(SPRING_SHAPE_ONE)
+/* n steps are one over n dt. */
+static spring_state exact_evaluation(spring_state s, const spring_params *p, const spring_rates *r, double dt, uint64_t n)
+{
+    (void)r;
+    return spring_exact(s, p, dt * (double)n);
+}
+
+static double exact_stable_step(const spring_roots *r)
+{
+    (void)r;
+    return INFINITY;
+}
+
+static const one_method exact_one = {
+    .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true},
+    .kernel = spring_step_exact,
+    .loop = {{exact_evaluation, exact_evaluation}, {exact_evaluation, exact_evaluation}},
+    .at_once = UINT64_MAX,
+    .stable_step = exact_stable_step,
+};
+
+#elif defined(SPRING_SHAPE_BATCH)
+SPRING_INLINE bool exact_springs(const batch_block *b, bool loaded)
+{
+    const exact_coefficients c = exact_prepare(b->propagator);
+    bool all = true;
+    for (size_t i = 0; i < b->count; i += group) {
+        real x[vectors], v[vectors];
+        SPRING_UNROLL
+        for (size_t k = 0; k < vectors; k++) {
+            const size_t j = i + k * lanes;
+            x[k] = vec_load(b->x + j);
+            v[k] = vec_load(b->v + j);
+            exact_step(&x[k], &v[k], rates_at(b, j, NONE, NONE, loaded).a, &c, loaded);
+        }
+        all &= store_group(b, i, x, v, vectors, SHARED, SHARED);
+    }
+    return all;
+}
+
+static bool exact_plain(const batch_block *b)
+{
+    return exact_springs(b, false);
+}
+
+static bool exact_loaded(const batch_block *b)
+{
+    return exact_springs(b, true);
+}
+
+/* Where springs have a stiffness or damping of their own each one takes its own evaluation. */
+static const batch_method exact_batch = {
+    .kernel = {[SHARED] = {[SHARED] = {exact_plain, exact_loaded}, [NONE] = {exact_plain, exact_loaded}}},
+};
+
+#elif defined(SPRING_SHAPE_SCENE)
+static const scene_method exact_scene = {0};
+#endif
 
 #endif

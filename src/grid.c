@@ -4,7 +4,7 @@
  *
  * Links are listed by their first particle, which makes rows of them in a scene (scene_init.c).
  */
-#include "arithmetic.h"
+#include "simd/arithmetic.h"
 
 #include <math.h>
 

@@ -16,34 +16,18 @@
 #ifndef SPRINGSTEP_LEAPFROG_H
 #define SPRINGSTEP_LEAPFROG_H
 
-#include "real.h"
+#include "method.h"
+#include "solved_kick.h"
 
 typedef struct leapfrog_coefficients {
     real h, K, A, q;
-    real keep, lose; /* 1/(1 + q) = keep + lose, see leapfrog_share_of() */
+    real keep, lose; /* 1/(1 + q) = keep + lose, see solved_kick.h */
 } leapfrog_coefficients;
-
-/* u/(1 + q) as u - u q/(1 + q) while q <= 1: rounding 1 + q, or its reciprocal, would be an error of the same sign in
-   every step, and the amplitude of a lightly damped spring would drift by n eps/2. Beyond, u times the reciprocal,
-   since the difference would cancel. One formula for both: keep u + lose u, (keep, lose) = (1, -q/(1 + q)) or
-   (1/(1 + q), 0). */
-typedef struct leapfrog_share {
-    real keep, lose;
-} leapfrog_share;
-
-SPRING_INLINE leapfrog_share leapfrog_share_of(real q)
-{
-    const truth light = magnitude(q) <= 1;
-    return (leapfrog_share){
-        select_real(light, splat(1), 1 / (1 + q)),
-        select_real(light, 0 - q / (1 + q), splat(0)),
-    };
-}
 
 SPRING_INLINE leapfrog_coefficients leapfrog_prepare(spring_rates r, real h)
 {
     const real half = h / 2, q = half * r.g;
-    const leapfrog_share share = leapfrog_share_of(q);
+    const solved_share share = solved_share_of(q);
     return (leapfrog_coefficients){
         .h = h,
         .K = half * r.w,
@@ -81,5 +65,65 @@ SPRING_INLINE void leapfrog_step(real *x, real *v, const leapfrog_coefficients *
     *x = leapfrog_drift(*x, *v, c);
     *v = leapfrog_solve(*x, *v, c, damped, loaded);
 }
+
+#if defined(SPRING_SHAPE_ONE)
+#define SPRING_METHOD leapfrog
+#include "one_loop.h"
+
+void spring_step_leapfrog(spring_state *s, const spring_params *p, double dt)
+{
+    leapfrog_one_step(s, p, dt);
+}
+
+static double leapfrog_stable_step(const spring_roots *r)
+{
+    return 2 / r->omega; /* IEEE 754: infinite without stiffness */
+}
+
+static const one_method leapfrog_one = {
+    .info = {.name = "leapfrog", .order = 2, .forces_per_step = 1, .symplectic = true, .springs = true, .scenes = true},
+    .kernel = spring_step_leapfrog,
+    .loop = {{leapfrog_plain, leapfrog_loaded}, {leapfrog_damped, leapfrog_damped_loaded}},
+    .at_once = SPRING_CHECK_INTERVAL,
+    .stable_step = leapfrog_stable_step,
+};
+
+#elif defined(SPRING_SHAPE_BATCH)
+#define SPRING_METHOD leapfrog
+#include "batch_loop.h"
+
+#elif defined(SPRING_SHAPE_SCENE)
+/* Velocities that forces depend on are predicted: v* = v' + h/2 a(x1, v'), v1 = v' + h/2 a(x1, v*). No force is kept then:
+   the last one is that of the prediction, and ten calls would differ from one call of ten steps. */
+static scene_outcome leapfrog_scene_step(const scene_step *s)
+{
+    scene_motion first = scene_motion_of(s);
+    first.kick = s->h / 2;
+    if (!s->kernels->kick_drift(&first))
+        return (scene_outcome){.finite = false};
+    scene_motion last = first;
+    last.v0 = first.v;
+    scene_evaluate(s, first.x, first.v, s->end);
+    if (!scene_forces_use_velocity(s->scene))
+        return (scene_outcome){.finite = s->kernels->solved_kick(&last), .force_kept = true};
+    scene_motion predict = last;
+    predict.v = scene_predicted(s);
+    if (!s->kernels->solved_kick(&predict))
+        return (scene_outcome){.finite = false};
+    scene_evaluate(s, first.x, predict.v, s->end);
+    return (scene_outcome){.finite = s->kernels->solved_kick(&last)};
+}
+
+static double leapfrog_scene_stable_step(const scene_bounds *b)
+{
+    return b->link_damping > 0 ? fmin(2 / sqrt(b->stiffness), 2 / b->damping) : 2 / sqrt(b->stiffness);
+}
+
+static const scene_method leapfrog_scene = {
+    .step = leapfrog_scene_step,
+    .stable_step = leapfrog_scene_stable_step,
+    .stores = SCENE_STORES_PREDICTED,
+};
+#endif
 
 #endif

@@ -24,7 +24,7 @@
 #ifndef SPRINGSTEP_RK4_H
 #define SPRINGSTEP_RK4_H
 
-#include "real.h"
+#include "method.h"
 
 typedef struct rk4_coefficients {
     real h, hw, hg, ha;  /* Euler's part */
@@ -66,5 +66,95 @@ SPRING_INLINE void rk4_step(real *x, real *v, const rk4_coefficients *c, bool da
     *x += c->h * *v + dx;
     *v += dv - pull;
 }
+
+#if defined(SPRING_SHAPE_ONE)
+#define SPRING_METHOD rk4
+#include "one_loop.h"
+
+void spring_step_rk4(spring_state *s, const spring_params *p, double dt)
+{
+    rk4_one_step(s, p, dt);
+}
+
+/* R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 reaches -1..1 again at this distance along the negative real axis. */
+static const double rk4_real_limit = 2.785293563405282;
+
+/* |R(z)| = 1 along the ray z = r (-zeta + i eta), zeta^2 + eta^2 = 1, zeta >= 0. For every zeta there is one such r > 0;
+   it lies in [2.61, 2.97], and |R|^2 is convex in r from there to 3, so Newton's method descends to it from 3. */
+static double rk4_ray_limit(double zeta, double eta)
+{
+    double r, next = 3;
+    do {
+        r = next;
+        double R[2] = {1, 0}, dR[2] = {0, 0}; /* real and imaginary part; dR = dR/dr */
+        for (int k = 4; k > 0; k--) {         /* Horner: R = 1 + z/k R */
+            const double re = -zeta / k, im = eta / k;
+            const double d_re = re * (R[0] + r * dR[0]) - im * (R[1] + r * dR[1]);
+            const double d_im = re * (R[1] + r * dR[1]) + im * (R[0] + r * dR[0]);
+            const double R_re = 1 + r * (re * R[0] - im * R[1]);
+            R[1] = r * (re * R[1] + im * R[0]);
+            R[0] = R_re;
+            dR[0] = d_re;
+            dR[1] = d_im;
+        }
+        next = r - (R[0] * R[0] + R[1] * R[1] - 1) / (2 * (R[0] * dR[0] + R[1] * dR[1]));
+    } while (next < r);
+    return r;
+}
+
+static double rk4_stable_step(const spring_roots *r)
+{
+    if (r->overdamped)
+        return rk4_real_limit / spring_fast_root(r);
+    if (r->w > 0)
+        return rk4_ray_limit(r->b / r->omega, r->split / r->omega) / r->omega;
+    return INFINITY;
+}
+
+static const one_method rk4_one = {
+    .info = {.name = "rk4", .order = 4, .forces_per_step = 4, .springs = true, .scenes = true},
+    .kernel = spring_step_rk4,
+    .loop = {{rk4_plain, rk4_loaded}, {rk4_damped, rk4_damped_loaded}},
+    .at_once = SPRING_CHECK_INTERVAL,
+    .stable_step = rk4_stable_step,
+};
+
+#elif defined(SPRING_SHAPE_BATCH)
+#define SPRING_METHOD rk4
+#include "batch_loop.h"
+
+#elif defined(SPRING_SHAPE_SCENE)
+static scene_outcome rk4_scene_step(const scene_step *s)
+{
+    const double times[] = {s->middle, s->middle, s->end};
+    const scalar lengths[] = {s->h / 2, s->h / 2, s->h}; /* from the start to the next stage */
+    scene_motion end = scene_motion_of(s), stage = end;
+    stage.x = scene_stage_x(s);
+    stage.v = scene_stage_v(s);
+    stage.weight = 2;
+    for (int k = 0; k < 3; k++) {
+        stage.kick = stage.drift = lengths[k];
+        if (!(k == 0 ? s->kernels->first_stage : s->kernels->next_stage)(&stage))
+            return (scene_outcome){.finite = false};
+        scene_evaluate(s, stage.x, stage.v, times[k]);
+        stage.slope = stage.v;
+    }
+    end.slope = stage.slope;
+    end.kick = end.drift = s->h / 6;
+    return (scene_outcome){.finite = s->kernels->last_stage(&end)};
+}
+
+static double rk4_scene_stable_step(const scene_bounds *b)
+{
+    const double limit = 2.61; /* |hz| below which RK4 is stable in every direction of the left half plane */
+    return limit / fmax(sqrt(b->stiffness), b->damping);
+}
+
+static const scene_method rk4_scene = {
+    .step = rk4_scene_step,
+    .stable_step = rk4_scene_stable_step,
+    .stores = SCENE_STORES_STAGE | SCENE_STORES_SUMS,
+};
+#endif
 
 #endif

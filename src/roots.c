@@ -10,7 +10,9 @@
  * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
  */
-#include "method.h"
+#include "roots.h"
+
+#include "simd/real.h"
 
 /* n/d - q, the rounding error of the quotient q. A denormal q is off by much more than eps of it, and is the spring that
    the steppers move: there it counts as exact. */

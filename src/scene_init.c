@@ -2,90 +2,107 @@
 /*
  * From a definition to a scene: checks, the plan of its memory, and filling it.
  *
- * Rows      The links of an offset, upper minus lower end, make a row as far as their lower ends ascend in the order of
- *           the links, so that no place is taken twice, if at least a quarter of the places between the first and the
- *           last is taken: then the row is cheaper than the list. Of too many rows the longest are kept. Offsets are
- *           counted in a small table. What finds no room there, or in its row, goes to the list, as do all links of
- *           particles without order.
+ * Bands     The links of an offset, upper minus lower end, make a band as far as their lower ends ascend in the order of
+ *           the links, so that no slot is occupied twice, if at least a quarter of the slots between the first and the
+ *           last is occupied: then the band is cheaper than the edge list. Of too many bands the longest are kept. Offsets
+ *           are counted in a small table. What finds no room there, or in its band, goes to the edge list, as do all links
+ *           of particles without order.
  */
-#include "scene_block.h"
+#include "scene_links.h"
+#include "scene_step.h"
 
 #include <limits.h>
 
 /* ------------------------------------------------------------------------------------------------------- checks */
 
-typedef struct culprit {
+typedef struct def_error {
     spring_status status;
     const char *field;
     size_t index;
-} culprit;
+} def_error;
 
-static const culprit nobody = {SPRING_OK, NULL, 0};
+static const def_error no_error = {SPRING_OK, NULL, 0};
 
-static culprit invalid(const char *field, size_t index)
+static def_error invalid(const char *field, size_t index)
 {
-    return (culprit){SPRING_EINVAL, field, index};
+    return (def_error){SPRING_EINVAL, field, index};
 }
 
-static bool fits(double value) /* is finite as a scalar, too */
-{
-    return isfinite((scalar)value);
-}
-
-static bool not_negative(double value)
-{
-    return value >= 0 && fits(value);
-}
-
-static uint32_t axes_of(const scene_def *def)
+static uint32_t axes_of(const spring_scene_def *def)
 {
     return def->axes == 0 ? 3 : def->axes;
 }
 
-static uint32_t methods_of(const scene_def *def)
+/* Every method that stores nothing for its stages. */
+static uint32_t default_methods(void)
 {
-    return def->methods == 0 ? 1u << SPRING_EULER | 1u << SPRING_LEAPFROG : def->methods;
+    uint32_t methods = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if (spring_scene_methods[m]->step != NULL &&
+            (spring_scene_methods[m]->stores & (SCENE_STORES_STAGE | SCENE_STORES_SUMS)) == 0)
+            methods |= 1u << m;
+    return methods;
 }
 
-static bool is_pinned(const scene_def *def, size_t i)
+static uint32_t methods_of(const spring_scene_def *def)
+{
+    return def->methods == 0 ? default_methods() : def->methods;
+}
+
+/* SCENE_STORES_... of these methods together. */
+static unsigned stores_of(uint32_t methods)
+{
+    unsigned stores = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((methods & 1u << m) != 0)
+            stores |= spring_scene_methods[m]->stores;
+    return stores;
+}
+
+static def_error check_methods(uint32_t methods)
+{
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->step == NULL)
+            return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
+    return methods >> SPRING_METHOD_COUNT == 0 ? no_error : invalid("methods", 0);
+}
+
+static bool is_pinned(const spring_scene_def *def, size_t i)
 {
     return def->pinned != NULL && def->pinned[i] != 0;
 }
 
-static double mass_of(const scene_def *def, size_t i)
+static double mass_of(const spring_scene_def *def, size_t i)
 {
     return def->mass != NULL ? def->mass[i] : def->mass_all == 0 ? 1 : def->mass_all;
 }
 
 /* 0 for particles that nothing moves. */
-static scalar inverse_mass_of(const scene_def *def, size_t i)
+static scalar inverse_mass_of(const spring_scene_def *def, size_t i)
 {
     return is_pinned(def, i) ? 0 : (scalar)(1 / mass_of(def, i));
 }
 
 static bool mass_valid(double mass)
 {
-    return mass > 0 && fits(mass) && fits(1 / mass);
+    return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
 }
 
-static culprit check_head(const scene_def *def)
+static def_error check_head(const spring_scene_def *def)
 {
-    const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_STILL;
-    const uint32_t steppers = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4;
+    const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
     if (def->axes > 3)
         return invalid("axes", 0);
     if ((def->flags & ~flags) != 0)
         return invalid("flags", 0);
-    if ((def->methods & 1u << SPRING_EXACT) != 0)
-        return (culprit){SPRING_EUNSUPPORTED, "methods", 0};
-    if ((def->methods & ~steppers) != 0)
-        return invalid("methods", 0);
+    if (check_methods(def->methods).status != SPRING_OK)
+        return check_methods(def->methods);
     if (def->particles == 0)
         return invalid("particles", 0);
     if (def->particles > UINT32_MAX - padding || def->particles > SIZE_MAX / 64 / sizeof(double))
-        return (culprit){SPRING_ERANGE, "particles", 0};
+        return (def_error){SPRING_ERANGE, "particles", 0};
     if (def->links > UINT32_MAX / 8 || def->links > SIZE_MAX / 64 / sizeof(double))
-        return (culprit){SPRING_ERANGE, "links", 0};
+        return (def_error){SPRING_ERANGE, "links", 0};
     if (def->position == NULL)
         return invalid("position", 0);
     if (def->link == NULL && def->links > 0)
@@ -93,72 +110,54 @@ static culprit check_head(const scene_def *def)
     if (def->mass == NULL && def->mass_all != 0 && !mass_valid(def->mass_all))
         return invalid("mass_all", 0);
     for (uint32_t a = 0; a < axes_of(def); a++)
-        if (!fits(def->gravity[a]))
+        if (!scene_fits(def->gravity[a]))
             return invalid("gravity", a);
-    return not_negative(def->drag) ? nobody : invalid("drag", 0);
+    return scene_not_negative(def->drag) ? no_error : invalid("drag", 0);
 }
 
-static culprit check_particles(const scene_def *def)
+static def_error check_particles(const spring_scene_def *def)
 {
     const uint32_t axes = axes_of(def);
     for (size_t i = 0; i < def->particles; i++) {
         for (uint32_t a = 0; a < axes; a++) {
-            if (!fits(def->position[i * axes + a]))
+            if (!scene_fits(def->position[i * axes + a]))
                 return invalid("position", i);
-            if (def->velocity != NULL && !fits(def->velocity[i * axes + a]))
+            if (def->velocity != NULL && !scene_fits(def->velocity[i * axes + a]))
                 return invalid("velocity", i);
         }
         if (!is_pinned(def, i) && !mass_valid(mass_of(def, i)))
             return invalid("mass", i);
-        if (!fits(def->drag * (double)inverse_mass_of(def, i)))
+        if (!scene_fits(def->drag * (double)inverse_mass_of(def, i)))
             return invalid("drag", i);
     }
-    return nobody;
+    return no_error;
 }
 
-/* Of numbers that do not depend on where a link is. */
-static const char *wrong_in_link(const spring_link *link)
-{
-    return !not_negative(link->rest)        ? "link.rest"
-           : !not_negative(link->stiffness) ? "link.stiffness"
-           : !not_negative(link->damping)   ? "link.damping"
-                                            : NULL;
-}
-
-/* Of numbers that are too large for the masses at the ends: w or g of rule "bad input" would overflow. */
-static const char *too_much(const spring_link *link, double inverse_a, double inverse_b)
-{
-    const double lightest = fmax(inverse_a, inverse_b);
-    return !fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
-           : !fits(2 * (link->damping * lightest)) ? "link.damping"
-                                                   : NULL;
-}
-
-static culprit check_links(const scene_def *def)
+static def_error check_links(const spring_scene_def *def)
 {
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         if (link->a >= def->particles)
-            return (culprit){SPRING_ERANGE, "link.a", i};
+            return (def_error){SPRING_ERANGE, "link.a", i};
         if (link->b >= def->particles)
-            return (culprit){SPRING_ERANGE, "link.b", i};
+            return (def_error){SPRING_ERANGE, "link.b", i};
         if (link->a == link->b)
             return invalid("link.b", i);
-        const char *field = wrong_in_link(link);
+        const char *field = scene_link_invalid_field(link);
         if (field == NULL)
             field =
-                too_much(link, (double)inverse_mass_of(def, link->a), (double)inverse_mass_of(def, link->b));
+                scene_link_overflows(link, (double)inverse_mass_of(def, link->a), (double)inverse_mass_of(def, link->b));
         if (field != NULL)
             return invalid(field, i);
     }
-    return nobody;
+    return no_error;
 }
 
-static culprit check(const scene_def *def)
+static def_error check(const spring_scene_def *def)
 {
     if (def == NULL)
         return invalid("def", 0);
-    culprit found = check_head(def);
+    def_error found = check_head(def);
     if (found.status == SPRING_OK)
         found = check_particles(def);
     if (found.status == SPRING_OK)
@@ -166,9 +165,9 @@ static culprit check(const scene_def *def)
     return found;
 }
 
-spring_status SCENE(check)(const scene_def *def, const char **field, size_t *index)
+spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index)
 {
-    const culprit found = check(def);
+    const def_error found = check(def);
     if (field != NULL)
         *field = found.field;
     if (index != NULL)
@@ -188,7 +187,7 @@ static uint32_t offset_of(const spring_link *link)
     return link->a < link->b ? link->b - link->a : link->a - link->b;
 }
 
-typedef struct candidate { /* for a row */
+typedef struct candidate { /* for a band */
     uint32_t offset;       /* 0: free */
     uint32_t first, last, count;
     bool equal;
@@ -221,57 +220,57 @@ static void count_link(candidate table[candidates], const spring_link *link)
     }
 }
 
-static bool makes_a_row(const candidate *c)
+static bool makes_a_band(const candidate *c)
 {
     const uint32_t least = 8, sparsest = 4;
     return c->count >= least && c->count >= (c->last - c->first + 1) / sparsest;
 }
 
-static uint32_t longer_rows(const candidate table[candidates], const candidate *than)
+static uint32_t longer_bands(const candidate table[candidates], const candidate *than)
 {
     uint32_t longer = 0;
     for (const candidate *c = table; c < table + candidates; c++)
-        longer += makes_a_row(c) && (c->count > than->count || (c->count == than->count && c < than));
+        longer += makes_a_band(c) && (c->count > than->count || (c->count == than->count && c < than));
     return longer;
 }
 
-static void plan_rows(const scene_def *def, scene_plan *plan)
+static void plan_bands(const spring_scene_def *def, scene_plan *plan)
 {
     const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
     candidate table[candidates] = {{0}};
     for (size_t i = 0; i < def->links; i++)
         count_link(table, &def->link[i]);
-    plan->list_links = def->links;
+    plan->edges = def->links;
     for (const candidate *c = table; c < table + candidates; c++) {
-        if (!makes_a_row(c) || longer_rows(table, c) >= most_rows)
+        if (!makes_a_band(c) || longer_bands(table, c) >= most_bands)
             continue;
-        size_t at = plan->rows++;
-        for (; at > 0 && plan->row[at - 1].offset > c->offset; at--)
-            plan->row[at] = plan->row[at - 1];
-        plan->row[at] = (row_place){c->offset, c->first, c->last + 1, c->equal && !editable, 0, 0, 0};
-        plan->list_links -= c->count;
+        size_t at = plan->bands++;
+        for (; at > 0 && plan->band[at - 1].offset > c->offset; at--)
+            plan->band[at] = plan->band[at - 1];
+        plan->band[at] = (band_plan){c->offset, c->first, c->last + 1, c->equal && !editable, 0, 0, 0};
+        plan->edges -= c->count;
     }
-    for (uint32_t r = 0; r < plan->rows; r++) {
-        row_place *row = &plan->row[r];
-        const size_t places = (row->end - row->first + 2 * padding + padding - 1) / padding * padding;
-        row->start = plan->row_places;
-        row->numbers = plan->row_numbers;
-        row->present = plan->row_bytes;
-        plan->row_places += places;
-        plan->row_numbers += row->equal ? padding : places;
-        plan->row_bytes += row->equal ? places : 0;
+    for (uint32_t r = 0; r < plan->bands; r++) {
+        band_plan *band = &plan->band[r];
+        const size_t slots = (band->end - band->first + 2 * padding + padding - 1) / padding * padding;
+        band->start = plan->band_slots;
+        band->coefficients = plan->band_coefficients;
+        band->occupied = plan->band_bytes;
+        plan->band_slots += slots;
+        plan->band_coefficients += band->equal ? padding : slots;
+        plan->band_bytes += band->equal ? slots : 0;
     }
 }
 
-/* Gives out the memory behind the scene. */
-static size_t take(scene_plan *plan, size_t elements, size_t size)
+/* Reserve memory behind the scene: its offset. */
+static size_t reserve(scene_plan *plan, size_t elements, size_t size)
 {
     const size_t offset = plan->bytes;
     plan->bytes += (elements * size + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
     return offset;
 }
 
-static bool any_damping(const scene_def *def)
+static bool any_damping(const spring_scene_def *def)
 {
     for (size_t i = 0; i < def->links; i++)
         if (def->link[i].damping > 0)
@@ -279,43 +278,45 @@ static bool any_damping(const scene_def *def)
     return false;
 }
 
-static void plan_memory(const scene_def *def, scene_plan *plan)
+static void plan_memory(const spring_scene_def *def, scene_plan *plan)
 {
-    const bool rk4 = (plan->methods & 1u << SPRING_RK4) != 0,
-               leapfrog = (plan->methods & 1u << SPRING_LEAPFROG) != 0;
-    const bool undo = (plan->flags & SPRING_SCENE_NO_UNDO) == 0,
+    const unsigned stores = stores_of(plan->methods);
+    const bool rollback = (plan->flags & SPRING_SCENE_NO_UNDO) == 0,
                editable = (plan->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || any_damping(def);
-    const bool predicted = leapfrog && (damped || (plan->flags & SPRING_SCENE_FORCE_STILL) == 0);
-    const size_t vector = plan->axes * plan->stride + padding;
-    plan->bytes = (sizeof(scene) + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
-    plan->work = undo ? 2 : 1;
-    for (uint32_t f = 0; f < most_frames; f++)
-        if (f == 0 || (f == 1 && undo) || (f == plan->work && rk4)) {
-            plan->x[f] = take(plan, vector, sizeof(scalar));
-            plan->v[f] = take(plan, vector, sizeof(scalar));
+    const bool velocity_used = damped || (plan->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    const bool needed[most_buffers] = {true, rollback, (stores & SCENE_STORES_STAGE) != 0};
+    const size_t quantity = plan->axes * plan->stride + padding;
+    plan->bytes = (sizeof(spring_scene) + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
+    for (uint32_t i = 0; i < most_buffers; i++)
+        if (needed[i]) {
+            plan->x[i] = reserve(plan, quantity, sizeof(scalar));
+            plan->v[i] = reserve(plan, quantity, sizeof(scalar));
         }
-    plan->force = take(plan, vector, sizeof(scalar));
-    plan->predicted = predicted ? take(plan, vector, sizeof(scalar)) : 0;
-    plan->sum_x = rk4 ? take(plan, vector, sizeof(scalar)) : 0;
-    plan->sum_v = rk4 ? take(plan, vector, sizeof(scalar)) : 0;
+    plan->force = reserve(plan, quantity, sizeof(scalar));
+    if ((stores & SCENE_STORES_PREDICTED) != 0 && velocity_used)
+        plan->predicted = reserve(plan, quantity, sizeof(scalar));
+    if ((stores & SCENE_STORES_SUMS) != 0) {
+        plan->sum_x = reserve(plan, quantity, sizeof(scalar));
+        plan->sum_v = reserve(plan, quantity, sizeof(scalar));
+    }
     plan->inverse_mass =
-        def->mass != NULL || def->pinned != NULL ? take(plan, plan->stride, sizeof(scalar)) : 0;
-    plan->row_present = take(plan, plan->row_bytes, 1);
-    plan->row_stiffness = take(plan, plan->row_numbers, sizeof(scalar));
-    plan->row_rest = take(plan, plan->row_numbers, sizeof(scalar));
-    plan->row_damping = damped ? take(plan, plan->row_numbers, sizeof(scalar)) : 0;
-    plan->list_a = take(plan, plan->list_links, sizeof(uint32_t));
-    plan->list_b = take(plan, plan->list_links, sizeof(uint32_t));
-    plan->list_stiffness = take(plan, plan->list_links + padding, sizeof(scalar));
-    plan->list_rest = take(plan, plan->list_links + padding, sizeof(scalar));
-    plan->list_damping = damped ? take(plan, plan->list_links + padding, sizeof(scalar)) : 0;
-    plan->slot = take(plan, plan->links, sizeof(uint32_t));
+        def->mass != NULL || def->pinned != NULL ? reserve(plan, plan->stride, sizeof(scalar)) : 0;
+    plan->band_occupied = reserve(plan, plan->band_bytes, 1);
+    plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));
+    plan->band_rest = reserve(plan, plan->band_coefficients, sizeof(scalar));
+    plan->band_damping = damped ? reserve(plan, plan->band_coefficients, sizeof(scalar)) : 0;
+    plan->edge_a = reserve(plan, plan->edges, sizeof(uint32_t));
+    plan->edge_b = reserve(plan, plan->edges, sizeof(uint32_t));
+    plan->edge_stiffness = reserve(plan, plan->edges + padding, sizeof(scalar));
+    plan->edge_rest = reserve(plan, plan->edges + padding, sizeof(scalar));
+    plan->edge_damping = damped ? reserve(plan, plan->edges + padding, sizeof(scalar)) : 0;
+    plan->slot = reserve(plan, plan->links, sizeof(uint32_t));
 }
 
-static spring_status make_plan(const scene_def *def, scene_plan *plan)
+static spring_status make_plan(const spring_scene_def *def, scene_plan *plan)
 {
-    const spring_status status = SCENE(check)(def, NULL, NULL);
+    const spring_status status = spring_scene_check(def, NULL, NULL);
     if (status != SPRING_OK)
         return status;
     *plan = (scene_plan){
@@ -326,12 +327,12 @@ static spring_status make_plan(const scene_def *def, scene_plan *plan)
         .links = def->links,
         .stride = (def->particles + padding - 1) / padding * padding + padding,
     };
-    plan_rows(def, plan);
+    plan_bands(def, plan);
     plan_memory(def, plan);
     return SPRING_OK;
 }
 
-spring_status SCENE(bytes)(const scene_def *def, size_t *bytes)
+spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
 {
     if (bytes == NULL)
         return SPRING_EINVAL;
@@ -344,7 +345,7 @@ spring_status SCENE(bytes)(const scene_def *def, size_t *bytes)
 
 /* ------------------------------------------------------------------------------------------------------ filling */
 
-static void fill_particles(scene *s, const scene_def *def)
+static void fill_particles(spring_scene *s, const spring_scene_def *def)
 {
     const uint32_t axes = s->plan.axes;
     for (uint32_t a = 0; a < axes; a++) {
@@ -361,23 +362,12 @@ static void fill_particles(scene *s, const scene_def *def)
     }
 }
 
-static const row_place *row_of(const scene_plan *plan, uint32_t offset)
+static const band_plan *band_of(const scene_plan *plan, uint32_t offset)
 {
-    for (const row_place *row = plan->row; row < plan->row + plan->rows && row->offset <= offset; row++)
-        if (row->offset == offset)
-            return row;
+    for (const band_plan *band = plan->band; band < plan->band + plan->bands && band->offset <= offset; band++)
+        if (band->offset == offset)
+            return band;
     return NULL;
-}
-
-/* Writes the numbers of a link to where it lies. */
-static void place(scene *s, size_t index, const spring_link *link)
-{
-    const placed_link at = scene_link(s, index);
-    *at.stiffness = (scalar)link->stiffness;
-    const scalar rest = (scalar)fabs(link->rest); /* -0.0 would turn a link on one axis */
-    *at.rest = s->plan.axes == 1 && at.a != link->a ? -rest : rest;
-    if (at.damping != NULL)
-        *at.damping = (scalar)link->damping;
 }
 
 /* Fills a vector with its first element. */
@@ -387,39 +377,39 @@ static void spread(scalar *vector)
         vector[i] = vector[0];
 }
 
-static void fill_links(scene *s, const scene_def *def)
+static void fill_links(spring_scene *s, const spring_scene_def *def)
 {
     uint32_t *slot = scene_indices(s, s->plan.slot);
-    uint32_t next[most_rows] = {0}; /* lower end that a row takes, or one above it */
-    uint32_t listed = 0;
+    uint32_t next[most_bands] = {0}; /* lower end that a band takes, or one above it */
+    uint32_t edge = 0;
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         const uint32_t lower = lower_end(link);
-        const row_place *row = row_of(&s->plan, offset_of(link));
-        if (row != NULL && lower >= next[row - s->plan.row]) {
-            next[row - s->plan.row] = lower + 1;
-            slot[i] = (uint32_t)(row->start + padding + lower - row->first);
-            if (row->equal)
-                scene_bytes_at(s, s->plan.row_present)[row->present + slot[i] - row->start] = -1;
+        const band_plan *band = band_of(&s->plan, offset_of(link));
+        if (band != NULL && lower >= next[band - s->plan.band]) {
+            next[band - s->plan.band] = lower + 1;
+            slot[i] = (uint32_t)(band->start + padding + lower - band->first);
+            if (band->equal)
+                scene_bytes_at(s, s->plan.band_occupied)[band->occupied + slot[i] - band->start] = -1;
         } else {
-            slot[i] = (uint32_t)(s->plan.row_places + listed);
-            scene_indices(s, s->plan.list_a)[listed] = link->a;
-            scene_indices(s, s->plan.list_b)[listed] = link->b;
-            listed++;
+            slot[i] = (uint32_t)(s->plan.band_slots + edge);
+            scene_indices(s, s->plan.edge_a)[edge] = link->a;
+            scene_indices(s, s->plan.edge_b)[edge] = link->b;
+            edge++;
         }
-        place(s, i, link);
+        scene_place(s, i, link);
         s->damped_links += (scalar)link->damping > 0;
     }
-    for (const row_place *row = s->plan.row; row < s->plan.row + s->plan.rows; row++)
-        if (row->equal) {
-            spread(scene_array(s, s->plan.row_stiffness) + row->numbers);
-            spread(scene_array(s, s->plan.row_rest) + row->numbers);
-            if (s->plan.row_damping != 0)
-                spread(scene_array(s, s->plan.row_damping) + row->numbers);
+    for (const band_plan *band = s->plan.band; band < s->plan.band + s->plan.bands; band++)
+        if (band->equal) {
+            spread(scene_array(s, s->plan.band_stiffness) + band->coefficients);
+            spread(scene_array(s, s->plan.band_rest) + band->coefficients);
+            if (s->plan.band_damping != 0)
+                spread(scene_array(s, s->plan.band_damping) + band->coefficients);
         }
 }
 
-spring_status SCENE(init)(void *memory, size_t bytes, const scene_def *def, scene **result)
+spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def, spring_scene **result)
 {
     if (result == NULL)
         return SPRING_EINVAL;
@@ -435,8 +425,8 @@ spring_status SCENE(init)(void *memory, size_t bytes, const scene_def *def, scen
     if (bytes < plan.bytes)
         return SPRING_ENOMEM;
     memset(memory, 0, plan.bytes);
-    scene *s = memory;
-    *s = (scene){
+    spring_scene *s = memory;
+    *s = (spring_scene){
         .plan = plan,
         .force = def->force,
         .user = def->user,
@@ -447,26 +437,5 @@ spring_status SCENE(init)(void *memory, size_t bytes, const scene_def *def, scen
     fill_particles(s, def);
     fill_links(s, def);
     *result = s;
-    return SPRING_OK;
-}
-
-spring_status SCENE(set_link)(scene *s, size_t index, const spring_link *link)
-{
-    if (s == NULL || link == NULL)
-        return SPRING_EINVAL;
-    if ((s->plan.flags & SPRING_SCENE_EDITABLE) == 0)
-        return SPRING_EUNSUPPORTED;
-    if (index >= s->plan.links)
-        return SPRING_ERANGE;
-    const placed_link old = scene_link(s, index);
-    const bool same_ends = (link->a == old.a && link->b == old.b) || (link->a == old.b && link->b == old.a);
-    if (!same_ends || wrong_in_link(link) != NULL ||
-        too_much(link, inverse_mass_at(s, old.a), inverse_mass_at(s, old.b)) != NULL)
-        return SPRING_EINVAL;
-    s->damped_links -= *old.damping > 0;
-    s->damped_links += (scalar)link->damping > 0;
-    place(s, index, link);
-    s->force_kept = false;
-    s->limits_known = false;
     return SPRING_OK;
 }

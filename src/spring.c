@@ -2,25 +2,20 @@
 /*
  * One spring: checks, dispatch, and the questions one can ask of it.
  */
-#include <stddef.h>
+#define SPRING_SHAPE_ONE
+#include "methods.h"
 
-#include "method.h"
+#define ONE_ROW(value, method) [value] = &method##_one,
+static const one_method *const methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(ONE_ROW)};
 
-/* A method is one row here. */
-static const spring_method_row *const methods[] = {
-    [SPRING_EULER] = &spring_method_euler,
-    [SPRING_LEAPFROG] = &spring_method_leapfrog,
-    [SPRING_RK4] = &spring_method_rk4,
-    [SPRING_EXACT] = &spring_method_exact,
-};
+#define ORDER_ROW(value, method) value,
+static const spring_method table_order[] = {SPRING_METHODS(ORDER_ROW)};
+_Static_assert(sizeof table_order / sizeof table_order[0] == SPRING_METHOD_COUNT, "each method has one row in methods.h");
 
-/* Steps between two looks at the state: rare enough to cost nothing, as often as rule "within 4096 steps" asks. */
-static const uint64_t check_interval = 4096;
-
-static const spring_method_row *find_method(spring_method m)
+static const one_method *find_method(spring_method m)
 {
     const size_t index = (size_t)m; /* a negative value becomes a large one */
-    return index < sizeof methods / sizeof methods[0] ? methods[index] : NULL;
+    return index < SPRING_METHOD_COUNT ? methods[index] : NULL;
 }
 
 static bool finite_state(spring_state s)
@@ -30,21 +25,21 @@ static bool finite_state(spring_state s)
 
 spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
-    const spring_method_row *method = find_method(m);
+    const one_method *method = find_method(m);
     if (s == NULL || p == NULL || method == NULL || !isfinite(dt))
         return SPRING_EINVAL;
-    spring_state now = {s->x, s->v}; /* by field, see method.h */
+    if (!method->info.springs)
+        return SPRING_EUNSUPPORTED;
+    spring_state now = {s->x, s->v}; /* by field, see simd/arithmetic.h */
     const spring_rates r = spring_rates_of(p);
     if (!finite_state(now) || !spring_rates_valid(p, &r))
         return SPRING_EINVAL;
     if (n == 0 || dt == 0)
         return SPRING_OK;
+    spring_loop *loop = method->loop[r.g != 0][r.a != 0];
     while (n > 0) {
-        uint64_t some = n < check_interval ? n : check_interval;
-        if (method->steps != NULL)
-            now = method->steps(now, &r, dt, some);
-        else
-            now = spring_exact(now, p, dt * (double)(some = n));
+        const uint64_t some = n < method->at_once ? n : method->at_once;
+        now = loop(now, p, &r, dt, some);
         if (!finite_state(now))
             return SPRING_ENONFINITE;
         n -= some;
@@ -69,8 +64,8 @@ bool spring_params_valid(const spring_params *p)
 
 double spring_stable_step(const spring_params *p, spring_method m)
 {
-    const spring_method_row *method = find_method(m);
-    if (method == NULL || !spring_params_valid(p))
+    const one_method *method = find_method(m);
+    if (method == NULL || method->stable_step == NULL || !spring_params_valid(p))
         return NAN;
     const spring_roots r = spring_roots_of(p);
     return method->stable_step(&r);
@@ -108,10 +103,27 @@ bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol,
     return slow && fabs(s->x - p->load / p->stiffness) <= x_tol;
 }
 
+const spring_method_info *spring_method_describe(spring_method m)
+{
+    const one_method *method = find_method(m);
+    return method != NULL ? &method->info : NULL;
+}
+
 const char *spring_method_name(spring_method m)
 {
-    const spring_method_row *method = find_method(m);
-    return method != NULL ? method->name : NULL;
+    const one_method *method = find_method(m);
+    return method != NULL ? method->info.name : NULL;
+}
+
+spring_step_fn *spring_method_kernel(spring_method m)
+{
+    const one_method *method = find_method(m);
+    return method != NULL ? method->kernel : NULL;
+}
+
+spring_method spring_method_at(int place)
+{
+    return place >= 0 && place < SPRING_METHOD_COUNT ? table_order[place] : (spring_method)SPRING_METHOD_COUNT;
 }
 
 const char *spring_status_string(spring_status s)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The kernels as compilers without vectors of GNU C compile them: `real` is one number (real_number.h). The headers of the
- * system and of the library come first, since they need to know their compiler; KERNELS is one of the files of src/.
+ * The kernels as compilers without vectors of GNU C compile them: `real` is one number (simd/real_number.h). The headers of
+ * the system and of the library come first, since they need to know their compiler.
  */
 #include <float.h>
 #include <math.h>
@@ -14,15 +14,13 @@
 #include <springstep/scene.h>
 
 #if defined(__clang__)
-#pragma clang diagnostic ignored "-Wbitwise-instead-of-logical" /* a truth is a bool here */
+#pragma clang diagnostic ignored "-Wbitwise-instead-of-logical" /* a mask is a bool here */
 #elif defined(__GNUC__)
-#pragma GCC diagnostic ignored \
-    "-Wmaybe-uninitialized" /* loops over axes are not unrolled: gcc 12 doubts them */
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* loops over axes are not unrolled: gcc 12 doubts them */
 #endif
 #undef __clang__
 #undef __GNUC__
-#define spring_batch_v128  plain_batch
-#define spring_batchf_v128 plain_batch
-#define spring_scene_v128  plain_scene
-#define spring_scenef_v128 plain_scene
-#include KERNELS
+#define SPRING_VECTOR      16
+#define SPRING_BATCH_TABLE plain_batch
+#define SPRING_SCENE_TABLE plain_scene
+#include "kernels.h"

@@ -11,13 +11,15 @@
 #include <string.h>
 
 #include "batch_kernels.h"
+#include "propagator.h"
+#include "simd/targets.h"
 #include "check.h"
 
 static const batch_kernels *kernels;
 
-static spring_status advance(const batch *b, spring_method m, scalar dt, uint64_t n)
+static spring_status advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
 {
-    return BATCH(advance_with)(kernels, b, m, dt, n);
+    return spring_batch_advance_with(kernels, b, m, dt, n);
 }
 
 /* ------------------------------------------------------------------------------------ what a spring's life should be */
@@ -170,7 +172,7 @@ static uint32_t shared_bits(features f)
 }
 
 /* Lays a batch out, every array at an alignment of its own. */
-static batch lay_out(place *p, const spring *s, size_t count, features f)
+static spring_batch lay_out(place *p, const spring *s, size_t count, features f)
 {
     scalar *at[arrays];
     for (size_t i = 0; i < arrays; i++) {
@@ -188,7 +190,7 @@ static batch lay_out(place *p, const spring *s, size_t count, features f)
         if (f.a == EACH || (f.a == SHARED && i == 0))
             at[4][i] = s[i].a;
     }
-    return (batch){count,         at[0], at[1], at[2], f.g == NONE ? NULL : at[3], f.a == NONE ? NULL : at[4],
+    return (spring_batch){count,         at[0], at[1], at[2], f.g == NONE ? NULL : at[3], f.a == NONE ? NULL : at[4],
                    shared_bits(f)};
 }
 
@@ -215,7 +217,7 @@ static void check_batch(const spring *s, size_t count, features f, spring_method
                         const outcome *want)
 {
     static place got, expected;
-    const batch b = lay_out(&got, s, count, f);
+    const spring_batch b = lay_out(&got, s, count, f);
     spring_status status = SPRING_OK;
     char why[120];
     snprintf(why, sizeof why, "%s, %zu springs, %d steps of %g s, sharing of w %d, g %d, a %d",
@@ -400,9 +402,9 @@ static void shared_but_absent(void)
     const features f = {EACH, NONE, NONE};
     draw(0);
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
-        batch b = lay_out(&got, springs, 129, f);
+        spring_batch b = lay_out(&got, springs, 129, f);
         want = got;
-        batch plain = b;
+        spring_batch plain = b;
         b.shared |= SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
         plain.x = want.of[0] + (b.x - got.of[0]);
         plain.v = want.of[1] + (b.v - got.of[1]);
@@ -427,7 +429,7 @@ static void in_pieces(size_t count, features f, spring_method m, size_t pieces)
     }
     for (size_t k = 0; k < pieces; k++) {
         const size_t first = count * k / pieces, after = count * (k + 1) / pieces;
-        const batch b = {.count = after - first,
+        const spring_batch b = {.count = after - first,
                          .x = x + first,
                          .v = v + first,
                          .omega2 = f.w == SHARED ? w : w + first,
@@ -474,12 +476,12 @@ static void public_function(void)
     draw(1);
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
         for (size_t k = 0; k < feature_count; k++) {
-            const batch b = lay_out(&got, springs, 129 + k, features_of(k));
+            const spring_batch b = lay_out(&got, springs, 129 + k, features_of(k));
             want = got;
             const spring_status status = advance(&b, (spring_method)m, step, 5);
             const place done = got;
             got = want;
-            CHECK(BATCH(advance)(&b, (spring_method)m, step, 5) == status, "the same status");
+            CHECK(spring_batch_advance(&b, (spring_method)m, step, 5) == status, "the same status");
             check_place(&got, &done, "the same bits from every instruction set");
         }
 }
@@ -491,7 +493,7 @@ static void check_ends(spring one, size_t count, features f, spring_method m)
     static place got, want;
     for (size_t i = 0; i < count; i++)
         springs[i] = one;
-    const batch b = lay_out(&got, springs, count, f);
+    const spring_batch b = lay_out(&got, springs, count, f);
     want = got;
     CHECK(advance(&b, m, 5, 1000000000000) == SPRING_ENONFINITE, "all overflow");
     check_place(&got, &want, "all keep their state");
@@ -541,7 +543,7 @@ static void nothing_to_do(void)
     static place got, want;
     for (size_t k = 0; k < feature_count; k++) {
         draw(1);
-        const batch b = lay_out(&got, springs, 129, features_of(k)), empty = {0};
+        const spring_batch b = lay_out(&got, springs, 129, features_of(k)), empty = {0};
         want = got;
         for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
             const spring_method method = (spring_method)m;
@@ -558,14 +560,14 @@ static void nothing_to_do(void)
 
 static scalar memory[400];
 
-static spring_status ask(const batch *b, spring_method m, scalar dt)
+static spring_status ask(const spring_batch *b, spring_method m, scalar dt)
 {
     for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
         memory[i] = (scalar)0.5 + (scalar)i / 1024;
     return advance(b, m, dt, 3);
 }
 
-static void refuse(const batch *b, spring_method m, scalar dt, const char *why)
+static void refuse(const spring_batch *b, spring_method m, scalar dt, const char *why)
 {
     CHECK(ask(b, m, dt) == SPRING_EINVAL, why);
     bool same = true;
@@ -573,16 +575,16 @@ static void refuse(const batch *b, spring_method m, scalar dt, const char *why)
         same = same && memory[i] == (scalar)0.5 + (scalar)i / 1024;
     CHECK(same, "nothing has changed");
     if (isfinite(dt)) /* what is wrong is the batch or the method */
-        CHECK(isnan(BATCH(stable_step)(b, m)), why);
+        CHECK(isnan(spring_batch_stable_step(b, m)), why);
 }
 
-static const batch good = {10, memory + 100, memory + 200, memory + 300, memory + 320, memory + 340, 0};
+static const spring_batch good = {10, memory + 100, memory + 200, memory + 300, memory + 320, memory + 340, 0};
 
 static void overlaps(void)
 {
     for (int shared = 0; shared <= 7; shared++)
         for (int i = -11; i <= 11; i++) {
-            batch b = good;
+            spring_batch b = good;
             b.shared = (uint32_t)shared;
             b.v = b.x + i;
             if (i > -10 && i < 10)
@@ -602,7 +604,7 @@ static void overlaps(void)
                     CHECK(ask(&b, SPRING_EULER, step) == SPRING_OK, "side by side");
             }
         }
-    batch b = good;
+    spring_batch b = good;
     b.gamma = b.accel = b.omega2;
     CHECK(ask(&b, SPRING_RK4, step) == SPRING_OK, "parameters may be one array");
 }
@@ -611,7 +613,7 @@ static void bad_batches(void)
 {
     CHECK(ask(&good, SPRING_LEAPFROG, step) == SPRING_OK, "good input");
     refuse(NULL, SPRING_LEAPFROG, step, "no batch");
-    batch b = good;
+    spring_batch b = good;
     b.x = NULL;
     refuse(&b, SPRING_LEAPFROG, step, "no x");
     b = good;
@@ -645,7 +647,7 @@ static void bad_shared_parameters(void)
     const scalar bad[] = {NAN, INFINITY, -INFINITY, -1, -(scalar)1e-44};
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
         for (int i = 0; i < 5; i++) {
-            batch b = good;
+            spring_batch b = good;
             const scalar negative_zero = -(scalar)0, value = bad[i];
             const bool only_negative = isfinite(value) != 0;
             b.omega2 = &value;
@@ -674,11 +676,11 @@ static void bad_shared_parameters(void)
 static void stable_step(void)
 {
     static place p;
-    const batch empty = {0}, empty_shared = {.omega2 = &step, .shared = SPRING_SHARED_OMEGA2};
+    const spring_batch empty = {0}, empty_shared = {.omega2 = &step, .shared = SPRING_SHARED_OMEGA2};
     for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
         const spring_method method = (spring_method)m;
-        CHECK_BITS((double)BATCH(stable_step)(&empty, method), INFINITY, "no springs");
-        CHECK_BITS((double)BATCH(stable_step)(&empty_shared, method), INFINITY, "no springs");
+        CHECK_BITS((double)spring_batch_stable_step(&empty, method), INFINITY, "no springs");
+        CHECK_BITS((double)spring_batch_stable_step(&empty_shared, method), INFINITY, "no springs");
         for (size_t k = 0; k < feature_count; k++) {
             const features f = features_of(k);
             for (size_t count = 1; count < 40; count += 19) {
@@ -688,10 +690,10 @@ static void stable_step(void)
                     const spring_params one = params_of(seen(springs, i, f));
                     least = fmin(least, spring_stable_step(&one, method));
                 }
-                const batch b = lay_out(&p, springs, count, f);
-                CHECK_BITS((double)BATCH(stable_step)(&b, method), (double)(scalar)least, "the least of all");
+                const spring_batch b = lay_out(&p, springs, count, f);
+                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least, "the least of all");
                 b.x[0] = NAN;
-                CHECK_BITS((double)BATCH(stable_step)(&b, method), (double)(scalar)least,
+                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least,
                            "whatever the state");
             }
         }
@@ -701,8 +703,8 @@ static void stable_step(void)
             springs[i % 10].g = i / 10 == 1 ? -1 : springs[i % 10].g;
             springs[i % 10].a = i / 10 == 2 ? (scalar)INFINITY : springs[i % 10].a;
             const features all = {EACH, EACH, EACH}, load = {SHARED, NONE, EACH};
-            const batch b = lay_out(&p, springs, 10, i / 10 == 2 ? load : all);
-            CHECK(isnan(BATCH(stable_step)(&b, method)), "a bad spring");
+            const spring_batch b = lay_out(&p, springs, 10, i / 10 == 2 ? load : all);
+            CHECK(isnan(spring_batch_stable_step(&b, method)), "a bad spring");
         }
     }
 }
@@ -729,7 +731,7 @@ static void near_double(void)
             hypot((double)s.x, (double)s.v / omega) + steps * (double)step * fabs((double)s.a) / omega;
         const double bound = steps * 2 * (double)FLT_EPSILON * pow(1 + z * z, 2) * size * grown * grown;
         static place p;
-        const batch b = lay_out(&p, &s, 1, each);
+        const spring_batch b = lay_out(&p, &s, 1, each);
         spring_state want;
         CHECK(advance(&b, m, step, n) == SPRING_OK && life_in_double(&want, s, m, step, n) == SPRING_OK,
               "good input");
@@ -748,7 +750,7 @@ static void exact_near_double(void)
         s.g = i % 2 ? s.g : (scalar)random_log(1e-4, 30);
         const uint64_t n = random_bits() % 400 + 1;
         static place p;
-        const batch b = lay_out(&p, &s, 1, (features){SHARED, SHARED, EACH});
+        const spring_batch b = lay_out(&p, &s, 1, (features){SHARED, SHARED, EACH});
         const spring_params one = params_of(s);
         const spring_propagator y = spring_propagator_of(&one, (double)step * (double)n, true);
         spring_state want;
@@ -780,12 +782,12 @@ static void lacks_instructions(void)
 /* Sets kernels, or else lacking. */
 static void choose(const char *name)
 {
-    kernels = &BATCH(v128);
+    kernels = &spring_batch_v128;
     if (strcmp(name, "v128") == 0)
         return;
 #if SPRING_X86_64
     const bool wide = strcmp(name, "v512") == 0;
-    kernels = wide ? &BATCH(v512) : &BATCH(v256);
+    kernels = wide ? &spring_batch_v512 : &spring_batch_v256;
     if (wide && !(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")))
         lacking = "this processor has no AVX-512";
     else if (!__builtin_cpu_supports("avx2"))

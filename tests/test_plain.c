@@ -32,9 +32,9 @@ static void draw(springs_at *s, uint64_t bad_of_8)
 }
 
 /* Bit i of features: the array of w, g or a is shared; 8 and 16: no g, no a. */
-static batch batch_of(springs_at *s, unsigned features)
+static spring_batch batch_of(springs_at *s, unsigned features)
 {
-    return (batch){springs,     s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a,
+    return (spring_batch){springs,     s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a,
                    features & 7};
 }
 
@@ -51,9 +51,9 @@ static void batches(void)
                 const scalar dt = (scalar)(k == 4 ? -0.05 : 0.05);
                 draw(&plain, bad_of_8);
                 vectors = plain;
-                const batch b = batch_of(&plain, features), c = batch_of(&vectors, features);
-                const spring_status got = BATCH(advance_with)(&plain_batch, &b, (spring_method)m, dt, n);
-                const spring_status want = BATCH(advance_with)(&BATCH(v128), &c, (spring_method)m, dt, n);
+                const spring_batch b = batch_of(&plain, features), c = batch_of(&vectors, features);
+                const spring_status got = spring_batch_advance_with(&plain_batch, &b, (spring_method)m, dt, n);
+                const spring_status want = spring_batch_advance_with(&spring_batch_v128, &c, (spring_method)m, dt, n);
                 CHECK(got == want, "lane by lane the same operations");
                 CHECK(memcmp(&plain, &vectors, sizeof plain) == 0, "lane by lane the same operations");
             }
@@ -68,10 +68,10 @@ static void scenes(void)
         for (unsigned features = 0; features < feature_masks; features += 5)
             for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
                 build(&m, (uint32_t[]){7, 4, 1}, axes, features);
-                scene *plain = scene_of(&m.def), *vectors = scene_of(&m.def);
-                CHECK(SCENE(advance_with)(&plain_scene, plain, (spring_method)method, 0.004, 5) ==
+                spring_scene *plain = scene_of(&m.def), *vectors = scene_of(&m.def);
+                CHECK(spring_scene_advance_with(&plain_scene, plain, (spring_method)method, 0.004, 5) ==
                               SPRING_OK &&
-                          SCENE(advance_with)(&SCENE(v128), vectors, (spring_method)method, 0.004, 5) ==
+                          spring_scene_advance_with(&spring_scene_v128, vectors, (spring_method)method, 0.004, 5) ==
                               SPRING_OK,
                       "stable");
                 CHECK(same_bits(plain, vectors, m.def.particles, axes), "lane by lane the same operations");
@@ -86,8 +86,8 @@ static void lost_scenes(void)
     const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200;
     for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
         build(&m, (uint32_t[]){7, 4, 1}, 2, DAMPED);
-        scene *s = scene_of(&m.def), *before = scene_of(&m.def);
-        CHECK(SCENE(advance_with)(&plain_scene, s, (spring_method)method, huge, 9) == SPRING_ENONFINITE,
+        spring_scene *s = scene_of(&m.def), *before = scene_of(&m.def);
+        CHECK(spring_scene_advance_with(&plain_scene, s, (spring_method)method, huge, 9) == SPRING_ENONFINITE,
               "overflow is noticed");
         CHECK(same_bits(s, before, m.def.particles, 2), "and undone");
         free(s);

@@ -9,6 +9,9 @@
 
 #include "check.h"
 #include "scene_block.h"
+#include "simd/targets.h"
+
+typedef spring_scene scene;
 
 #ifdef SPRING_FLOAT
 #define EPS ((double)FLT_EPSILON)
@@ -23,21 +26,21 @@ SPRING_INLINE const scene_kernels *kernels_of(int i)
 {
 #if SPRING_X86_64
     if (i == 1)
-        return __builtin_cpu_supports("avx2") ? &SCENE(v256) : NULL;
+        return __builtin_cpu_supports("avx2") ? &spring_scene_v256 : NULL;
     if (i == 2)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &SCENE(v512) : NULL;
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512 : NULL;
 #endif
-    return i == 0 ? &SCENE(v128) : NULL;
+    return i == 0 ? &spring_scene_v128 : NULL;
 }
 
 /* A scene in memory of its own, to be given to free(). */
-SPRING_INLINE scene *scene_of(const scene_def *def)
+SPRING_INLINE spring_scene *scene_of(const spring_scene_def *def)
 {
     size_t bytes = 0;
-    CHECK(SCENE(bytes)(def, &bytes) == SPRING_OK && bytes > 0, "a valid definition");
+    CHECK(spring_scene_bytes(def, &bytes) == SPRING_OK && bytes > 0, "a valid definition");
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
-    scene *s;
-    CHECK(SCENE(init)(memory, bytes, def, &s) == SPRING_OK && (void *)s == memory,
+    spring_scene *s;
+    CHECK(spring_scene_init(memory, bytes, def, &s) == SPRING_OK && (void *)s == memory,
           "the scene is the block, or a copy of the block would be none");
     return memory;
 }
@@ -62,7 +65,7 @@ enum {
 };
 
 typedef struct model {
-    scene_def def;
+    spring_scene_def def;
     double position[3 * most], velocity[3 * most], mass[most];
     uint8_t pinned[most];
     spring_link link[most_links];
@@ -127,7 +130,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     }
     if (features & SHUFFLED)
         shuffle(m->link, links);
-    m->def = (scene_def){
+    m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
         .methods = all_methods,
@@ -145,12 +148,12 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     };
 }
 
-SPRING_INLINE double mass_in(const scene_def *def, size_t i)
+SPRING_INLINE double mass_in(const spring_scene_def *def, size_t i)
 {
     return def->mass != NULL ? def->mass[i] : def->mass_all == 0 ? 1 : def->mass_all;
 }
 
-SPRING_INLINE bool pinned_in(const scene_def *def, size_t i)
+SPRING_INLINE bool pinned_in(const spring_scene_def *def, size_t i)
 {
     return def->pinned != NULL && def->pinned[i] != 0;
 }
@@ -161,22 +164,22 @@ typedef struct state {
     double x[3 * most], v[3 * most];
 } state;
 
-SPRING_INLINE void get_state(const scene *s, size_t particles, state *y)
+SPRING_INLINE void get_state(const spring_scene *s, size_t particles, state *y)
 {
-    CHECK(SCENE(get)(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
-              SCENE(get)(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
+    CHECK(spring_scene_get(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
+              spring_scene_get(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
           "the whole state");
 }
 
-SPRING_INLINE void set_state(scene *s, size_t particles, const state *y)
+SPRING_INLINE void set_state(spring_scene *s, size_t particles, const state *y)
 {
-    CHECK(SCENE(set)(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
-              SCENE(set)(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
+    CHECK(spring_scene_set(s, SPRING_POSITION, y->x, 0, 0, particles) == SPRING_OK &&
+              spring_scene_set(s, SPRING_VELOCITY, y->v, 0, 0, particles) == SPRING_OK,
           "the whole state");
 }
 
 /* Positions and velocities of two scenes of equal size, to the bit. */
-SPRING_INLINE bool same_bits(const scene *s, const scene *other, size_t particles, uint32_t axes)
+SPRING_INLINE bool same_bits(const spring_scene *s, const spring_scene *other, size_t particles, uint32_t axes)
 {
     static state a, b;
     get_state(s, particles, &a);
@@ -185,7 +188,7 @@ SPRING_INLINE bool same_bits(const scene *s, const scene *other, size_t particle
            memcmp(a.v, b.v, particles * axes * sizeof a.v[0]) == 0;
 }
 
-SPRING_INLINE bool all_finite(const scene *s, size_t particles, uint32_t axes)
+SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t axes)
 {
     static state y;
     get_state(s, particles, &y);
@@ -220,7 +223,7 @@ SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const
 
 /* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) + damping
    |relative velocity|, what the rounding errors of its force are relative to. size may be NULL. */
-SPRING_INLINE void plain_forces(const scene_def *def, uint32_t axes, const double *x, const double *v,
+SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, const double *x, const double *v,
                                 double *force, double *size)
 {
     for (size_t i = 0; i < def->links; i++) {

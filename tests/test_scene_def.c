@@ -17,13 +17,13 @@ static void check_refused(spring_status status, const char *field, size_t index)
     static char room[1 << 16] __attribute__((aligned(SPRING_SCENE_ALIGN))), before[sizeof room];
     memset(room, 0x5a, sizeof room);
     memcpy(before, room, sizeof room);
-    scene *s = (scene *)(void *)room;
-    CHECK(SCENE(check)(&good.def, &got_field, &got_index) == status, field);
+    spring_scene *s = (spring_scene *)(void *)room;
+    CHECK(spring_scene_check(&good.def, &got_field, &got_index) == status, field);
     CHECK(got_field != NULL && strcmp(got_field, field) == 0, field);
     CHECK(got_index == index, field);
-    CHECK(SCENE(check)(&good.def, NULL, NULL) == status, "the outputs are optional");
-    CHECK(SCENE(bytes)(&good.def, &bytes) == status && bytes == 54321, field);
-    CHECK(SCENE(init)(room, sizeof room, &good.def, &s) == status && s == NULL, field);
+    CHECK(spring_scene_check(&good.def, NULL, NULL) == status, "the outputs are optional");
+    CHECK(spring_scene_bytes(&good.def, &bytes) == status && bytes == 54321, field);
+    CHECK(spring_scene_init(room, sizeof room, &good.def, &s) == status && s == NULL, field);
     CHECK(memcmp(room, before, sizeof room) == 0, "nothing half-initialised");
 }
 
@@ -39,12 +39,12 @@ static void check_refused(spring_status status, const char *field, size_t index)
 static void refused(void)
 {
     build(&good, sheet, 2, OWN | DAMPED | MASSES | PINNED | DRAG | GRAVITY);
-    scene_def *d = &good.def;
+    spring_scene_def *d = &good.def;
     const char *field = "";
     size_t index = 7;
-    CHECK(SCENE(check)(d, &field, &index) == SPRING_OK && field == NULL && index == 0, "nothing to name");
+    CHECK(spring_scene_check(d, &field, &index) == SPRING_OK && field == NULL && index == 0, "nothing to name");
     index = 7;
-    CHECK(SCENE(check)(NULL, &field, &index) == SPRING_EINVAL && strcmp(field, "def") == 0 && index == 0,
+    CHECK(spring_scene_check(NULL, &field, &index) == SPRING_EINVAL && strcmp(field, "def") == 0 && index == 0,
           "no definition");
     memset(good.pinned, 0, sizeof good.pinned);
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
@@ -111,21 +111,21 @@ static void accepted(void)
     good.mass[4] = NAN; /* nothing moves it */
     good.link[3].rest = 0;
     good.link[3].stiffness = 0;
-    CHECK(SCENE(check)(&good.def, NULL, NULL) == SPRING_OK, "a pinned particle needs no mass");
+    CHECK(spring_scene_check(&good.def, NULL, NULL) == SPRING_OK, "a pinned particle needs no mass");
     good.def.velocity = NULL;
     good.def.links = 0;
     good.def.link = NULL;
-    CHECK(SCENE(check)(&good.def, NULL, NULL) == SPRING_OK, "no links, at rest");
+    CHECK(spring_scene_check(&good.def, NULL, NULL) == SPRING_OK, "no links, at rest");
     const double x[] = {1, 2, 3};
-    const scene_def least = {.particles = 1, .position = x};
-    scene *s = scene_of(&least);
+    const spring_scene_def least = {.particles = 1, .position = x};
+    spring_scene *s = scene_of(&least);
     double y[3], g[3] = {0, 4, 0};
-    SCENE(set_gravity)(s, g);
-    CHECK(SCENE(advance)(s, SPRING_EULER, 0.5, 2) == SPRING_OK &&
-              SCENE(advance)(s, SPRING_LEAPFROG, 0.5, 1) == SPRING_OK,
+    spring_scene_set_gravity(s, g);
+    CHECK(spring_scene_advance(s, SPRING_EULER, 0.5, 2) == SPRING_OK &&
+              spring_scene_advance(s, SPRING_LEAPFROG, 0.5, 1) == SPRING_OK,
           "Euler and leapfrog are there when no method is named");
-    CHECK(SCENE(advance)(s, SPRING_RK4, 0.5, 1) == SPRING_EUNSUPPORTED, "RK4 only for who asks for it");
-    SCENE(get)(s, SPRING_POSITION, y, 0, 0, 1);
+    CHECK(spring_scene_advance(s, SPRING_RK4, 0.5, 1) == SPRING_EUNSUPPORTED, "RK4 only for who asks for it");
+    spring_scene_get(s, SPRING_POSITION, y, 0, 0, 1);
     CHECK(y[0] == 1 && y[1] == 2 + 1 + 2.5 && y[2] == 3,
           "three axes; Euler to 3 m and 4 m/s, half a kick, a drift: exact");
     free(s);
@@ -135,26 +135,26 @@ static void bad_memory(void)
 {
     build(&good, sheet, 3, OWN | DAMPED);
     size_t bytes = 0;
-    scene *s = NULL;
-    CHECK(SCENE(bytes)(&good.def, &bytes) == SPRING_OK && bytes % SPRING_SCENE_ALIGN == 0, "a multiple");
+    spring_scene *s = NULL;
+    CHECK(spring_scene_bytes(&good.def, &bytes) == SPRING_OK && bytes % SPRING_SCENE_ALIGN == 0, "a multiple");
     char *room = aligned_alloc(SPRING_SCENE_ALIGN, bytes + SPRING_SCENE_ALIGN);
     memset(room, 0x5a, bytes + SPRING_SCENE_ALIGN);
-    CHECK(SCENE(init)(room, bytes - 1, &good.def, &s) == SPRING_ENOMEM && s == NULL, "a byte too small");
-    CHECK(SCENE(init)(room, 0, &good.def, &s) == SPRING_ENOMEM && s == NULL, "nothing");
-    CHECK(SCENE(init)(room + 8, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
-    CHECK(SCENE(init)(room + 32, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
-    CHECK(SCENE(init)(NULL, bytes, &good.def, &s) == SPRING_EINVAL && s == NULL, "no memory");
-    CHECK(SCENE(init)(room, bytes, NULL, &s) == SPRING_EINVAL && s == NULL, "no definition");
-    CHECK(SCENE(init)(room, bytes, &good.def, NULL) == SPRING_EINVAL, "nowhere to say");
-    CHECK(SCENE(bytes)(&good.def, NULL) == SPRING_EINVAL && SCENE(bytes)(NULL, &bytes) == SPRING_EINVAL,
+    CHECK(spring_scene_init(room, bytes - 1, &good.def, &s) == SPRING_ENOMEM && s == NULL, "a byte too small");
+    CHECK(spring_scene_init(room, 0, &good.def, &s) == SPRING_ENOMEM && s == NULL, "nothing");
+    CHECK(spring_scene_init(room + 8, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
+    CHECK(spring_scene_init(room + 32, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
+    CHECK(spring_scene_init(NULL, bytes, &good.def, &s) == SPRING_EINVAL && s == NULL, "no memory");
+    CHECK(spring_scene_init(room, bytes, NULL, &s) == SPRING_EINVAL && s == NULL, "no definition");
+    CHECK(spring_scene_init(room, bytes, &good.def, NULL) == SPRING_EINVAL, "nowhere to say");
+    CHECK(spring_scene_bytes(&good.def, NULL) == SPRING_EINVAL && spring_scene_bytes(NULL, &bytes) == SPRING_EINVAL,
           "NULL");
     size_t touched = 0;
     for (size_t i = 0; i < bytes + SPRING_SCENE_ALIGN; i++)
         touched += room[i] != 0x5a;
     CHECK(touched == 0, "nothing half-initialised");
-    CHECK(SCENE(init)(room, bytes, &good.def, &s) == SPRING_OK, "just enough");
-    SCENE(advance)(s, SPRING_RK4, 0.01, 3);
-    SCENE(advance)(s, SPRING_LEAPFROG, 0.01, 3);
+    CHECK(spring_scene_init(room, bytes, &good.def, &s) == SPRING_OK, "just enough");
+    spring_scene_advance(s, SPRING_RK4, 0.01, 3);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 3);
     for (size_t i = 0; i < SPRING_SCENE_ALIGN; i++)
         CHECK(room[bytes + i] == 0x5a, "nothing behind the end");
     free(room);
@@ -162,10 +162,10 @@ static void bad_memory(void)
 
 /* ---------------------------------------------------------------------------------------------------- bytes */
 
-static size_t bytes_of(const scene_def *def)
+static size_t bytes_of(const spring_scene_def *def)
 {
     size_t bytes = 0;
-    CHECK(SCENE(bytes)(def, &bytes) == SPRING_OK, "a valid definition");
+    CHECK(spring_scene_bytes(def, &bytes) == SPRING_OK, "a valid definition");
     return bytes;
 }
 
@@ -177,7 +177,7 @@ typedef struct cost {
 
 enum { few = 4096, many = 12288 };
 
-static double particle_cost(scene_def def)
+static double particle_cost(spring_scene_def def)
 {
     static double zeros[3 * many], masses[many];
     for (size_t i = 0; i < many; i++)
@@ -203,17 +203,17 @@ static const cost particle_costs[] = {
 static void bytes_of_a_particle(void)
 {
     const uint32_t leapfrog = 1u << SPRING_LEAPFROG, euler = 1u << SPRING_EULER, rk4 = 1u << SPRING_RK4;
-    const scene_def defs[] = {
+    const spring_scene_def defs[] = {
         {.methods = leapfrog},
         {.methods = leapfrog, .flags = SPRING_SCENE_NO_UNDO},
-        {.methods = leapfrog, .flags = SPRING_SCENE_FORCE_STILL},
+        {.methods = leapfrog, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY},
         {.methods = leapfrog | rk4},
         {.methods = euler},
         {.methods = rk4, .flags = SPRING_SCENE_NO_UNDO},
     };
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t i = 0; i < sizeof defs / sizeof defs[0]; i++) {
-            scene_def def = defs[i];
+            spring_scene_def def = defs[i];
             def.axes = axes;
             CHECK_CLOSE(particle_cost(def), particle_costs[i].numbers * axes * sizeof(scalar), 0,
                         particle_costs[i].what);
@@ -233,9 +233,9 @@ static double link_cost(unsigned kind, double damping, uint32_t flags)
     if (kind == 2)
         for (uint32_t i = 0; i < many; i++) /* descending: no row */
             link[i] = (spring_link){many - 1 - i, many - i, 0.4, 12.5, damping};
-    const scene_def def = {
+    const spring_scene_def def = {
         .flags = flags, .particles = many + 1, .position = zeros, .link = link, .links = many};
-    scene_def less = def;
+    spring_scene_def less = def;
     less.links = few;
     return (double)(bytes_of(&def) - bytes_of(&less)) / (many - few);
 }
@@ -267,10 +267,10 @@ static void bytes_of_a_link(void)
 static void bytes_of_a_scene(void)
 {
     const double x[] = {0};
-    const scene_def def = {.axes = 1, .methods = 1u << SPRING_EULER, .particles = 1, .position = x};
+    const spring_scene_def def = {.axes = 1, .methods = 1u << SPRING_EULER, .particles = 1, .position = x};
     CHECK(bytes_of(&def) <= 8192,
           "a scene of one particle: the plan and 16 numbers before and after each array");
-    const scene_def usual = {.particles = 1, .position = (double[3]){0}, .pinned = (uint8_t[1]){0}};
+    const spring_scene_def usual = {.particles = 1, .position = (double[3]){0}, .pinned = (uint8_t[1]){0}};
     CHECK(bytes_of(&usual) <= (sizeof(scalar) == 4 ? 5000 : 8000), "README.md: about so many");
 }
 
@@ -289,12 +289,12 @@ static void looks_no_further(void)
             m.mass[m.def.particles] = -1;
             m.pinned[m.def.particles] = 0;
             m.link[m.def.links] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
-            CHECK(SCENE(check)(&m.def, NULL, NULL) == SPRING_OK, "what is wrong lies behind");
+            CHECK(spring_scene_check(&m.def, NULL, NULL) == SPRING_OK, "what is wrong lies behind");
             CHECK(bytes_of(&m.def) == bytes, "and takes no room");
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             for (int method = SPRING_EULER; method <= SPRING_RK4; method++)
-                CHECK(SCENE(advance)(s, (spring_method)method, 0.009, 2) == SPRING_OK, "nor does it move");
-            CHECK(SCENE(stable_step)(s, SPRING_LEAPFROG) > 0, "or limit anything");
+                CHECK(spring_scene_advance(s, (spring_method)method, 0.009, 2) == SPRING_OK, "nor does it move");
+            CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) > 0, "or limit anything");
             free(s);
         }
 }
@@ -303,7 +303,7 @@ static void looks_no_further(void)
 static void definitions_at_the_limits(void)
 {
     build(&good, sheet, 2, MASSES);
-    scene_def *d = &good.def;
+    spring_scene_def *d = &good.def;
     if (sizeof(size_t) > sizeof(uint32_t)) { /* what is missing then is found first */
         d->position = NULL;
         d->particles = UINT32_MAX - padding;
@@ -326,7 +326,7 @@ static void definitions_at_the_limits(void)
     const double extreme[] = {1.5 / largest, largest};
     for (int i = 0; i < 2; i++) {
         good.mass[7] = extreme[i];
-        CHECK(SCENE(check)(d, NULL, NULL) == SPRING_OK, "it and its inverse are finite, and not 0");
+        CHECK(spring_scene_check(d, NULL, NULL) == SPRING_OK, "it and its inverse are finite, and not 0");
     }
 }
 
@@ -530,5 +530,5 @@ int main(void)
         {"bad grids", bad_grids},
         {"grids at the limits", grids_at_the_limits},
     };
-    return RUN_TESTS("scene_def", tests);
+    return RUN_TESTS("spring_scene_def", tests);
 }

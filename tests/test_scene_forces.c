@@ -30,9 +30,9 @@ static void check_forces(model *m, const scene_kernels *kernels)
     const size_t particles = m->def.particles;
     m->def.force = look;
     m->def.user = &all;
-    scene *s = scene_of(&m->def);
+    spring_scene *s = scene_of(&m->def);
     get_state(s, particles, &y);
-    CHECK(SCENE(advance_with)(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
+    CHECK(spring_scene_advance_with(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
     memset(force, 0, sizeof force);
     memset(size, 0, sizeof size);
     memset(degree, 0, sizeof degree);
@@ -60,10 +60,10 @@ static void against_a_plain_loop(void)
         for (size_t g = 0; g < grid_count; g++)
             for (unsigned features = 0; features < MASSES; features++) {
                 build(&m, grids[g], axes, features);
-                scene *s = scene_of(&m.def);
-                with_rows += s->plan.rows > 0 && s->plan.list_links == 0;
-                with_list += s->plan.rows == 0;
-                with_both += s->plan.rows > 0 && s->plan.list_links > 0;
+                spring_scene *s = scene_of(&m.def);
+                with_rows += s->plan.bands > 0 && s->plan.edges == 0;
+                with_list += s->plan.bands == 0;
+                with_both += s->plan.bands > 0 && s->plan.edges > 0;
                 free(s);
                 for (int k = 0; k < kernel_count; k++)
                     if (kernels_of(k) != NULL)
@@ -123,15 +123,15 @@ static void one_axis_direction(void)
                 if (reversed)
                     reverse(&link[i]);
             }
-            const scene_def def = {
+            const spring_scene_def def = {
                 .axes = 1, .particles = 10, .links = links, .position = x, .link = link, .mass_all = 2.3};
-            scene *s = scene_of(&def);
+            spring_scene *s = scene_of(&def);
             const double stretch = reversed ? -0.3 - 0.7 : 0.3 - 0.7; /* (x_b - x_a) - rest */
-            CHECK_CLOSE(SCENE(tension)(s, 0), 5.3 * stretch, 8 * EPS,
+            CHECK_CLOSE(spring_scene_tension(s, 0), 5.3 * stretch, 8 * EPS,
                         "a handful of roundings of numbers below 10");
             double v;
-            SCENE(advance)(s, SPRING_EULER, 0.01, 1);
-            SCENE(get)(s, SPRING_VELOCITY, &v, 0, 0, 1);
+            spring_scene_advance(s, SPRING_EULER, 0.01, 1);
+            spring_scene_get(s, SPRING_VELOCITY, &v, 0, 0, 1);
             const double pull = (reversed ? -1 : 1) * 5.3 * stretch;
             CHECK_CLOSE(v, 0.01 * pull / 2.3, EPS, "a few roundings of numbers below 0.1");
             free(s);
@@ -142,12 +142,12 @@ static void one_axis_direction(void)
 
 static void same_with_all_kernels(const model *m, spring_method method)
 {
-    scene *first = scene_of(&m->def);
-    CHECK(SCENE(advance_with)(kernels_of(0), first, method, 0.004, 12) == SPRING_OK, "stable");
+    spring_scene *first = scene_of(&m->def);
+    CHECK(spring_scene_advance_with(kernels_of(0), first, method, 0.004, 12) == SPRING_OK, "stable");
     for (int k = 1; k < kernel_count; k++)
         if (kernels_of(k) != NULL) {
-            scene *s = scene_of(&m->def);
-            SCENE(advance_with)(kernels_of(k), s, method, 0.004, 12);
+            spring_scene *s = scene_of(&m->def);
+            spring_scene_advance_with(kernels_of(k), s, method, 0.004, 12);
             CHECK(same_bits(s, first, m->def.particles, m->def.axes), "lane by lane the same operations");
             free(s);
         }
@@ -175,11 +175,11 @@ static void edit_and_public_function(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < EDITABLE; features += 7) {
             build(&m, grids[3], axes, features);
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             m.def.flags = SPRING_SCENE_EDITABLE;
-            scene *editable = scene_of(&m.def);
-            SCENE(advance)(s, SPRING_LEAPFROG, 0.004, 9);
-            SCENE(advance_with)(kernels_of(0), editable, SPRING_LEAPFROG, 0.004, 9);
+            spring_scene *editable = scene_of(&m.def);
+            spring_scene_advance(s, SPRING_LEAPFROG, 0.004, 9);
+            spring_scene_advance_with(kernels_of(0), editable, SPRING_LEAPFROG, 0.004, 9);
             CHECK(same_bits(s, editable, m.def.particles, axes), "where the numbers lie changes nothing");
             free(s);
             free(editable);
@@ -197,15 +197,15 @@ static void zero_length(void)
                 build(&m, grids[0], axes, features);
                 for (size_t i = 0; i < m.def.particles * axes; i++)
                     m.position[i] = 0.25; /* all collapsed into one point */
-                scene *s = scene_of(&m.def);
+                spring_scene *s = scene_of(&m.def);
                 static state before, after;
                 get_state(s, m.def.particles, &before);
-                CHECK(SCENE(advance)(s, SPRING_EULER, 0.01, 1) == SPRING_OK, "no direction, no force");
+                CHECK(spring_scene_advance(s, SPRING_EULER, 0.01, 1) == SPRING_OK, "no direction, no force");
                 get_state(s, m.def.particles, &after);
                 CHECK(memcmp(before.v, after.v, m.def.particles * axes * sizeof after.v[0]) == 0,
                       "no direction, no force");
                 set_state(s, m.def.particles, &before);
-                CHECK(SCENE(advance)(s, (spring_method)method, 0.004, 50) == SPRING_OK &&
+                CHECK(spring_scene_advance(s, (spring_method)method, 0.004, 50) == SPRING_OK &&
                           all_finite(s, m.def.particles, axes),
                       "and off they fly");
                 free(s);
@@ -221,7 +221,7 @@ static void tension_and_energies(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < feature_masks; features += 5) {
             build(&m, grids[features % grid_count], axes, features);
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             get_state(s, m.def.particles, &y);
             double kinetic = 0, gravity = 0, elastic = 0, all = 0, heights = 0;
             for (size_t i = 0; i < m.def.particles; i++)
@@ -237,11 +237,11 @@ static void tension_and_energies(void)
                 const double extension = d.length - link->rest, size = fabs(d.length) + link->rest;
                 elastic += link->stiffness * extension * extension / 2;
                 all += link->stiffness * size * size / 2;
-                CHECK_CLOSE(SCENE(tension)(s, i), d.tension,
+                CHECK_CLOSE(spring_scene_tension(s, i), d.tension,
                             8 * EPS * (link->stiffness * size + 2 * link->damping),
                             "eight roundings, velocities below 1");
             }
-            const spring_scene_energies e = SCENE(energy)(s);
+            const spring_scene_energies e = spring_scene_energy(s);
             const double sums = (double)(m.def.particles + m.def.links) * DBL_EPSILON;
             CHECK_CLOSE(e.kinetic, kinetic, (8 * EPS + sums) * kinetic, "eight roundings and the sum's");
             CHECK_CLOSE(e.gravity, gravity, (8 * EPS + sums) * heights, "eight roundings and the sum's");
@@ -258,28 +258,28 @@ static void at_rest(void)
     const uint8_t pinned[] = {1, 0};
     const double masses[] = {0, mass};
     const spring_link link = {0, 1, rest, k, 0};
-    const scene_def def = {.particles = 2,
+    const spring_scene_def def = {.particles = 2,
                            .links = 1,
                            .position = hanging,
                            .mass = masses,
                            .pinned = pinned,
                            .link = &link,
                            .gravity = {0, g, 0}};
-    scene *s = scene_of(&def);
+    spring_scene *s = scene_of(&def);
     const double rounding = 8 * EPS * -g * (rest + drop) / drop; /* of the acceleration */
-    CHECK(SCENE(at_rest)(s, 0, rounding), "it hangs still");
+    CHECK(spring_scene_at_rest(s, 0, rounding), "it hangs still");
     const double moved[] = {0, -rest - drop - 0.01, 0}, a = k * 0.01 / mass;
-    SCENE(set)(s, SPRING_POSITION, moved, 0, 1, 1);
-    CHECK(SCENE(at_rest)(s, 0, a * (1 + 1e-3)) && !SCENE(at_rest)(s, 1, a * (1 - 1e-3)), "k 0.01 m / m");
-    SCENE(set)(s, SPRING_POSITION, hanging + 3, 0, 1, 1);
+    spring_scene_set(s, SPRING_POSITION, moved, 0, 1, 1);
+    CHECK(spring_scene_at_rest(s, 0, a * (1 + 1e-3)) && !spring_scene_at_rest(s, 1, a * (1 - 1e-3)), "k 0.01 m / m");
+    spring_scene_set(s, SPRING_POSITION, hanging + 3, 0, 1, 1);
     const double v[] = {0.3, 0, -0.4};
-    SCENE(set)(s, SPRING_VELOCITY, v, 0, 1, 1);
-    CHECK(SCENE(at_rest)(s, 0.5 * (1 + 4 * EPS), rounding) && !SCENE(at_rest)(s, 0.49, 1), "0.5 m/s");
+    spring_scene_set(s, SPRING_VELOCITY, v, 0, 1, 1);
+    CHECK(spring_scene_at_rest(s, 0.5 * (1 + 4 * EPS), rounding) && !spring_scene_at_rest(s, 0.49, 1), "0.5 m/s");
     const double still[] = {0, 0, 0};
-    SCENE(set)(s, SPRING_VELOCITY, still, 0, 1, 1);
-    SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, 1);
-    CHECK(!SCENE(at_rest)(s, 0.49, 1) && SCENE(at_rest)(s, 0.51, rounding), "a pin that moves is no rest");
-    CHECK(!SCENE(at_rest)(NULL, 1, 1) && !SCENE(at_rest)(s, -1, 1) && !SCENE(at_rest)(s, 1, NAN),
+    spring_scene_set(s, SPRING_VELOCITY, still, 0, 1, 1);
+    spring_scene_set(s, SPRING_VELOCITY, v, 0, 0, 1);
+    CHECK(!spring_scene_at_rest(s, 0.49, 1) && spring_scene_at_rest(s, 0.51, rounding), "a pin that moves is no rest");
+    CHECK(!spring_scene_at_rest(NULL, 1, 1) && !spring_scene_at_rest(s, -1, 1) && !spring_scene_at_rest(s, 1, NAN),
           "bad input");
     free(s);
 }
@@ -287,13 +287,13 @@ static void at_rest(void)
 static void at_rest_with_drag(void)
 {
     const double x[] = {0, 0}, v[] = {3, -1}; /* drag 0.6 on 1.5 kg: 0.4/s times hypot(3, 1) m/s */
-    const scene_def def = {
+    const spring_scene_def def = {
         .axes = 2, .particles = 1, .position = x, .velocity = v, .mass_all = 1.5, .drag = 0.6};
-    scene *s = scene_of(&def);
+    spring_scene *s = scene_of(&def);
     const double speed = hypot(3, 1);
-    CHECK(SCENE(at_rest)(s, speed * 1.001, 0.4 * speed * 1.001) &&
-              !SCENE(at_rest)(s, speed * 1.001, 0.4 * speed * 0.999) &&
-              !SCENE(at_rest)(s, speed * 0.999, 0.4 * speed * 1.001),
+    CHECK(spring_scene_at_rest(s, speed * 1.001, 0.4 * speed * 1.001) &&
+              !spring_scene_at_rest(s, speed * 1.001, 0.4 * speed * 0.999) &&
+              !spring_scene_at_rest(s, speed * 0.999, 0.4 * speed * 1.001),
           "drag is an acceleration");
     free(s);
 }

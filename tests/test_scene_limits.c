@@ -7,7 +7,7 @@
 /* -------------------------------------------------------------------------------------------------------- formula */
 
 /* From the header, over all particles in turn. */
-static double stable_step_of(const scene_def *def, spring_method method)
+static double stable_step_of(const spring_scene_def *def, spring_method method)
 {
     double L = 0, G = 0, K = 0;
     bool damped = false;
@@ -42,15 +42,15 @@ static void formula(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < feature_masks; features++) {
             build(&m, grids[features % 3], axes, features);
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
                 const double want = stable_step_of(&m.def, (spring_method)method);
-                CHECK_CLOSE(SCENE(stable_step)(s, (spring_method)method), want, 60 * EPS * want,
+                CHECK_CLOSE(spring_scene_stable_step(s, (spring_method)method), want, 60 * EPS * want,
                             "a sum of at most 50 links, and ten roundings");
             }
-            CHECK(isnan(SCENE(stable_step)(s, SPRING_EXACT)) &&
-                      isnan(SCENE(stable_step)(s, (spring_method)9)) &&
-                      isnan(SCENE(stable_step)(NULL, SPRING_RK4)),
+            CHECK(isnan(spring_scene_stable_step(s, SPRING_EXACT)) &&
+                      isnan(spring_scene_stable_step(s, (spring_method)9)) &&
+                      isnan(spring_scene_stable_step(NULL, SPRING_RK4)),
                   "bad input");
             free(s);
         }
@@ -59,10 +59,10 @@ static void formula(void)
 static void nothing_to_be_unstable_with(void)
 {
     const double x[] = {0, 1};
-    const scene_def def = {.axes = 1, .methods = all_methods, .particles = 2, .position = x};
-    scene *s = scene_of(&def);
+    const spring_scene_def def = {.axes = 1, .methods = all_methods, .particles = 2, .position = x};
+    spring_scene *s = scene_of(&def);
     for (int method = SPRING_EULER; method <= SPRING_RK4; method++)
-        CHECK(SCENE(stable_step)(s, (spring_method)method) == INFINITY, "no force");
+        CHECK(spring_scene_stable_step(s, (spring_method)method) == INFINITY, "no force");
     free(s);
 }
 
@@ -119,7 +119,7 @@ static void build_thing(model *m, const thing *what, unsigned how)
         for (uint32_t a = 0; a < axes; a++)
             m->velocity[i * axes + a] = m->pinned[i] ? 0 : random_uniform(-small, small);
     }
-    m->def = (scene_def){.axes = axes,
+    m->def = (spring_scene_def){.axes = axes,
                          .methods = all_methods,
                          .particles = particles,
                          .links = links,
@@ -135,12 +135,12 @@ static void build_thing(model *m, const thing *what, unsigned how)
 static double growth(const model *m, spring_method method, double dt, uint64_t n)
 {
     static state y;
-    scene *s = scene_of(&m->def);
+    spring_scene *s = scene_of(&m->def);
     double size[2] = {0, 0};
     bool finite = true;
     for (int part = 0; part < 2; part++)
         for (uint64_t i = 0; i < n / 2 && finite; i += 10) {
-            finite = SCENE(advance)(s, method, dt, 10) == SPRING_OK;
+            finite = spring_scene_advance(s, method, dt, 10) == SPRING_OK;
             get_state(s, m->def.particles, &y);
             for (size_t j = 0; j < m->def.particles * m->def.axes; j++)
                 size[part] = fmax(size[part], fabs(y.v[j]));
@@ -156,8 +156,8 @@ static void stable_below(void)
         for (unsigned how = 0; how < 4; how++)
             for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
                 build_thing(&m, &things[w], how);
-                scene *s = scene_of(&m.def);
-                const double step = SCENE(stable_step)(s, (spring_method)method);
+                spring_scene *s = scene_of(&m.def);
+                const double step = spring_scene_stable_step(s, (spring_method)method);
                 free(s);
                 CHECK(step > 0 || (method == SPRING_EULER && !(how & WITH_DRAG)),
                       "only Euler without drag has none");
@@ -211,8 +211,8 @@ static void not_much_too_small(void)
         for (unsigned how = 0; how <= LINK_DAMPING; how++)
             for (int method = SPRING_LEAPFROG; method <= SPRING_RK4; method++) {
                 build_thing(&m, &things[w], how);
-                scene *s = scene_of(&m.def);
-                const double step = SCENE(stable_step)(s, (spring_method)method);
+                spring_scene *s = scene_of(&m.def);
+                const double step = spring_scene_stable_step(s, (spring_method)method);
                 free(s);
                 const double limit = measured_limit(&m, (spring_method)method, step);
                 printf("# %s%s, %s: the limit is %.2f times the stable step\n", things[w].name,
@@ -248,7 +248,7 @@ static void build_rope(model *m, uint32_t n, double stiffness, double damping)
     memset(m->velocity, 0, sizeof m->velocity);
     for (size_t i = 0; i < n; i++)
         m->mass[i] = 0.02;
-    m->def = (scene_def){.methods = all_methods,
+    m->def = (spring_scene_def){.methods = all_methods,
                          .particles = particles,
                          .links = links,
                          .position = m->position,
@@ -259,21 +259,21 @@ static void build_rope(model *m, uint32_t n, double stiffness, double damping)
                          .gravity = {0, -9.81, 0}};
 }
 
-static double total_energy(const scene *s)
+static double total_energy(const spring_scene *s)
 {
-    const spring_scene_energies e = SCENE(energy)(s);
+    const spring_scene_energies e = spring_scene_energy(s);
     return e.kinetic + e.elastic + e.gravity;
 }
 
 /* Stable, so its energy stays near what it was: leapfrog errs by a fraction of order (dt omega)^2 of what moves. */
 static void check_energy(const model *m, double duration)
 {
-    scene *s = scene_of(&m->def);
-    const double dt = 0.1 * SCENE(stable_step)(s, SPRING_LEAPFROG), before = total_energy(s);
+    spring_scene *s = scene_of(&m->def);
+    const double dt = 0.1 * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
     double moving = 0, worst = 0;
     for (double t = 0; t < duration; t += 20 * dt) {
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 20) == SPRING_OK, "stable");
-        const spring_scene_energies e = SCENE(energy)(s);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 20) == SPRING_OK, "stable");
+        const spring_scene_energies e = spring_scene_energy(s);
         moving = fmax(moving, e.kinetic + e.elastic);
         worst = fmax(worst, fabs(total_energy(s) - before));
     }
@@ -309,11 +309,11 @@ static void inverted_and_collapsed(void)
         for (size_t j = 0; j < 3 * m.def.particles; j++)
             m.position[j] =
                 collapsed ? 0.5 + 1e-9 * random_uniform(-1, 1) : -m.position[j] + random_uniform(-0.01, 0.01);
-        scene *s = scene_of(&m.def);
-        const double before = total_energy(s), dt = 0.3 * SCENE(stable_step)(s, SPRING_LEAPFROG);
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 4000) == SPRING_OK, "no NaN");
+        spring_scene *s = scene_of(&m.def);
+        const double before = total_energy(s), dt = 0.3 * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 4000) == SPRING_OK, "no NaN");
         CHECK(all_finite(s, m.def.particles, 3) && total_energy(s) < before, "friction takes energy");
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK && SCENE(at_rest)(s, 1e-3, 1e-1),
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK && spring_scene_at_rest(s, 1e-3, 1e-1),
               "and ends at rest");
         free(s);
     }
@@ -333,19 +333,19 @@ static void poked(void)
     scalar poke = (scalar)1e6; /* [N] */
     m.def.force = poke_hard;
     m.def.user = &poke;
-    m.def.flags = SPRING_SCENE_FORCE_STILL;
-    scene *s = scene_of(&m.def);
-    const double dt = 0.5 * SCENE(stable_step)(s, SPRING_LEAPFROG);
+    m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    spring_scene *s = scene_of(&m.def);
+    const double dt = 0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG);
     double v[3], all[3 * most], momentum = 0;
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
-    SCENE(get)(s, SPRING_VELOCITY, all, 0, 0, m.def.particles);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
+    spring_scene_get(s, SPRING_VELOCITY, all, 0, 0, m.def.particles);
     for (size_t i = 0; i < m.def.particles; i++)
         momentum += 0.7 * all[3 * i + 2];
     CHECK(momentum > 0.2 * dt * 1e6 && momentum < dt * 1e6,
           "what drag and the pins leave of force times time");
     poke = 0;
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 30000) == SPRING_OK, "stable");
-    SCENE(get)(s, SPRING_VELOCITY, v, 0, 40, 1);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 30000) == SPRING_OK, "stable");
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 40, 1);
     CHECK(all_finite(s, m.def.particles, 3) && fabs(v[2]) < 1e-2 * 1e6 * dt, "it swings out");
     free(s);
 }
@@ -356,11 +356,11 @@ static void late_frame(void)
     static model m;
     for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
         build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
-        scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
-        CHECK(SCENE(advance)(s, (spring_method)method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
+        spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
+        CHECK(spring_scene_advance(s, (spring_method)method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
         CHECK(same_bits(s, twin, m.def.particles, 3), "and is as it was");
-        const double dt = 0.5 * SCENE(stable_step)(s, (spring_method)method);
-        CHECK(SCENE(advance)(s, (spring_method)method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK,
+        const double dt = 0.5 * spring_scene_stable_step(s, (spring_method)method);
+        CHECK(spring_scene_advance(s, (spring_method)method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK,
               "so do it in small steps");
         free(s);
         free(twin);
@@ -379,13 +379,13 @@ static double energy_change(int i, double fraction_of_stable)
     const double speed = (i + 1) * 1.2 / spins * omega * length / 2;
     const double x[] = {0, 0, length, 0}, v[] = {0, -speed, 0, speed};
     const spring_link link = {0, 1, rest, 27.3, 0};
-    const scene_def def = {
+    const spring_scene_def def = {
         .axes = 2, .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = mass, .link = &link};
-    scene *s = scene_of(&def);
-    const double dt = fraction_of_stable * SCENE(stable_step)(s, SPRING_LEAPFROG), before = total_energy(s);
+    spring_scene *s = scene_of(&def);
+    const double dt = fraction_of_stable * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
     double worst = 0;
     for (int look = 0; look < 1000; look++) {
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 5) == SPRING_OK, "it does not overflow");
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 5) == SPRING_OK, "it does not overflow");
         worst = fmax(worst, fabs(total_energy(s) - before) / before);
     }
     free(s);
@@ -428,14 +428,14 @@ static void many_links(void)
                        b = (uint32_t)(random_bits() % (particles - 1));
         link[i] = (spring_link){a, b < a ? b : b + 1, random_uniform(0, 1), 1.5, 0};
     }
-    const scene_def def = {
+    const spring_scene_def def = {
         .particles = particles, .links = links, .position = x, .link = link, .mass_all = 3};
-    scene *s = scene_of(&def);
-    const double dt = 0.5 * SCENE(stable_step)(s, SPRING_LEAPFROG);
+    spring_scene *s = scene_of(&def);
+    const double dt = 0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG);
     const double before = total_energy(s);
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, dt, 3) == SPRING_OK, "stable");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 3) == SPRING_OK, "stable");
     CHECK_CLOSE(total_energy(s), before, 0.1 * before, "of order (dt omega)^2/8 at most");
-    CHECK(isfinite(SCENE(tension)(s, links - 1)), "the last one, too");
+    CHECK(isfinite(spring_scene_tension(s, links - 1)), "the last one, too");
     free(s);
     free(x);
     free(link);

@@ -117,10 +117,10 @@ static void plain_rk4(const model *m, double t, double h, vector *x, vector *v)
 static void (*const plain_step[])(const model *, double, double, vector *,
                                   vector *) = {plain_euler, plain_leapfrog, plain_rk4};
 
-static void start(const scene *s, const model *m, vector *x, vector *v)
+static void start(const spring_scene *s, const model *m, vector *x, vector *v)
 {
-    SCENE(get)(s, SPRING_POSITION, x->at, 0, 0, m->def.particles);
-    SCENE(get)(s, SPRING_VELOCITY, v->at, 0, 0, m->def.particles);
+    spring_scene_get(s, SPRING_POSITION, x->at, 0, 0, m->def.particles);
+    spring_scene_get(s, SPRING_VELOCITY, v->at, 0, 0, m->def.particles);
 }
 
 /* -------------------------------------------------------------------------------------- against the definitions */
@@ -134,7 +134,7 @@ typedef struct rounding {
     double position;  /* [m] */
 } rounding;
 
-static rounding rounding_of(const model *m, const scene *s, double h)
+static rounding rounding_of(const model *m, spring_scene *s, double h)
 {
     static double force[3 * most], size[most];
     static vector x, v;
@@ -150,7 +150,7 @@ static rounding rounding_of(const model *m, const scene *s, double h)
         fast = fmax(fast, fabs(v.at[j]));
     }
     const double rate =
-        2.61 / SCENE(stable_step)(s, SPRING_RK4) + 1; /* frequency or damping; 1 for the callback */
+        2.61 / spring_scene_stable_step(s, SPRING_RK4) + 1; /* frequency or damping; 1 for the callback */
     const double links = (double)m->def.links;
     return (rounding){
         .lipschitz = 2 * rate,
@@ -167,12 +167,12 @@ static void check_iterate(model *m, spring_method method)
     vector x, v;
     static state y;
     m->def.user = m;
-    scene *s = scene_of(&m->def);
+    spring_scene *s = scene_of(&m->def);
     const double h = 1.0 / (double)(float)(6 * (rounding_of(m, s, 0).omega)); /* lipschitz n h = 4 */
     const double dt = (double)(scalar)h;
     const rounding r = rounding_of(m, s, dt);
     start(s, m, &x, &v);
-    CHECK(SCENE(advance)(s, method, dt, (uint64_t)n) == SPRING_OK, "a few small steps");
+    CHECK(spring_scene_advance(s, method, dt, (uint64_t)n) == SPRING_OK, "a few small steps");
     for (int i = 0; i < n; i++)
         plain_step[method](m, i * dt, dt, &x, &v);
     get_state(s, m->def.particles, &y);
@@ -301,7 +301,7 @@ static void check_mode(uint32_t nx, uint32_t ny, int j, int k, spring_method met
         .gamma =
             (how & LINK_DAMPING ? damping / mass * curvature : 0) + (how & RUBBING ? friction / mass : 0),
     };
-    const scene_def def = {.axes = 1,
+    const spring_scene_def def = {.axes = 1,
                            .methods = all_methods,
                            .particles = particles,
                            .links = links,
@@ -312,7 +312,7 @@ static void check_mode(uint32_t nx, uint32_t ny, int j, int k, spring_method met
                            .link = link,
                            .drag = how & WITH_DRAG ? drag : 0,
                            .force = how & RUBBING ? rub : NULL};
-    scene *s = scene_of(&def);
+    spring_scene *s = scene_of(&def);
     const double omega = sqrt(q.omega2), fastest = sqrt(stiffness / mass * (rope ? 4 : 8)),
                  h = (method == SPRING_EULER ? 0.05 : 0.6) / fastest;
     const double dt = (double)(scalar)h;
@@ -320,7 +320,7 @@ static void check_mode(uint32_t nx, uint32_t ny, int j, int k, spring_method met
     for (uint32_t i = 0; i < particles; i++)
         rest[i] = rope ? i * g.spacing : 0;
     const int n = 150;
-    CHECK(SCENE(advance)(s, method, dt, (uint64_t)n) == SPRING_OK, "stable");
+    CHECK(spring_scene_advance(s, method, dt, (uint64_t)n) == SPRING_OK, "stable");
     get_state(s, particles, &y);
     pair want = first;
     for (int i = 0; i < n; i++)
@@ -370,7 +370,7 @@ typedef struct momenta {
     double linear[3], angular[3];
 } momenta;
 
-static momenta momenta_of(const model *m, const scene *s)
+static momenta momenta_of(const model *m, const spring_scene *s)
 {
     static state y;
     momenta p = {{0}, {0}};
@@ -393,16 +393,16 @@ static void momentum(void)
     for (unsigned features = 0; features <= (SHUFFLED | DAMPED); features += SHUFFLED)
         for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
             build_free(&m, features & (SHUFFLED | DAMPED));
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             const double dt =
-                0.1 * SCENE(stable_step)(s, method == SPRING_EULER ? SPRING_LEAPFROG : (spring_method)method);
+                0.1 * spring_scene_stable_step(s, method == SPRING_EULER ? SPRING_LEAPFROG : (spring_method)method);
             const momenta before = momenta_of(&m, s);
             double all = 0, force = 0;
             for (size_t i = 0; i < m.def.particles; i++)
                 all += m.mass[i];
             for (size_t i = 0; i < m.def.links; i++)
                 force += m.link[i].stiffness * 10 + m.link[i].damping * 20; /* [N] below 10 m, 20 m/s */
-            CHECK(SCENE(advance)(s, (spring_method)method, dt, (uint64_t)n) == SPRING_OK, "stable, or short");
+            CHECK(spring_scene_advance(s, (spring_method)method, dt, (uint64_t)n) == SPRING_OK, "stable, or short");
             const momenta after = momenta_of(&m, s);
             const double speed = 20, links = 40; /* of a particle, no more */
             const double bound = n * EPS * (dt * 2 * force * links + 4 * all * speed);
@@ -430,13 +430,13 @@ static void reversible(void)
             if (features & (DAMPED | DRAG))
                 continue;
             build(&m, (uint32_t[]){4, 3, 1}, axes, features);
-            scene *s = scene_of(&m.def);
+            spring_scene *s = scene_of(&m.def);
             const int n = 15;
             const double dt = 1 / (rounding_of(&m, s, 0).omega * n);
             const rounding r = rounding_of(&m, s, dt);
             get_state(s, m.def.particles, &before);
-            SCENE(advance)(s, SPRING_LEAPFROG, dt, (uint64_t)n);
-            SCENE(advance)(s, SPRING_LEAPFROG, -dt, (uint64_t)n);
+            spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)n);
+            spring_scene_advance(s, SPRING_LEAPFROG, -dt, (uint64_t)n);
             get_state(s, m.def.particles, &after);
             const double bound = 2 * n * (r.velocity + r.omega * r.position) * exp(2 * r.lipschitz * n * dt);
             for (size_t j = 0; j < m.def.particles * axes; j++) {
@@ -463,10 +463,10 @@ static error error_of(const model *m, spring_method method, double duration, int
                       const vector v[looks])
 {
     static state y;
-    scene *s = scene_of(&m->def);
+    spring_scene *s = scene_of(&m->def);
     error e = {0, 0};
     for (int look = 0; look < looks; look++) {
-        SCENE(advance)(s, method, duration / n, (uint64_t)n / looks);
+        spring_scene_advance(s, method, duration / n, (uint64_t)n / looks);
         get_state(s, m->def.particles, &y);
         for (size_t j = 0; j < m->def.particles * m->def.axes; j++) {
             e.x = hypot(e.x, y.x[j] - x[look].at[j]);
@@ -494,7 +494,7 @@ static void check_order(const model *m)
     const int reference = 8192, between = reference / looks;
     static vector x[looks], v[looks];
     vector x_now, v_now, x_lost = {{0}}, v_lost = {{0}};
-    scene *s = scene_of(&m->def);
+    spring_scene *s = scene_of(&m->def);
     start(s, m, &x_now, &v_now);
     free(s);
     for (int i = 0; i < reference; i++) {

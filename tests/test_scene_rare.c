@@ -26,12 +26,12 @@ static void weak_links(void)
                 m.link[i].stiffness = dampers ? 0 : number;
                 m.link[i].damping = dampers ? number : 0;
             }
-            scene *s = scene_of(&m.def);
-            CHECK((s->plan.rows == 0) == (how / 2 != 0), "without order there are no rows");
+            spring_scene *s = scene_of(&m.def);
+            CHECK((s->plan.bands == 0) == (how / 2 != 0), "without order there are no rows");
             get_state(s, m.def.particles, &y);
             double force[3 * most] = {0}, size[most] = {0};
             plain_forces(&m.def, axes, y.x, y.v, force, size);
-            CHECK(SCENE(advance)(s, SPRING_EULER, dt, 1) == SPRING_OK, "a step");
+            CHECK(spring_scene_advance(s, SPRING_EULER, dt, 1) == SPRING_OK, "a step");
             get_state(s, m.def.particles, &end);
             for (size_t i = 0; i < m.def.particles * axes; i++) {
                 const double pull = dt * size[i / axes] / m.def.mass_all;
@@ -54,11 +54,11 @@ static uint32_t rows_of(uint32_t links, uint32_t offset, uint32_t first, uint32_
         const uint32_t lower = i + 1 < links ? first + i : last;
         link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0};
     }
-    const scene_def def = {
+    const spring_scene_def def = {
         .particles = last + offset + 1, .links = links, .position = position, .link = link};
-    scene *s = scene_of(&def);
-    const uint32_t rows = s->plan.rows;
-    CHECK(s->plan.list_links == (rows == 0 ? links : 0), "in a row, or in the list");
+    spring_scene *s = scene_of(&def);
+    const uint32_t rows = s->plan.bands;
+    CHECK(s->plan.edges == (rows == 0 ? links : 0), "in a row, or in the list");
     free(s);
     return rows;
 }
@@ -76,7 +76,7 @@ static void what_makes_a_row(void)
 }
 
 /* A step of leapfrog of links and gravity alone, against a plain loop: x1 = x + dt (v + dt/2 (F/m + g)). */
-static void check_drift(const model *m, const scene *end, const state *start)
+static void check_drift(const model *m, const spring_scene *end, const state *start)
 {
     static state y;
     const double dt = 0.013, mass = m->def.mass_all;
@@ -111,10 +111,10 @@ static void rows_of_every_length(void)
                 for (int k = 0; k < kernel_count; k++) {
                     if (kernels_of(k) == NULL)
                         continue;
-                    scene *s = scene_of(&m.def);
-                    CHECK(s->plan.rows == 1 && s->plan.row[0].equal == (how / 3 == 0), "a row");
+                    spring_scene *s = scene_of(&m.def);
+                    CHECK(s->plan.bands == 1 && s->plan.band[0].equal == (how / 3 == 0), "a row");
                     get_state(s, m.def.particles, &start);
-                    CHECK(SCENE(advance_with)(kernels_of(k), s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK,
+                    CHECK(spring_scene_advance_with(kernels_of(k), s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK,
                           "a step");
                     check_drift(&m, s, &start);
                     free(s);
@@ -125,7 +125,7 @@ static void rows_of_every_length(void)
 /* More offsets than there is room for rows. */
 static void many_offsets(void)
 {
-    enum { offsets = most_rows + 8, lowers = 10 };
+    enum { offsets = most_bands + 8, lowers = 10 };
     static model m;
     static state start;
     for (uint32_t axes = 1; axes <= 3; axes++)
@@ -135,12 +135,12 @@ static void many_offsets(void)
             for (uint32_t offset = offsets; offset > 0; offset--)
                 for (uint32_t i = offset % 5 == 0 ? shorter : 0; i < lowers; i++)
                     m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
-            scene *s = scene_of(&m.def);
-            CHECK(s->plan.rows == most_rows &&
-                      s->plan.list_links == (offsets - most_rows) * (lowers - shorter),
+            spring_scene *s = scene_of(&m.def);
+            CHECK(s->plan.bands == most_bands &&
+                      s->plan.edges == (offsets - most_bands) * (lowers - shorter),
                   "the longest have rows, what has none is in the list");
             get_state(s, m.def.particles, &start);
-            CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
             free(s);
         }
@@ -151,18 +151,18 @@ static void offsets_that_meet(void)
 {
     static const uint32_t widths[] = {1, 3, 16, 35, 100, 255, 256, 257, 512, 1000, 1024};
     enum { lowers = 8, widest = 1024 };
-    static const double position[lowers + most_rows * widest];
-    spring_link link[most_rows * lowers];
+    static const double position[lowers + most_bands * widest];
+    spring_link link[most_bands * lowers];
     for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
-        for (uint32_t i = 0; i < most_rows * lowers; i++)
+        for (uint32_t i = 0; i < most_bands * lowers; i++)
             link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0};
-        const scene_def def = {.axes = 1,
-                               .particles = lowers + most_rows * widths[w],
-                               .links = most_rows * lowers,
+        const spring_scene_def def = {.axes = 1,
+                               .particles = lowers + most_bands * widths[w],
+                               .links = most_bands * lowers,
                                .position = position,
                                .link = link};
-        scene *s = scene_of(&def);
-        CHECK(s->plan.rows == most_rows && s->plan.list_links == 0, "each has its row");
+        spring_scene *s = scene_of(&def);
+        CHECK(s->plan.bands == most_bands && s->plan.edges == 0, "each has its row");
         free(s);
     }
 }
@@ -191,10 +191,10 @@ static void stray_links(void)
             build(&m, (uint32_t[]){particles, 1, 1}, axes, 0);
             m.def.link = link;
             m.def.links = links;
-            scene *s = scene_of(&m.def);
-            CHECK(s->plan.rows == 1 && s->plan.list_links == 3, "a row, and three beside it");
+            spring_scene *s = scene_of(&m.def);
+            CHECK(s->plan.bands == 1 && s->plan.edges == 3, "a row, and three beside it");
             get_state(s, m.def.particles, &start);
-            CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
             free(s);
         }
@@ -210,12 +210,12 @@ static void every_offset(void)
         position[i] = i;
     for (uint32_t i = 0; i < links; i++)
         link[i] = (spring_link){0, i + 1, 0.5, 2, 0};
-    const scene_def def = {
+    const spring_scene_def def = {
         .axes = 1, .particles = links + 1, .links = links, .position = position, .link = link};
-    scene *s = scene_of(&def);
-    CHECK(s->plan.rows == 0, "one link makes no row");
+    spring_scene *s = scene_of(&def);
+    CHECK(s->plan.bands == 0, "one link makes no row");
     for (uint32_t i = 0; i < links; i++)
-        CHECK_BITS(SCENE(tension)(s, i), 2 * (i + 0.5), "2 N/m of (i + 1) m - 0.5 m, exactly");
+        CHECK_BITS(spring_scene_tension(s, i), 2 * (i + 0.5), "2 N/m of (i + 1) m - 0.5 m, exactly");
     free(s);
     free(position);
     free(link);
@@ -226,8 +226,8 @@ static void rows_of_a_block(void)
 {
     static model m;
     build(&m, (uint32_t[]){5, 6, 7}, 3, 0);
-    scene *s = scene_of(&m.def);
-    CHECK(s->plan.rows == 16 && s->plan.list_links == 0, "no link is left for the list");
+    spring_scene *s = scene_of(&m.def);
+    CHECK(s->plan.bands == 16 && s->plan.edges == 0, "no link is left for the list");
     free(s);
 }
 
@@ -237,17 +237,17 @@ static void question_after_edit(void)
     static model m;
     for (uint32_t axes = 1; axes <= 3; axes++) {
         build(&m, (uint32_t[]){5, 4, 1}, axes, OWN | EDITABLE | MASSES);
-        scene *asked = scene_of(&m.def), *other = scene_of(&m.def);
+        spring_scene *asked = scene_of(&m.def), *other = scene_of(&m.def);
         spring_link link = m.link[3];
         link.stiffness *= 1700;
         for (int i = 0; i < 2; i++) {
-            scene *s = i == 0 ? asked : other;
-            const double before = s == asked ? SCENE(stable_step)(s, SPRING_LEAPFROG) : 0;
-            CHECK(SCENE(set_link)(s, 3, &link) == SPRING_OK, "an edit");
-            SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+            spring_scene *s = i == 0 ? asked : other;
+            const double before = s == asked ? spring_scene_stable_step(s, SPRING_LEAPFROG) : 0;
+            CHECK(spring_scene_set_link(s, 3, &link) == SPRING_OK, "an edit");
+            spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
             if (s == asked)
-                CHECK(SCENE(stable_step)(s, SPRING_LEAPFROG) < before, "a question, and a stiffer link");
-            SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+                CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) < before, "a question, and a stiffer link");
+            spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
         }
         CHECK(same_bits(asked, other, m.def.particles, axes), "asking changes nothing");
         free(asked);
@@ -274,13 +274,13 @@ static void check_gap(uint32_t axes, unsigned how)
             link[links++] = (spring_link){i, i + 1, 0.6, apart ? 0 : 2.7 + (how & OWN_NUMBERS ? 0.1 * i : 0),
                                           apart || !(how & WITH_DAMPERS) ? 0 : 0.3};
     }
-    const scene_def def = {
+    const spring_scene_def def = {
         .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
-    scene *s = scene_of(&def);
-    CHECK((s->plan.list_links == 0) == !(how & LISTED), "where the links lie");
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
+    spring_scene *s = scene_of(&def);
+    CHECK((s->plan.edges == 0) == !(how & LISTED), "where the links lie");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
     double x[3];
-    SCENE(get)(s, SPRING_POSITION, x, 0, 5, 1);
+    spring_scene_get(s, SPRING_POSITION, x, 0, 5, 1);
     CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
     free(s);
 }
@@ -306,15 +306,15 @@ static void callback_between_steps(void)
     static state y;
     for (uint32_t axes = 1; axes <= 3; axes++) {
         build(&m, (uint32_t[]){5, 4, 1}, axes, OWN | MASSES);
-        m.def.flags = SPRING_SCENE_FORCE_STILL;
-        scene *s = scene_of(&m.def), *again = scene_of(&m.def);
-        SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
+        m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+        spring_scene *s = scene_of(&m.def), *again = scene_of(&m.def);
+        spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
         get_state(s, m.def.particles, &y);
         set_state(again, m.def.particles, &y);
-        SCENE(set_force)(s, push, NULL);
-        SCENE(set_force)(again, push, NULL);
-        SCENE(advance)(s, SPRING_LEAPFROG, 0.013, 1);
-        SCENE(advance)(again, SPRING_LEAPFROG, 0.013, 1);
+        spring_scene_set_force(s, push, NULL);
+        spring_scene_set_force(again, push, NULL);
+        spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
+        spring_scene_advance(again, SPRING_LEAPFROG, 0.013, 1);
         CHECK(same_bits(s, again, m.def.particles, axes), "as if it had been there from this state on");
         free(s);
         free(again);
@@ -327,11 +327,11 @@ static void bad_number_at_the_end(void)
     static state y;
     for (uint32_t axes = 1; axes <= 3; axes++) {
         build(&m, (uint32_t[]){5, 4, 1}, axes, 0);
-        scene *s = scene_of(&m.def), *other = scene_of(&m.def);
+        spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
         for (size_t i = 0; i < m.def.particles * axes; i++)
             y.x[i] = 7;
         y.x[m.def.particles * axes - 1] = NAN;
-        CHECK(SCENE(set)(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL, "not a number");
+        CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL, "not a number");
         CHECK(same_bits(s, other, m.def.particles, axes), "nothing has been set");
         free(s);
         free(other);
@@ -350,27 +350,27 @@ static void lost(void)
             for (size_t k = 0; k < 3; k++) {
                 double velocity[3 * particles] = {0}, y[3 * particles];
                 velocity[fast] = 10;
-                const scene_def def = {.axes = axes,
+                const spring_scene_def def = {.axes = axes,
                                        .flags = SPRING_SCENE_NO_UNDO,
                                        .methods = all_methods,
                                        .particles = particles,
                                        .position = position,
                                        .velocity = velocity};
-                scene *s = scene_of(&def);
-                CHECK(SCENE(advance)(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
-                CHECK(!SCENE(at_rest)(s, INFINITY, INFINITY), "what is lost is not at rest");
+                spring_scene *s = scene_of(&def);
+                CHECK(spring_scene_advance(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+                CHECK(!spring_scene_at_rest(s, INFINITY, INFINITY), "what is lost is not at rest");
                 for (spring_quantity q = SPRING_POSITION; q <= SPRING_VELOCITY; q++) {
-                    SCENE(get)(s, q, y, 0, 0, particles);
+                    spring_scene_get(s, q, y, 0, 0, particles);
                     for (size_t i = 0; i < particles * axes; i++)
                         CHECK(isnan(y[i]), "nothing is left");
                     for (size_t i = 0; i < particles; i++) {
-                        CHECK(SCENE(advance)(s, methods[k], 0.1, 1) == SPRING_ENONFINITE,
+                        CHECK(spring_scene_advance(s, methods[k], 0.1, 1) == SPRING_ENONFINITE,
                               "not all is set again");
-                        SCENE(set)(s, q, q == SPRING_POSITION ? position + i * axes : still, 0, i, 1);
+                        spring_scene_set(s, q, q == SPRING_POSITION ? position + i * axes : still, 0, i, 1);
                     }
                 }
-                CHECK(SCENE(advance)(s, methods[k], 0.1, 1) == SPRING_OK, "usable again");
-                CHECK(SCENE(at_rest)(s, 0, 0), "and at rest");
+                CHECK(spring_scene_advance(s, methods[k], 0.1, 1) == SPRING_OK, "usable again");
+                CHECK(spring_scene_at_rest(s, 0, 0), "and at rest");
                 free(s);
             }
 }
@@ -383,15 +383,15 @@ static void methods_not_used(void)
         for (unsigned features = 0; features < EDITABLE; features += 3)
             for (uint32_t method = SPRING_EULER; method <= SPRING_RK4; method++) {
                 build(&m, (uint32_t[]){7, 5, 1}, axes, features);
-                scene *all = scene_of(&m.def);
+                spring_scene *all = scene_of(&m.def);
                 m.def.methods = 1u << method;
-                m.def.flags = SPRING_SCENE_FORCE_STILL;
-                scene *one = scene_of(&m.def);
-                CHECK_BITS(SCENE(stable_step)(one, SPRING_RK4), SCENE(stable_step)(all, SPRING_RK4),
+                m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+                spring_scene *one = scene_of(&m.def);
+                CHECK_BITS(spring_scene_stable_step(one, SPRING_RK4), spring_scene_stable_step(all, SPRING_RK4),
                            "nor other limits");
                 for (int i = 0; i < 2; i++) {
-                    SCENE(advance)(all, (spring_method)method, 0.009, 3);
-                    SCENE(advance)(one, (spring_method)method, 0.009, 3);
+                    spring_scene_advance(all, (spring_method)method, 0.009, 3);
+                    spring_scene_advance(one, (spring_method)method, 0.009, 3);
                 }
                 CHECK(same_bits(one, all, m.def.particles, axes), "the same steps");
                 free(all);
@@ -407,7 +407,7 @@ static void callback_is_left_alone(void)
     const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
     for (size_t k = 0; k < 3; k++) {
         int calls = 0;
-        const scene_def def = {.axes = 1,
+        const spring_scene_def def = {.axes = 1,
                                .flags = SPRING_SCENE_NO_UNDO,
                                .methods = all_methods,
                                .particles = 2,
@@ -416,18 +416,18 @@ static void callback_is_left_alone(void)
                                .mass_all = 1.7,
                                .force = count_calls,
                                .user = &calls};
-        scene *s = scene_of(&def);
-        CHECK(SCENE(advance)(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+        spring_scene *s = scene_of(&def);
+        CHECK(spring_scene_advance(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
         CHECK(calls > 0, "the callback was asked before");
         calls = 0;
-        CHECK(!SCENE(at_rest)(s, 1, 1) && calls == 0, "nor is it for a question");
-        SCENE(set)(s, SPRING_POSITION, position, 0, 0, 1);
-        SCENE(set)(s, SPRING_VELOCITY, at_rest, 0, 0, 2);
+        CHECK(!spring_scene_at_rest(s, 1, 1) && calls == 0, "nor is it for a question");
+        spring_scene_set(s, SPRING_POSITION, position, 0, 0, 1);
+        spring_scene_set(s, SPRING_VELOCITY, at_rest, 0, 0, 2);
         calls = 0;
-        CHECK(SCENE(advance)(s, methods[k], dt, 1) == SPRING_ENONFINITE, "one particle is still lost");
+        CHECK(spring_scene_advance(s, methods[k], dt, 1) == SPRING_ENONFINITE, "one particle is still lost");
         CHECK(calls == 0, "nothing is computed from what is lost");
-        SCENE(set)(s, SPRING_POSITION, position, 0, 0, 2);
-        CHECK(SCENE(advance)(s, methods[k], dt, 1) == SPRING_OK && calls > 0, "usable again");
+        spring_scene_set(s, SPRING_POSITION, position, 0, 0, 2);
+        CHECK(spring_scene_advance(s, methods[k], dt, 1) == SPRING_OK && calls > 0, "usable again");
         free(s);
     }
 }
@@ -452,7 +452,7 @@ static void finite_for_callbacks(void)
             for (double dt = 0.1; dt < fastest; dt *= 7.3) {
                 bool finite = true;
                 const spring_link link = {0, 1, 1, 100, how % 2 != 0 ? 0.7 : 0};
-                const scene_def def = {.axes = 1,
+                const spring_scene_def def = {.axes = 1,
                                        .flags = how / 2 != 0 ? SPRING_SCENE_NO_UNDO : 0,
                                        .methods = all_methods,
                                        .particles = 2,
@@ -461,8 +461,8 @@ static void finite_for_callbacks(void)
                                        .link = &link,
                                        .force = ask_finite,
                                        .user = &finite};
-                scene *s = scene_of(&def);
-                CHECK(SCENE(advance)(s, methods[k], dt, 4000) == SPRING_ENONFINITE || dt < 1, "overflow");
+                spring_scene *s = scene_of(&def);
+                CHECK(spring_scene_advance(s, methods[k], dt, 4000) == SPRING_ENONFINITE || dt < 1, "overflow");
                 CHECK(finite, "the callback sees finite numbers alone");
                 free(s);
             }
@@ -473,20 +473,20 @@ static void light_particles(void)
 {
     const double position[] = {0, 1}, mass = sizeof(scalar) == 4 ? 4e-39 : 6e-309;
     const spring_link link = {0, 1, 1, 0, 0};
-    const scene_def def = {
+    const spring_scene_def def = {
         .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = mass, .link = &link};
-    CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "a link that does not pull is not too stiff");
+    CHECK(spring_scene_check(&def, NULL, NULL) == SPRING_OK, "a link that does not pull is not too stiff");
 }
 
 static void gravity_beyond_the_axes(void)
 {
     const double position[] = {0, 1, 2};
     for (uint32_t axes = 1; axes < 3; axes++) {
-        scene_def def = {.axes = axes, .particles = 1, .position = position};
+        spring_scene_def def = {.axes = axes, .particles = 1, .position = position};
         def.gravity[axes] = NAN;
-        CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_OK, "not looked at");
+        CHECK(spring_scene_check(&def, NULL, NULL) == SPRING_OK, "not looked at");
         def.gravity[axes - 1] = NAN;
-        CHECK(SCENE(check)(&def, NULL, NULL) == SPRING_EINVAL, "and within them it is");
+        CHECK(spring_scene_check(&def, NULL, NULL) == SPRING_EINVAL, "and within them it is");
     }
 }
 

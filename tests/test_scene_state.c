@@ -48,16 +48,16 @@ static void callback_counts(void)
             for (size_t k = 0; k < 3; k++) {
                 wind w = calm(axes, 0);
                 build(&m, sheet, axes, DRAG | GRAVITY);
-                m.def.flags = still ? SPRING_SCENE_FORCE_STILL : 0;
+                m.def.flags = still ? SPRING_SCENE_FORCE_IGNORES_VELOCITY : 0;
                 m.def.force = blow;
                 m.def.user = &w;
-                scene *s = scene_of(&m.def);
+                spring_scene *s = scene_of(&m.def);
                 const double dt = 0.0137;
-                CHECK(SCENE(advance)(s, steppers[k], dt, 1) == SPRING_OK, "stable");
+                CHECK(spring_scene_advance(s, steppers[k], dt, 1) == SPRING_OK, "stable");
                 const size_t first = w.calls;
                 CHECK(first == calls[still][k] + (still && steppers[k] == SPRING_LEAPFROG),
                       "the first step of leapfrog has no force from the step before");
-                CHECK(SCENE(advance)(s, steppers[k], dt, 7) == SPRING_OK, "stable");
+                CHECK(spring_scene_advance(s, steppers[k], dt, 7) == SPRING_OK, "stable");
                 CHECK(w.calls - first == 7 * calls[still][k], "as often as scene.h says");
                 CHECK(w.good, "an array for each axis, NULL beyond");
                 CHECK_CLOSE(w.times[0], 0, 0, "the time of the start");
@@ -87,12 +87,12 @@ static void still_force(void)
         build(&m, sheet, axes, OWN | MASSES | PINNED | DRAG);
         m.def.force = blow;
         m.def.user = &w;
-        scene *predicted = scene_of(&m.def);
-        m.def.flags = SPRING_SCENE_FORCE_STILL;
-        scene *still = scene_of(&m.def);
+        spring_scene *predicted = scene_of(&m.def);
+        m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+        spring_scene *still = scene_of(&m.def);
         const double dt = 0.0137;
-        CHECK(SCENE(advance)(predicted, SPRING_LEAPFROG, dt, 30) == SPRING_OK &&
-                  SCENE(advance)(still, SPRING_LEAPFROG, dt, 30) == SPRING_OK,
+        CHECK(spring_scene_advance(predicted, SPRING_LEAPFROG, dt, 30) == SPRING_OK &&
+                  spring_scene_advance(still, SPRING_LEAPFROG, dt, 30) == SPRING_OK,
               "stable");
         CHECK(same_bits(predicted, still, m.def.particles, axes), "the same forces at the same times");
         free(predicted);
@@ -104,12 +104,12 @@ static void still_force(void)
 
 enum { WIND = feature_masks, STILL_WIND = 2 * feature_masks };
 
-static scene *windy_scene(model *m, wind *w, uint32_t axes, unsigned features)
+static spring_scene *windy_scene(model *m, wind *w, uint32_t axes, unsigned features)
 {
     build(m, sheet, axes, features);
     *w = calm(axes, features & STILL_WIND ? 0 : 0.3);
     if (features & (WIND | STILL_WIND)) {
-        m->def.flags |= features & STILL_WIND ? SPRING_SCENE_FORCE_STILL : 0;
+        m->def.flags |= features & STILL_WIND ? SPRING_SCENE_FORCE_IGNORES_VELOCITY : 0;
         m->def.force = blow;
         m->def.user = w;
     }
@@ -137,13 +137,13 @@ static void one_by_one(void)
         for (size_t life = 0; life < life_count; life++)
             for (size_t k = 0; k < 3; k++) {
                 wind w;
-                scene *at_once = windy_scene(&m, &w, axes, lives[life]);
-                scene *single = scene_of(&m.def), *set = scene_of(&m.def);
+                spring_scene *at_once = windy_scene(&m, &w, axes, lives[life]);
+                spring_scene *single = scene_of(&m.def), *set = scene_of(&m.def);
                 const double dt = 0.0137;
-                CHECK(SCENE(advance)(at_once, steppers[k], dt, 30) == SPRING_OK, "stable");
+                CHECK(spring_scene_advance(at_once, steppers[k], dt, 30) == SPRING_OK, "stable");
                 for (int i = 0; i < 30; i++) {
-                    SCENE(advance)(single, steppers[k], dt, 1);
-                    SCENE(advance)(set, steppers[k], dt, 1);
+                    spring_scene_advance(single, steppers[k], dt, 1);
+                    spring_scene_advance(set, steppers[k], dt, 1);
                     get_state(set, m.def.particles, &y);
                     set_state(set, m.def.particles, &y);
                 }
@@ -151,7 +151,7 @@ static void one_by_one(void)
                       "advance(30) is 30 times advance(1)");
                 CHECK(same_bits(set, at_once, m.def.particles, axes),
                       "what is set unchanged changes nothing");
-                CHECK_BITS(SCENE(time)(single), SCENE(time)(at_once), "nor is time accumulated");
+                CHECK_BITS(spring_scene_time(single), spring_scene_time(at_once), "nor is time accumulated");
                 free(at_once);
                 free(single);
                 free(set);
@@ -163,15 +163,15 @@ static void mixed_methods_and_questions(void)
     static model m;
     for (size_t life = 0; life < life_count; life++) {
         wind w;
-        scene *s = windy_scene(&m, &w, 2, lives[life]), *asked = scene_of(&m.def);
+        spring_scene *s = windy_scene(&m, &w, 2, lives[life]), *asked = scene_of(&m.def);
         for (int i = 0; i < 12; i++) {
-            CHECK(SCENE(advance)(s, steppers[i % 3], 0.0137, 2) == SPRING_OK, "stable");
-            (void)SCENE(at_rest)(asked, 0.1, 0.1);
-            (void)SCENE(stable_step)(asked, SPRING_RK4);
-            (void)SCENE(energy)(asked);
-            (void)SCENE(tension)(asked, 0);
-            SCENE(advance)(asked, steppers[i % 3], 0.0137, 1);
-            SCENE(advance)(asked, steppers[i % 3], 0.0137, 1);
+            CHECK(spring_scene_advance(s, steppers[i % 3], 0.0137, 2) == SPRING_OK, "stable");
+            (void)spring_scene_at_rest(asked, 0.1, 0.1);
+            (void)spring_scene_stable_step(asked, SPRING_RK4);
+            (void)spring_scene_energy(asked);
+            (void)spring_scene_tension(asked, 0);
+            spring_scene_advance(asked, steppers[i % 3], 0.0137, 1);
+            spring_scene_advance(asked, steppers[i % 3], 0.0137, 1);
         }
         CHECK(same_bits(s, asked, m.def.particles, 2), "questions change nothing");
         free(s);
@@ -183,14 +183,14 @@ static void two_scenes(void)
 {
     static model m, n;
     wind w, u;
-    scene *a = windy_scene(&m, &w, 3, WIND | DAMPED), *b = windy_scene(&n, &u, 1, DRAG | OWN);
-    scene *alone_a = scene_of(&m.def), *alone_b = scene_of(&n.def);
+    spring_scene *a = windy_scene(&m, &w, 3, WIND | DAMPED), *b = windy_scene(&n, &u, 1, DRAG | OWN);
+    spring_scene *alone_a = scene_of(&m.def), *alone_b = scene_of(&n.def);
     for (int i = 0; i < 10; i++) {
-        SCENE(advance)(a, SPRING_LEAPFROG, 0.0137, 1);
-        SCENE(advance)(b, SPRING_RK4, 0.0059, 1);
+        spring_scene_advance(a, SPRING_LEAPFROG, 0.0137, 1);
+        spring_scene_advance(b, SPRING_RK4, 0.0059, 1);
     }
-    SCENE(advance)(alone_a, SPRING_LEAPFROG, 0.0137, 10);
-    SCENE(advance)(alone_b, SPRING_RK4, 0.0059, 10);
+    spring_scene_advance(alone_a, SPRING_LEAPFROG, 0.0137, 10);
+    spring_scene_advance(alone_b, SPRING_RK4, 0.0059, 10);
     CHECK(same_bits(a, alone_a, m.def.particles, 3) && same_bits(b, alone_b, n.def.particles, 1),
           "there is no state but the scene's");
     free(a);
@@ -205,19 +205,19 @@ static void snapshot(void)
     for (size_t life = 0; life < life_count; life++)
         for (size_t k = 0; k < 3; k++) {
             wind w;
-            scene *s = windy_scene(&m, &w, 3, lives[life]);
+            spring_scene *s = windy_scene(&m, &w, 3, lives[life]);
             size_t bytes;
-            SCENE(bytes)(&m.def, &bytes);
-            SCENE(advance)(s, steppers[k], 0.0137, 5);
+            spring_scene_bytes(&m.def, &bytes);
+            spring_scene_advance(s, steppers[k], 0.0137, 5);
             char *room = aligned_alloc(SPRING_SCENE_ALIGN, bytes + SPRING_SCENE_ALIGN);
-            scene *copy = (scene *)(void *)(room + SPRING_SCENE_ALIGN);
+            spring_scene *copy = (spring_scene *)(void *)(room + SPRING_SCENE_ALIGN);
             memcpy(copy, s, bytes);
-            SCENE(advance)(s, steppers[k], 0.0137, 9);
+            spring_scene_advance(s, steppers[k], 0.0137, 9);
             memset(m.link, 0xff, sizeof m.link); /* nor does a scene look at what it was made from */
             memset(m.position, 0xff, sizeof m.position);
-            CHECK(SCENE(advance)(copy, steppers[k], 0.0137, 9) == SPRING_OK, "a copy is a scene");
+            CHECK(spring_scene_advance(copy, steppers[k], 0.0137, 9) == SPRING_OK, "a copy is a scene");
             CHECK(same_bits(copy, s, m.def.particles, 3), "and goes on likewise");
-            CHECK_BITS(SCENE(time)(copy), SCENE(time)(s), "at the same time");
+            CHECK_BITS(spring_scene_time(copy), spring_scene_time(s), "at the same time");
             free(room);
             free(s);
         }
@@ -228,21 +228,21 @@ static void snapshot(void)
 static void time_is_not_accumulated(void)
 {
     const double x[] = {0.3, 1.1};
-    const scene_def def = {.axes = 1, .particles = 2, .position = x};
-    scene *s = scene_of(&def);
-    CHECK_BITS(SCENE(time)(s), 0, "time starts at 0");
+    const spring_scene_def def = {.axes = 1, .particles = 2, .position = x};
+    spring_scene *s = scene_of(&def);
+    CHECK_BITS(spring_scene_time(s), 0, "time starts at 0");
     const double dt = 0.1, later = -0.03;
     for (int i = 0; i < 1000; i++)
-        SCENE(advance)(s, i % 2 ? SPRING_LEAPFROG : SPRING_EULER, dt, 3);
-    CHECK_BITS(SCENE(time)(s), 3000 * dt, "t0 + i dt");
-    SCENE(advance)(s, SPRING_EULER, later, 7);
-    CHECK_BITS(SCENE(time)(s), 3000 * dt + 7 * later,
+        spring_scene_advance(s, i % 2 ? SPRING_LEAPFROG : SPRING_EULER, dt, 3);
+    CHECK_BITS(spring_scene_time(s), 3000 * dt, "t0 + i dt");
+    spring_scene_advance(s, SPRING_EULER, later, 7);
+    CHECK_BITS(spring_scene_time(s), 3000 * dt + 7 * later,
                "with another dt a run starts where the one before ended");
-    SCENE(advance)(s, SPRING_EULER, later, 0);
-    SCENE(advance)(s, SPRING_EULER, 0, 5);
-    SCENE(advance)(s, SPRING_EULER, later, 2);
-    CHECK_BITS(SCENE(time)(s), 3000 * dt + 9 * later, "no steps, or of length 0, are none");
-    CHECK(isnan(SCENE(time)(NULL)), "bad input");
+    spring_scene_advance(s, SPRING_EULER, later, 0);
+    spring_scene_advance(s, SPRING_EULER, 0, 5);
+    spring_scene_advance(s, SPRING_EULER, later, 2);
+    CHECK_BITS(spring_scene_time(s), 3000 * dt + 9 * later, "no steps, or of length 0, are none");
+    CHECK(isnan(spring_scene_time(NULL)), "bad input");
     free(s);
 }
 
@@ -250,9 +250,9 @@ static void nothing_to_do(void)
 {
     static model m;
     wind w;
-    scene *s = windy_scene(&m, &w, 2, WIND | DAMPED), *before = scene_of(&m.def);
-    CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 0.1, 0) == SPRING_OK &&
-              SCENE(advance)(s, SPRING_LEAPFROG, 0, 100) == SPRING_OK,
+    spring_scene *s = windy_scene(&m, &w, 2, WIND | DAMPED), *before = scene_of(&m.def);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 0) == SPRING_OK &&
+              spring_scene_advance(s, SPRING_LEAPFROG, 0, 100) == SPRING_OK,
           "nothing to do is done");
     CHECK(same_bits(s, before, m.def.particles, 2) && w.calls == 0, "without a call");
     free(s);
@@ -269,38 +269,38 @@ static void failures(void)
     for (size_t life = 0; life < life_count; life++)
         for (size_t k = 0; k < 3; k++) {
             wind w;
-            scene *s = windy_scene(&m, &w, 3, lives[life]), *twin = scene_of(&m.def);
+            spring_scene *s = windy_scene(&m, &w, 3, lives[life]), *twin = scene_of(&m.def);
             const spring_method method = steppers[k];
             const size_t n = m.def.particles;
             const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200, bad[] = {1, NAN, 1},
                          infinite[] = {1, INFINITY, 0};
-            SCENE(advance)(s, method, 0.0137, 4);
-            SCENE(advance)(twin, method, 0.0137, 4);
+            spring_scene_advance(s, method, 0.0137, 4);
+            spring_scene_advance(twin, method, 0.0137, 4);
             get_state(s, n, &y);
-            CHECK(SCENE(advance)(s, method, huge, 8) == SPRING_ENONFINITE, "overflow");
-            CHECK(SCENE(advance)(s, method, -huge, 8) == SPRING_ENONFINITE, "overflow");
-            CHECK(SCENE(advance)(s, method, NAN, 1) == SPRING_EINVAL, "NaN");
-            CHECK(SCENE(advance)(s, method, -INFINITY, 1) == SPRING_EINVAL, "infinite");
-            CHECK(SCENE(advance)(s, (spring_method)17, 0.01, 1) == SPRING_EINVAL, "no method");
-            CHECK(SCENE(advance)(s, SPRING_EXACT, 0.01, 1) == SPRING_EUNSUPPORTED, "no closed form");
-            CHECK(SCENE(set)(s, SPRING_POSITION, bad, 0, 3, 1) == SPRING_EINVAL, "NaN");
-            CHECK(SCENE(set)(s, SPRING_VELOCITY, infinite, 0, 3, 1) == SPRING_EINVAL, "infinite");
-            CHECK(SCENE(set)(s, SPRING_POSITION, y.x, 0, 1, n) == SPRING_ERANGE, "one too many");
-            CHECK(SCENE(set_gravity)(s, bad) == SPRING_EINVAL, "NaN");
+            CHECK(spring_scene_advance(s, method, huge, 8) == SPRING_ENONFINITE, "overflow");
+            CHECK(spring_scene_advance(s, method, -huge, 8) == SPRING_ENONFINITE, "overflow");
+            CHECK(spring_scene_advance(s, method, NAN, 1) == SPRING_EINVAL, "NaN");
+            CHECK(spring_scene_advance(s, method, -INFINITY, 1) == SPRING_EINVAL, "infinite");
+            CHECK(spring_scene_advance(s, (spring_method)17, 0.01, 1) == SPRING_EINVAL, "no method");
+            CHECK(spring_scene_advance(s, SPRING_EXACT, 0.01, 1) == SPRING_EUNSUPPORTED, "no closed form");
+            CHECK(spring_scene_set(s, SPRING_POSITION, bad, 0, 3, 1) == SPRING_EINVAL, "NaN");
+            CHECK(spring_scene_set(s, SPRING_VELOCITY, infinite, 0, 3, 1) == SPRING_EINVAL, "infinite");
+            CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 1, n) == SPRING_ERANGE, "one too many");
+            CHECK(spring_scene_set_gravity(s, bad) == SPRING_EINVAL, "NaN");
             const spring_link wrong = {m.link[0].a, m.link[0].b, 1, -1, 0};
-            CHECK(SCENE(set_link)(s, 0, &wrong) ==
+            CHECK(spring_scene_set_link(s, 0, &wrong) ==
                       (lives[life] & EDITABLE ? SPRING_EINVAL : SPRING_EUNSUPPORTED),
                   "negative, or not editable");
             CHECK(same_bits(s, twin, n, 3), "as it was");
-            CHECK_BITS(SCENE(time)(s), SCENE(time)(twin), "as it was");
-            const spring_scene_energies e = SCENE(energy)(s), f = SCENE(energy)(twin);
+            CHECK_BITS(spring_scene_time(s), spring_scene_time(twin), "as it was");
+            const spring_scene_energies e = spring_scene_energy(s), f = spring_scene_energy(twin);
             CHECK_BITS(e.kinetic + e.elastic + e.gravity, f.kinetic + f.elastic + f.gravity, "as it was");
             for (int i = 0; i < 3; i++) {
-                SCENE(advance)(s, steppers[i], 0.0137, 5);
-                SCENE(advance)(twin, steppers[i], 0.0137, 5);
+                spring_scene_advance(s, steppers[i], 0.0137, 5);
+                spring_scene_advance(twin, steppers[i], 0.0137, 5);
             }
             CHECK(same_bits(s, twin, n, 3), "and goes on likewise");
-            CHECK_BITS(SCENE(time)(s), SCENE(time)(twin), "and goes on likewise");
+            CHECK_BITS(spring_scene_time(s), spring_scene_time(twin), "and goes on likewise");
             free(s);
             free(twin);
         }
@@ -314,15 +314,15 @@ static void velocity_alone_overflows(void)
     const uint8_t pinned[] = {1, 0};
     for (unsigned damped = 0; damped < 2; damped++) {
         const spring_link link = {0, 1, 0.5, large, damped ? 1e-3 : 0};
-        const scene_def def = {.axes = 1,
+        const spring_scene_def def = {.axes = 1,
                                .particles = 2,
                                .links = 1,
                                .position = x,
                                .velocity = v,
                                .pinned = pinned,
                                .link = &link};
-        scene *s = scene_of(&def), *twin = scene_of(&def);
-        CHECK(SCENE(advance)(s, SPRING_LEAPFROG, 1, 1) == SPRING_ENONFINITE, "noticed in the same step");
+        spring_scene *s = scene_of(&def), *twin = scene_of(&def);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1, 1) == SPRING_ENONFINITE, "noticed in the same step");
         CHECK(same_bits(s, twin, 2, 1), "as it was");
         free(s);
         free(twin);
@@ -339,14 +339,14 @@ static void steady_fall(void)
     for (size_t i = 0; i < particles; i++)
         v[i] = -2;
     for (size_t n = 1; n <= particles; n++) {
-        const scene_def def = {
+        const spring_scene_def def = {
             .axes = 1, .particles = n, .position = x, .velocity = v, .gravity = {-4}, .drag = 2};
-        scene *s = scene_of(&def);
-        CHECK(SCENE(advance)(s, SPRING_EULER, 2, 2000) == SPRING_OK, "-4 - 2 (-2) is 0, exactly");
-        SCENE(get)(s, SPRING_VELOCITY, now, 0, 0, n);
+        spring_scene *s = scene_of(&def);
+        CHECK(spring_scene_advance(s, SPRING_EULER, 2, 2000) == SPRING_OK, "-4 - 2 (-2) is 0, exactly");
+        spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, n);
         for (size_t i = 0; i < n; i++)
             CHECK_BITS(now[i], -2, "-4 - 2 (-2) is 0, exactly");
-        CHECK(SCENE(at_rest)(s, 2, 0) && !SCENE(at_rest)(s, 1.9, 0), "nothing accelerates at 2 m/s");
+        CHECK(spring_scene_at_rest(s, 2, 0) && !spring_scene_at_rest(s, 1.9, 0), "nothing accelerates at 2 m/s");
         free(s);
     }
 }
@@ -359,23 +359,23 @@ static void without_undo(void)
         for (size_t k = 0; k < 3; k++)
             for (uint32_t n = 1; n <= 19; n++) {
                 build(&m, (uint32_t[]){n, 1, 1}, axes, OWN | DAMPED | DRAG | (k == 1 ? MASSES : 0));
-                scene *kept = scene_of(&m.def);
+                spring_scene *kept = scene_of(&m.def);
                 m.def.flags = SPRING_SCENE_NO_UNDO;
-                scene *s = scene_of(&m.def);
+                spring_scene *s = scene_of(&m.def);
                 get_state(s, n, &y);
-                SCENE(advance)(s, steppers[k], 0.0137, 6);
-                SCENE(advance)(kept, steppers[k], 0.0137, 6);
+                spring_scene_advance(s, steppers[k], 0.0137, 6);
+                spring_scene_advance(kept, steppers[k], 0.0137, 6);
                 CHECK(same_bits(s, kept, n, axes), "undo changes no bits");
-                const double time = SCENE(time)(s), huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
+                const double time = spring_scene_time(s), huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
                 const double fast[3] = {10, 10, 10};
-                SCENE(set)(s, SPRING_VELOCITY, fast, 0, 0, 1);
-                CHECK(SCENE(advance)(s, steppers[k], huge, 1) == SPRING_ENONFINITE, "overflow");
-                CHECK(SCENE(advance)(s, steppers[k], 0.0137, 1) == SPRING_ENONFINITE,
+                spring_scene_set(s, SPRING_VELOCITY, fast, 0, 0, 1);
+                CHECK(spring_scene_advance(s, steppers[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+                CHECK(spring_scene_advance(s, steppers[k], 0.0137, 1) == SPRING_ENONFINITE,
                       "unusable until set again");
-                CHECK(!SCENE(at_rest)(s, INFINITY, INFINITY), "what is not finite is not at rest");
+                CHECK(!spring_scene_at_rest(s, INFINITY, INFINITY), "what is not finite is not at rest");
                 set_state(s, n, &y);
-                CHECK_BITS(SCENE(time)(s), time, "time did not pass");
-                CHECK(SCENE(advance)(s, steppers[k], 0.0137, 6) == SPRING_OK, "usable again");
+                CHECK_BITS(spring_scene_time(s), time, "time did not pass");
+                CHECK(spring_scene_advance(s, steppers[k], 0.0137, 6) == SPRING_OK, "usable again");
                 CHECK(same_bits(s, kept, n, axes), "and as good as new");
                 free(s);
                 free(kept);
@@ -391,15 +391,15 @@ static void strides_and_ranges(void)
     for (uint32_t axes = 1; axes <= 3; axes++) {
         build(&m, sheet, axes, 0);
         const size_t n = m.def.particles, stride = axes + 4, first = 3, count = n - 5;
-        scene *s = scene_of(&m.def);
+        spring_scene *s = scene_of(&m.def);
         float vertex[8 * most];
         double wide[8 * most];
         for (size_t i = 0; i < stride * n; i++) {
             vertex[i] = outside;
             wide[i] = (double)outside;
         }
-        CHECK(SCENE(getf)(s, SPRING_VELOCITY, vertex + 1, stride, first, count) == SPRING_OK &&
-                  SCENE(get)(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK,
+        CHECK(spring_scene_getf(s, SPRING_VELOCITY, vertex + 1, stride, first, count) == SPRING_OK &&
+                  spring_scene_get(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK,
               "into the middle of vertices");
         for (size_t i = 0; i < stride * n; i++) {
             const size_t particle = first + i / stride, axis = i % stride - 1; /* wraps around: no axis */
@@ -411,11 +411,11 @@ static void strides_and_ranges(void)
             wide[i] += 0.5;
         }
         double back[3 * most], before[3 * most];
-        SCENE(get)(s, SPRING_VELOCITY, before, 0, 0, n);
-        CHECK(SCENE(set)(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK, "back from there");
-        SCENE(get)(s, SPRING_VELOCITY, back, 0, 0, n);
+        spring_scene_get(s, SPRING_VELOCITY, before, 0, 0, n);
+        CHECK(spring_scene_set(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK, "back from there");
+        spring_scene_get(s, SPRING_VELOCITY, back, 0, 0, n);
         CHECK(memcmp(back, before, n * axes * sizeof back[0]) == 0, "velocities are left alone");
-        SCENE(get)(s, SPRING_POSITION, back, 0, 0, n);
+        spring_scene_get(s, SPRING_POSITION, back, 0, 0, n);
         for (size_t i = 0; i < n * axes; i++) {
             const bool moved = i / axes >= first && i / axes < first + count;
             const double from = (double)(scalar)m.position[i];
@@ -432,7 +432,7 @@ static void bad_ranges(void)
     float outf[3 * most];
     build(&m, sheet, 3, 0);
     const size_t n = m.def.particles;
-    scene *s = scene_of(&m.def);
+    spring_scene *s = scene_of(&m.def);
     const struct {
         spring_quantity q;
         bool null;
@@ -454,23 +454,23 @@ static void bad_ranges(void)
         const spring_quantity q = cases[i].q;
         const size_t stride = cases[i].stride, first = cases[i].first, count = cases[i].count;
         double *d = cases[i].null ? NULL : out;
-        CHECK(SCENE(get)(s, q, d, stride, first, count) == cases[i].want, "as scene.h says");
-        CHECK(SCENE(getf)(s, q, cases[i].null ? NULL : outf, stride, first, count) == cases[i].want,
+        CHECK(spring_scene_get(s, q, d, stride, first, count) == cases[i].want, "as scene.h says");
+        CHECK(spring_scene_getf(s, q, cases[i].null ? NULL : outf, stride, first, count) == cases[i].want,
               "likewise");
-        CHECK(SCENE(set)(s, q, d, stride, first, count) == cases[i].want, "likewise");
+        CHECK(spring_scene_set(s, q, d, stride, first, count) == cases[i].want, "likewise");
     }
-    CHECK(SCENE(get)(NULL, SPRING_POSITION, out, 0, 0, 1) == SPRING_EINVAL &&
-              SCENE(getf)(NULL, SPRING_POSITION, outf, 0, 0, 1) == SPRING_EINVAL &&
-              SCENE(set)(NULL, SPRING_POSITION, out, 0, 0, 1) == SPRING_EINVAL,
+    CHECK(spring_scene_get(NULL, SPRING_POSITION, out, 0, 0, 1) == SPRING_EINVAL &&
+              spring_scene_getf(NULL, SPRING_POSITION, outf, 0, 0, 1) == SPRING_EINVAL &&
+              spring_scene_set(NULL, SPRING_POSITION, out, 0, 0, 1) == SPRING_EINVAL,
           "no scene");
-    const spring_scene_energies e = SCENE(energy)(NULL);
+    const spring_scene_energies e = spring_scene_energy(NULL);
     CHECK(isnan(e.kinetic) && isnan(e.elastic) && isnan(e.gravity), "no scene");
-    CHECK(isnan(SCENE(tension)(NULL, 0)) && isnan(SCENE(tension)(s, m.def.links)), "no link");
-    CHECK(SCENE(advance)(NULL, SPRING_EULER, 0.1, 1) == SPRING_EINVAL &&
-              SCENE(set_force)(NULL, NULL, NULL) == SPRING_EINVAL &&
-              SCENE(set_gravity)(NULL, m.def.gravity) == SPRING_EINVAL &&
-              SCENE(set_gravity)(s, NULL) == SPRING_EINVAL &&
-              SCENE(set_link)(NULL, 0, m.link) == SPRING_EINVAL,
+    CHECK(isnan(spring_scene_tension(NULL, 0)) && isnan(spring_scene_tension(s, m.def.links)), "no link");
+    CHECK(spring_scene_advance(NULL, SPRING_EULER, 0.1, 1) == SPRING_EINVAL &&
+              spring_scene_set_force(NULL, NULL, NULL) == SPRING_EINVAL &&
+              spring_scene_set_gravity(NULL, m.def.gravity) == SPRING_EINVAL &&
+              spring_scene_set_gravity(s, NULL) == SPRING_EINVAL &&
+              spring_scene_set_link(NULL, 0, m.link) == SPRING_EINVAL,
           "no scene");
     free(s);
 }
@@ -485,14 +485,14 @@ static void moving_pins(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t k = 0; k < 3; k++) {
             wind w;
-            scene *s = windy_scene(&m, &w, axes, WIND | DAMPED | PINNED | DRAG | GRAVITY);
+            spring_scene *s = windy_scene(&m, &w, axes, WIND | DAMPED | PINNED | DRAG | GRAVITY);
             const double dt = 1.0 / 64; /* so that no step rounds but the sums */
             size_t pins = 0;
             const double turn[] = {0.5, -0.25, 2};
             static double want[3 * most];
             for (size_t i = 0; i < m.def.particles * axes; i++)
                 want[i] = m.position[i] + 20 * dt * m.velocity[i] + 12 * dt * turn[i % axes];
-            CHECK(SCENE(advance)(s, steppers[k], dt, 20) == SPRING_OK, "stable");
+            CHECK(spring_scene_advance(s, steppers[k], dt, 20) == SPRING_OK, "stable");
             get_state(s, m.def.particles, &y);
             for (size_t i = 0; i < m.def.particles; i++) {
                 if (!m.pinned[i])
@@ -501,9 +501,9 @@ static void moving_pins(void)
                 for (uint32_t a = 0; a < axes; a++)
                     CHECK_BITS(y.v[i * axes + a], (double)(scalar)m.velocity[i * axes + a],
                                "nothing changes it");
-                SCENE(set)(s, SPRING_VELOCITY, turn, 0, i, 1);
+                spring_scene_set(s, SPRING_VELOCITY, turn, 0, i, 1);
             }
-            CHECK(SCENE(advance)(s, steppers[k], dt, 12) == SPRING_OK, "stable");
+            CHECK(spring_scene_advance(s, steppers[k], dt, 12) == SPRING_OK, "stable");
             get_state(s, m.def.particles, &y);
             for (size_t i = 0; i < m.def.particles * axes; i++)
                 if (m.pinned[i / axes])
@@ -522,7 +522,7 @@ static void edited_links(void)
         for (unsigned features = 0; features < MASSES; features++)
             for (size_t k = 0; k < 3; k++) {
                 build(&m, sheet, axes, features | EDITABLE);
-                scene *s = scene_of(&m.def);
+                spring_scene *s = scene_of(&m.def);
                 changed = m;
                 changed.def.position = changed.position;
                 changed.def.velocity = changed.velocity;
@@ -531,26 +531,26 @@ static void edited_links(void)
                     changed.link[i].rest = random_uniform(0, 1);
                     changed.link[i].stiffness = i % 2 ? 0 : random_log(3, 60);
                     changed.link[i].damping = i % 2 ? 0 : 0.21;
-                    CHECK(SCENE(set_link)(s, i, &changed.link[i]) == SPRING_OK, "editable");
+                    CHECK(spring_scene_set_link(s, i, &changed.link[i]) == SPRING_OK, "editable");
                 }
-                scene *as_defined = scene_of(&changed.def);
-                CHECK_BITS(SCENE(stable_step)(s, SPRING_LEAPFROG),
-                           SCENE(stable_step)(as_defined, SPRING_LEAPFROG), "the stable step knows");
+                spring_scene *as_defined = scene_of(&changed.def);
+                CHECK_BITS(spring_scene_stable_step(s, SPRING_LEAPFROG),
+                           spring_scene_stable_step(as_defined, SPRING_LEAPFROG), "the stable step knows");
                 for (size_t i = 0; i < m.def.links; i++)
-                    CHECK_BITS(SCENE(tension)(s, i), SCENE(tension)(as_defined, i), "so does the tension");
-                SCENE(advance)(s, steppers[k], 0.009, 7);
-                SCENE(advance)(as_defined, steppers[k], 0.009, 7);
+                    CHECK_BITS(spring_scene_tension(s, i), spring_scene_tension(as_defined, i), "so does the tension");
+                spring_scene_advance(s, steppers[k], 0.009, 7);
+                spring_scene_advance(as_defined, steppers[k], 0.009, 7);
                 CHECK(same_bits(s, as_defined, m.def.particles, axes), "as good as defined so");
                 for (size_t i = 0; i < m.def.links; i += 3) {
-                    SCENE(set_link)(s, i, &m.link[i]);
-                    SCENE(set_link)(as_defined, i, &m.link[i]);
+                    spring_scene_set_link(s, i, &m.link[i]);
+                    spring_scene_set_link(as_defined, i, &m.link[i]);
                 }
                 static state y;
                 get_state(s, m.def.particles, &y);
-                scene *never = scene_of(&m.def);
+                spring_scene *never = scene_of(&m.def);
                 set_state(never, m.def.particles, &y);
-                SCENE(advance)(s, steppers[k], 0.009, 7);
-                SCENE(advance)(never, steppers[k], 0.009, 7);
+                spring_scene_advance(s, steppers[k], 0.009, 7);
+                spring_scene_advance(never, steppers[k], 0.009, 7);
                 CHECK(same_bits(s, never, m.def.particles, axes), "as good as never cut");
                 free(s);
                 free(as_defined);
@@ -564,25 +564,25 @@ static void damping_taken_away(void)
     static model m;
     wind w = calm(2, 0);
     build(&m, sheet, 2, DAMPED);
-    m.def.flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_STILL;
+    m.def.flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
     m.def.force = blow;
     m.def.user = &w;
-    scene *s = scene_of(&m.def);
+    spring_scene *s = scene_of(&m.def);
     for (size_t i = 0; i < m.def.links; i++) {
         m.link[i].damping = 0;
-        SCENE(set_link)(s, i, &m.link[i]);
+        spring_scene_set_link(s, i, &m.link[i]);
     }
-    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.009, 4);
     CHECK(w.calls == 1 + 4, "nothing left that uses velocities: one evaluation a step");
     m.link[0].damping = 0.1;
-    SCENE(set_link)(s, 0, &m.link[0]);
+    spring_scene_set_link(s, 0, &m.link[0]);
     w.calls = 0;
-    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.009, 4);
     CHECK(w.calls == 3 * 4, "and three where something does");
     m.link[0].damping = 0;
-    SCENE(set_link)(s, 0, &m.link[0]);
+    spring_scene_set_link(s, 0, &m.link[0]);
     w.calls = 0;
-    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 4);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.009, 4);
     CHECK(w.calls == 1 + 4, "taken away once more");
     free(s);
 }
@@ -599,7 +599,7 @@ static void cut_rope(void)
         if (i > 0)
             link[i - 1] = (spring_link){i - 1, i, 0.5, 800, 1.5};
     }
-    const scene_def def = {.axes = 2,
+    const spring_scene_def def = {.axes = 2,
                            .flags = SPRING_SCENE_EDITABLE,
                            .particles = n,
                            .links = n - 1,
@@ -608,17 +608,17 @@ static void cut_rope(void)
                            .pinned = pinned,
                            .link = link,
                            .gravity = {0, -9.5, 0}};
-    scene *s = scene_of(&def);
-    SCENE(advance)(s, SPRING_LEAPFROG, 1.0 / 256, 300);
+    spring_scene *s = scene_of(&def);
+    spring_scene_advance(s, SPRING_LEAPFROG, 1.0 / 256, 300);
     double before = 0, after = 0, v[2 * n];
-    SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, n);
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, n);
     for (int i = 6; i < n; i++)
         before += v[2 * i + 1] / (n - 6);
     const spring_link cut = {5, 6, 0.5, 0, 0};
-    CHECK(SCENE(set_link)(s, 5, &cut) == SPRING_OK, "between 5 and 6");
-    CHECK_BITS(SCENE(tension)(s, 5) + 0, 0, "nothing holds");
-    SCENE(advance)(s, SPRING_LEAPFROG, 1.0 / 256, 128);
-    SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, n);
+    CHECK(spring_scene_set_link(s, 5, &cut) == SPRING_OK, "between 5 and 6");
+    CHECK_BITS(spring_scene_tension(s, 5) + 0, 0, "nothing holds");
+    spring_scene_advance(s, SPRING_LEAPFROG, 1.0 / 256, 128);
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, n);
     for (int i = 6; i < n; i++)
         after += v[2 * i + 1] / (n - 6);
     /* its velocities below 10 m/s, forces of its links on each other below 800 N/m times 1 m, over 0.2 kg, for 0.5 s */
@@ -631,11 +631,11 @@ static void bad_edits(void)
 {
     static model m;
     build(&m, sheet, 2, 0);
-    scene *fixed = scene_of(&m.def);
-    CHECK(SCENE(set_link)(fixed, 0, m.link) == SPRING_EUNSUPPORTED, "not editable");
+    spring_scene *fixed = scene_of(&m.def);
+    CHECK(spring_scene_set_link(fixed, 0, m.link) == SPRING_EUNSUPPORTED, "not editable");
     free(fixed);
     m.def.flags = SPRING_SCENE_EDITABLE;
-    scene *s = scene_of(&m.def), *before = scene_of(&m.def);
+    spring_scene *s = scene_of(&m.def), *before = scene_of(&m.def);
     const uint32_t a = m.link[0].a, b = m.link[0].b;
     const double too_stiff = sizeof(scalar) == 4 ? 3e38 : 1.7e308;
     const spring_link bad[] = {
@@ -644,12 +644,12 @@ static void bad_edits(void)
         {a, b, 1, too_stiff, 0}, {a, b, 1, 1, NAN},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
-        CHECK(SCENE(set_link)(s, 0, &bad[i]) == SPRING_EINVAL, "bad input");
-    CHECK(SCENE(set_link)(s, 0, NULL) == SPRING_EINVAL &&
-              SCENE(set_link)(s, m.def.links, m.link) == SPRING_ERANGE,
+        CHECK(spring_scene_set_link(s, 0, &bad[i]) == SPRING_EINVAL, "bad input");
+    CHECK(spring_scene_set_link(s, 0, NULL) == SPRING_EINVAL &&
+              spring_scene_set_link(s, m.def.links, m.link) == SPRING_ERANGE,
           "bad input");
-    SCENE(advance)(s, SPRING_LEAPFROG, 0.009, 9);
-    SCENE(advance)(before, SPRING_LEAPFROG, 0.009, 9);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.009, 9);
+    spring_scene_advance(before, SPRING_LEAPFROG, 0.009, 9);
     CHECK(same_bits(s, before, m.def.particles, 2), "as it was");
     free(s);
     free(before);
@@ -661,18 +661,18 @@ static void turned_link(void)
     const double x[] = {0.2, 1.1};
     for (uint32_t a = 0; a < 2; a++) {
         const spring_link link = {a, 1 - a, 0.7, 5.3, 0}, turned = {1 - a, a, 0.4, 5.3, 0};
-        const scene_def def = {.axes = 1,
+        const spring_scene_def def = {.axes = 1,
                                .flags = SPRING_SCENE_EDITABLE,
                                .particles = 2,
                                .links = 1,
                                .position = x,
                                .link = &link};
-        scene *s = scene_of(&def);
+        spring_scene *s = scene_of(&def);
         const double extension = x[turned.b] - x[turned.a] - 0.4;
-        if (SCENE(set_link)(s, 0, &turned) == SPRING_OK) {
+        if (spring_scene_set_link(s, 0, &turned) == SPRING_OK) {
             double v[2];
-            SCENE(advance)(s, SPRING_EULER, 0.25, 1);
-            SCENE(get)(s, SPRING_VELOCITY, v, 0, 0, 2);
+            spring_scene_advance(s, SPRING_EULER, 0.25, 1);
+            spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 2);
             CHECK_CLOSE(v[turned.a], 0.25 * 5.3 * extension, 8 * EPS, "a few roundings of numbers below 4");
         }
         free(s);
@@ -686,23 +686,23 @@ static void changed_gravity_and_force(void)
     for (size_t k = 0; k < 3; k++) {
         wind w;
         const double moon[] = {0.3, -1.62, 0.1};
-        scene *s = windy_scene(&m, &w, 3, DAMPED | DRAG | GRAVITY);
-        CHECK(SCENE(advance)(s, steppers[k], 0.0137, 6) == SPRING_OK && w.calls == 0, "no wind yet");
-        CHECK(SCENE(set_gravity)(s, moon) == SPRING_OK && SCENE(set_force)(s, blow, &w) == SPRING_OK,
+        spring_scene *s = windy_scene(&m, &w, 3, DAMPED | DRAG | GRAVITY);
+        CHECK(spring_scene_advance(s, steppers[k], 0.0137, 6) == SPRING_OK && w.calls == 0, "no wind yet");
+        CHECK(spring_scene_set_gravity(s, moon) == SPRING_OK && spring_scene_set_force(s, blow, &w) == SPRING_OK,
               "from here on");
         get_state(s, m.def.particles, &y);
         memcpy(m.def.gravity, moon, sizeof moon);
         m.def.force = blow;
         m.def.user = &w;
-        SCENE(advance)(s, steppers[k], 0.0137, 1);
-        scene *other = scene_of(&m.def);
-        SCENE(advance)(other, steppers[k], 0.0137, 6); /* to the same time */
+        spring_scene_advance(s, steppers[k], 0.0137, 1);
+        spring_scene *other = scene_of(&m.def);
+        spring_scene_advance(other, steppers[k], 0.0137, 6); /* to the same time */
         set_state(other, m.def.particles, &y);
-        SCENE(advance)(other, steppers[k], 0.0137, 1);
+        spring_scene_advance(other, steppers[k], 0.0137, 1);
         CHECK(same_bits(s, other, m.def.particles, 3), "as good as defined so");
-        SCENE(set_force)(s, NULL, NULL);
+        spring_scene_set_force(s, NULL, NULL);
         const size_t calls = w.calls;
-        SCENE(advance)(s, steppers[k], 0.0137, 3);
+        spring_scene_advance(s, steppers[k], 0.0137, 3);
         CHECK(w.calls == calls, "no more wind");
         free(s);
         free(other);
@@ -730,14 +730,14 @@ static void absent_is_zero(void)
             for (unsigned features = 0; features <= DAMPED; features += DAMPED) {
                 build(&m, sheet, axes, features);
                 m.def.velocity = NULL;
-                scene *shorter = scene_of(&m.def);
-                SCENE(advance)(shorter, steppers[k], 0.0137, 11);
+                spring_scene *shorter = scene_of(&m.def);
+                spring_scene_advance(shorter, steppers[k], 0.0137, 11);
                 m.def.velocity = zeros;
                 m.def.mass = equal;
                 m.def.pinned = unpinned;
                 m.def.force = add_nothing;
-                scene *longer = scene_of(&m.def);
-                SCENE(advance)(longer, steppers[k], 0.0137, 11);
+                spring_scene *longer = scene_of(&m.def);
+                spring_scene_advance(longer, steppers[k], 0.0137, 11);
                 CHECK(same_bits(longer, shorter, m.def.particles, axes), "a feature of zero is absent");
                 free(shorter);
                 free(longer);

@@ -1,39 +1,54 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A feature that is zero gives the bits of the loop that does not know it. Built once for each method, with its source
- * file included, since spring_advance() always picks the shortest loop.
+ * A feature that is zero gives the bits of the loop that does not know it. The methods are compiled in once more, since
+ * spring_advance() always picks the shortest loop.
  */
-#include METHOD_SOURCE
+#define SPRING_SHAPE_ONE
+#include "methods.h"
 
 #include "check.h"
+
+#define METHOD_ROW(value, method) &method##_one,
+static const one_method *const methods[] = {SPRING_METHODS(METHOD_ROW)};
 
 /* Zeros of both signs, the smallest and the largest numbers, and some between: where signs and underflow could show. */
 static const double corners[] = {0.0, -0.0, 5e-324, -5e-324, 1e-310, -1e-310, 2.3e-308, -2.3e-308,
                                  0.7, -0.7, 1.5,    -1.5,    1e150,  -1e150,  1e-160,   -1e-160};
 static const size_t corner_count = sizeof corners / sizeof corners[0];
 
+/* n steps by the loop for damped and loaded springs or by a shorter one, whatever g and a are. */
+static spring_state steps(const one_method *m, spring_state s, spring_rates r, double dt, uint64_t n, bool damped,
+                          bool loaded)
+{
+    const spring_params p = {1, r.w, r.g, r.a};
+    return m->loop[damped][loaded](s, &p, &r, dt, n);
+}
+
+static void zero_is_absent_from(const one_method *m, spring_state s, double stiffness, double dt)
+{
+    const spring_rates r = {stiffness, 0, 0};
+    for (uint64_t n = 1; n <= 2; n++) {
+        const spring_state plain = steps(m, s, r, dt, n, false, false);
+        CHECK_STATE(steps(m, s, r, dt, n, true, false), plain, "damping 0");
+        CHECK_STATE(steps(m, s, r, dt, n, false, true), plain, "load 0");
+        CHECK_STATE(steps(m, s, r, dt, n, true, true), plain, "damping 0 and load 0");
+    }
+    const spring_rates damped = {r.w, 0.6, 0}, heavy = {r.w, 900, 0}, loaded = {r.w, 0, 0.4};
+    CHECK_STATE(steps(m, s, damped, dt, 2, true, true), steps(m, s, damped, dt, 2, true, false), "damped, load 0");
+    CHECK_STATE(steps(m, s, heavy, dt, 2, true, true), steps(m, s, heavy, dt, 2, true, false), "overdamped, load 0");
+    CHECK_STATE(steps(m, s, loaded, dt, 2, true, true), steps(m, s, loaded, dt, 2, false, true), "loaded, damping 0");
+}
+
 static void zero_is_absent(void)
 {
     static const double stiffness[] = {0, 1e-310, 0.3, 2.7, 1e12};
     static const double steps_taken[] = {0.01, -0.01, 0.7, -0.7, 1e-300, 1e-6};
-    for (size_t i = 0; i < corner_count * corner_count * 5 * 6; i++) {
-        const spring_state s = {corners[i % corner_count], corners[i / corner_count % corner_count]};
-        const spring_rates r = {stiffness[i / corner_count / corner_count % 5], 0, 0};
-        const double dt = steps_taken[i / corner_count / corner_count / 5];
-        for (uint64_t n = 1; n <= 2; n++) {
-            const spring_state plain = loop(s, &r, dt, n, false, false);
-            CHECK_STATE(loop(s, &r, dt, n, true, false), plain, "damping 0");
-            CHECK_STATE(loop(s, &r, dt, n, false, true), plain, "load 0");
-            CHECK_STATE(loop(s, &r, dt, n, true, true), plain, "damping 0 and load 0");
+    for (size_t m = 0; m < SPRING_METHOD_COUNT; m++)
+        for (size_t i = 0; i < corner_count * corner_count * 5 * 6; i++) {
+            const spring_state s = {corners[i % corner_count], corners[i / corner_count % corner_count]};
+            zero_is_absent_from(methods[m], s, stiffness[i / corner_count / corner_count % 5],
+                                steps_taken[i / corner_count / corner_count / 5]);
         }
-        const spring_rates damped = {r.w, 0.6, 0}, heavy = {r.w, 900, 0}, loaded = {r.w, 0, 0.4};
-        CHECK_STATE(loop(s, &damped, dt, 2, true, true), loop(s, &damped, dt, 2, true, false),
-                    "damped, load 0");
-        CHECK_STATE(loop(s, &heavy, dt, 2, true, true), loop(s, &heavy, dt, 2, true, false),
-                    "overdamped, load 0");
-        CHECK_STATE(loop(s, &loaded, dt, 2, true, true), loop(s, &loaded, dt, 2, false, true),
-                    "loaded, damping 0");
-    }
 }
 
 /* -0.0 is a legal value of every parameter, and is 0. */
@@ -46,7 +61,9 @@ static void negative_zero_is_zero(void)
         CHECK_BITS(a.w, 0.0, "one sign of zero");
         CHECK_BITS(a.g, 0.0, "one sign of zero");
         CHECK_BITS(a.a, 0.0, "one sign of zero");
-        CHECK_STATE(loop(start, &a, 0.1, 1, true, true), loop(start, &b, 0.1, 1, false, false), "-0 is 0");
+        for (size_t m = 0; m < SPRING_METHOD_COUNT; m++)
+            CHECK_STATE(steps(methods[m], start, a, 0.1, 1, true, true),
+                        steps(methods[m], start, b, 0.1, 1, false, false), "-0 is 0");
     }
 }
 

@@ -15,7 +15,7 @@
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
  * What holds for every function here, beside what spring.h says:
- *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_STILL, no memory; README.md says what
+ *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory; README.md says what
  *    each feature takes in bytes and time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
  *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another place
@@ -57,8 +57,8 @@ typedef struct spring_link {
    [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL, and all numbers are finite. It must
    depend on nothing but its arguments and *user, or advance(10) is not 10 times advance(1), and must not call a function
    on its own scene. After a change of what *user holds call spring_scene_set_force() again: a force may have been kept
-   (SPRING_SCENE_FORCE_STILL). */
-typedef void spring_force_fn(void *user, double t, size_t particles, const double *const position[3],
+   (SPRING_SCENE_FORCE_IGNORES_VELOCITY). */
+typedef void spring_scene_force_fn(void *user, double t, size_t particles, const double *const position[3],
                              const double *const velocity[3], double *const force[3]);
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
@@ -75,7 +75,7 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /* No callback uses velocities, or there is none and none is going to be set. Leapfrog need not predict velocities then: no
    time for that, and no memory either where no link is damped or can be changed. It keeps the force at the end of a step for
    the next. */
-#define SPRING_SCENE_FORCE_STILL UINT32_C(4)
+#define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /* Zero-initialise what is not modelled. Every array is copied. */
 typedef struct spring_scene_def {
@@ -92,7 +92,7 @@ typedef struct spring_scene_def {
     const spring_link *link; /* [links]; best in the order of their particles, see README.md */
     double gravity[3];       /* [m/s^2]; elements beyond the axes are ignored */
     double drag;             /* [N s/m] >= 0, on every particle */
-    spring_force_fn *force;  /* NULL: none */
+    spring_scene_force_fn *force;  /* NULL: none */
     void *user;              /* handed to force */
 } spring_scene_def;
 
@@ -137,7 +137,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Drag is solved for in the last half kick of leapfrog. Velocities that enter link damping and callbacks there are
  * predicted: v* = v' + dt/2 a(x1, v'), v1 = v' + dt/2 a(x1, v*): still of second order, at three force evaluations a step
  * instead of one. (Of Euler: one, RK4: four. A callback that uses no velocities is not predicted for, see
- * SPRING_SCENE_FORCE_STILL.) With drag alone leapfrog evaluates once; its force at the end of a step is that at the
+ * SPRING_SCENE_FORCE_IGNORES_VELOCITY.) With drag alone leapfrog evaluates once; its force at the end of a step is that at the
  * start of the next, and is kept.
  *
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
@@ -167,7 +167,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
  */
-SPRING_API double spring_scene_stable_step(const spring_scene *s, spring_method m);
+SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 
 /** [s] since init; NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
@@ -181,7 +181,7 @@ SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
 /** Is every speed at most v_tol [m/s], and every acceleration of a particle that is not pinned at most a_tol [m/s^2]?
     May evaluate the forces. False for bad input. */
-SPRING_API bool spring_scene_at_rest(const spring_scene *s, double v_tol, double a_tol);
+SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
 typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantity;
 
@@ -207,7 +207,7 @@ SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, co
 SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
 
 /** Change the callback; NULL: none. */
-SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_force_fn *force, void *user);
+SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *force, void *user);
 
 /**
  * Change a link of an editable scene; stiffness 0 and damping 0 cut it.
@@ -250,10 +250,10 @@ SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_
 SPRING_API spring_status spring_scenef_init(void *memory, size_t bytes, const spring_scenef_def *def,
                                             spring_scenef **scene);
 SPRING_API spring_status spring_scenef_advance(spring_scenef *s, spring_method m, double dt, uint64_t n);
-SPRING_API double spring_scenef_stable_step(const spring_scenef *s, spring_method m);
+SPRING_API double spring_scenef_stable_step(spring_scenef *s, spring_method m);
 SPRING_API double spring_scenef_time(const spring_scenef *s);
 SPRING_API spring_scenef_energies spring_scenef_energy(const spring_scenef *s);
-SPRING_API bool spring_scenef_at_rest(const spring_scenef *s, double v_tol, double a_tol);
+SPRING_API bool spring_scenef_at_rest(spring_scenef *s, double v_tol, double a_tol);
 SPRING_API spring_status spring_scenef_get(const spring_scenef *s, spring_quantity q, double *out,
                                            size_t stride, size_t first, size_t count);
 SPRING_API spring_status spring_scenef_getf(const spring_scenef *s, spring_quantity q, float *out,

@@ -4,7 +4,7 @@
  *
  *     mass x'' = load - stiffness x - damping x'
  *
- * by explicit Euler, leapfrog, Runge-Kutta 4, or the closed form.
+ * by explicit Euler, leapfrog, Runge-Kutta 4, or the exact (closed-form) solution.
  *
  *     spring_params p = {1.3, 2.7, 0, 0};                            // kg, N/m, no damping, no load
  *     spring_state  s = {1.0, 0.0};
@@ -48,12 +48,18 @@ typedef struct spring_params {
     double load;      /* [N]     a force held constant over the step */
 } spring_params;
 
+/* Values are only ever appended; tables show methods in the order of spring_method_at(). */
 typedef enum spring_method {
     SPRING_EULER,    /* order 1; for comparison: an undamped spring gains energy at every step size */
     SPRING_LEAPFROG, /* order 2; one force a step, bounded energy error: the default for games and long runs */
     SPRING_RK4,      /* order 4; the smallest error for short runs; slowly loses energy */
-    SPRING_EXACT     /* the closed form; for one linear spring no stepper beats it */
+    SPRING_EXACT     /* the exact solution; for one linear spring no stepper beats it */
 } spring_method;
+
+enum { SPRING_METHOD_COUNT = 4 }; /* of its own, so that a switch over methods needs no case for it */
+
+/* Steps after which a state that is not finite any more is noticed, at the latest. */
+enum { SPRING_CHECK_INTERVAL = 4096 };
 
 typedef enum spring_status {
     SPRING_OK,     /* done */
@@ -154,7 +160,7 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
  * @param[in]     m   method
  * @param[in]     dt  finite step [s]; negative runs backwards
  * @param[in]     n   number of steps
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE, noticed within 4096 steps of the overflow
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE, noticed within SPRING_CHECK_INTERVAL steps
  * @par Threads   re-entrant; allocates nothing, keeps nothing
  */
 SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt,
@@ -213,9 +219,36 @@ SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, do
  * @par Accuracy  the crossing of the closed form. A tolerance of no more than about 10 eps of
  *                |x| + |v|/omega + |load/stiffness| is within the rounding of the state, and its time means little
  */
-SPRING_API double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol);
+SPRING_API double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol);
 
-/** "euler", "leapfrog", "rk4", "exact"; NULL for any other value. */
+/** Are these parameters that spring_advance() accepts? See SPRING_EINVAL; NULL is not. */
+SPRING_API bool spring_params_valid(const spring_params *p);
+
+/* ------------------------------------------------------------------------------------------------ the methods */
+
+/* What programs need to know to offer methods without naming them. */
+typedef struct spring_method_info {
+    const char *name;    /* as on a command line: "leapfrog" */
+    int order;           /* error C dt^order; 0: no error but rounding */
+    int forces_per_step; /* evaluations; of scenes without forces that depend on velocities */
+    bool symplectic;     /* without damping: bounded energy error over any time */
+    bool springs;        /* offered for one spring and batches */
+    bool scenes;         /* offered for scenes */
+} spring_method_info;
+
+typedef void spring_step_fn(spring_state *s, const spring_params *p, double dt);
+
+/** What there is to know of a method; NULL for any other value. */
+SPRING_API const spring_method_info *spring_method_describe(spring_method m);
+
+/** The kernel, such as spring_step_euler(); NULL for a method that is not for one spring, and for any other value. */
+SPRING_API spring_step_fn *spring_method_kernel(spring_method m);
+
+/** The methods in the order in which tables and menus show them, 0 <= place < SPRING_METHOD_COUNT. Of any other place:
+    SPRING_METHOD_COUNT, which is no method. */
+SPRING_API spring_method spring_method_at(int place);
+
+/** The name of a method, as in spring_method_info; NULL for any other value. */
 SPRING_API const char *spring_method_name(spring_method m);
 
 /** What a status means, in English; never NULL. */

@@ -70,7 +70,7 @@ static void check_questions(const input *in, spring_method m)
     spring_state s = in->s;
     const bool good =
         spring_advance(&s, &in->p, SPRING_EXACT, 0, 0) == SPRING_OK; /* finite state, valid parameters */
-    const double limit = spring_stable_step(&in->p, m), rest = spring_rest_time(&in->s, &in->p, in->x_tol);
+    const double limit = spring_stable_step(&in->p, m), rest = spring_settling_time(&in->s, &in->p, in->x_tol);
     const bool known = good && spring_method_name(m) != NULL;
     must(known ? limit >= 0 : isnan(limit) || !good,
          "a stable step is a time, 0 or infinite; NaN for no method");

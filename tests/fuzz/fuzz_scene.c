@@ -17,16 +17,14 @@
 #include "fuzz.h"
 
 #ifdef FUZZ_FLOAT
-#define SCENE(verb) spring_scenef_##verb
-typedef spring_scenef scene;
-typedef spring_scenef_def scene_def;
+#define SPRING_FLOAT
 typedef float scalar;
 #else
-#define SCENE(verb) spring_scene_##verb
-typedef spring_scene scene;
-typedef spring_scene_def scene_def;
 typedef double scalar;
 #endif
+#include "../../src/twins.h"
+
+typedef spring_scene scene;
 
 enum { most_particles = 80, most_links = 1000, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };
 
@@ -82,7 +80,7 @@ static double size(void)
 /* ---------------------------------------------------------------------------------------------------- definitions */
 
 typedef struct definition {
-    scene_def def;
+    spring_scene_def def;
     double position[3 * most_particles], velocity[3 * most_particles], mass[most_particles];
     uint8_t pinned[most_particles];
     spring_link link[most_links];
@@ -223,7 +221,7 @@ static void define(definition *d)
     d->def.pinned = d->pinned;
     d->def.link = choose(64) == 63 ? NULL : d->link;
     if (what & 128)
-        d->def.force = choose(2) == 0 || d->def.flags & SPRING_SCENE_FORCE_STILL ? still : moving;
+        d->def.force = choose(2) == 0 || d->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY ? still : moving;
 }
 
 /* --------------------------------------------------------------------------------------------------------- a scene */
@@ -258,12 +256,12 @@ typedef struct state {
 static void look(const scene *s, const definition *d, state *y)
 {
     memset(y, 0, sizeof *y);
-    must(SCENE(get)(s, SPRING_POSITION, y->x, 3, 0, d->def.particles) == SPRING_OK &&
-             SCENE(get)(s, SPRING_VELOCITY, y->v, 3, 0, d->def.particles) == SPRING_OK,
+    must(spring_scene_get(s, SPRING_POSITION, y->x, 3, 0, d->def.particles) == SPRING_OK &&
+             spring_scene_get(s, SPRING_VELOCITY, y->v, 3, 0, d->def.particles) == SPRING_OK,
          "the state can be had");
     for (size_t i = 0; i < d->def.links; i++)
-        y->tension[i] = SCENE(tension)(s, i);
-    y->time = SCENE(time)(s);
+        y->tension[i] = spring_scene_tension(s, i);
+    y->time = spring_scene_time(s);
 }
 
 static bool same_numbers(const double *a, const double *b, size_t count)
@@ -316,7 +314,7 @@ static void advance(life *l)
     const double dt = choose(4) == 0 ? number() : number() / 64;
     const uint64_t n = choose(20);
     look(l->one.s, l->d, &before);
-    const spring_status status = SCENE(advance)(l->one.s, m, dt, n);
+    const spring_status status = spring_scene_advance(l->one.s, m, dt, n);
     look(l->one.s, l->d, &after);
     must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED ||
              status == SPRING_ENONFINITE,
@@ -332,7 +330,7 @@ static void advance(life *l)
         must(finite(&after), "the state is finite after SPRING_OK");
     if (status == SPRING_OK)
         for (uint64_t i = 0; i < n; i++)
-            must(SCENE(advance)(l->other.s, m, dt, 1) == SPRING_OK, "n steps are n calls");
+            must(spring_scene_advance(l->other.s, m, dt, 1) == SPRING_OK, "n steps are n calls");
     else
         copy_over(l);
 }
@@ -354,8 +352,8 @@ static void set(life *l)
         good = good && isfinite((scalar)in[i * apart]);
     }
     look(l->one.s, l->d, &before);
-    const spring_status status = SCENE(set)(l->one.s, q, in, stride, first, fits ? count : 90);
-    must(SCENE(set)(l->other.s, q, in, stride, first, fits ? count : 90) == status, "the same answer");
+    const spring_status status = spring_scene_set(l->one.s, q, in, stride, first, fits ? count : 90);
+    must(spring_scene_set(l->other.s, q, in, stride, first, fits ? count : 90) == status, "the same answer");
     look(l->one.s, l->d, &after);
     if (status != SPRING_OK) {
         must(status == SPRING_EINVAL || status == SPRING_ERANGE, "no other status is documented");
@@ -379,8 +377,8 @@ static void set_all(life *l)
     }
     for (int i = 0; i < 2; i++) {
         scene *s = i == 0 ? l->one.s : l->other.s;
-        must(SCENE(set)(s, SPRING_POSITION, x, 0, 0, l->d->def.particles) == SPRING_OK &&
-                 SCENE(set)(s, SPRING_VELOCITY, v, 0, 0, l->d->def.particles) == SPRING_OK,
+        must(spring_scene_set(s, SPRING_POSITION, x, 0, 0, l->d->def.particles) == SPRING_OK &&
+                 spring_scene_set(s, SPRING_VELOCITY, v, 0, 0, l->d->def.particles) == SPRING_OK,
              "any finite state will do");
     }
     l->broken = false;
@@ -399,8 +397,8 @@ static void get(const life *l)
         outf[i] = 77;
     }
     const bool fits = first <= l->d->def.particles && count <= l->d->def.particles - first;
-    const spring_status status = SCENE(get)(l->one.s, q, out, stride, first, count);
-    must(SCENE(getf)(l->one.s, q, outf, stride, first, count) == status, "both say the same");
+    const spring_status status = spring_scene_get(l->one.s, q, out, stride, first, count);
+    must(spring_scene_getf(l->one.s, q, outf, stride, first, count) == status, "both say the same");
     must(status == (q > SPRING_VELOCITY || apart < l->axes ? SPRING_EINVAL
                     : !fits                                ? SPRING_ERANGE
                                                            : SPRING_OK),
@@ -427,8 +425,8 @@ static void set_link(life *l)
         link.b = l->d->link[index].b;
     }
     look(l->one.s, l->d, &before);
-    const spring_status status = SCENE(set_link)(l->one.s, index, &link);
-    must(SCENE(set_link)(l->other.s, index, &link) == status, "the same answer");
+    const spring_status status = spring_scene_set_link(l->one.s, index, &link);
+    must(spring_scene_set_link(l->other.s, index, &link) == status, "the same answer");
     if (status == SPRING_OK) {
         must(l->d->def.flags & SPRING_SCENE_EDITABLE && index < l->d->def.links, "it may be changed");
         l->d->link[index] = link;
@@ -443,8 +441,8 @@ static void set_link(life *l)
 static void set_gravity(life *l)
 {
     const double gravity[3] = {number(), number(), number()};
-    const spring_status status = SCENE(set_gravity)(l->one.s, gravity);
-    must(SCENE(set_gravity)(l->other.s, gravity) == status, "the same answer");
+    const spring_status status = spring_scene_set_gravity(l->one.s, gravity);
+    must(spring_scene_set_gravity(l->other.s, gravity) == status, "the same answer");
     must(status == SPRING_OK || status == SPRING_EINVAL, "no other status is documented");
     if (status == SPRING_OK)
         memcpy(l->d->def.gravity, gravity, sizeof gravity);
@@ -480,16 +478,16 @@ static void check_tensions(const life *l)
 
 static void ask(const life *l)
 {
-    const spring_scene_energies e = SCENE(energy)(l->one.s);
+    const spring_scene_energies e = spring_scene_energy(l->one.s);
     must(!(e.kinetic < 0) && !(e.elastic < 0), "energies of motion and of springs are not negative");
     for (int m = -1; m < 5; m++) {
-        const double step = SCENE(stable_step)(l->one.s, (spring_method)m);
+        const double step = spring_scene_stable_step(l->one.s, (spring_method)m);
         must(m >= SPRING_EULER && m <= SPRING_RK4 ? step >= 0 : isnan(step),
              "a step, 0 or infinite; NaN for no method");
     }
-    must(isnan(SCENE(tension)(l->one.s, l->d->def.links)), "there are no more links");
+    must(isnan(spring_scene_tension(l->one.s, l->d->def.links)), "there are no more links");
     const double v_tol = size(), a_tol = size();
-    must(SCENE(at_rest)(l->one.s, v_tol, a_tol) == SCENE(at_rest)(l->other.s, v_tol, a_tol),
+    must(spring_scene_at_rest(l->one.s, v_tol, a_tol) == spring_scene_at_rest(l->other.s, v_tol, a_tol),
          "the same answer");
 }
 
@@ -499,8 +497,8 @@ static void goes_on_alike(life *l, const place *p)
     static state old, made;
     const double dt = 1.0 / 64;
     copy_over(l);
-    const spring_status status = SCENE(advance)(l->other.s, SPRING_LEAPFROG, dt, 3);
-    must(SCENE(advance)(p->s, SPRING_LEAPFROG, dt, 3) == status || !isfinite(SCENE(time)(l->one.s) + 3 * dt),
+    const spring_status status = spring_scene_advance(l->other.s, SPRING_LEAPFROG, dt, 3);
+    must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status || !isfinite(spring_scene_time(l->one.s) + 3 * dt),
          "the same answer");
     look(l->other.s, l->d, &old);
     look(p->s, l->d, &made);
@@ -516,12 +514,12 @@ static void remake(life *l)
 {
     static state y, made;
     look(l->one.s, l->d, &y);
-    if (l->broken || SCENE(check)(&l->d->def, NULL, NULL) != SPRING_OK)
+    if (l->broken || spring_scene_check(&l->d->def, NULL, NULL) != SPRING_OK)
         return;
     place p = place_for(l->one.bytes, 0xc3);
-    must(SCENE(init)(p.all + guard, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
-    must(SCENE(set)(p.s, SPRING_POSITION, y.x, 3, 0, l->d->def.particles) == SPRING_OK &&
-             SCENE(set)(p.s, SPRING_VELOCITY, y.v, 3, 0, l->d->def.particles) == SPRING_OK,
+    must(spring_scene_init(p.all + guard, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
+    must(spring_scene_set(p.s, SPRING_POSITION, y.x, 3, 0, l->d->def.particles) == SPRING_OK &&
+             spring_scene_set(p.s, SPRING_VELOCITY, y.v, 3, 0, l->d->def.particles) == SPRING_OK,
          "a state that was got can be set");
     look(p.s, l->d, &made);
     must(same_numbers(made.x, y.x, 3 * most_particles) && same_numbers(made.v, y.v, 3 * most_particles) &&
@@ -577,17 +575,17 @@ static bool check_definition(const definition *d, size_t *bytes)
     size_t index = 0;
     scene *s = (scene *)1;
     uint64_t tiny[SPRING_SCENE_ALIGN / sizeof(uint64_t)];
-    const spring_status status = SCENE(check)(&d->def, &field, &index);
+    const spring_status status = spring_scene_check(&d->def, &field, &index);
     must((field == NULL) == (status == SPRING_OK), "the culprit is named");
     must(index == 0 || index < d->def.particles || index < d->def.links || index < 3, "and where it is");
-    must(SCENE(bytes)(&d->def, bytes) == status, "bytes() agrees with check()");
+    must(spring_scene_bytes(&d->def, bytes) == status, "bytes() agrees with check()");
     if (status == SPRING_OK) {
         must(*bytes > 0 && *bytes % SPRING_SCENE_ALIGN == 0, "a multiple of the alignment");
         return true;
     }
     must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
          "no other status");
-    must(SCENE(init)(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL, "no scene of a bad definition");
+    must(spring_scene_init(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL, "no scene of a bad definition");
     return false;
 }
 
@@ -602,13 +600,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
         return 0;
     life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
     l.axes = d.def.axes == 0 ? 3 : d.def.axes;
-    must(SCENE(init)(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
          "too small");
-    must(SCENE(init)(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
          "not aligned");
     check_guards(&l.one);
-    must(SCENE(init)(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&
-             SCENE(init)(l.other.all + guard, bytes, &d.def, &l.other.s) == SPRING_OK,
+    must(spring_scene_init(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&
+             spring_scene_init(l.other.all + guard, bytes, &d.def, &l.other.s) == SPRING_OK,
          "init() agrees with check()");
     must_agree(&l);
     live(&l);

@@ -24,7 +24,7 @@ typedef struct feature {
     spring_method method;
     uint32_t flags;
     double drag, damping;
-    spring_force_fn *force;
+    spring_scene_force_fn *force;
     bool masses;
 } feature;
 
@@ -508,7 +508,7 @@ static void add_features(void)
         {"_masses", {.method = SPRING_LEAPFROG, .masses = true}, INFINITY},
         {"_callback", {.method = SPRING_LEAPFROG, .force = blow}, INFINITY},
         {"_callback_still",
-         {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_STILL},
+         {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY},
          INFINITY},
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}, INFINITY},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}, INFINITY},

@@ -60,7 +60,7 @@ static void build_duffing(const scene_case *c, scene_problem *p) /* x'' = -x - x
     (void)c;
     make_one(p, 1, 0, mass);
     p->def.force = cubic;
-    p->def.flags = SPRING_SCENE_FORCE_STILL;
+    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 static void gravity_on_a_circle(void *user, double t, size_t particles, state_arrays x, state_arrays v,
@@ -90,7 +90,7 @@ static void build_chaotic(const scene_case *c, scene_problem *p) /* x'' = -0.05 
     make_one(p, 3, 4, 0);
     p->def.drag = 0.05 * mass;
     p->def.force = cubic_driven;
-    p->def.flags = SPRING_SCENE_FORCE_STILL;
+    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 static void van_der_pol(void *user, double t, size_t particles, state_arrays x, state_arrays v,
@@ -121,7 +121,7 @@ static void build_resonance(const scene_case *c, scene_problem *p) /* x'' = -x +
     (void)c;
     make_one(p, 0, 0, mass);
     p->def.force = resonant;
-    p->def.flags = SPRING_SCENE_FORCE_STILL;
+    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 static void solve_resonance(const scene_case *c, const scene_problem *p, double *y)
@@ -178,7 +178,7 @@ static void build_stiff_and_soft(const scene_case *c, scene_problem *p)
     p->position[1] = (1 + 1 / omega) / sqrt(2);
     p->velocity[1] = sqrt(2);
     p->def.force = soft_quartic;
-    p->def.flags = SPRING_SCENE_FORCE_STILL;
+    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 /* --------------------------------------------------------------------------------------------- scenes of links */

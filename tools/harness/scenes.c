@@ -176,7 +176,7 @@ static bool velocity_forces(const scene_problem *p)
     for (size_t i = 0; i < p->def.links; i++)
         if (p->link[i].damping > 0)
             return true;
-    return p->def.force != NULL && (p->def.flags & SPRING_SCENE_FORCE_STILL) == 0;
+    return p->def.force != NULL && (p->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
 }
 
 static void euler_step(const scene_problem *p, double h, double t, double *y, double *work)

@@ -116,7 +116,7 @@ void ready_init(ready_scene *r, const ready_settings *s)
     spring_grid_fill(&g, r->position, r->pinned, r->link);
     fill_start(r, g.spacing);
     r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
-                                .flags = SPRING_SCENE_FORCE_STILL, /* pushes look at the time alone */
+                                .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* pushes look at the time alone */
                                 .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
                                 .particles = particles,
                                 .links = links,

@@ -27,7 +27,7 @@ typedef struct work_equation {
     work_tie *tie;
     double *per_mass; /* [particles] 1/mass */
     double gravity[3], drag;
-    spring_force_fn *force; /* of one axis, and of no particle that is pinned */
+    spring_scene_force_fn *force; /* of one axis, and of no particle that is pinned */
     void *user;
 } work_equation;
 

@@ -161,7 +161,7 @@ static void make_scenes(work *w)
     w->moved = make_scene(&def, &w->bytes);
     w->fresh = make_scene(&def, &w->bytes);
     if (def.force == NULL)
-        def.flags |= SPRING_SCENE_FORCE_STILL; /* so that counting adds no evaluation */
+        def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY; /* so that counting adds no evaluation */
     def.force = count_call;
     def.user = w;
     w->counted = def;

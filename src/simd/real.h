@@ -17,14 +17,14 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(SPRING_VECTOR) && SPRING_X86_64
-#include <immintrin.h>
-#endif
-
 #if defined(__GNUC__)
 #define SPRING_INLINE static inline __attribute__((always_inline)) /* constant flags must vanish at -O1 too */
+#define SPRING_NOINLINE static __attribute__((noinline))           /* kept out of the code that runs */
+#define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #else
 #define SPRING_INLINE static inline
+#define SPRING_NOINLINE static
+#define SPRING_UNLIKELY(condition) (condition)
 #endif
 
 /* Before a loop whose arrays are to live in registers. */
@@ -50,31 +50,18 @@ typedef int64_t scalar_bits;
 #include "real_number.h"
 #endif
 
-SPRING_INLINE real load(const scalar *p) /* of any alignment */
+SPRING_INLINE real vec_load(const scalar *p) /* of any alignment */
 {
     real r;
     memcpy(&r, p, sizeof r);
     return r;
 }
 
-SPRING_INLINE void store(scalar *p, real r)
+SPRING_INLINE void vec_store(scalar *p, real r)
 {
     memcpy(p, &r, sizeof r);
 }
 
 enum { lanes = sizeof(real) / sizeof(scalar) };
-
-/* What a stepper works from. Here and in the coefficients made of them, adding 0 turns -0 into 0: a zero feature then
-   has one sign, and the long formulas of the steppers give the bits of the short ones (tests/test_shapes.c). */
-typedef struct spring_rates {
-    real w; /* [1/s^2] stiffness/mass */
-    real g; /* [1/s]   damping/mass   */
-    real a; /* [m/s^2] load/mass      */
-} spring_rates;
-
-/* What is written once for all methods is included with SPRING_METHOD set to one, and names its parts so. */
-#define SPRING_PASTE(method, name)  method##_##name
-#define SPRING_PASTED(method, name) SPRING_PASTE(method, name)
-#define METHOD(name)                SPRING_PASTED(SPRING_METHOD, name)
 
 #endif

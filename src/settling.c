@@ -12,7 +12,9 @@
  */
 #include <stddef.h>
 
-#include "method.h"
+#include "propagator.h"
+#include "roots.h"
+#include "simd/real.h"
 
 static const double pi = 3.141592653589793;
 
@@ -95,7 +97,7 @@ static double rest_time_free(double v, double g, double tol)
     return way > tol ? log_ratio(way, tol) / g : 0;
 }
 
-double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol)
+double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
 {
     if (s == NULL || !isfinite(s->x) || !isfinite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
         return NAN;

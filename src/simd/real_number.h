@@ -1,44 +1,44 @@
 /* SPDX-License-Identifier: MIT */
 /* `real` as one number; see real.h. */
 typedef scalar real;
-typedef bool truth;
+typedef bool mask;
 
 SPRING_INLINE real splat(scalar s)
 {
     return s;
 }
 
-SPRING_INLINE truth not_finite(real a)
+SPRING_INLINE mask not_finite(real a)
 {
     return !(a - a == 0);
 }
 
-SPRING_INLINE truth sign_bit(real a)
+SPRING_INLINE mask sign_bit(real a)
 {
     return signbit(a) != 0;
 }
 
-SPRING_INLINE bool any(truth t)
+SPRING_INLINE bool any(mask t)
 {
     return t;
 }
 
-SPRING_INLINE real select_real(truth t, real a, real b)
+SPRING_INLINE real select_real(mask t, real a, real b)
 {
     return t ? a : b;
 }
 
-SPRING_INLINE truth load_truth(const int8_t *p)
+SPRING_INLINE mask vec_load_mask(const int8_t *p)
 {
     return *p != 0;
 }
 
-SPRING_INLINE real root(real a)
+SPRING_INLINE real vec_sqrt(real a)
 {
     return (real)sqrt((double)a);
 }
 
-SPRING_INLINE real magnitude(real a)
+SPRING_INLINE real vec_abs(real a)
 {
     return (real)fabs((double)a);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* `real` as a vector of SPRING_VECTOR bytes; see real.h. */
 typedef scalar real __attribute__((vector_size(SPRING_VECTOR)));
-typedef scalar_bits truth
+typedef scalar_bits mask
     __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
 
 SPRING_INLINE real splat(scalar s)
@@ -10,18 +10,18 @@ SPRING_INLINE real splat(scalar s)
 }
 
 /* Not 0 in the lanes that are infinite or NaN. */
-SPRING_INLINE truth not_finite(real a)
+SPRING_INLINE mask not_finite(real a)
 {
-    return (truth)(a - a);
+    return (mask)(a - a);
 }
 
-SPRING_INLINE truth sign_bit(real a)
+SPRING_INLINE mask sign_bit(real a)
 {
-    return (truth)a & (truth)splat(-(scalar)0);
+    return (mask)a & (mask)splat(-(scalar)0);
 }
 
 /* Is any bit set? */
-SPRING_INLINE bool any(truth t)
+SPRING_INLINE bool any(mask t)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64
     return _mm512_test_epi64_mask((__m512i)t, (__m512i)t) != 0;
@@ -38,33 +38,33 @@ SPRING_INLINE bool any(truth t)
 #endif
 }
 
-SPRING_INLINE real select_real(truth t, real a, real b)
+SPRING_INLINE real select_real(mask t, real a, real b)
 {
-    return (real)((t & (truth)a) | (~t & (truth)b));
+    return (real)((t & (mask)a) | (~t & (mask)b));
 }
 
 /* From a byte a lane, -1 or 0. */
-SPRING_INLINE truth load_truth(const int8_t *p)
+SPRING_INLINE mask vec_load_mask(const int8_t *p)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
-    return (truth)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
+    return (mask)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 64
-    return (truth)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
+    return (mask)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
-    return (truth)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
+    return (mask)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 32
     int four;
     memcpy(&four, p, sizeof four);
-    return (truth)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+    return (mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
 #else
-    truth t = {0};
+    mask t = {0};
     for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
         t[i] = p[i];
     return t;
 #endif
 }
 
-SPRING_INLINE real root(real a)
+SPRING_INLINE real vec_sqrt(real a)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
     return (real)_mm512_sqrt_ps((__m512)a);
@@ -88,7 +88,7 @@ SPRING_INLINE real root(real a)
 #endif
 }
 
-SPRING_INLINE real magnitude(real a)
+SPRING_INLINE real vec_abs(real a)
 {
-    return (real)(~(truth)splat(-(scalar)0) & (truth)a);
+    return (real)(~(mask)splat(-(scalar)0) & (mask)a);
 }

@@ -27,7 +27,7 @@ static void rest_time_by_sampling(void)
         if (i % 11 == 0)
             s.v = 0;
         const double tol = random_log(1e-6, 1);
-        const double T = spring_rest_time(&s, &p, tol);
+        const double T = spring_settling_time(&s, &p, tol);
         CHECK(T >= 0 && isfinite(T), "a damped spring comes to rest");
         const double slow = zeta <= 1 ? omega * zeta : omega / (2 * zeta), edge = 1e-9 * tol;
         for (int j = 0; j <= 400; j++) {
@@ -51,7 +51,7 @@ static void rest_time_lightly_damped(void)
     const spring_state s = {0.8, 0};
     const double omega = sqrt(2.7 / 1.3), b = 1e-9 / 2.6;
     const double want = log(0.8 / 1e-3) / b; /* the envelope; the crossing is within half a period of it */
-    CHECK_CLOSE(spring_rest_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
+    CHECK_CLOSE(spring_settling_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
 }
 
 /* Tolerances just beside a swing: it counts if it is larger, and not otherwise. A few ulp beside it rounding decides,
@@ -66,7 +66,7 @@ static void rest_time_at_a_swing(void)
         const spring_state start = {0.8, 0};
         const double off = (i % 7 - 3) * (i % 2 ? DBL_EPSILON : 1e-12);
         const double tol = distance_at(&p, start, 0, turn) * (1 + off);
-        const double T = spring_rest_time(&start, &p, tol);
+        const double T = spring_settling_time(&start, &p, tol);
         const double edge =
             1e-5 * spacing; /* y is flat there: sqrt(2e-12) away in angle it has changed by 1e-12 */
         if (off >= 1e-12)
@@ -86,20 +86,20 @@ static void rest_time_at_the_tolerance(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0}, thick = {1, 1, 2.5, 0};
     const spring_params drag = {2, 0, 0.5, 0}, nothing = {2, 0, 0, 0}, b_is_1 = {1, 4, 2, 0};
-    CHECK_BITS(spring_rest_time(&(spring_state){0.5, 0}, &undamped, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_rest_time(&(spring_state){0.5, -0.1}, &damped, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_rest_time(&(spring_state){0.5, 0}, &thick, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_rest_time(&(spring_state){0.5, -1.25}, &thick, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_rest_time(&(spring_state){0, 1}, &nothing, INFINITY), 0, "never beyond it");
-    CHECK_CLOSE(spring_rest_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
+    CHECK_BITS(spring_settling_time(&(spring_state){0.5, 0}, &undamped, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_settling_time(&(spring_state){0.5, -0.1}, &damped, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_settling_time(&(spring_state){0.5, 0}, &thick, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_settling_time(&(spring_state){0.5, -1.25}, &thick, 0.5), 0, "never beyond it");
+    CHECK_BITS(spring_settling_time(&(spring_state){0, 1}, &nothing, INFINITY), 0, "never beyond it");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
                 "4 m to go");
-    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
                 "4 m to go");
-    CHECK_CLOSE(spring_rest_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15,
+    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15,
                 "along the fast root");
-    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
-    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
-    CHECK(isfinite(spring_rest_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
+    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
+    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
+    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
     /* omega, b and sqrt(w - b^2) are 13/8, 12/8 and 5/8, to the bit: so are the turning points. In some of these the
        logarithm is rounded to the wrong side. */
     const spring_params p = {1, 169.0 / 64, 3, 0};
@@ -107,8 +107,8 @@ static void rest_time_at_the_tolerance(void)
         const spring_state start = {0.3 + 0.0137 * (i % 50), 0};
         const double spacing = pi / 0.625, turn = (1 + i / 50) * spacing,
                      tol = distance_at(&p, start, 0, turn);
-        const double at = spring_rest_time(&start, &p, tol),
-                     below = spring_rest_time(&start, &p, nextafter(tol, 0));
+        const double at = spring_settling_time(&start, &p, tol),
+                     below = spring_settling_time(&start, &p, nextafter(tol, 0));
         CHECK(at > turn - spacing && at < turn, "a swing as large as the tolerance is within it");
         CHECK(below > turn && below < turn + spacing, "a swing an ulp larger is not");
     }
@@ -121,9 +121,9 @@ static void rest_time_mirrored(void)
     const spring_params springs[] = {{1.3, 2.7, 0.6, 0}, {1.3, 2.7, 6, 0}};
     for (int i = 0; i < 100; i++) {
         const spring_state s = {sizes[i % 5] * (i % 2 ? -1 : 1), sizes[i / 5 % 5]}, mirrored = {-s.x, -s.v};
-        const double T = spring_rest_time(&s, &springs[i / 50], 1e-3);
+        const double T = spring_settling_time(&s, &springs[i / 50], 1e-3);
         CHECK(isfinite(T), "a damped spring comes to rest");
-        CHECK_BITS(spring_rest_time(&mirrored, &springs[i / 50], 1e-3), T, "mirrored");
+        CHECK_BITS(spring_settling_time(&mirrored, &springs[i / 50], 1e-3), T, "mirrored");
     }
 }
 
@@ -135,7 +135,7 @@ static void rest_time_is_the_first(void)
     for (int i = 0; i < 1000; i++) {
         const spring_params *q = i % 2 ? &p : &thick;
         const double tol = distance_at(q, start, 0, random_uniform(1, 20));
-        const double T = spring_rest_time(&start, q, tol);
+        const double T = spring_settling_time(&start, q, tol);
         CHECK(distance_at(q, start, 0, T) <= tol, "inside");
         CHECK(distance_at(q, start, 0, nextafter(T, 0)) > tol, "outside");
     }
@@ -147,35 +147,35 @@ static void rest_time_special(void)
     const spring_params pushed = {2, 0, 0.5, 0.1}, nothing = {2, 0, 0, 0};
     const spring_state s = {0.5, 0.3}, still = {0.5, 0}, rest = {0.2, 0};
     const double amplitude = hypot(0.5, 0.3 / sqrt(2.7 / 1.3));
-    CHECK_BITS(spring_rest_time(&s, &undamped, amplitude * 1.001), 0, "never leaves");
-    CHECK_BITS(spring_rest_time(&s, &undamped, amplitude * 0.999), INFINITY, "swings for ever");
-    CHECK_CLOSE(spring_rest_time(&rest, &damped, 1e-15), 0, 0, "at rest under its load");
-    CHECK_BITS(spring_rest_time(&s, &damped, 0), INFINITY, "zero is never reached for good");
-    CHECK_BITS(spring_rest_time(&s, &damped, INFINITY), 0, "anything is near enough");
-    CHECK_BITS(spring_rest_time(&s, &pushed, 0.1), INFINITY, "pushed without a spring: never");
-    CHECK_BITS(spring_rest_time(&s, &nothing, 0.1), INFINITY, "nothing stops it");
-    CHECK_BITS(spring_rest_time(&s, &(spring_params){2, -0.0, -0.0, 0}, 0.1), INFINITY, "-0 is 0");
-    CHECK_BITS(spring_rest_time(&still, &nothing, 0), 0, "nothing moves it");
-    CHECK_CLOSE(spring_rest_time(&s, &drag, 0.01), 4 * log(1.2 / 0.01), 1e-14 * 20, "1.2 m to go, 1/g = 4 s");
-    CHECK_BITS(spring_rest_time(&s, &drag, 1.3), 0, "less than the tolerance to go");
-    CHECK_BITS(spring_rest_time(&s, &drag, -0.0), INFINITY, "zero is never reached, of either sign");
-    CHECK_BITS(spring_rest_time(&s, &nothing, -0.0), INFINITY, "zero is never reached, of either sign");
-    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1e200}, &drag, 1e-200), 4 * (log(4) + 400 * log(10)),
+    CHECK_BITS(spring_settling_time(&s, &undamped, amplitude * 1.001), 0, "never leaves");
+    CHECK_BITS(spring_settling_time(&s, &undamped, amplitude * 0.999), INFINITY, "swings for ever");
+    CHECK_CLOSE(spring_settling_time(&rest, &damped, 1e-15), 0, 0, "at rest under its load");
+    CHECK_BITS(spring_settling_time(&s, &damped, 0), INFINITY, "zero is never reached for good");
+    CHECK_BITS(spring_settling_time(&s, &damped, INFINITY), 0, "anything is near enough");
+    CHECK_BITS(spring_settling_time(&s, &pushed, 0.1), INFINITY, "pushed without a spring: never");
+    CHECK_BITS(spring_settling_time(&s, &nothing, 0.1), INFINITY, "nothing stops it");
+    CHECK_BITS(spring_settling_time(&s, &(spring_params){2, -0.0, -0.0, 0}, 0.1), INFINITY, "-0 is 0");
+    CHECK_BITS(spring_settling_time(&still, &nothing, 0), 0, "nothing moves it");
+    CHECK_CLOSE(spring_settling_time(&s, &drag, 0.01), 4 * log(1.2 / 0.01), 1e-14 * 20, "1.2 m to go, 1/g = 4 s");
+    CHECK_BITS(spring_settling_time(&s, &drag, 1.3), 0, "less than the tolerance to go");
+    CHECK_BITS(spring_settling_time(&s, &drag, -0.0), INFINITY, "zero is never reached, of either sign");
+    CHECK_BITS(spring_settling_time(&s, &nothing, -0.0), INFINITY, "zero is never reached, of either sign");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1e200}, &drag, 1e-200), 4 * (log(4) + 400 * log(10)),
                 4000 * 4 * DBL_EPSILON, "a ratio of 4e400");
-    const double far = spring_rest_time(&(spring_state){1e200, 0}, &damped, 1e-200);
+    const double far = spring_settling_time(&(spring_state){1e200, 0}, &damped, 1e-200);
     CHECK_CLOSE(far, 400 * log(10) / (0.6 / 2.6), 2 * pi / sqrt(2.7 / 1.3),
                 "the envelope, in a ratio of 1e400");
     const spring_params creeping = {1, 1e-300, 1, 0};
-    CHECK(spring_rest_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
-    CHECK_BITS(spring_rest_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
+    CHECK(spring_settling_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
+    CHECK_BITS(spring_settling_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
     const spring_params slower = {1, 1e-308, 1, 0}, weak = {1, 1e-300, 1, 1e300};
-    CHECK_BITS(spring_rest_time(&s, &slower, 0.01), INFINITY, "4.4e308 s is more than a double holds");
-    CHECK_BITS(spring_rest_time(&s, &weak, 0.01), INFINITY, "and so is a rest position of 1e600 m");
+    CHECK_BITS(spring_settling_time(&s, &slower, 0.01), INFINITY, "4.4e308 s is more than a double holds");
+    CHECK_BITS(spring_settling_time(&s, &weak, 0.01), INFINITY, "and so is a rest position of 1e600 m");
     const spring_params critical = {1, 1, 2, 0}, thick = {1, 1, 2.5, 0};
-    CHECK_CLOSE(spring_rest_time(&(spring_state){0, 1}, &critical, 0.1), 3.577152063957297, 1e-14,
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &critical, 0.1), 3.577152063957297, 1e-14,
                 "t exp(-t) = 0.1, the later time");
     /* y = (4 exp(-2 t) - exp(-t/2))/3: through 0, but never below -0.1 */
-    CHECK_CLOSE(spring_rest_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14,
+    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14,
                 "y = 0.5");
 }
 
@@ -187,9 +187,9 @@ static void rest_time_of_any_size(void)
     const spring_params *const springs[] = {&stiff, &thick};
     for (int i = 0; i < 2; i++) {
         const spring_state s = {1, -1e5}, far = {s.x * 0x1p996, s.v * 0x1p996};
-        const double T = spring_rest_time(&s, springs[i], 0.1);
+        const double T = spring_settling_time(&s, springs[i], 0.1);
         CHECK(T > 0 && isfinite(T), "a damped spring comes to rest");
-        CHECK_BITS(spring_rest_time(&far, springs[i], 0.1 * 0x1p996), T, "length in other units");
+        CHECK_BITS(spring_settling_time(&far, springs[i], 0.1 * 0x1p996), T, "length in other units");
     }
 }
 
@@ -197,13 +197,13 @@ static void rest_time_bad_input(void)
 {
     const spring_params p = {1.3, 2.7, 0.6, 0.4}, bad = {1.3, -2.7, 0.6, 0.4};
     const spring_state s = {0.5, 0.3}, lost = {NAN, 0.3}, far = {0.5, INFINITY};
-    CHECK(isnan(spring_rest_time(NULL, &p, 0.1)), "no state");
-    CHECK(isnan(spring_rest_time(&s, NULL, 0.1)), "no parameters");
-    CHECK(isnan(spring_rest_time(&s, &bad, 0.1)), "negative stiffness");
-    CHECK(isnan(spring_rest_time(&lost, &p, 0.1)), "x not a number");
-    CHECK(isnan(spring_rest_time(&far, &p, 0.1)), "v infinite");
-    CHECK(isnan(spring_rest_time(&s, &p, -0.1)), "negative tolerance");
-    CHECK(isnan(spring_rest_time(&s, &p, NAN)), "tolerance not a number");
+    CHECK(isnan(spring_settling_time(NULL, &p, 0.1)), "no state");
+    CHECK(isnan(spring_settling_time(&s, NULL, 0.1)), "no parameters");
+    CHECK(isnan(spring_settling_time(&s, &bad, 0.1)), "negative stiffness");
+    CHECK(isnan(spring_settling_time(&lost, &p, 0.1)), "x not a number");
+    CHECK(isnan(spring_settling_time(&far, &p, 0.1)), "v infinite");
+    CHECK(isnan(spring_settling_time(&s, &p, -0.1)), "negative tolerance");
+    CHECK(isnan(spring_settling_time(&s, &p, NAN)), "tolerance not a number");
 }
 
 static void at_rest(void)
@@ -232,7 +232,7 @@ static void at_rest(void)
     CHECK(!spring_at_rest(&(spring_state){0, INFINITY}, &p, 1, INFINITY), "a lost state");
     const spring_params faint = {1e300, 1e-300, 0, 0};
     CHECK(spring_at_rest(&(spring_state){5, 0}, &faint, 0.1, 0.1), "stiffness/mass is 0: rest is anywhere");
-    CHECK_BITS(spring_rest_time(&(spring_state){5, 0}, &faint, 0.1), 0, "and the same for the time");
+    CHECK_BITS(spring_settling_time(&(spring_state){5, 0}, &faint, 0.1), 0, "and the same for the time");
 }
 
 static void params_from_frequency(void)

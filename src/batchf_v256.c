@@ -1,4 +1,0 @@
-/* SPDX-License-Identifier: MIT */
-/* The float twin of batch_v256.c. */
-#define SPRING_FLOAT
-#include "batch_v256.c"

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/* The links of a scene: where they lie, which are valid, and writing them. */
+#ifndef SPRINGSTEP_SCENE_LINKS_H
+#define SPRINGSTEP_SCENE_LINKS_H
+
+#include "scene_block.h"
+
+/* A link by its slot, the lower end of a band first. */
+typedef struct slotted_link {
+    uint32_t a, b;
+    scalar *stiffness, *rest, *damping; /* damping NULL: not modelled */
+} slotted_link;
+
+SPRING_INLINE slotted_link scene_link(const spring_scene *s, size_t index)
+{
+    const scene_plan *p = &s->plan;
+    const size_t slot = scene_indices(s, p->slot)[index];
+    if (slot >= p->band_slots) {
+        const size_t i = slot - p->band_slots;
+        return (slotted_link){
+            scene_indices(s, p->edge_a)[i],
+            scene_indices(s, p->edge_b)[i],
+            scene_array(s, p->edge_stiffness) + i,
+            scene_array(s, p->edge_rest) + i,
+            p->edge_damping != 0 ? scene_array(s, p->edge_damping) + i : NULL,
+        };
+    }
+    const band_plan *band = p->band;
+    while (band + 1 < p->band + p->bands && band[1].start <= slot)
+        band++;
+    const uint32_t a = band->first + (uint32_t)(slot - band->start - padding);
+    const size_t number = band->coefficients + (band->equal ? 0 : slot - band->start);
+    return (slotted_link){
+        a,
+        a + band->offset,
+        scene_array(s, p->band_stiffness) + number,
+        scene_array(s, p->band_rest) + number,
+        p->band_damping != 0 ? scene_array(s, p->band_damping) + number : NULL,
+    };
+}
+
+static inline bool scene_fits(double value) /* is finite as a scalar, too */
+{
+    return isfinite((scalar)value);
+}
+
+static inline bool scene_not_negative(double value)
+{
+    return value >= 0 && scene_fits(value);
+}
+
+/* The field of a link that is not valid, wherever it lies; NULL: none. */
+static inline const char *scene_link_invalid_field(const spring_link *link)
+{
+    return !scene_not_negative(link->rest)        ? "link.rest"
+           : !scene_not_negative(link->stiffness) ? "link.stiffness"
+           : !scene_not_negative(link->damping)   ? "link.damping"
+                                            : NULL;
+}
+
+/* The field that is too large for the masses at the ends; NULL: none. */
+static inline const char *scene_link_overflows(const spring_link *link, double inverse_a, double inverse_b)
+{
+    const double lightest = fmax(inverse_a, inverse_b);
+    return !scene_fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
+           : !scene_fits(2 * (link->damping * lightest)) ? "link.damping"
+                                                   : NULL;
+}
+
+/* Write the coefficients of a link into its slot. */
+static inline void scene_place(spring_scene *s, size_t index, const spring_link *link)
+{
+    const slotted_link at = scene_link(s, index);
+    *at.stiffness = (scalar)link->stiffness;
+    const scalar rest = (scalar)fabs(link->rest); /* -0.0 would turn a link on one axis */
+    *at.rest = s->plan.axes == 1 && at.a != link->a ? -rest : rest;
+    if (at.damping != NULL)
+        *at.damping = (scalar)link->damping;
+}
+
+#endif

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A scene through time: its steps, its stable step, and whether it is at rest.
+ *
+ * Rollback  The state lies in one of two buffers. The first step of a call reads it there and writes into the other one, and
+ *           further steps stay in that; only a call that succeeds makes it the state. So rolling back costs no copy.
+ *           Without rollback there is one buffer.
+ */
+#define SPRING_SHAPE_SCENE
+#include "methods.h"
+#include "scene_links.h"
+#include "simd/targets.h"
+
+#define SCENE_ROW(value, method) [value] = &method##_scene,
+const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(SCENE_ROW)};
+
+/* ------------------------------------------------------------------------------------------------------- steps */
+
+static const scene_kernels *best_scene_kernels(void)
+{
+    return SPRING_BEST_KERNELS(&spring_scene_v128, &spring_scene_v256, &spring_scene_v512);
+}
+
+static double time_of(const spring_scene *s)
+{
+    return s->t0 + (double)s->steps * s->dt;
+}
+
+double spring_scene_time(const spring_scene *s)
+{
+    return s != NULL ? time_of(s) : NAN;
+}
+
+static bool finite_scene(const spring_scene *s)
+{
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        const scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->plan.particles; i++)
+            if (!isfinite(x[i]) || !isfinite(v[i]))
+                return false;
+    }
+    return true;
+}
+
+/* After a failure without rollback nothing is left of the state, not even what is finite. */
+static void invalidate(spring_scene *s)
+{
+    const int nan = 0xff; /* in each byte */
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        memset(scene_quantity(s, SPRING_POSITION, a), nan, s->plan.particles * sizeof(scalar));
+        memset(scene_quantity(s, SPRING_VELOCITY, a), nan, s->plan.particles * sizeof(scalar));
+    }
+    s->lost = true;
+}
+
+spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
+                                        uint64_t n)
+{
+    if (s == NULL || spring_method_describe(m) == NULL || !isfinite((scalar)dt))
+        return SPRING_EINVAL;
+    if ((s->plan.methods & 1u << m) == 0)
+        return SPRING_EUNSUPPORTED;
+    if (n == 0 || (scalar)dt == 0)
+        return SPRING_OK;
+    if (s->lost && !finite_scene(s)) /* the caller has not set all that was lost */
+        return SPRING_ENONFINITE;
+    s->lost = false;
+    const bool rollback = (s->plan.flags & SPRING_SCENE_NO_UNDO) == 0;
+    const bool same_run = s->dt == dt;
+    const double t0 = same_run ? s->t0 : time_of(s);
+    const uint64_t before = same_run ? s->steps : 0;
+    if (!isfinite(t0 + (double)(before + n) * dt))
+        return SPRING_ENONFINITE;
+    const scene_method *method = spring_scene_methods[m];
+    scene_step step = {.kernels = kernels, .scene = s, .from = s->buffer, .to = rollback ? 1 - s->buffer : s->buffer};
+    step.h = (scalar)dt;
+    for (uint64_t i = 0; i < n; i++) {
+        const double done = (double)(before + i);
+        step.middle = t0 + (done + 0.5) * dt;
+        step.end = t0 + (double)(before + i + 1) * dt;
+        if (!s->force_kept)
+            scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
+                           t0 + done * dt);
+        const scene_outcome outcome = method->step(&step);
+        s->force_kept = outcome.finite && outcome.force_kept;
+        if (!outcome.finite) {
+            if (!rollback)
+                invalidate(s);
+            return SPRING_ENONFINITE;
+        }
+        step.from = step.to;
+    }
+    s->buffer = step.to;
+    s->t0 = t0;
+    s->dt = dt;
+    s->steps = before + n;
+    return SPRING_OK;
+}
+
+spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n)
+{
+    return spring_scene_advance_with(best_scene_kernels(), s, m, dt, n);
+}
+
+/* ----------------------------------------------------------------------------------------------- the stable step */
+
+typedef enum link_coefficient { STIFFNESS, DAMPING } link_coefficient;
+
+static const scalar *coefficient_of(const slotted_link *link, link_coefficient which)
+{
+    return which == STIFFNESS ? link->stiffness : link->damping;
+}
+
+/* The power of two above all coefficients: sums in units of it do not overflow. */
+static int largest_exponent(const spring_scene *s, link_coefficient which)
+{
+    double largest = 0;
+    for (size_t i = 0; i < s->plan.links; i++) {
+        const slotted_link link = scene_link(s, i);
+        const scalar *value = coefficient_of(&link, which);
+        if (value != NULL)
+            largest = fmax(largest, (double)*value);
+    }
+    int exponent;
+    frexp(largest, &exponent);
+    return exponent;
+}
+
+/* Over the particles that move the largest sum of twice a coefficient of their links, once where the other end is pinned,
+   and of what each particle has of its own; by_mass: times the inverse mass. Uses the memory of the forces. */
+static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
+{
+    const scalar *inverse_mass = s->plan.inverse_mass != 0 ? scene_array(s, s->plan.inverse_mass) : NULL;
+    const int exponent = largest_exponent(s, which);
+    scalar *sum = scene_axis(s, s->plan.force, 0);
+    memset(sum, 0, s->plan.particles * sizeof *sum);
+    for (size_t i = 0; i < s->plan.links; i++) {
+        const slotted_link link = scene_link(s, i);
+        if (coefficient_of(&link, which) == NULL)
+            continue;
+        const scalar value = (scalar)ldexp((double)*coefficient_of(&link, which), -exponent);
+        sum[link.a] += inverse_mass != NULL && inverse_mass[link.b] == 0 ? value : 2 * value;
+        sum[link.b] += inverse_mass != NULL && inverse_mass[link.a] == 0 ? value : 2 * value;
+    }
+    double largest = 0;
+    for (size_t i = 0; i < s->plan.particles; i++) {
+        const double inverse = inverse_mass_at(s, i);
+        if (inverse > 0)
+            largest = fmax(largest, ((double)sum[i] + ldexp(own, -exponent)) * (by_mass ? inverse : 1));
+    }
+    s->force_kept = false;
+    return ldexp(largest, exponent);
+}
+
+static double least_inverse_mass(const spring_scene *s) /* of the particles that move; INFINITY: none */
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < s->plan.particles; i++)
+        if (inverse_mass_at(s, i) > 0)
+            least = fmin(least, inverse_mass_at(s, i));
+    return least;
+}
+
+static scene_bounds bounds_of(spring_scene *s)
+{
+    return (scene_bounds){
+        .stiffness = largest_sum(s, STIFFNESS, 0, true),
+        .link_damping = largest_sum(s, DAMPING, 0, true),
+        .damping = largest_sum(s, DAMPING, s->drag, true),
+        .stiffness_sum = largest_sum(s, STIFFNESS, 0, false),
+        .drag = s->drag,
+        .least_drag = s->drag > 0 ? s->drag * least_inverse_mass(s) : 0,
+    };
+}
+
+double spring_scene_stable_step(spring_scene *s, spring_method m)
+{
+    if (s == NULL || spring_method_describe(m) == NULL || spring_scene_methods[m]->stable_step == NULL)
+        return NAN;
+    if (!s->bounds_known) {
+        s->bounds = bounds_of(s);
+        s->bounds_known = true;
+    }
+    return spring_scene_methods[m]->stable_step(&s->bounds);
+}
+
+/* -------------------------------------------------------------------------------------------------------- at rest */
+
+/* Forces of the state, unless they are at hand. Those of a callback are not kept: what *user holds may change before the
+   next step. */
+static void update_force(spring_scene *s)
+{
+    if (s->force_kept)
+        return;
+    scene_find_forces(best_scene_kernels(), s, scene_quantity(s, SPRING_POSITION, 0), scene_quantity(s, SPRING_VELOCITY, 0),
+                      time_of(s));
+    s->force_kept = s->force == NULL;
+}
+
+bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
+{
+    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
+        return false;
+    update_force(s);
+    for (size_t i = 0; i < s->plan.particles; i++) {
+        const double inverse = inverse_mass_at(s, i);
+        double speed = 0, acceleration = 0; /* squared */
+        for (uint32_t a = 0; a < s->plan.axes; a++) {
+            const double v = (double)scene_quantity(s, SPRING_VELOCITY, a)[i];
+            const double force = (double)scene_axis(s, s->plan.force, a)[i] - s->drag * v;
+            const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
+            speed += v * v;
+            acceleration += felt * felt;
+        }
+        if (!(sqrt(speed) <= v_tol) || !(sqrt(acceleration) <= a_tol))
+            return false;
+    }
+    return true;
+}

@@ -1,4 +1,0 @@
-/* SPDX-License-Identifier: MIT */
-/* The float twin of scene.c. */
-#define SPRING_FLOAT
-#include "scene.c"
