@@ -49,7 +49,7 @@ static double exact_stable_step(const spring_roots *r)
 }
 
 static const one_method exact_one = {
-    .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true},
+    .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true, .label = "exact"},
     .kernel = spring_step_exact,
     .loop = {{exact_evaluation, exact_evaluation}, {exact_evaluation, exact_evaluation}},
     .at_once = UINT64_MAX,

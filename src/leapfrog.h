@@ -81,7 +81,7 @@ static double leapfrog_stable_step(const spring_roots *r)
 }
 
 static const one_method leapfrog_one = {
-    .info = {.name = "leapfrog", .order = 2, .forces_per_step = 1, .symplectic = true, .springs = true, .scenes = true},
+    .info = {.name = "leapfrog", .order = 2, .forces_per_step = 1, .symplectic = true, .springs = true, .scenes = true, .label = "leapfrog"},
     .kernel = spring_step_leapfrog,
     .loop = {{leapfrog_plain, leapfrog_loaded}, {leapfrog_damped, leapfrog_damped_loaded}},
     .at_once = SPRING_CHECK_INTERVAL,

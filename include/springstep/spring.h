@@ -234,6 +234,7 @@ typedef struct spring_method_info {
     bool symplectic;     /* without damping: bounded energy error over any time */
     bool springs;        /* offered for one spring and batches */
     bool scenes;         /* offered for scenes */
+    const char *label;   /* as in a text: "RK4" */
 } spring_method_info;
 
 typedef void spring_step_fn(spring_state *s, const spring_params *p, double dt);
