@@ -74,6 +74,7 @@ typedef struct scene_kernels {
     scene_link_kernel *edges[3][2];
     scene_motion_kernel *kick_drift;  /* v = v0 + kick a(v0);       x = x0 + drift v */
     scene_motion_kernel *solved_kick; /* v = v0 + kick a(v) */
+    scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     scene_motion_kernel *stage;       /* v = v0 + kick a(slope);    x = x0 + drift slope */
     scene_motion_kernel *first_stage; /* the same, and the sums are slope and a(slope) */
     scene_motion_kernel *next_stage;  /* the same, and they are added to the sums, times weight */
@@ -237,22 +238,25 @@ SPRING_INLINE void edges(const scene_links *s, uint32_t axes, bool damped)
 typedef struct coordinates {
     size_t at;         /* in the arrays of a quantity */
     real inverse_mass; /* 0: pinned */
-    real gravity;
+    scalar gravity;
     real drag;          /* [1/s] */
     solved_share share; /* of a solved kick; else unset */
+    real kick, drift, weight; /* as in scene_motion, where a store might have changed them for all a compiler knows */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-SPRING_INLINE coordinates coordinates_from(const scene_motion *s, size_t i, bool solved)
+/* c: with kick, drift and weight. */
+SPRING_INLINE coordinates coordinates_from(const scene_motion *s, size_t i, coordinates c, bool solved)
 {
     real inverse_mass = s->inverse_mass != NULL ? vec_load(s->inverse_mass + i) : splat(s->inverse_mass_all);
     if (i + lanes > s->particles) /* what fills the last vector stays where it is, and finite */
         inverse_mass =
             select_real(vec_load(lane_number) < splat((scalar)(s->particles - i)), inverse_mass, splat(0));
-    coordinates c = {.inverse_mass = inverse_mass, .drag = s->drag * inverse_mass};
+    c.inverse_mass = inverse_mass;
+    c.drag = s->drag * inverse_mass;
     if (solved)
-        c.share = solved_share_of(splat(s->kick) * c.drag);
+        c.share = solved_share_of(c.kick * c.drag);
     return c;
 }
 
@@ -281,12 +285,13 @@ typedef mask motion_part(const scene_motion *s, const coordinates *c);
 /* The one loop of all kernels. */
 SPRING_INLINE bool all_coordinates(const scene_motion *s, motion_part *part, bool solved)
 {
+    const coordinates all = {.kick = splat(s->kick), .drift = splat(s->drift), .weight = splat(s->weight)};
     mask wrong = {0};
     for (size_t i = 0; i < s->particles; i += lanes) {
-        coordinates c = coordinates_from(s, i, solved);
+        coordinates c = coordinates_from(s, i, all, solved);
         for (uint32_t a = 0; a < s->axes; a++) {
             c.at = a * s->stride + i;
-            c.gravity = splat(s->gravity[a]);
+            c.gravity = s->gravity[a];
             wrong |= part(s, &c);
         }
     }
@@ -296,13 +301,13 @@ SPRING_INLINE bool all_coordinates(const scene_motion *s, motion_part *part, boo
 SPRING_INLINE mask kick_drift_part(const scene_motion *s, const coordinates *c)
 {
     const real v0 = vec_load(s->v0 + c->at);
-    const real v = v0 + s->kick * acceleration(s, c, v0);
-    return move_to(s, c, vec_load(s->x0 + c->at) + s->drift * v, v);
+    const real v = v0 + c->kick * acceleration(s, c, v0);
+    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v);
 }
 
 SPRING_INLINE real solved_velocity(const scene_motion *s, const coordinates *c)
 {
-    const real u = vec_load(s->v0 + c->at) + s->kick * free_acceleration(s, c);
+    const real u = vec_load(s->v0 + c->at) + c->kick * free_acceleration(s, c);
     return s->drag != 0 ? c->share.keep * u + c->share.lose * u : u;
 }
 
@@ -313,9 +318,15 @@ SPRING_INLINE mask solved_kick_part(const scene_motion *s, const coordinates *c)
     return not_finite(v);
 }
 
+SPRING_INLINE mask solved_kick_drift_part(const scene_motion *s, const coordinates *c)
+{
+    const real v = solved_velocity(s, c);
+    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v);
+}
+
 SPRING_INLINE mask move_along(const scene_motion *s, const coordinates *c, real dx, real dv)
 {
-    return move_to(s, c, vec_load(s->x0 + c->at) + s->drift * dx, vec_load(s->v0 + c->at) + s->kick * dv);
+    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * dx, vec_load(s->v0 + c->at) + c->kick * dv);
 }
 
 SPRING_INLINE mask stage_part(const scene_motion *s, const coordinates *c)
@@ -335,8 +346,8 @@ SPRING_INLINE mask first_stage_part(const scene_motion *s, const coordinates *c)
 SPRING_INLINE mask next_stage_part(const scene_motion *s, const coordinates *c)
 {
     const real dx = vec_load(s->slope + c->at), dv = acceleration(s, c, dx);
-    vec_store(s->sum_x + c->at, vec_load(s->sum_x + c->at) + s->weight * dx);
-    vec_store(s->sum_v + c->at, vec_load(s->sum_v + c->at) + s->weight * dv);
+    vec_store(s->sum_x + c->at, vec_load(s->sum_x + c->at) + c->weight * dx);
+    vec_store(s->sum_v + c->at, vec_load(s->sum_v + c->at) + c->weight * dv);
     return move_along(s, c, dx, dv);
 }
 
@@ -354,6 +365,11 @@ static bool kick_drift(const scene_motion *s)
 static bool solved_kick(const scene_motion *s)
 {
     return all_coordinates(s, solved_kick_part, true);
+}
+
+static bool solved_kick_drift(const scene_motion *s)
+{
+    return all_coordinates(s, solved_kick_drift_part, true);
 }
 
 static bool stage(const scene_motion *s)
@@ -398,11 +414,11 @@ LINK_KERNELS(edges, 3)
 #define LINK_TABLE(kernel) \
     {{kernel##_1, kernel##_1_damped}, {kernel##_2, kernel##_2_damped}, {kernel##_3, kernel##_3_damped}}
 
-#define SCENE_KERNELS                                                                                         \
-    {                                                                                                         \
-        .bands = LINK_TABLE(bands), .edges = LINK_TABLE(edges), .kick_drift = kick_drift,                     \
-        .solved_kick = solved_kick, .stage = stage, .first_stage = first_stage, .next_stage = next_stage,     \
-        .last_stage = last_stage,                                                                             \
+#define SCENE_KERNELS                                                                                  \
+    {                                                                                                  \
+        .bands = LINK_TABLE(bands), .edges = LINK_TABLE(edges), .kick_drift = kick_drift,              \
+        .solved_kick = solved_kick, .solved_kick_drift = solved_kick_drift, .stage = stage,            \
+        .first_stage = first_stage, .next_stage = next_stage, .last_stage = last_stage,                \
     }
 
 #endif
