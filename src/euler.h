@@ -56,7 +56,6 @@ static const one_method euler_one = {
     .info = {.name = "euler", .order = 1, .forces_per_step = 1, .springs = true, .scenes = true, .label = "Euler"},
     .kernel = spring_step_euler,
     .loop = {{euler_plain, euler_loaded}, {euler_damped, euler_damped_loaded}},
-    .at_once = SPRING_CHECK_INTERVAL,
     .stable_step = euler_stable_step,
 };
 

@@ -35,13 +35,6 @@ SPRING_INLINE void exact_step(real *x, real *v, real a, const exact_coefficients
 }
 
 #if defined(SPRING_SHAPE_ONE)
-/* n steps are one over n dt. */
-static spring_state exact_evaluation(spring_state s, const spring_params *p, const spring_rates *r, double dt, uint64_t n)
-{
-    (void)r;
-    return spring_exact(s, p, dt * (double)n);
-}
-
 static double exact_stable_step(const spring_roots *r)
 {
     (void)r;
@@ -51,8 +44,6 @@ static double exact_stable_step(const spring_roots *r)
 static const one_method exact_one = {
     .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true, .label = "exact"},
     .kernel = spring_step_exact,
-    .loop = {{exact_evaluation, exact_evaluation}, {exact_evaluation, exact_evaluation}},
-    .at_once = UINT64_MAX,
     .stable_step = exact_stable_step,
 };
 

@@ -84,7 +84,6 @@ static const one_method leapfrog_one = {
     .info = {.name = "leapfrog", .order = 2, .forces_per_step = 1, .symplectic = true, .springs = true, .scenes = true, .label = "leapfrog"},
     .kernel = spring_step_leapfrog,
     .loop = {{leapfrog_plain, leapfrog_loaded}, {leapfrog_damped, leapfrog_damped_loaded}},
-    .at_once = SPRING_CHECK_INTERVAL,
     .stable_step = leapfrog_stable_step,
 };
 

@@ -24,13 +24,12 @@
 #endif
 
 /* n kernel calls in one. */
-typedef spring_state spring_loop(spring_state s, const spring_params *p, const spring_rates *r, double dt, uint64_t n);
+typedef spring_state spring_loop(spring_state s, const spring_rates *r, double dt, uint64_t n);
 
 typedef struct one_method {
     spring_method_info info;
     spring_step_fn *kernel;
-    spring_loop *loop[2][2];                      /* by damped, loaded */
-    uint64_t at_once;                             /* the most steps of one call of a loop */
+    spring_loop *loop[2][2];                      /* by damped, loaded; NULL: n steps are one evaluation over n dt */
     double (*stable_step)(const spring_roots *r); /* [s] */
 } one_method;
 

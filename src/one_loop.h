@@ -14,12 +14,10 @@ SPRING_INLINE spring_state METHOD(loop)(spring_state s, const spring_rates *r, d
     return s;
 }
 
-#define ONE_LOOP(name, damped, loaded)                                                                            \
-    static spring_state METHOD(name)(spring_state s, const spring_params *p, const spring_rates *r, double dt, \
-                                     uint64_t n)                                                              \
-    {                                                                                                         \
-        (void)p;                                                                                              \
-        return METHOD(loop)(s, r, dt, n, damped, loaded);                                                     \
+#define ONE_LOOP(name, damped, loaded)                                                                \
+    static spring_state METHOD(name)(spring_state s, const spring_rates *r, double dt, uint64_t n) \
+    {                                                                                              \
+        return METHOD(loop)(s, r, dt, n, damped, loaded);                                          \
     }
 ONE_LOOP(plain, false, false)
 ONE_LOOP(loaded, false, true)
@@ -27,18 +25,22 @@ ONE_LOOP(damped, true, false)
 ONE_LOOP(damped_loaded, true, true)
 #undef ONE_LOOP
 
+SPRING_INLINE spring_state METHOD(shortest_loop)(spring_state s, const spring_rates *r, double dt, uint64_t n)
+{
+    const bool damped = r->g != 0, loaded = r->a != 0;
+    if (!damped && !loaded)
+        return METHOD(loop)(s, r, dt, n, false, false);
+    if (!loaded)
+        return METHOD(loop)(s, r, dt, n, true, false);
+    if (!damped)
+        return METHOD(loop)(s, r, dt, n, false, true);
+    return METHOD(loop)(s, r, dt, n, true, true);
+}
+
 SPRING_INLINE void METHOD(one_step)(spring_state *s, const spring_params *p, double dt)
 {
     const spring_rates r = spring_rates_of(p);
-    const bool damped = r.g != 0, loaded = r.a != 0;
-    if (!damped && !loaded)
-        *s = METHOD(loop)(*s, &r, dt, 1, false, false);
-    else if (!loaded)
-        *s = METHOD(loop)(*s, &r, dt, 1, true, false);
-    else if (!damped)
-        *s = METHOD(loop)(*s, &r, dt, 1, false, true);
-    else
-        *s = METHOD(loop)(*s, &r, dt, 1, true, true);
+    *s = METHOD(shortest_loop)(*s, &r, dt, 1);
 }
 
 #undef SPRING_METHOD

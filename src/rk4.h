@@ -115,7 +115,6 @@ static const one_method rk4_one = {
     .info = {.name = "rk4", .order = 4, .forces_per_step = 4, .springs = true, .scenes = true, .label = "RK4"},
     .kernel = spring_step_rk4,
     .loop = {{rk4_plain, rk4_loaded}, {rk4_damped, rk4_damped_loaded}},
-    .at_once = SPRING_CHECK_INTERVAL,
     .stable_step = rk4_stable_step,
 };
 

@@ -38,8 +38,11 @@ spring_status spring_advance(spring_state *s, const spring_params *p, spring_met
         return SPRING_OK;
     spring_loop *loop = method->loop[r.g != 0][r.a != 0];
     while (n > 0) {
-        const uint64_t some = n < method->at_once ? n : method->at_once;
-        now = loop(now, p, &r, dt, some);
+        uint64_t some = n < SPRING_CHECK_INTERVAL ? n : SPRING_CHECK_INTERVAL;
+        if (loop != NULL)
+            now = loop(now, &r, dt, some);
+        else
+            now = spring_exact(now, p, dt * (double)(some = n));
         if (!finite_state(now))
             return SPRING_ENONFINITE;
         n -= some;

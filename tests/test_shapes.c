@@ -20,8 +20,8 @@ static const size_t corner_count = sizeof corners / sizeof corners[0];
 static spring_state steps(const one_method *m, spring_state s, spring_rates r, double dt, uint64_t n, bool damped,
                           bool loaded)
 {
-    const spring_params p = {1, r.w, r.g, r.a};
-    return m->loop[damped][loaded](s, &p, &r, dt, n);
+    spring_loop *loop = m->loop[damped][loaded];
+    return loop != NULL ? loop(s, &r, dt, n) : s;
 }
 
 static void zero_is_absent_from(const one_method *m, spring_state s, double stiffness, double dt)

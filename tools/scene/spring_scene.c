@@ -371,7 +371,7 @@ static bool run(view *v, uint64_t steps, uint64_t frame_count)
 }
 
 /* The steps of a frame are whole, so that frames are equally far apart. */
-static double default_step(const spring_scene *scene, bool pushed)
+static double default_step(spring_scene *scene, bool pushed)
 {
     double longest = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
     if (pushed)
@@ -379,7 +379,7 @@ static double default_step(const spring_scene *scene, bool pushed)
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
 }
 
-static void remark_on_step(const spring_scene *scene, bool pushed)
+static void remark_on_step(spring_scene *scene, bool pushed)
 {
     const double stable = spring_scene_stable_step(scene, (spring_method)method);
     if (stable == 0)
