@@ -3,6 +3,7 @@
 #ifndef SPRINGSTEP_ROOTS_H
 #define SPRINGSTEP_ROOTS_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include <springstep/spring.h>
@@ -27,6 +28,14 @@ static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an ove
 static inline double spring_slow_root(const spring_roots *r) /* [1/s]; b - split would cancel */
 {
     return r->w / (r->b + r->split);
+}
+
+/* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow. (hypot() has other last bits in each C library.) */
+static inline double spring_hypot(double a, double b)
+{
+    const double large = fmax(a, b), small = fmin(a, b);
+    const double ratio = large > 0 ? small / large : 0;
+    return large * sqrt(1 + ratio * ratio);
 }
 
 #endif
