@@ -34,13 +34,13 @@ static void arkstep(void)
 
 static void erkstep(void)
 {
-#if SUNDIALS_VERSION_MAJOR > 6 || (SUNDIALS_VERSION_MAJOR == 6 && SUNDIALS_VERSION_MINOR >= 7)
-    skip("SUNDIALS " SUNDIALS_VERSION " has the repaired ERKStep; the error was in versions before 6.7.0");
-#else
+#if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
     uint64_t evaluations;
     CHECK(distance(ode_erkstep_rk4, &evaluations) > 1e-8,
           "ERKStep before 6.7.0 treats the classical table as first-same-as-last");
     CHECK(evaluations < 4 * steps, "and saves an evaluation that it must not save");
+#else
+    skip("SUNDIALS " SUNDIALS_VERSION " has the repaired ERKStep; the error was in versions before 6.7.0");
 #endif
 }
 

@@ -59,8 +59,8 @@ const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
 /* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of steps. */
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);
 
-/* The same as ERKStep, which SUNDIALS before 6.7.0 integrates wrongly from the second step on: it treats the table as
-   first-same-as-last. Here for the test that knows. */
+/* The same as ERKStep, before SUNDIALS 6.7.0 only, for the test that knows its error: it treats the table as
+   first-same-as-last from the second step on. */
 const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n);
 
 #endif

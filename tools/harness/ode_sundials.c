@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* SUNDIALS CVODE and ARKODE, 6.4 and 7.x; see ode.h. */
-#include <sundials/sundials_config.h>
-
-#if SUNDIALS_VERSION_MAJOR >= 7 && SUNDIALS_MPI_ENABLED
-#include <mpi.h>
-#endif
-
+/* SUNDIALS CVODE and ARKODE, 6.4 to 7.x; see ode.h. */
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
+#include <sundials/sundials_config.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -17,10 +12,26 @@
 
 #include "harness/ode.h"
 
+/* Names are those of 7.1, which calls the older ones deprecated. */
+#if SUNDIALS_VERSION_MAJOR < 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR < 1)
+#define ARKodeEvolve         ARKStepEvolve
+#define ARKodeFree           ARKStepFree
+#define ARKodeGetNumSteps    ARKStepGetNumSteps
+#define ARKodeSVtolerances   ARKStepSVtolerances
+#define ARKodeSetFixedStep   ARKStepSetFixedStep
+#define ARKodeSetMaxNumSteps ARKStepSetMaxNumSteps
+#define ARKodeSetOrder       ARKStepSetOrder
+#define ARKodeSetStopTime    ARKStepSetStopTime
+#define ARKodeSetUserData    ARKStepSetUserData
+#endif
+
+/* What goes wrong is returned, not printed: since 7.0 the context is told so, before each solver was. */
 #if SUNDIALS_VERSION_MAJOR >= 7
-#define NO_COMMUNICATOR SUN_COMM_NULL
+#define CVodeSetErrFile(memory, file)   ((void)0)
+#define ARKStepSetErrFile(memory, file) ((void)0)
 #else
-#define NO_COMMUNICATOR NULL
+#define SUN_COMM_NULL                        NULL
+#define SUNContext_ClearErrHandlers(context) ((void)0)
 #endif
 
 static int derivative(sunrealtype t, N_Vector y, N_Vector dy, void *user)
@@ -44,11 +55,9 @@ typedef struct session {
 static const char *open_session(session *s, const ode *o, double *y, double tolerance)
 {
     *s = (session){0};
-    if (SUNContext_Create(NO_COMMUNICATOR, &s->context) != 0)
+    if (SUNContext_Create(SUN_COMM_NULL, &s->context) != 0)
         return "SUNDIALS: no context";
-#if SUNDIALS_VERSION_MAJOR >= 7 /* what goes wrong is returned, not printed; before: see each solver */
     SUNContext_ClearErrHandlers(s->context);
-#endif
     s->y = N_VMake_Serial((sunindextype)o->size, y, s->context);
     s->tolerance = N_VNew_Serial((sunindextype)o->size, s->context);
     if (s->y == NULL || s->tolerance == NULL)
@@ -74,25 +83,6 @@ static void close_session(session *s)
         SUNContext_Free(&s->context);
 }
 
-static void cvode_silently(void *memory)
-{
-#if SUNDIALS_VERSION_MAJOR < 7
-    CVodeSetErrFile(memory, NULL);
-#else
-    (void)memory;
-#endif
-}
-
-static void arkstep_silently(void *memory)
-{
-#if SUNDIALS_VERSION_MAJOR < 7
-    if (memory != NULL)
-        ARKStepSetErrFile(memory, NULL);
-#else
-    (void)memory;
-#endif
-}
-
 /* Above, CVODE's manual would have a sparse solver or an iterative one, for a dense matrix takes size^3 operations. */
 static const size_t dense_at_most = 100;
 
@@ -102,7 +92,7 @@ static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_m
     s->memory = CVodeCreate(method == ODE_ADAMS ? CV_ADAMS : CV_BDF, s->context);
     if (s->memory == NULL || CVodeInit(s->memory, derivative, 0, s->y) != CV_SUCCESS)
         return "CVODE: cannot start";
-    cvode_silently(s->memory);
+    CVodeSetErrFile(s->memory, NULL);
     if (CVodeSVtolerances(s->memory, tolerance, s->tolerance) != CV_SUCCESS ||
         CVodeSetUserData(s->memory, o) != CV_SUCCESS || CVodeSetMaxNumSteps(s->memory, -1) != CV_SUCCESS ||
         CVodeSetStopTime(s->memory, duration) != CV_SUCCESS)
@@ -144,6 +134,14 @@ const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method metho
     return message;
 }
 
+static void *create_arkstep(const session *s)
+{
+    void *memory = ARKStepCreate(derivative, NULL, 0, s->y, s->context);
+    if (memory != NULL)
+        ARKStepSetErrFile(memory, NULL);
+    return memory;
+}
+
 static ARKodeButcherTable classical_table(void)
 {
     sunrealtype c[] = {0, 0.5, 0.5, 1};
@@ -160,21 +158,20 @@ const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
     const ARKodeButcherTable table = classical_table();
     double t = 0;
     if (message == NULL) {
-        s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
-        arkstep_silently(s.memory);
-        if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
+        s.memory = create_arkstep(&s);
+        if (s.memory == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
             ARKStepSetTables(s.memory, 4, 0, NULL, table) != ARK_SUCCESS ||
-            ARKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
+            ARKodeSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
     ode_start_clock(o);
     for (uint64_t i = 0; i < n && message == NULL; i++)
-        if (ARKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
+        if (ARKodeEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
             message = "ARKStep: the integration failed";
     ode_stop_clock(o);
     o->steps += n;
     if (s.memory != NULL)
-        ARKStepFree(&s.memory);
+        ARKodeFree(&s.memory);
     ARKodeButcherTable_Free(table);
     close_session(&s);
     return message;
@@ -187,27 +184,27 @@ const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tole
     double t = 0;
     long steps = 0;
     if (message == NULL) {
-        s.memory = ARKStepCreate(derivative, NULL, 0, s.y, s.context);
-        arkstep_silently(s.memory);
-        if (s.memory == NULL || ARKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ARKStepSetOrder(s.memory, 4) != ARK_SUCCESS ||
-            ARKStepSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
-            ARKStepSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS ||
-            ARKStepSetStopTime(s.memory, duration) != ARK_SUCCESS)
+        s.memory = create_arkstep(&s);
+        if (s.memory == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
+            ARKodeSetOrder(s.memory, 4) != ARK_SUCCESS ||
+            ARKodeSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
+            ARKodeSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS ||
+            ARKodeSetStopTime(s.memory, duration) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
     ode_start_clock(o);
-    if (message == NULL && ARKStepEvolve(s.memory, duration, s.y, &t, ARK_NORMAL) < 0)
+    if (message == NULL && ARKodeEvolve(s.memory, duration, s.y, &t, ARK_NORMAL) < 0)
         message = "ARKStep: the integration failed";
     ode_stop_clock(o);
-    if (message == NULL && ARKStepGetNumSteps(s.memory, &steps) == ARK_SUCCESS)
+    if (message == NULL && ARKodeGetNumSteps(s.memory, &steps) == ARK_SUCCESS)
         o->steps += (uint64_t)steps;
     if (s.memory != NULL)
-        ARKStepFree(&s.memory);
+        ARKodeFree(&s.memory);
     close_session(&s);
     return message;
 }
 
+#if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
 const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
 {
     session s;
@@ -231,3 +228,4 @@ const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
     close_session(&s);
     return message;
 }
+#endif
