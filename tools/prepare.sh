@@ -17,7 +17,9 @@ present() {
     local kind=$1 name=$2 python
     case $kind in
     command) command -v "$name" >/dev/null ;;
-    header) printf '#include <%s>\n' "$name" | cc -E - >/dev/null 2>&1 ;;
+    header) # not by including it: SUNDIALS with MPI includes mpi.h, which Meson finds in a folder of its own
+        printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$name" | cc -E - >/dev/null 2>&1
+        ;;
     pkgconfig) pkg-config --exists "$name" 2>/dev/null ;;
     python) # the Python that runs meson, from its first line, is the one that makes the page
         python=$(sed -n '1s/^#! *//p;q' "$(command -v meson)" 2>/dev/null) || return 1
@@ -48,6 +50,7 @@ give_up() {
 install_missing() {
     local -a missing as_root=()
     mapfile -t missing < <(missing_packages)
+    wait $! # its status
     ((${#missing[@]})) || return 0
     command -v apt-get >/dev/null || give_up 'packages can be installed here only by you' "${missing[@]}"
     if ((EUID)); then
