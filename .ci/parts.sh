@@ -1,0 +1,79 @@
+# shellcheck shell=bash
+# SPDX-License-Identifier: MIT
+# What .ci/run and .ci/full have in common: a copy of the checkout to work on, parts that are counted and timed, the
+# table of them at the end. Sourced by both.
+set -uo pipefail
+
+export CI=true DEBIAN_FRONTEND=noninteractive
+exec </dev/null
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+work=$(mktemp -d)
+chmod 755 "$work" # tests run as another user, too
+trap 'rm -rf --one-file-system "$work"' EXIT
+tree=$work/springstep
+mkdir "$tree"
+tar -C "$root" --exclude-vcs --exclude='./build*' -c . | tar -C "$tree" -x
+
+closing='^([0-9]+) passed, ([0-9]+) failed, ([0-9]+) skipped$'
+passed=0 failed=0 skipped=0
+rows=()
+
+# row NAME SECONDS RESULT
+row() {
+    local tenths=$((($2 + 3) / 6))
+    rows+=("$(printf '%-24s %5d.%d  %s' "$1" $((tenths / 10)) $((tenths % 10)) "$3")")
+}
+
+# run_part NAME COMMAND...: shows what it prints, and leaves it in $work/log and the time it took in $seconds
+run_part() {
+    local name=$1 status=0 start=$SECONDS
+    shift
+    printf '\n=== %s\n' "$name"
+    "$@" 2>&1 | tee "$work/log" || status=1
+    seconds=$((SECONDS - start))
+    return $status
+}
+
+# suite NAME COMMAND...: a part that runs tests and prints their count. It fails if a test does, or none was counted.
+suite() {
+    local result counted status=0
+    run_part "$@" || status=1
+    result=$(grep -E "$closing" "$work/log" | tail -n 1)
+    if [[ $result =~ $closing ]]; then
+        counted=${BASH_REMATCH[2]}
+        passed=$((passed + BASH_REMATCH[1]))
+        failed=$((failed + counted))
+        skipped=$((skipped + BASH_REMATCH[3]))
+    else
+        counted=0 status=1 result='no count of tests'
+    fi
+    if [ $status -ne 0 ]; then
+        result="FAILED: $result"
+        if [ "$counted" -eq 0 ]; then failed=$((failed + 1)); fi
+    fi
+    row "$1" "$seconds" "$result"
+}
+
+# check NAME COMMAND...: a part that is one check; it counts where it fails
+check() {
+    local result=passed
+    if ! run_part "$@"; then
+        result=FAILED
+        failed=$((failed + 1))
+    fi
+    row "$1" "$seconds" "$result"
+}
+
+install_packages() {
+    apt-get -q update && apt-get -q -y install --no-install-recommends "$@"
+}
+
+# Last: the table and the sum of the counts; its status is that of the script.
+finish() {
+    row total $SECONDS ''
+    printf '\n%-24s minutes  result\n' part
+    printf '%s\n' "${rows[@]}"
+    echo "$passed passed, $failed failed, $skipped skipped"
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+}
