@@ -37,8 +37,8 @@ struct cli_table {
     FILE *stream;
     const char *option;       /* that names the file */
     const char *name;         /* as it was given */
-    char path[PATH_MAX];      /* what the file will be called; empty: it is written directly */
-    char temporary[PATH_MAX]; /* what it is called until then; empty: there is none */
+    char path[PATH_MAX];      /* what the file will be called */
+    char temporary[PATH_MAX]; /* what it is called until then; empty: it is written directly */
     bool stamped;
 };
 
@@ -47,6 +47,7 @@ static const cli_program *program;
 static const char *output_path;
 static char *command; /* for the stamp: the options as they were understood */
 static cli_table tables[4];
+static time_t started;
 static size_t table_count;
 static bool progress_shown;
 
@@ -109,33 +110,28 @@ static void remove_temporaries(void)
 static void on_signal(int number)
 {
     remove_temporaries();
-    raise(number); /* SA_RESETHAND: this time it ends the process */
+    signal(number, SIG_DFL);
+    raise(number);
 }
 
-/* A closed pipe or a file size limit becomes a failed write, with its message; an interrupt cleans up. */
 static void handle_signals(void)
 {
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN);
-    static const int ending[] = {SIGHUP, SIGINT, SIGTERM};
-    for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++) {
-        struct sigaction action;
-        sigaction(ending[i], NULL, &action);
-        if (action.sa_handler == SIG_IGN) /* started in the background, or by nohup */
-            continue;
-        action.sa_handler = on_signal;
-        action.sa_flags = (int)SA_RESETHAND | SA_NODEFER;
-        sigaction(ending[i], &action, NULL);
-    }
+    static const int ending[] = {SIGHUP, SIGINT, SIGPIPE, SIGTERM};
+    for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++)
+        if (signal(ending[i], on_signal) == SIG_IGN) /* started in the background, or by nohup */
+            signal(ending[i], SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN); /* a file size limit is a failed write, with its message */
 }
 
 /* A standard stream that the caller has closed would lend its number to the next file that is opened, and messages
-   would end up among the data. The wrong access mode makes using it fail, as it should. */
+   would end up among the data. Opened for reading alone, it cannot be written either. */
 static void occupy_standard_streams(void)
 {
-    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
-        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            exit(CLI_IO);
+    int fd;
+    do
+        fd = open("/dev/null", O_RDONLY);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    close(fd);
 }
 
 static _Noreturn void fail_to_write(const cli_table *table)
@@ -146,41 +142,31 @@ static _Noreturn void fail_to_write(const cli_table *table)
              table->option, table->name, strerror(errno));
 }
 
+static _Noreturn void fail_as_taken(const cli_table *table)
+{
+    cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", table->option,
+             table->name);
+}
+
 static void close_stream(const cli_table *table)
 {
     if (ferror(table->stream) != 0 || fflush(table->stream) != 0 || fclose(table->stream) != 0)
         fail_to_write(table);
 }
 
-/* A temporary file in the same directory, so that a rename can put it in place at once. */
-static FILE *open_temporary(cli_table *table, mode_t mode)
+/* Open a file of another name beside it, so that a rename can put it in place at once. It is the same name for the same
+   file, and of no other process: in a container the numbers of processes come again. */
+static void open_temporary(cli_table *table)
 {
-    const char *slash = strrchr(table->path, '/');
-    const int folder = slash != NULL ? (int)(slash + 1 - table->path) : 0;
-    const int length = snprintf(table->temporary, PATH_MAX, "%.*s.springstep-XXXXXX", folder, table->path);
+    char name[PATH_MAX];
     errno = ENAMETOOLONG;
-    const int fd = length < PATH_MAX ? mkstemp(table->temporary) : -1;
-    if (fd < 0) {
-        table->temporary[0] = '\0';
-        fail_to_write(table);
-    }
-    if (fchmod(fd, mode) != 0)
-        fail_to_write(table);
-    return fdopen(fd, "w");
-}
-
-/* The full path of a file that does not exist yet. */
-static bool resolve_new(const char *path, char *full)
-{
-    char folder[PATH_MAX];
-    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
-    snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(name - path) : 1,
-             slash != NULL ? path : ".");
-    if (realpath(folder, full) == NULL)
-        return false;
-    const size_t length = strlen(full);
-    errno = ENAMETOOLONG;
-    return snprintf(full + length, PATH_MAX - length, "/%s", name) < (int)(PATH_MAX - length);
+    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)started, (long)getpid()) <
+        PATH_MAX)
+        table->stream = fopen(name, "wx");
+    if (table->stream != NULL)
+        strcpy(table->temporary, name);
+    else if (errno == EEXIST)
+        fail_as_taken(table);
 }
 
 static void open_stream(cli_table *table)
@@ -192,16 +178,15 @@ static void open_stream(cli_table *table)
     if (device || (exists && !S_ISREG(status.st_mode))) {
         table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
     } else if (exists) {
-        if (access(path, W_OK) != 0)
+        /* a link stays a link to what it points to, a file keeps its mode */
+        if (access(path, W_OK) == 0 && realpath(path, table->path) != NULL)
+            open_temporary(table);
+        if (table->stream != NULL && fchmod(fileno(table->stream), status.st_mode & 0777) != 0)
             fail_to_write(table);
-        if (realpath(path, table->path) != NULL) /* a link stays a link to what it points to */
-            table->stream = open_temporary(table, status.st_mode & 0777);
-    } else if (errno == ENOENT && lstat(path, &status) != 0 &&
-               strlen(path) < PATH_MAX) { /* no link to nowhere */
-        const mode_t mask = umask(0);
-        umask(mask);
-        if (resolve_new(path, table->path))
-            table->stream = open_temporary(table, 0666 & ~mask);
+    } else if (errno == ENOENT && lstat(path, &status) != 0) {
+        /* a new file, and no link to nowhere; its name fits, or stat() had not said ENOENT */
+        strcpy(table->path, path);
+        open_temporary(table);
     }
     if (table->stream == NULL)
         fail_to_write(table);
@@ -209,22 +194,17 @@ static void open_stream(cli_table *table)
 
 cli_table *cli_open_file(const char *option, const char *path)
 {
-    const char *name = path != NULL ? path : "/dev/stdout";
-    for (size_t i = 0; i < table_count; i++)
-        if (strcmp(tables[i].name, name) == 0)
-            cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", option, name);
     assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more */
-    cli_table *table = &tables[table_count];
-    *table = (cli_table){.option = option, .name = name};
-    table_count++;
-    if (strcmp(name, "/dev/stdout") == 0) /* not opened anew: that would truncate a file behind it */
-        table->stream = stdout;
-    else
+    cli_table *table = &tables[table_count++];
+    *table = (cli_table){.option = option, .name = path != NULL ? path : "/dev/stdout"};
+    if (strcmp(table->name, "/dev/stdout") != 0) {
         open_stream(table);
-    for (size_t i = 0; i + 1 < table_count; i++)
-        if (table->path[0] != '\0' && strcmp(tables[i].path, table->path) == 0)
-            cli_fail(CLI_USAGE, "--%s: \"%s\" is the file of --%s already; it should be another file", option,
-                     name, tables[i].option);
+    } else { /* not opened anew: that would truncate a file behind it */
+        for (size_t i = 0; i < table_count; i++)
+            if (tables[i].stream == stdout)
+                fail_as_taken(table);
+        table->stream = stdout;
+    }
     return table;
 }
 
@@ -288,7 +268,7 @@ void cli_columns(cli_table *table, const char *names)
 
 static void put_in_place(cli_table *table)
 {
-    if (table->path[0] == '\0')
+    if (table->temporary[0] == '\0')
         return;
     if (rename(table->temporary, table->path) != 0)
         fail_to_write(table);
@@ -336,40 +316,35 @@ static bool parse_count(const char *text, uint64_t *value)
     return true;
 }
 
-static bool parse_real(const char *text, double *value)
+/* What follows the number; NULL: there is none. */
+static const char *read_real(const char *text, double *value)
 {
-    if (isspace((unsigned char)text[0]))
-        return false;
     char *end;
     errno = 0;
     *value = strtod(text, &end);
     const bool vanished = errno == ERANGE && *value == 0;
-    return end != text && *end == '\0' && isfinite(*value) && !vanished;
+    return end != text && !isspace((unsigned char)text[0]) && isfinite(*value) && !vanished ? end : NULL;
+}
+
+static bool parse_real(const char *text, double *value)
+{
+    const char *end = read_real(text, value);
+    return end != NULL && *end == '\0';
 }
 
 /* `count` of them, separated by commas; changes nothing otherwise. */
 static bool parse_reals(const char *text, double *values, size_t count)
 {
     double parsed[8];
-    char *copy = strdup(text), *word = copy;
     assert(count <= sizeof parsed / sizeof parsed[0]); /* no option has more */
-    if (copy == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    size_t found = 0;
-    while (word != NULL && found < count) {
-        char *comma = strchr(word, ',');
-        if (comma != NULL)
-            *comma = '\0';
-        if (!parse_real(word, &parsed[found]))
-            break;
-        found++;
-        word = comma != NULL ? comma + 1 : NULL;
+    for (size_t i = 0; i < count; i++) {
+        const char *end = read_real(text, &parsed[i]);
+        if (end == NULL || *end != (i + 1 < count ? ',' : '\0'))
+            return false;
+        text = end + 1;
     }
-    const bool complete = found == count && word == NULL;
-    if (complete)
-        memcpy(values, parsed, count * sizeof parsed[0]);
-    free(copy);
-    return complete;
+    memcpy(values, parsed, count * sizeof parsed[0]);
+    return true;
 }
 
 static bool parse_choice(const char *text, const char *const *choices, int *value)
@@ -555,6 +530,7 @@ static void print_and_exit_if_wanted(void)
 void cli_parse(const cli_program *p, int argc, char **argv)
 {
     program = p;
+    started = time(NULL);
     occupy_standard_streams();
     handle_signals();
     atexit(remove_temporaries);
