@@ -14,18 +14,14 @@ say() {
 
 # Is it there? Asked of the thing itself and not of a package manager, so it works on every system.
 present() {
-    local kind=$1 name=$2 python
+    local kind=$1 name=$2
     case $kind in
     command) command -v "$name" >/dev/null ;;
     header) # not by including it: SUNDIALS with MPI includes mpi.h, which Meson finds in a folder of its own
         printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$name" | cc -E - >/dev/null 2>&1
         ;;
     pkgconfig) pkg-config --exists "$name" 2>/dev/null ;;
-    python) # the Python that runs meson, from its first line, is the one that makes the page
-        python=$(sed -n '1s/^#! *//p;q' "$(command -v meson)" 2>/dev/null) || return 1
-        # shellcheck disable=SC2086 # "/usr/bin/env python3" is two words
-        ${python:-python3} -c "import $name" 2>/dev/null
-        ;;
+    python) /usr/bin/python3 -c "import $name" 2>/dev/null ;; # the one that Meson files name
     *)
         say "packages.txt: unknown kind \"$kind\""
         exit 1

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""spring-validate, spring-stability, spring-rounding: what is checked, limits, rounding errors."""
+import math
+import sys
+
+import pytest
+from tools import ROUNDING, STABILITY, STEPPERS, VALIDATE, column, table
+
+# --- spring-validate ------------------------------------------------------------------------------------------------
+
+SLOW = ['billion-steps', 'chaotic-50', 'van-der-pol-5', 'stiff-and-soft-10', 'heavy-end', 'stiff-links', 'cloth', 'water',
+        'chain-1000', *(f'water-mode-{mode}-{kind}-{n}' for n in (25, 35) for mode in ('1-1', '2-1', '2-2', '3-1')
+                        for kind in ('structural', 'mirrored', 'all'))]
+
+
+@pytest.fixture(scope='module')
+def quick():
+    return table(VALIDATE, '--quick')
+
+
+def test_list(quick):
+    rows = table(VALIDATE, '--list')
+    names = [row['case'] for row in rows]
+    assert len(set(names)) == len(names) >= 25 and all(row['purpose'] for row in rows)
+    cases = {row['case'] for row in quick}
+    assert [name for name in names if name not in cases] == SLOW
+
+
+def test_quick_holds(quick):
+    assert len(quick) >= 150 and len({row['case'] for row in quick}) >= 25
+    assert {row['verdict'] for row in quick} == {'pass'}
+    assert all(0 <= float(row['error']) <= float(row['bound']) < math.inf for row in quick)
+    assert all(row['reason'] for row in quick)
+
+
+def test_quick_has_every_witness(quick):
+    assert {row['shape'] for row in quick} == {'spring', 'scene'}
+    assert {row['witness'] for row in quick} == {
+        'iterate', 'solution', 'drive', 'gsl-rk4', 'arkode-rk4', 'gsl-rk8pd', 'cvode-adams', 'cvode-bdf', 'definition', 'modes',
+        'reduced-mass', 'digits', 'formula', 'dispersion'}
+
+
+def test_euler_is_never_right_by_accident(quick):
+    errors = {row['case']: float(row['error']) for row in quick if (row['method'], row['witness']) == ('euler', 'solution')}
+    assert [case for case, error in errors.items() if error == 0] in ([], ['at-rest'])
+
+
+def test_bdf_is_in_trouble_on_light_damping(quick):
+    evaluations = {row['case']: int(row['force_evaluations']) for row in quick if row['witness'] == 'cvode-bdf'}
+    assert evaluations['settled-0.2'] > 3 * evaluations['settled-0.4'] > 0
+
+
+def test_one_case(quick):
+    assert table(VALIDATE, '--case', 'middle') == [row for row in quick if row['case'] == 'middle']
+
+
+# --- spring-stability -----------------------------------------------------------------------------------------------
+
+LIMITS = {  # as omega dt, at these damping ratios; None: no formula
+    'euler': {0: 0, 0.01: 0.02, 1: 2, 100: 2 / (100 + math.sqrt(9999))},
+    'leapfrog': {0: 2, 0.01: 2, 1: 2, 100: 2},
+    'rk4': {0: 2 * math.sqrt(2), 0.01: None, 1: 2.785293563405282, 100: 2.785293563405282 / (100 + math.sqrt(9999))},
+}
+
+
+@pytest.fixture(scope='module')
+def limits():
+    return table(STABILITY, '--points', '3')
+
+
+def test_rows(limits):
+    assert list(limits[0]) == 'method damping_ratio limit_measured limit_theory relative_error'.split()
+    assert [(row['method'], float(row['damping_ratio'])) for row in limits] == [
+        (method, zeta) for method in STEPPERS for zeta in (0, 0.01, 1, 100)]
+    assert max(column(limits, 'relative_error')) <= 1e-4
+
+
+@pytest.mark.parametrize('method', LIMITS)
+def test_limits(method, limits):
+    measured = {float(row['damping_ratio']): float(row['limit_measured']) for row in limits if row['method'] == method}
+    assert measured.keys() == LIMITS[method].keys()
+    for zeta, law in LIMITS[method].items():
+        assert law is None or abs(measured[zeta] - law) <= 1e-4 * law, zeta
+
+
+def test_map(limits):
+    cells = table(STABILITY, '--map', '--points', '9')
+    assert len(cells) == len(STEPPERS) * 9 * 9
+    errors = {(r['method'], *(round(math.log10(float(r[name])), 3) for name in ('omega_dt', 'damping_ratio'))): float(r['error'])
+              for r in cells}
+    assert errors['rk4', -2, -1] < errors['leapfrog', -2, -1] < errors['euler', -2, -1] < 1
+    beyond = [r['method'] for r in limits if float(r['damping_ratio']) == 100 and float(r['limit_measured']) < 10]
+    assert {'euler', 'leapfrog', 'rk4'} <= set(beyond)
+    assert min(errors[method, 1, 2] for method in beyond) > 1e3
+
+
+# --- spring-rounding ------------------------------------------------------------------------------------------------
+
+@pytest.fixture(scope='module')
+def leapfrog():
+    """By kind of sum, with a step that is a power of two."""
+    return {kind: table(ROUNDING, '--method', 'leapfrog', '--dt', '0x1p-7', '--sum', kind, '--steps', '1e5')
+            for kind in ('plain', 'compensated')}
+
+
+@pytest.mark.parametrize('kind', ['plain', 'compensated'])
+def test_power_of_two_rounds_no_coefficient(kind, leapfrog):
+    assert [(int(row['steps']), int(row['start'])) for row in leapfrog[kind]] == [
+        (n, i) for n in (10000, 30000, 100000) for i in range(8)]
+    assert {row['coefficient_error'] for row in leapfrog[kind]} == {'0'}
+
+
+@pytest.mark.parametrize('name', ['state_error', 'energy_error'])
+def test_compensated_sums(name, leapfrog):
+    plain, better = (column(rows, name) for rows in leapfrog.values())
+    assert all(error <= n * 2 * sys.float_info.epsilon for n, error in zip(column(leapfrog['plain'], 'steps'), plain))
+    assert max(better) <= max(plain) / 10
+
+
+@pytest.mark.parametrize('method', ['leapfrog', 'rk4'])
+def test_with_a_decimal_step_the_coefficient_it_is(method):
+    rows = table(ROUNDING, '--method', method, '--sum', 'compensated', '--steps', '1e6')[-8:]
+    assert max(abs(float(row['state_error']) / float(row['coefficient_error']) - 1) for row in rows) <= 0.05

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""Where the tools write: to standard output, and to files that are complete or not there, whatever ends a run."""
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import stat
+import subprocess
+import tempfile
+import time
+
+import pytest
+from tools import ENERGY, ORDER, RUN, SHORT, each_tool, is_failure, run
+
+each_way_to_print = pytest.mark.parametrize(
+    'tool, args', [(tool, args) for tool in SHORT for args in (SHORT[tool], ['--help'], ['--version'])])
+overflow = ['--method', 'euler', '--duration', '1e6', '--steps', '1000']  # ends with status 1
+
+
+def files(folder):
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+# --- what cannot be written -----------------------------------------------------------------------------------------
+
+@each_way_to_print
+def test_full_disk(tool, args):
+    with open('/dev/full', 'wb') as full:
+        is_failure(run(tool, *args, stdout=full), 3, 'cannot write standard output: ')
+
+
+@each_way_to_print
+def test_closed_output(tool, args):
+    is_failure(run(tool, *args, preexec_fn=lambda: os.close(1)), 3, 'cannot write standard output: ')
+
+
+@each_way_to_print
+def test_closed_pipe(tool, args):
+    """Ends it as it ends other programs: by SIGPIPE, silently."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    result = run(tool, *args, stdout=writer)
+    os.close(writer)
+    assert (result.returncode, result.stderr) == (-signal.SIGPIPE, '')
+
+
+def test_pipe_that_closes_on_the_way(tmp_path):
+    many = [*SHORT[RUN], '--steps', '1e5', '--envelope', str(tmp_path / 'envelope.tsv')]
+    result = run('sh', '-c', '"$@" | head -n 1', 'sh', RUN, *many)
+    assert (result.stdout.count('\n'), result.stderr, files(tmp_path)) == (1, '', {})
+
+
+@each_tool
+@pytest.mark.parametrize('path', ['/dev/full', '', 'no/such', 'old.tsv/x', 'dangling', 'x' * 300, 'x/' * 3000],
+                         ids=lambda path: path[:20] or 'a folder')
+def test_file_that_cannot_be_written(tool, path, older):
+    folder = older.parent
+    (folder / 'dangling').symlink_to(folder / 'no' / 'such')
+    path = os.path.join(folder, path)
+    is_failure(run(tool, *SHORT[tool], '-o', path), 3, f'--output: cannot write "{path}": ', 'should be a file that can be')
+    assert older.read_text() == 'older\n' and sorted(os.listdir(folder)) == ['dangling', 'old.tsv']
+
+
+@each_tool
+def test_file_size_limit(tool, older):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+    is_failure(run(tool, *SHORT[tool], '-o', older, preexec_fn=limit), 3, '--output: ')
+    assert files(older.parent) == {'old.tsv': 'older\n'}
+
+
+def test_read_only_file():
+    """Root may write what its owner has made read-only, so root tries as somebody else."""
+    somebody = {'user': 65534, 'group': 65534, 'extra_groups': []} if os.geteuid() == 0 else {}
+    with tempfile.TemporaryDirectory() as folder:  # open to others, as the folder of tmp_path is not
+        os.chmod(folder, 0o777)
+        older = pathlib.Path(folder, 'old.tsv')
+        older.write_text('older\n')
+        older.chmod(0o444)
+        try:
+            result = run(ORDER, *SHORT[ORDER], '-o', older, **somebody)
+        except PermissionError:
+            pytest.skip('the tools are in a folder that is closed to others')
+        is_failure(result, 3, 'Permission denied')
+        assert files(older.parent) == {'old.tsv': 'older\n'}
+
+
+# --- what ends on the way -------------------------------------------------------------------------------------------
+
+def test_failed_run_leaves_the_older_file(older):
+    result = run(RUN, *overflow, '--every', '1', '-o', older, '--envelope', older.parent / 'new.tsv')
+    assert (result.returncode, files(older.parent)) == (1, {'old.tsv': 'older\n'})
+
+
+def test_file_that_cannot_be_created_is_noticed_before_the_run():
+    assert run(RUN, *overflow, '-o', 'x' * 300).returncode == 3
+
+
+def test_all_files_or_none(older):
+    is_failure(run(RUN, *SHORT[RUN], '-o', older, '--envelope', '/dev/full'), 3, '--envelope')
+    assert files(older.parent) == {'old.tsv': 'older\n'}
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal(number, older):
+    with subprocess.Popen([ENERGY, '--method', 'rk4', '--duration', '1e9', '-o', older],
+                          preexec_fn=lambda: signal.signal(number, signal.SIG_DFL)) as process:
+        patience = time.monotonic() + 20
+        while len(os.listdir(older.parent)) < 2 and time.monotonic() < patience:
+            time.sleep(0.01)
+        begun = len(os.listdir(older.parent))
+        process.send_signal(number)
+        assert (begun, process.wait(20)) == (2, -number)
+    assert files(older.parent) == {'old.tsv': 'older\n'}
+
+
+# --- the same bytes -------------------------------------------------------------------------------------------------
+
+@each_tool
+def test_two_runs(tool):
+    assert run(tool, *SHORT[tool]).stdout == run(tool, *SHORT[tool]).stdout
+
+
+@each_tool
+def test_from_another_place(tool):
+    assert run(tool, *SHORT[tool], executable=shutil.which(tool), cwd='/', env={}).stdout == run(tool, *SHORT[tool]).stdout
+
+
+@each_tool
+def test_under_another_name(tool):
+    other = run('/elsewhere/other-name', *SHORT[tool], executable=shutil.which(tool))
+    assert other.stdout == run(tool, *SHORT[tool]).stdout
+
+
+@each_tool
+@pytest.mark.parametrize('spelling', ['-o {}', '-o{}', '--output {}', '--output={}'])
+def test_output(tool, spelling, tmp_path):
+    result = run(tool, *SHORT[tool], *spelling.format(tmp_path / 'new.tsv').split())
+    assert (result.returncode, result.stdout, files(tmp_path)) == (0, '', {'new.tsv': run(tool, *SHORT[tool]).stdout})
+
+
+@each_tool
+def test_output_to_dev_stdout(tool):
+    assert run(tool, *SHORT[tool], '-o', '/dev/stdout').stdout == run(tool, *SHORT[tool]).stdout
+
+
+@each_tool
+def test_link_stays_a_link_and_a_file_keeps_its_mode(tool, older):
+    link = older.parent / 'link.tsv'
+    link.symlink_to(older.name)
+    older.chmod(0o640)
+    run(tool, *SHORT[tool], '-o', link)
+    assert link.is_symlink() and stat.S_IMODE(older.stat().st_mode) == 0o640
+    want = run(tool, *SHORT[tool]).stdout
+    assert files(older.parent) == {'link.tsv': want, 'old.tsv': want}
+
+
+@each_tool
+def test_new_file_follows_the_umask(tool, tmp_path):
+    path = tmp_path / 'new.tsv'
+    result = run(tool, *SHORT[tool], '-o', path, umask=0o027)
+    assert (result.returncode, stat.S_IMODE(path.stat().st_mode)) == (0, 0o640)
+
+
+@each_tool
+def test_closed_standard_error_does_no_harm(tool, tmp_path):
+    result = run(tool, *SHORT[tool], '-o', tmp_path / 'new.tsv', preexec_fn=lambda: os.close(2))
+    assert (result.returncode, files(tmp_path)) == (0, {'new.tsv': run(tool, *SHORT[tool]).stdout})
+
+
+# --- pipes and devices are written directly -------------------------------------------------------------------------
+
+def through_fifo(folder, tool, *args, **how):
+    fifo = folder / 'fifo'
+    os.mkfifo(fifo)
+    with subprocess.Popen(['cat', fifo], stdout=subprocess.PIPE, text=True) as reader:
+        result = run(tool, *args, '-o', fifo, **how)
+        return result.returncode, reader.communicate(timeout=20)[0]
+
+
+def test_fifo(tmp_path):
+    assert through_fifo(tmp_path, ORDER, *SHORT[ORDER]) == (0, run(ORDER, *SHORT[ORDER]).stdout)
+
+
+def test_no_message_among_the_rows(tmp_path):
+    status, rows = through_fifo(tmp_path, RUN, *overflow, preexec_fn=lambda: os.close(2))
+    assert status == 1 and 'infinite' not in rows
+
+
+def test_dev_stdout_appends_where_standard_output_does(older):
+    with open(older, 'a', encoding='ascii') as log:
+        run(ORDER, *SHORT[ORDER], '-o', '/dev/stdout', stdout=log)
+    assert older.read_text() == 'older\n' + run(ORDER, *SHORT[ORDER]).stdout
+
+
+def test_dev_fd(older):
+    inode = older.stat().st_ino
+    with open(older, 'w', encoding='ascii') as log:
+        run(ORDER, *SHORT[ORDER], '-o', f'/dev/fd/{log.fileno()}', pass_fds=[log.fileno()])
+    assert (older.stat().st_ino, older.read_text()) == (inode, run(ORDER, *SHORT[ORDER]).stdout)

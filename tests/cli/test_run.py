@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""spring-run: trajectories, rows, the envelope of the error, overflow."""
+import math
+import sys
+
+import pytest
+from tools import METHODS, RUN, STAGES, STEPPERS, column, order, parse, run, table
+
+M, K, C, F, X0, V0 = 1.3, 2.7, 0.6, 0.9, 0.4, -1.1  # a spring with everything, nothing 1
+SPRING = ['--mass', '1.3', '--stiffness', '2.7', '--damping', '0.6', '--load', '0.9', '--x0', '0.4', '--v0', '-1.1',
+          '--duration', '7']
+DT = 7 / 700
+
+
+def true_x(t):
+    """Textbook solution of the underdamped spring."""
+    b, rest = C / (2 * M), F / K
+    nu = math.sqrt(K / M - b * b)
+    y = X0 - rest
+    return rest + math.exp(-b * t) * (y * math.cos(nu * t) + (V0 + b * y) / nu * math.sin(nu * t))
+
+
+def euler_step(x, v, h):
+    w, g, a = K / M, C / M, F / M
+    return x + h * v, v - (h * w * x - h * a + h * g * v)
+
+
+def rk4_step(x, v, h):
+    w, g, a = K / M, C / M, F / M
+    def slope(x, v):
+        return v, a - w * x - g * v
+    k1 = slope(x, v)
+    k2 = slope(x + h / 2 * k1[0], v + h / 2 * k1[1])
+    k3 = slope(x + h / 2 * k2[0], v + h / 2 * k2[1])
+    k4 = slope(x + h * k3[0], v + h * k3[1])
+    return (x + h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0]), v + h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1]))
+
+
+def spring(how, *args, steps=700):
+    return table(RUN, '--method', *how.split(), *SPRING, '--steps', str(steps), *args)
+
+
+# --- numbers --------------------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize('how, error', [('euler', '2.88367e-02'), ('leapfrog', '3.44533e-07'), ('rk4', '9.76996e-15'),
+                                        (STAGES, '2.39808e-14')])
+def test_long_run_of_the_study(how, error):
+    row, = table(RUN, '--method', *how.split(), '--duration', '1000', '--steps', '1e7')
+    assert ('%.5e' % float(row['error_m']), row['step'], row['t_s']) == (error, '10000000', '1000')
+
+
+@pytest.mark.parametrize('how', [*METHODS, STAGES])
+def test_columns(how):
+    rows = spring(how, '--every', '1')
+    assert [int(row['step']) for row in rows] == list(range(701))
+    assert column(rows, 't_s') == [i * DT for i in range(701)]  # times are not accumulated
+    assert max(abs(x - true_x(i * DT)) for i, x in enumerate(column(rows, 'exact_x_m'))) <= 1e-14
+    for row in rows:
+        x, v = float(row['x_m']), float(row['v_m_per_s'])
+        assert float(row['error_m']) == abs(x - float(row['exact_x_m']))
+        assert abs(float(row['energy_J']) - (M * v * v / 2 + K * x * x / 2 - F * x)) <= 1e-15
+
+
+@pytest.mark.parametrize('how', [*STEPPERS, STAGES])
+def test_last_row_is_the_final_state(how):
+    assert spring(how) == spring(how, '--every', '1')[-1:]
+
+
+def test_exact():
+    assert spring('exact')[-1]['step'] == '700'
+    assert max(column(spring('exact', '--every', '1'), 'error_m')) <= 700 * 4 * sys.float_info.epsilon  # 4 a step, of about 1
+
+
+@pytest.mark.parametrize('how', [*STEPPERS, STAGES])
+def test_order(how):
+    coarse = max(column(spring(how, '--every', '1'), 'error_m'))
+    fine = max(column(spring(how, '--every', '2', steps=1400), 'error_m'))
+    assert abs(math.log2(coarse / fine) - order(how.split()[0])) <= 0.05
+
+
+@pytest.mark.parametrize('how, step', [('euler', euler_step), (STAGES, rk4_step)], ids=['euler', STAGES])
+def test_every_bit(how, step):
+    state, want = (X0, V0), []
+    for _ in range(701):
+        want.append(state)
+        state = step(*state, DT)
+    rows = spring(how, '--every', '1')
+    assert list(zip(column(rows, 'x_m'), column(rows, 'v_m_per_s'))) == want
+
+
+# --- rows -----------------------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize('args, chosen', [
+    pytest.param('--every 300', [0, 300, 600, 700], id='--every 300 and the final state'),
+    pytest.param('--every 350', [0, 350, 700], id='--every 350, the final state once'),
+    pytest.param('--every 1e19', [0, 700], id='--every beyond the end'),
+    pytest.param('--every 1 --from 6.5', range(650, 701), id='--from'),
+    pytest.param('--every 1 --from -1', range(701), id='--from before the start'),
+    pytest.param('--every 1 --from 8', [700], id='--from beyond the end'),
+])
+def test_rows(args, chosen):
+    rows = spring('leapfrog', '--every', '1')
+    assert spring('leapfrog', *args.split()) == [rows[i] for i in chosen]
+
+
+def test_more_steps_from_row_to_row_than_are_taken_at_once():
+    rows = table(RUN, '--method', 'euler', '--duration', '1', '--steps', '5e7', '--every', '2e7')
+    assert [row['step'] for row in rows] == ['0', '20000000', '40000000', '50000000']
+
+
+def test_defaults():
+    base = ['--method', 'euler', '--duration', '1', '--steps', '10']
+    assert table(RUN, *base) == table(RUN, *base, '--mass', '1', '--stiffness', '1', '--damping', '0', '--load', '0', '--x0', '1',
+                                      '--v0', '0', '--arithmetic', 'library')
+
+
+@pytest.mark.parametrize('steps, parts', [(700, 60), (701, 60), (60, 60), (59, 60), (7, 60), (1, 1)])
+def test_envelope(steps, parts, tmp_path):
+    path = tmp_path / 'envelope.tsv'
+    plain = spring('euler', '--every', '1', steps=steps)
+    assert spring('euler', '--every', '1', '--envelope', path, '--columns', str(parts), steps=steps) == plain
+    errors = {}
+    for row in plain:
+        part = min(int(row['step']) * parts // steps, parts - 1)
+        errors.setdefault(part, []).append(float(row['x_m']) - float(row['exact_x_m']))
+    text = path.read_text()
+    assert str(tmp_path) not in text and '--envelope FILE' in text
+    assert text.splitlines()[4] == 'method\tt_s\terror_min_m\terror_max_m'
+    rows = parse(text)
+    assert list(zip(column(rows, 'error_min_m'), column(rows, 'error_max_m'))) == [(min(e), max(e)) for e in errors.values()]
+    assert all(abs(t - (part + 0.5) * 7 / parts) <= 1e-14 for t, part in zip(column(rows, 't_s'), errors, strict=True))
+
+
+# --- overflow -------------------------------------------------------------------------------------------------------
+
+EXPLODES = ['--duration', '1e6', '--steps', '1000', '--every']
+
+
+def euler_until_overflow():
+    h, state = 1e6 / 1000, (1.0, 0.0)
+    while all(map(math.isfinite, state)):
+        yield state
+        state = (state[0] + h * state[1], state[1] - h * state[0])
+
+
+@pytest.mark.parametrize('every', [1, 7, 1000])
+def test_overflow(every):
+    states = list(euler_until_overflow())
+    result = run(RUN, '--method', 'euler', *EXPLODES, str(every))
+    rows = parse(result.stdout)
+    assert (result.returncode, [int(row['step']) for row in rows]) == (1, list(range(0, len(states), every)))
+    assert (float(rows[-1]['x_m']), float(rows[-1]['v_m_per_s'])) == states[(len(states) - 1) // every * every]
+    assert result.stderr.startswith('spring-run: ')
+    assert f'step {len(states)},' in result.stderr and f't = {len(states)}000 s' in result.stderr
+
+
+def test_overflow_by_stages():
+    result = run(RUN, '--method', *STAGES.split(), *EXPLODES, '1')
+    assert result.returncode == 1 and len(parse(result.stdout)) > 1

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""spring-scene-map: which methods keep which scenes with how many steps a frame."""
+import math
+
+import pytest
+from test_scene import SCENES
+from tools import MAP, STEPPERS, table
+
+
+@pytest.fixture(scope='module')
+def quick():
+    return table(MAP, '--quick')
+
+
+def test_scenes_and_methods(quick):
+    assert {(row['scene'], row['method']) for row in quick} == {(scene, method) for scene in SCENES for method in STEPPERS}
+    assert {(row['scene'], (int(row['particles']), int(row['links']))) for row in quick} == set(SCENES.items())
+    assert all(abs(float(row['dt_s']) * int(row['substeps']) * 60 - 1) <= 1e-15 for row in quick)
+
+
+def test_verdicts(quick):
+    for row in quick:
+        assert (row['verdict'] == 'fine') == (float(row['energy_error']) <= 0.05)
+        if float(row['dt_s']) < float(row['stable_step_s']):
+            assert row['verdict'] not in ('exploded', 'gaining')
+            if row['substeps'] == '64':
+                assert row['verdict'] == 'fine'
+
+
+def test_euler_explodes(quick):
+    verdicts = {row['verdict'] for row in quick if row['method'] == 'euler' and row['scene'] != 'chain'}
+    assert verdicts == {'exploded'}
+
+
+@pytest.mark.parametrize('method', ['leapfrog', 'rk4'])
+def test_short_steps_are_fine(method, quick):
+    assert {row['scene']: row['verdict'] for row in quick if (row['method'], row['substeps']) == (method, '64')} == dict.fromkeys(SCENES, 'fine')
+
+
+def test_part_is_the_part(quick):
+    assert table(MAP, '--quick', '--scene', 'jelly', '--method', 'rk4') == [
+        row for row in quick if (row['scene'], row['method']) == ('jelly', 'rk4')]
+
+
+def test_time(quick):
+    """Which steps it times; how long they take is nobody's promise."""
+    verdicts = {}
+    for row in quick:
+        if row['scene'] == 'rope':
+            verdicts.setdefault(row['method'], {})[int(row['substeps'])] = row['verdict']
+    rows = table(MAP, '--quick', '--time', '--scene', 'rope')
+    assert [row['method'] for row in rows] == [method for method, of in verdicts.items() if of[64] == 'fine']
+    for row in rows:
+        of = verdicts[row['method']]
+        below = math.floor(1 / 60 / float(row['stable_step_s'])) + 1
+        assert int(row['substeps']) == min(
+            n for n in of if n >= below and all(verdict == 'fine' for k, verdict in of.items() if k >= n))
+        assert abs(float(row['particles_per_ms']) * float(row['frame_ms']) / int(row['particles']) - 1) <= 1e-3

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""spring-work and spring-bench: what they measure and how they judge it; how long it takes is nobody's promise."""
+import functools
+import math
+
+import pytest
+from tools import BENCH, ORDER, STEPPERS, WORK, parse, table
+
+# --- spring-work ----------------------------------------------------------------------------------------------------
+
+PEERS = {'gsl-rk4': 11, 'gsl-rk8pd': 13, 'arkode-rk4': 4}  # evaluations a step
+
+
+@pytest.fixture(scope='module', params=['ideal-1', 'elastic-pendulum'])
+def work(request, tmp_path_factory):
+    """A problem, its rows, and its table as text."""
+    path = tmp_path_factory.mktemp('work') / 'table.tsv'
+    return request.param, table(WORK, '--problem', request.param, '--quick', '--table', path), path.read_text()
+
+
+def test_work_rows(work):
+    problem, rows, _ = work
+    fixed = 'problem solver steps force_evaluations time_s error'.split()
+    assert list(rows[0])[:len(fixed)] == fixed
+    assert {row['problem'] for row in rows} == {problem}
+    assert all(row[name].isdecimal() for row in rows for name in ('steps', 'force_evaluations'))
+    assert all(float(row['time_s']) > 0 and 0 <= float(row['error']) <= 3 for row in rows)
+    assert [row['force_evaluations'] for row in rows if row['solver'] == 'exact'] == (['0'] if problem == 'ideal-1' else [])
+
+
+def cost(solver):
+    """Of our own as spring-order says."""
+    if solver in PEERS:
+        return PEERS[solver]
+    row, = table(ORDER, '--method', solver, '--n-min', '1', '--n-max', '1')
+    return int(row['force_evaluations'])
+
+
+@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS])
+def test_force_evaluations_of_fixed_steps(solver, work):
+    rows = [row for row in work[1] if row['solver'] == solver]
+    assert rows
+    first = [int(row['force_evaluations']) - cost(solver) * int(row['steps']) for row in rows]
+    assert set(first) <= {0, 1}  # one more at the start
+
+
+def test_stamp_of_the_table(work, tmp_path_factory):
+    text = work[2]
+    assert str(tmp_path_factory.getbasetemp()) not in text
+    assert [what for what in ('compiler', 'flags', 'processor', 'load') if f'# {what}:' not in text] == []
+
+
+def cheapest(rows, error, among):
+    """Time, and by whom, among the rows that are exact enough, and so is the next finer one."""
+    sweep = [row for row in rows if row['effort'] == 'sweep' and among(row['solver'])]
+    finer = [b if a['solver'] == b['solver'] else a for a, b in zip(sweep, [*sweep[1:], sweep[-1]])]
+    times = [(float(row['time_s']), row['solver']) for row, next_one in zip(sweep, finer)
+             if max(float(row['error']), float(next_one['error'])) <= error]
+    least = min(times, default=(math.nan, ''))[0]
+    return f'{least:.4g}', {solver for time, solver in times if time == least} or {'none'}
+
+
+def test_levels_of_the_table(work):
+    problem, rows, text = work
+    levels = parse(text)
+    assert [(row['problem'], row['error']) for row in levels] == [(problem, f'1e-{n}') for n in range(1, 13)]
+    for row in levels:
+        for solver, time, among in (('solver', 'time_s', lambda name: name in STEPPERS),
+                                    ('peer', 'peer_time_s', lambda name: name not in [*STEPPERS, 'exact'])):
+            least, names = cheapest(rows, float(row['error']), among)
+            assert row[time] == least and row[solver] in names
+        ratio = float(row['peer_time_s']) / float(row['time_s'])
+        assert math.isnan(ratio) == (row['ratio'] == 'nan') and not abs(float(row['ratio']) - ratio) > 2e-3 * ratio
+
+
+def test_crossing_of_leapfrog_and_rk4():
+    errors = {(row['solver'], int(row['force_evaluations'])): float(row['error'])
+              for row in table(WORK, '--problem', 'ideal-1', '--quick') if row['effort'] == 'crossing'}
+    assert sorted(errors) == [(solver, n) for solver in ('leapfrog', 'rk4') for n in (44, 48)]
+    assert errors['leapfrog', 44] < errors['rk4', 44] and errors['rk4', 48] < errors['leapfrog', 48]
+
+
+# --- spring-bench ---------------------------------------------------------------------------------------------------
+
+@functools.cache
+def bench(args):
+    return table(BENCH, '--quick', *args.split())
+
+
+def about(got, want):
+    """Of figures with four digits."""
+    return abs(got - want) <= 2e-3 * abs(got)
+
+
+@pytest.mark.parametrize('args', ['--part batch --count 1000', '--kernel leapfrog_batch_16', '--part spring --kernel rk4',
+                                  '--part scene --count 7002'])
+def test_bench_rows(args):
+    fixed = 'kernel precision count ns_per_spring_step limit_ns ratio spread verdict'.split()
+    rows = bench(args)
+    assert list(rows[0])[:len(fixed)] == fixed
+    for row in rows:
+        time, limit, ratio, spread, baseline, speedup, goal_ratio, goal_time, goal_speedup = (float(row[name]) for name in (
+            'ns_per_spring_step', 'limit_ns', 'ratio', 'spread', 'baseline_ns', 'speedup', 'goal_ratio', 'goal_ns', 'goal_speedup'))
+        assert time > 0 and limit > 0 and about(ratio, time / limit)
+        assert (math.isnan(speedup) and math.isnan(baseline)) or about(speedup, baseline / time)
+        if spread != 0.05:
+            assert (row['verdict'] == 'noisy') == (spread > 0.05)
+        excess = max(ratio / goal_ratio, time / goal_time, 0 if math.isnan(speedup) else goal_speedup / speedup)
+        if row['verdict'] != 'noisy' and not about(1, excess):
+            assert (row['verdict'] == 'above_goal') == (excess > 1)
+
+
+def test_bench_batches():
+    rows = bench('--part batch --count 1000')
+    assert {row['count'] for row in rows} == {'1000'}
+    assert {'ordinary', 'textbook'} < {row['limit'] for row in rows} <= {'ordinary', 'textbook', 'streams', 'arithmetic'}
+
+
+def test_bench_counts_and_precisions():
+    assert [(row['precision'], int(row['count'])) for row in bench('--kernel leapfrog_batch_16')] == [
+        (precision, 10**k) for precision in ('double', 'float') for k in range(3, 8)]
+
+
+def test_bench_one_spring():
+    assert [(row['kernel'], row['count'], row['limit']) for row in bench('--part spring --kernel rk4')] == [('rk4', '1', 'loop')]
+
+
+def test_bench_scenes():
+    """Of 35 x 35 particles, 7002 links. In double beside limits and a plain loop, in float beside double."""
+    rows = bench('--part scene --count 7002')
+    assert {'leapfrog_sheet_1', 'leapfrog_sheet_16', 'leapfrog_sheet_16_shuffled', 'rk4_sheet_16', 'leapfrog_sheet_16_damping',
+            'init_sheet'} <= {row['kernel'] for row in rows}
+    assert {(row['limit'], row['speedup'] != 'nan') for row in rows if row['kernel'] == 'leapfrog_sheet_16'} == {
+        ('arithmetic', True), ('double', False)}
+
+
+def test_bench_calls_measures_nothing():
+    assert bench('--calls 1 --count 1000') == []

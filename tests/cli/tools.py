@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""What the tests of command-line tools share: the tools by name, running them, reading their tables."""
+import functools
+import subprocess
+
+import pytest
+
+BY_METHOD = ORDER, RUN, ENERGY = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
+VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
+SCENE, MAP = 'spring-scene', 'spring-scene-map'
+BENCH, WORK = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
+SHORT = {  # for every tool that gives the same bytes twice a run that takes no time
+    ORDER: ['--method', 'euler', '--n-max', '50'],
+    RUN: ['--method', 'rk4', '--duration', '3', '--steps', '30', '--every', '1'],
+    ENERGY: ['--method', 'leapfrog', '--duration', '10'],
+    VALIDATE: ['--case', 'fast-root'],
+    STABILITY: ['--map', '--points', '2'],
+    ROUNDING: ['--method', 'rk4', '--sum', 'plain', '--steps', '1e4'],
+    SCENE: ['--scene', 'rope', '--method', 'leapfrog', '--duration', '0.1'],
+    MAP: ['--scene', 'chain', '--method', 'rk4', '--quick'],
+}
+each_tool = pytest.mark.parametrize('tool', SHORT)
+
+
+def run(tool, *args, **how):
+    how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
+    return subprocess.run([tool, *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
+
+
+def parse(text):
+    """The rows of a table as dictionaries of strings."""
+    lines = [line for line in text.splitlines() if not line.startswith('#')]
+    names = lines[0].split('\t')
+    return [dict(zip(names, line.split('\t'), strict=True)) for line in lines[1:]]
+
+
+def table(tool, *args):
+    """The rows of a run that is done, without a word."""
+    result = run(tool, *args)
+    assert (result.returncode, result.stderr) == (0, ''), result.args
+    return parse(result.stdout)
+
+
+def column(rows, name):
+    return [float(row[name]) for row in rows]
+
+
+def is_failure(result, status, *words):
+    """One message, of the tool's, that has these words; nothing else is printed."""
+    assert (result.returncode, result.stdout or '') == (status, '')
+    message, = result.stderr.splitlines()
+    assert message.startswith(f'{result.args[0]}: ')
+    assert [word for word in words if word not in message] == [], message
+
+
+def choices(tool, option):
+    """What the tool says an option should be."""
+    return run(tool, option, 'nonsense').stderr.rstrip('\n').partition('is not one of ')[2].split(', ')
+
+
+METHODS = choices(RUN, '--method')
+STEPPERS = [method for method in METHODS if method != 'exact']
+
+
+STAGES = 'rk4 --arithmetic stages'
+
+
+@functools.cache
+def order(method):
+    """Of a stepper, by the power law of its errors."""
+    fit, = table(ORDER, '--method', method, '--fit')
+    return round(-float(fit['exponent']))
