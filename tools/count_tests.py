@@ -3,9 +3,9 @@
 
 usage: count_tests.py BUILD/meson-logs
 
-A program that speaks TAP counts once for each of its test points, pytest once for each of its cases, every other program
-once: Meson writes them to testlog.junit.xml. What became of each program is in testlog.json: one that broke off, or ran
-fewer points than it had planned, is a failure although each of its points may have passed.
+A program that speaks TAP counts once for each of its test points, pytest once for each of its cases, every other
+program once: Meson writes them to testlog.junit.xml. What became of each program is in testlog.json: one that broke
+off, or ran fewer points than it had planned, is a failure although each of its points may have passed.
 """
 
 import collections
@@ -39,7 +39,7 @@ logs = pathlib.Path(sys.argv[1])
 counts = collections.Counter()
 have_failed = set()
 for suite in xml.etree.ElementTree.parse(logs / "testlog.junit.xml").iter("testsuite"):
-    program = suite.get("name").partition(".")[2].removesuffix(".pytest")  # "project.program", or of plain programs "project"
+    program = suite.get("name").partition(".")[2].removesuffix(".pytest")  # after the project; none for plain programs
     for case in suite.iter("testcase"):
         result = outcome(case, f"{program} {case.get('name')}".strip())
         counts[result] += 1

@@ -58,7 +58,8 @@ def test_file_that_cannot_be_written(tool, path, older):
     folder = older.parent
     (folder / 'dangling').symlink_to(folder / 'no' / 'such')
     path = os.path.join(folder, path)
-    is_failure(run(tool, *SHORT[tool], '-o', path), 3, f'--output: cannot write "{path}": ', 'should be a file that can be')
+    result = run(tool, *SHORT[tool], '-o', path)
+    is_failure(result, 3, f'--output: cannot write "{path}": ', 'should be a file that can be')
     assert older.read_text() == 'older\n' and sorted(os.listdir(folder)) == ['dangling', 'old.tsv']
 
 
@@ -124,7 +125,8 @@ def test_two_runs(tool):
 
 @each_tool
 def test_from_another_place(tool):
-    assert run(tool, *SHORT[tool], executable=shutil.which(tool), cwd='/', env={}).stdout == run(tool, *SHORT[tool]).stdout
+    other = run(tool, *SHORT[tool], executable=shutil.which(tool), cwd='/', env={})
+    assert other.stdout == run(tool, *SHORT[tool]).stdout
 
 
 @each_tool

@@ -13,7 +13,7 @@ def fit_line(rows):
     return math.exp(my - slope * mx), slope
 
 
-STUDY = {  # first row and number of rows of the study, its fit, the error for n = 10, error constant, evaluations a step
+STUDY = {  # first row and number of rows, the fit, the error for n = 10, error constant, evaluations a step
     'euler': (10, 1000, '0.2764 n^-1.0026', '3.048814e-02', math.cos(1) / 2, 1),
     'leapfrog': (10, 1000, '0.03506 n^-2.0000', '3.510549e-04', math.sin(1) / 24, 1),
     STAGES: (5, 200, '0.006763 n^-3.9949', '6.612487e-07', math.sin(1) / 120, 4),
@@ -88,8 +88,8 @@ def test_match_error_among_all_errors(method, error, most):
 @pytest.mark.parametrize('args, message', [
     pytest.param('--method rk4 --match-error 1e-17', 'rounding', id='rk4: an error below rounding'),
     pytest.param('--method leapfrog --match-error 1e-13', 'rounding', id='leapfrog: an error below rounding'),
-    pytest.param('--method rk4 --match-error 1 --duration 1e300', 'rounding', id='an error after a time beyond all phases'),
-    pytest.param('--method rk4 --n-min 2000 --n-max 4000 --n-step 1 --fit', 'the error is 0', id='a power law through an error of 0'),
+    pytest.param('--method rk4 --match-error 1 --duration 1e300', 'rounding', id='a time beyond all phases'),
+    pytest.param('--method rk4 --n-min 2000 --n-max 4000 --n-step 1 --fit', 'the error is 0', id='a fit of no error'),
     pytest.param('--method rk4 --duration 1e9 --n-max 5000', 'steps of', id='overflow'),
 ])
 def test_fails(args, message):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """spring-scene-map: which methods keep which scenes with how many steps a frame."""
+import itertools
 import math
 
 import pytest
@@ -13,7 +14,7 @@ def quick():
 
 
 def test_scenes_and_methods(quick):
-    assert {(row['scene'], row['method']) for row in quick} == {(scene, method) for scene in SCENES for method in STEPPERS}
+    assert {(row['scene'], row['method']) for row in quick} == set(itertools.product(SCENES, STEPPERS))
     assert {(row['scene'], (int(row['particles']), int(row['links']))) for row in quick} == set(SCENES.items())
     assert all(abs(float(row['dt_s']) * int(row['substeps']) * 60 - 1) <= 1e-15 for row in quick)
 
@@ -34,7 +35,8 @@ def test_euler_explodes(quick):
 
 @pytest.mark.parametrize('method', ['leapfrog', 'rk4'])
 def test_short_steps_are_fine(method, quick):
-    assert {row['scene']: row['verdict'] for row in quick if (row['method'], row['substeps']) == (method, '64')} == dict.fromkeys(SCENES, 'fine')
+    shortest = [row for row in quick if (row['method'], row['substeps']) == (method, '64')]
+    assert {row['scene']: row['verdict'] for row in shortest} == dict.fromkeys(SCENES, 'fine')
 
 
 def test_part_is_the_part(quick):

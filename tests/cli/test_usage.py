@@ -5,8 +5,8 @@ import re
 import shlex
 
 import pytest
-from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, ORDER, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS, VALIDATE, WORK,
-                   each_tool, is_failure, run, table)
+from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, ORDER, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
+                   VALIDATE, WORK, each_tool, is_failure, run, table)
 
 METHOD = f'one of {", ".join(METHODS)}'
 STEPPER = f'one of {", ".join(STEPPERS)}'
@@ -25,14 +25,16 @@ COLUMNS = {  # the fixed ones, in their order; others may follow
     SCENE: 't_s energy_J kinetic_J elastic_J gravity_J max_displacement_m',
     MAP: 'scene method particles links substeps dt_s stable_step_s energy_error verdict',
 }
-NOT_AN_OPTION = ['foo', '', '-', '--', '-x', '-output', '-output=x', '--bogus', '--bogus=1', '--meth', '--outpu', '--vers', '-help']
+NOT_AN_OPTION = ['foo', '', '-', '--', '-x', '-output', '-output=x', '--bogus', '--bogus=1', '--meth', '--outpu',
+                 '--vers', '-help']
 
 REFUSED_VALUES = [  # of a tool, options, values; what each should be
     *[(tool, '--method', ['foo', '', 'Euler', 'eul', 'euler '], METHOD) for tool in BY_METHOD],
     *[(tool, '--output', [''], 'the name of a file') for tool in SHORT],
-    (RUN, '--steps', ['0', '9007199254740993', '-1', '+1', '', ' 1', '1 ', '1.5', '0x10', 'ten', '1e', '1e-1', '1e20', '2e19',
-                      '18446744073709551616', '1e99999999999999999999', 'nan', 'inf'], COUNT_53),
-    (RUN, '--duration', ['0', '-1', '', ' 1', '1 ', '1s', '1e999', '-1e999', '1e-999', 'nan', 'inf', '1,5', '1e', '.'], POSITIVE),
+    (RUN, '--steps', ['0', '9007199254740993', '-1', '+1', '', ' 1', '1 ', '1.5', '0x10', 'ten', '1e', '1e-1', '1e20',
+                      '2e19', '18446744073709551616', '1e99999999999999999999', 'nan', 'inf'], COUNT_53),
+    (RUN, '--duration', ['0', '-1', '', ' 1', '1 ', '1s', '1e999', '-1e999', '1e-999', 'nan', 'inf', '1,5', '1e', '.'],
+     POSITIVE),
     (RUN, '--mass', ['-1', '0', '-0', 'nan', '1e999'], POSITIVE),
     (RUN, '--stiffness --damping', ['-1', '', 'nan', 'infinity', '1e999'], NOT_NEGATIVE),
     (RUN, '--load --x0 --v0 --from', ['nan', '-inf', '1e999', '1e-999', '', '1..2', '1m'], REAL),
@@ -52,7 +54,8 @@ REFUSED_VALUES = [  # of a tool, options, values; what each should be
     (SCENE, '--size', ['1', '4001', '2.5'], 'from 2 to 4000'),
     (SCENE, '--dt --duration --length --mass --fps --stretch --push-duration', ['0', '-1', 'nan'], POSITIVE),
     (SCENE, '--stiffness --damping --drag --rain', ['-1', 'inf'], NOT_NEGATIVE),
-    (SCENE, '--poke', ['', '0,1,0,1', '0,1,0,1,1,1', '0,1,0,1,', ',0,1,0,1', '0 1 0 1 1', '0,1,0,1,nan', '0,,0,1,1'], POKE),
+    (SCENE, '--poke', ['', '0,1,0,1', '0,1,0,1,1,1', '0,1,0,1,', ',0,1,0,1', '0 1 0 1 1', '0,1,0,1,nan',
+                         '0,,0,1,1'], POKE),
     (SCENE, '--drop-box', ['1'], '2 finite numbers separated by commas, T,MASS'),
     (SCENE, '--frames', [''], 'the name of a folder'),
     (MAP, '--method', ['exact'], STEPPER),
@@ -62,18 +65,20 @@ REFUSED_VALUES = [  # of a tool, options, values; what each should be
 REFUSED = [  # a tool with arguments; what else the message says
     *[([tool, *SHORT[tool], name, value], [name, f'"{value}"', wanted])
       for tool, names, values, wanted in REFUSED_VALUES for name in names.split() for value in values],
-    *[([tool, *SHORT[tool], word], [f'"{word}"', 'not an option', f'{tool} --help']) for tool in SHORT for word in NOT_AN_OPTION],
+    *[([tool, *SHORT[tool], word], [f'"{word}"', 'not an option', f'{tool} --help'])
+      for tool in SHORT for word in NOT_AN_OPTION],
     *[([tool, *SHORT[tool], '-o'], ['--output', 'value is missing', 'the name of a file']) for tool in SHORT],
     *[([tool, *SHORT[tool], '--help=1'], ['--help', '"1"', 'takes no value']) for tool in SHORT],
     *[([tool], ['--method', 'missing', METHOD]) for tool in BY_METHOD],
     *[([tool, '--method'], ['--method', 'value is missing', METHOD]) for tool in BY_METHOD],
-    *[([tool, *SHORT[tool], '--method', 'euler', '--arithmetic', 'stages'], ['--arithmetic', '"stages"', 'rk4', 'should be library'])
-      for tool in BY_METHOD],
+    *[([tool, *SHORT[tool], '--method', 'euler', '--arithmetic', 'stages'],
+       ['--arithmetic', '"stages"', 'rk4', 'should be library']) for tool in BY_METHOD],
     *[([VALIDATE, '--case', name], ['--case', f'"{name}"', 'one of', 'turning-point', 'billion-steps'])
       for name in ('nothing', '', 'middl', 'Middle')],
-    *[([SCENE, *SHORT[SCENE], '--poke', f'0,{at},1,1'], ['--poke', f'"{at}"', 'X should be from 0 to 2', 'Y from 0 to 0'])
-      for at in ('2.1,0', '-0.1,0', '1,0.5')],
-    *[([SCENE, *SHORT[SCENE], '--scene', scene, '--gravity', '1'], ['--gravity', '"1"', scene]) for scene in ('chain', 'water')],
+    *[([SCENE, *SHORT[SCENE], '--poke', f'0,{at},1,1'],
+       ['--poke', f'"{at}"', 'X should be from 0 to 2', 'Y from 0 to 0']) for at in ('2.1,0', '-0.1,0', '1,0.5')],
+    *[([SCENE, *SHORT[SCENE], '--scene', scene, '--gravity', '1'], ['--gravity', '"1"', scene])
+      for scene in ('chain', 'water')],
     *[([SCENE, *SHORT[SCENE], '--scene', scene, '--end-mass', '1'], ['--end-mass', '"1"', scene])
       for scene in ('cloth', 'jelly', 'chain', 'water')],
     *[([tool, *SHORT[tool], *words.split()], wanted) for tool, words, wanted in [
@@ -133,7 +138,7 @@ LEAPFROG = ['--method', 'leapfrog', '--duration', '2']
     pytest.param([*LEAPFROG, '--steps', '1e3', '--x0', '-0.25'], id='1e3 for 1000'),
     pytest.param([*LEAPFROG, '--steps', '1000', '--x0', '-0x1p-2'], id='hexadecimal numbers'),
     pytest.param(['--method=leapfrog', '--duration=2', '--steps=1000', '--x0=-.25e0'], id='--option=value'),
-    pytest.param([*LEAPFROG, '--steps', '7', '--x0', '3', '--x0', '-0.25', '--steps', '1000'], id='the last of several counts'),
+    pytest.param([*LEAPFROG, '--steps', '7', '--x0', '3', '--x0', '-0.25', '--steps', '1000'], id='the last counts'),
 ])
 def test_accepted(args):
     assert table(RUN, *args) == table(RUN, *LEAPFROG, '--steps', '1000', '--x0', '-0.25')

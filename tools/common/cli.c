@@ -300,19 +300,17 @@ static bool parse_count(const char *text, uint64_t *value)
         return false;
     char *end;
     errno = 0;
-    const unsigned long long mantissa = strtoull(text, &end, 10);
-    unsigned long long exponent = 0;
-    if (*end == 'e' && isdigit((unsigned char)end[1]))
-        exponent = strtoull(end + 1, &end, 10);
+    unsigned long long mantissa = strtoull(text, &end, 10);
+    const bool power = *end == 'e' && isdigit((unsigned char)end[1]);
+    const unsigned long long exponent = power ? strtoull(end + 1, &end, 10) : 0;
     if (errno != 0 || *end != '\0' || exponent > 19)
         return false;
-    uint64_t result = mantissa;
-    for (; exponent > 0; exponent--) {
-        if (result > UINT64_MAX / 10)
+    for (unsigned i = 0; i < exponent; i++) {
+        if (mantissa > UINT64_MAX / 10)
             return false;
-        result *= 10;
+        mantissa *= 10;
     }
-    *value = result;
+    *value = mantissa;
     return true;
 }
 
@@ -397,10 +395,8 @@ static void print_expectation(FILE *out, const cli_option *o)
         fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
         break;
     case CLI_FILE:
-        fputs("the name of a file", out);
-        break;
     case CLI_FOLDER:
-        fputs("the name of a folder", out);
+        fprintf(out, "the name of a %s", o->kind == CLI_FILE ? "file" : "folder");
         break;
     }
 }
