@@ -10,9 +10,9 @@
  *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
  * What holds for every function here, beside what spring.h says:
- *  - Bits. In double, spring i has bit for bit the life of the single spring {1, omega2[i], gamma[i], accel[i]}, in every
- *    batch, at every place in it, with every instruction set. So a batch may be split by pointer, to use threads, and
- *    put together anew. A float spring does the same arithmetic in float; its bits do not depend on its place either.
+ *  - Bits. In double, advancing spring i is bitwise identical to advancing the single spring {1, omega2[i], gamma[i],
+ *    accel[i]}, in every batch, at every index, with every instruction set. So a batch may be split by pointer, to use
+ *    threads. A float spring does the same arithmetic in float; its bits do not depend on its index either.
  *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one element.
  *    README.md says what each feature costs.
  *  - Each call reads and writes the state once, however many steps it takes.
@@ -80,7 +80,7 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  *         bit in shared; dt or a shared parameter not finite, or negative where it must not be.
  *         SPRING_EINVAL, all others advanced: a spring's own state or parameters are not valid.
  *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that have
- *         all overflowed is given up within 4096 steps.
+ *         all overflowed is given up within SPRING_CHECK_INTERVAL steps.
  * @par Threads   re-entrant; allocates nothing, keeps nothing; distinct ranges of one batch may be advanced at once
  */
 SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);

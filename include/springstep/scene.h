@@ -105,7 +105,7 @@ typedef struct spring_scene spring_scene;
  * @param[out] index  of the particle or link, of gravity the axis, else 0. May be NULL
  * @return SPRING_OK; SPRING_EINVAL: also where a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or drag/mass is
  *         not finite in the precision of the scene; SPRING_ERANGE: an index of a particle is too large, or a count;
- *         SPRING_EUNSUPPORTED: the closed form among the methods
+ *         SPRING_EUNSUPPORTED: the exact solution among the methods
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
 
@@ -145,7 +145,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * @param[in] m   one of the methods of the definition
  * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag; 0, or
  *                in float what rounds to 0, does nothing
- * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the closed form, or a method that the definition does not have;
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the exact solution, or a method that the definition does not have;
  *         SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
  *                Solving Ordinary Differential Equations I (1993), section II.1
@@ -164,7 +164,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * step by resonance closer to it: take half, and less where a link turns faster than it would swing. The callback is not
  * looked at.
  *
- * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the closed form
+ * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the exact solution
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
  */
 SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);

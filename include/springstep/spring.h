@@ -14,7 +14,7 @@
  *  - Bits. Every stepper first forms w = stiffness/mass, g = damping/mass, a = load/mass, each rounded once, and works
  *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering: the
  *    same bits from every compiler and processor that follow IEEE 754 (options that do not, such as -ffast-math, are
- *    refused where they can be seen). The closed form calls the C library's exp, sin, cos and expm1, and is as
+ *    refused where they can be seen). The exact solution calls the C library's exp, sin, cos and expm1, and is as
  *    reproducible as they are.
  *  - All or nothing. spring_advance() either happens or leaves the state as it was, and says why.
  *  - dt may be negative, and is never clamped or refused for being unstable: spring_stable_step() tells, you decide.
@@ -34,7 +34,7 @@ extern "C" {
 
 /* What moves. Two numbers: copy it, send it, roll it back. */
 typedef struct spring_state {
-    double x; /* [m]   displacement from the unloaded rest position; to follow a goal, x = position - goal */
+    double x; /* [m]   displacement from the unloaded rest position; to follow a goal, load = stiffness * goal */
     double v; /* [m/s] velocity, at the same time as x */
 } spring_state;
 
@@ -130,7 +130,7 @@ SPRING_API void spring_step_leapfrog(spring_state *s, const spring_params *p, do
 SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double dt);
 
 /**
- * Advance one spring by its closed-form solution: any dt, any damping, no error but rounding.
+ * Advance one spring by its exact (closed-form) solution: any dt, any damping, no error but rounding.
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters, unchecked here
@@ -138,7 +138,7 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *                    backwards
  * @par Accuracy  without load, (x, v/omega) is within
  *                    4 eps (1 + omega t max(1, zeta)) |Phi| |(x, v/omega)| + DBL_MIN (1 + 1/omega)
- *                of the true solution, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
+ *                of the exact one, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
  *                (x, v/omega), all norms Euclidean; critical damping is no exception. What a load a = load/mass adds to
  *                x is within 8 eps (1 + omega t) of itself, or of a/omega^2 where it oscillates (tests/test_exact.c)
  * @par Source    src/exact.c derives the formula
@@ -168,13 +168,13 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
 
 /* ------------------------------------------------------------------------------------------ questions to ask */
 
-/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the true solution when damping is 0. Unchecked, like the kernels. */
+/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the exact solution when damping is 0. Unchecked, like the kernels. */
 SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 
 /**
- * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows faster than the true one.
+ * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows faster than the exact one.
  *
- * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the closed form; no force at
+ * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the exact solution; no force at
  *         all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
  * @par Source    the stability functions in src/euler.c, src/leapfrog.c, src/rk4.c
  */
@@ -210,13 +210,13 @@ SPRING_API spring_params spring_params_half_life(double half_life, double dampin
 SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
 
 /**
- * The time after which the true solution stays within x_tol of its rest position load/stiffness.
+ * The settling time: after it the exact solution stays within x_tol of its rest position load/stiffness.
  *
  * Without stiffness and load the rest position is where the damping brings the particle to a stop.
  *
  * @param[in] x_tol  >= 0 [m]
  * @return [s]; 0 if it never leaves, INFINITY if it never stays; NaN for bad input
- * @par Accuracy  the crossing of the closed form. A tolerance of no more than about 10 eps of
+ * @par Accuracy  the crossing of the exact solution. A tolerance of no more than about 10 eps of
  *                |x| + |v|/omega + |load/stiffness| is within the rounding of the state, and its time means little
  */
 SPRING_API double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol);
