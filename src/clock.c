@@ -21,13 +21,13 @@ uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint
         !isfinite(clock->pending + frame_dt))
         return 0;
     const double total = clock->pending + frame_dt;
-    const double rest = fmod(total, dt);
-    const double whole = rint((total - rest) / dt);
+    const double remainder = fmod(total, dt);
+    const double whole = rint((total - remainder) / dt);
     const uint64_t steps = whole < (double)max_steps ? (uint64_t)whole : max_steps;
     if (whole > (double)steps)
-        clock->dropped += (total - rest) - (double)steps * dt;
-    clock->pending = rest;
+        clock->dropped += (total - remainder) - (double)steps * dt;
+    clock->pending = remainder;
     if (alpha != NULL)
-        *alpha = rest / dt;
+        *alpha = remainder / dt;
     return steps;
 }

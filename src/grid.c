@@ -2,7 +2,7 @@
 /*
  * Ropes, sheets and blocks: the particles and links of a regular grid.
  *
- * Links are listed by their first particle, which makes rows of them in a scene (scene_init.c).
+ * Links are listed by their first particle, which makes bands of them in a scene (scene_init.c).
  */
 #include "simd/arithmetic.h"
 

@@ -26,7 +26,7 @@ typedef struct scene_band {
     ptrdiff_t first, end;  /* of the lower ends */
     const int8_t *occupied; /* -1 where there is a link, else 0; NULL: each slot has coefficients */
     const scalar
-        *stiffness;        /* [N/m]; of a vector of equal links, or of each place, 0 where there is no link */
+        *stiffness;        /* [N/m]; of a vector of equal links, or of each slot, 0 where there is no link */
     const scalar *rest;    /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping; /* [N s/m]; NULL: none in the spring_scene */
 } scene_band;
@@ -88,7 +88,7 @@ extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v5
 /* ---------------------------------------------------------------------------------------------------------- links */
 
 /* The force of a link on one of its ends is this times the delta to the other end: k (1 - rest/length), and with damping
-   c (relative velocity . delta)/length^2. Not a number where both are at one place: see to_force(). */
+   c (relative velocity . delta)/length^2. Not a number where both are at one point: see to_force(). */
 SPRING_INLINE real pull(uint32_t axes, const real *delta, const real *relative, real square, real k, real rest,
                         real c, bool damped)
 {

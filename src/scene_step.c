@@ -62,7 +62,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         return SPRING_EUNSUPPORTED;
     if (n == 0 || (scalar)dt == 0)
         return SPRING_OK;
-    if (s->lost && !finite_scene(s)) /* the caller has not set all that was lost */
+    if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
         return SPRING_ENONFINITE;
     s->lost = false;
     const bool rollback = (s->plan.flags & SPRING_SCENE_NO_UNDO) == 0;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * When a spring has come to rest.
+ * The settling time: when a spring has come to rest.
  *
  * Method    Measured from the rest position, y(t) is monotone between the zeros of v, which are known: evenly spaced
  *           by pi/split for an oscillating spring, at most one for an overdamped one. The swings at these turning
  *           points shrink by a fixed factor, so the last swing beyond x_tol is found by a logarithm; after it y enters
- *           the band for good, at a crossing found by bisection on the closed form.
+ *           the band for good, at a crossing found by bisection on the exact solution.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
- * Accuracy  bisection ends at adjacent doubles; what it bisects is the closed form, so a tolerance within its rounding
+ * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance within its rounding
  *           error of the state gives a time that means nothing
  */
 #include <stddef.h>
@@ -51,7 +51,7 @@ static spring_state direction(spring_state y)
     return (spring_state){ldexp(y.x, -exponent), ldexp(y.v, -exponent)};
 }
 
-static double rest_time_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
+static double settling_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
 {
     const double spacing = pi / r->split;
     const spring_state u = direction(y);
@@ -72,7 +72,7 @@ static double rest_time_oscillating(spring_state y, const spring_params *p, cons
     return bisect(y, p, last, last + spacing, tol);
 }
 
-static double rest_time_creeping(spring_state y, const spring_params *p, const spring_roots *r, double tol)
+static double settling_creeping(spring_state y, const spring_params *p, const spring_roots *r, double tol)
 {
     const spring_state u = direction(y);
     const double T = u.v / (r->w * u.x + r->b * u.v); /* tanh(split t)/split at the turning point */
@@ -89,12 +89,12 @@ static double rest_time_creeping(spring_state y, const spring_params *p, const s
     return span < INFINITY ? bisect(y, p, turn, turn + span, tol) : INFINITY;
 }
 
-static double rest_time_free(double v, double g, double tol)
+static double settling_free(double v, double g, double tol)
 {
     if (v == 0)
         return 0;
-    const double way = fabs(v / g); /* still to go; infinite without damping */
-    return way > tol ? log_ratio(way, tol) / g : 0;
+    const double distance = fabs(v / g); /* still to go; infinite without damping */
+    return distance > tol ? log_ratio(distance, tol) / g : 0;
 }
 
 double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
@@ -103,12 +103,12 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
         return NAN;
     const spring_roots r = spring_roots_of(p);
     if (r.w == 0)
-        return p->load == 0 ? rest_time_free(s->v, 2 * r.b, x_tol) : INFINITY;
+        return p->load == 0 ? settling_free(s->v, 2 * r.b, x_tol) : INFINITY;
     const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};
     const spring_state y = {s->x - p->load / p->stiffness, s->v};
     if (!isfinite(y.x))
         return INFINITY;
     if (r.overdamped || r.split == 0)
-        return rest_time_creeping(y, &unloaded, &r, x_tol);
-    return rest_time_oscillating(y, &unloaded, &r, x_tol);
+        return settling_creeping(y, &unloaded, &r, x_tol);
+    return settling_oscillating(y, &unloaded, &r, x_tol);
 }
