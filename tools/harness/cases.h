@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The catalogue of hard cases for one spring. A case is data: to add one is to add one entry to cases.c.
+ * The catalogue of corner cases for one spring. A case is data: to add one is to add one entry to cases.c.
  */
 #ifndef HARNESS_CASES_H
 #define HARNESS_CASES_H
@@ -34,20 +34,24 @@ struct validation_case {
     double stable_fraction; /* [] */
     uint64_t n;
 
-    unsigned methods; /* bits 1u << SPRING_...; 0: all four */
-    bool peers;       /* compare with GSL and SUNDIALS as well */
+    bool
+        stable_only; /* not with methods that are not stable at this step; of a fraction: that have no stable step */
+    bool external;    /* compare with GSL and SUNDIALS as well */
     double tolerance; /* of their adaptive solvers, relative to the start; 0: the finest to be trusted */
     bool slow;        /* more than a second: not in the quick catalogue */
 
     /* What changes from segment to segment; NULL: one segment of n steps. There are n segments otherwise, of one step
-       each, and truth (if there is one) is the state that the continuous drive leads to after duration, with a bound on
+       each, and exact (if there is one) is the state that the continuous drive leads to after duration, with a bound on
        what sampling the drive once a step costs. */
     void (*vary)(uint64_t i, segment *s);
-    double (*truth)(const validation_case *c, double dt, double duration, spring_state *state);
+    double (*exact)(const validation_case *c, double dt, double duration, spring_state *state);
 };
 
 extern const validation_case cases[];
 extern const size_t case_count;
+
+/* Is a case tried with this method? */
+bool case_takes(const validation_case *c, spring_method m);
 
 /* The parameters and step of a case for one method. */
 segment case_segment(const validation_case *c, spring_method m, spring_state *start);

@@ -4,9 +4,10 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#include "harness/iterates.h"
 
 /* 107 digits: n = 2^64 steps and damping ratios of 1e8 still leave more than 30. */
 static const mpfr_prec_t precision = 384;
@@ -127,7 +128,7 @@ void reference_start(reference *ref, const spring_params *p, spring_state start)
     mpfr_clear(u);
 }
 
-/* ------------------------------------------------------------------------------------------- the true solution */
+/* ------------------------------------------------------------------------------------------- the exact solution */
 
 /* The solution over t as a map: eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for the
    cancellation that the library avoids. */
@@ -198,92 +199,17 @@ void reference_exact(reference *ref, const spring_params *p, double t)
 
 /* --------------------------------------------------------------------------------------- the numerical solution */
 
-typedef struct rates {
-    mpfr_t w, g, a;
-} rates;
-
-/* acceleration = a - w x - g v */
-static void acceleration(mpfr_t out, const rates *r, const mpfr_t x, const mpfr_t v)
-{
-    mpfr_fmma(out, r->w, x, r->g, v, nearest);
-    mpfr_sub(out, r->a, out, nearest);
-}
-
-static void euler_step(mpfr_t x, mpfr_t v, const rates *r, const mpfr_t h)
-{
-    mpfr_t force;
-    mpfr_init2(force, precision);
-    acceleration(force, r, x, v);
-    mpfr_fma(x, h, v, x, nearest);
-    mpfr_fma(v, h, force, v, nearest);
-    mpfr_clear(force);
-}
-
-static void leapfrog_step(mpfr_t x, mpfr_t v, const rates *r, const mpfr_t h)
-{
-    mpfr_t force, half, zero;
-    mpfr_inits2(precision, force, half, zero, (mpfr_ptr)NULL);
-    mpfr_set_zero(zero, 1);
-    mpfr_div_ui(half, h, 2, nearest);
-    acceleration(force, r, x, v);
-    mpfr_fma(v, half, force, v, nearest);
-    mpfr_fma(x, h, v, x, nearest);
-    acceleration(force, r, x, zero);
-    mpfr_fma(v, half, force, v, nearest);
-    mpfr_mul(force, half, r->g, nearest);
-    mpfr_add_ui(force, force, 1, nearest);
-    mpfr_div(v, v, force, nearest);
-    mpfr_clears(force, half, zero, (mpfr_ptr)NULL);
-}
-
-static void rk4_step(mpfr_t x, mpfr_t v, const rates *r, const mpfr_t h)
-{
-    static const int stage_at[] = {0, 1, 1, 2}; /* in half steps */
-    static const unsigned weight[] = {1, 2, 2, 1};
-    mpfr_t kx, kv, sum_x, sum_v, sx, sv, part;
-    mpfr_inits2(precision, kx, kv, sum_x, sum_v, sx, sv, part, (mpfr_ptr)NULL);
-    mpfr_set_zero(kx, 1);
-    mpfr_set_zero(kv, 1);
-    mpfr_set_zero(sum_x, 1);
-    mpfr_set_zero(sum_v, 1);
-    for (int i = 0; i < 4; i++) {
-        mpfr_mul_si(part, h, stage_at[i], nearest);
-        mpfr_div_ui(part, part, 2, nearest);
-        mpfr_fma(sx, part, kx, x, nearest);
-        mpfr_fma(sv, part, kv, v, nearest);
-        mpfr_set(kx, sv, nearest);
-        acceleration(kv, r, sx, sv);
-        mpfr_mul_ui(part, kx, weight[i], nearest);
-        mpfr_add(sum_x, sum_x, part, nearest);
-        mpfr_mul_ui(part, kv, weight[i], nearest);
-        mpfr_add(sum_v, sum_v, part, nearest);
-    }
-    mpfr_div_ui(part, h, 6, nearest);
-    mpfr_fma(x, part, sum_x, x, nearest);
-    mpfr_fma(v, part, sum_v, v, nearest);
-    mpfr_clears(kx, kv, sum_x, sum_v, sx, sv, part, (mpfr_ptr)NULL);
-}
-
-static void apply_step(spring_method m, mpfr_t x, mpfr_t v, const rates *r, const mpfr_t h)
-{
-    if (m == SPRING_EULER)
-        euler_step(x, v, r, h);
-    else if (m == SPRING_LEAPFROG)
-        leapfrog_step(x, v, r, h);
-    else
-        rk4_step(x, v, r, h);
-}
-
 /* One step as an affine map, by stepping the origin and two basis states. */
-static void step_map(affine *f, spring_method m, const rates *r, const mpfr_t h)
+static void step_map(affine *f, spring_method m, const iterate_rates *r, const mpfr_t h)
 {
+    const iterate *method = iterate_of(m);
     mpfr_set_zero(f->q[0], 1);
     mpfr_set_zero(f->q[1], 1);
-    apply_step(m, f->q[0], f->q[1], r, h);
+    method->spring(f->q[0], f->q[1], r, h);
     for (int j = 0; j < 2; j++) {
         mpfr_set_ui(f->m[0][j], j == 0, nearest);
         mpfr_set_ui(f->m[1][j], j == 1, nearest);
-        apply_step(m, f->m[0][j], f->m[1][j], r, h);
+        method->spring(f->m[0][j], f->m[1][j], r, h);
         mpfr_sub(f->m[0][j], f->m[0][j], f->q[0], nearest);
         mpfr_sub(f->m[1][j], f->m[1][j], f->q[1], nearest);
     }
@@ -291,7 +217,7 @@ static void step_map(affine *f, spring_method m, const rates *r, const mpfr_t h)
 
 static void rounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
 {
-    rates r;
+    iterate_rates r;
     mpfr_t h;
     mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
     mpfr_set_d(r.w, p->stiffness / p->mass, nearest);
@@ -302,12 +228,11 @@ static void rounded_step_map(affine *f, const spring_params *p, spring_method m,
     mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
 }
 
-void reference_iterate(reference *ref, const spring_params *p, spring_method m, double dt, uint64_t n)
+/* f becomes n times f; both linear and constant parts. */
+static void affine_power(affine *f, uint64_t n)
 {
-    affine power, all;
-    affine_init(&power);
+    affine all;
     affine_init(&all);
-    rounded_step_map(&power, p, m, dt);
     for (int i = 0; i < 2; i++) {
         mpfr_set_zero(all.q[i], 1);
         for (int j = 0; j < 2; j++)
@@ -315,13 +240,104 @@ void reference_iterate(reference *ref, const spring_params *p, spring_method m, 
     }
     for (; n > 0; n /= 2) {
         if (n % 2 == 1)
-            affine_compose(&all, &power, &all);
+            affine_compose(&all, f, &all);
         if (n > 1)
-            affine_compose(&power, &power, &power);
+            affine_compose(f, f, f);
     }
-    apply(ref, &all);
-    affine_clear(&power);
+    affine_set(f, &all);
     affine_clear(&all);
+}
+
+void reference_iterate(reference *ref, const spring_params *p, spring_method m, double dt, uint64_t n)
+{
+    affine steps;
+    affine_init(&steps);
+    rounded_step_map(&steps, p, m, dt);
+    affine_power(&steps, n);
+    apply(ref, &steps);
+    affine_clear(&steps);
+}
+
+/* One step of an undamped, unloaded spring. */
+static void mode_map(affine *f, spring_method m, long double omega, double h)
+{
+    iterate_rates r;
+    mpfr_t step;
+    mpfr_inits2(precision, r.w, r.g, r.a, step, (mpfr_ptr)NULL);
+    mpfr_set_ld(r.w, omega, nearest);
+    mpfr_sqr(r.w, r.w, nearest);
+    mpfr_set_zero(r.g, 1);
+    mpfr_set_zero(r.a, 1);
+    mpfr_set_d(step, h, nearest);
+    step_map(f, m, &r, step);
+    mpfr_clears(r.w, r.g, r.a, step, (mpfr_ptr)NULL);
+}
+
+void reference_mode(spring_method m, long double omega, double h, uint64_t n, long double *x, long double *v)
+{
+    affine f;
+    mpfr_t x0, v0, end;
+    affine_init(&f);
+    mpfr_inits2(precision, x0, v0, end, (mpfr_ptr)NULL);
+    mpfr_set_ld(x0, *x, nearest);
+    mpfr_set_ld(v0, *v, nearest);
+    mode_map(&f, m, omega, h);
+    affine_power(&f, n);
+    mpfr_fmma(end, f.m[0][0], x0, f.m[0][1], v0, nearest);
+    *x = mpfr_get_ld(end, nearest);
+    mpfr_fmma(end, f.m[1][0], x0, f.m[1][1], v0, nearest);
+    *v = mpfr_get_ld(end, nearest);
+    mpfr_clears(x0, v0, end, (mpfr_ptr)NULL);
+    affine_clear(&f);
+}
+
+/* ------------------------------------------------------------------------------------------------ steps as a turn */
+
+/* With g^2 = det M and cos(angle) = trace/(2 g):   M = g (cos(angle) + sin(angle) J) */
+bool reference_turn_of(reference_turn *t, spring_method m, double omega, double h)
+{
+    affine f;
+    mpfr_t half, det, sine, part;
+    affine_init(&f);
+    mpfr_inits2(precision, half, det, sine, part, (mpfr_ptr)NULL);
+    mode_map(&f, m, omega, h);
+    mpfr_mul_d(f.m[0][1], f.m[0][1], omega, nearest);
+    mpfr_div_d(f.m[1][0], f.m[1][0], omega, nearest);
+    mpfr_add(half, f.m[0][0], f.m[1][1], nearest);
+    mpfr_div_ui(half, half, 2, nearest);
+    mpfr_fmms(det, f.m[0][0], f.m[1][1], f.m[0][1], f.m[1][0], nearest);
+    mpfr_sqr(part, half, nearest);
+    mpfr_sub(part, det, part, nearest);
+    const bool turns = mpfr_sgn(part) > 0;
+    if (turns) {
+        mpfr_sqrt(sine, part, nearest);
+        mpfr_div(f.m[1][0], f.m[1][0], sine, nearest);
+        mpfr_div(f.m[0][1], f.m[0][1], sine, nearest);
+        mpfr_sub(part, f.m[0][0], half, nearest);
+        mpfr_div(part, part, sine, nearest);
+        t->x_to_x = mpfr_get_d(part, nearest);
+        t->v_to_x = mpfr_get_d(f.m[0][1], nearest);
+        t->x_to_v = mpfr_get_d(f.m[1][0], nearest);
+        mpfr_atan2(sine, sine, half, nearest);
+        t->angle = mpfr_get_d(sine, nearest);
+        mpfr_set_d(part, omega, nearest);
+        mpfr_mul_d(part, part, h, nearest);
+        mpfr_sub(sine, sine, part, nearest);
+        t->ahead = mpfr_get_d(sine, nearest);
+        mpfr_log(det, det, nearest);
+        t->log_growth = mpfr_get_d(det, nearest) / 2;
+    }
+    mpfr_clears(half, det, sine, part, (mpfr_ptr)NULL);
+    affine_clear(&f);
+    return turns;
+}
+
+double reference_turn_norm(const reference_turn *t, uint64_t n)
+{
+    /* Singular values s and 1/s of J, which has det 1, and of which cos + sin J cannot have a larger one. */
+    const double squares = 2 * t->x_to_x * t->x_to_x + t->v_to_x * t->v_to_x + t->x_to_v * t->x_to_v;
+    const double norm = (sqrt(squares + 2) + sqrt(fmax(squares - 2, 0))) / 2;
+    return norm * exp(fmax((double)n * t->log_growth, 0));
 }
 
 double reference_distance(const reference *ref, spring_state got)
@@ -418,7 +434,7 @@ typedef struct walk {
 
 struct reference_bounds {
     double omega;
-    spring_state y, exact; /* (x, v/omega) by the method, and the true one */
+    spring_state y, exact; /* (x, v/omega) by the method, and the exact one */
     added *steps;
     walk *walks;
     uint64_t step_count, walk_count;
@@ -443,26 +459,19 @@ reference_bounds *reference_bounds_new(const spring_params *p, spring_state star
     return b;
 }
 
-static double carried_by_many(spring_method m, double z, uint64_t n)
-{
-    if (m == SPRING_LEAPFROG)
-        return 1 / sqrt(1 - z * z / 4);
-    return m == SPRING_EULER ? exp((double)n / 2 * log1p(z * z)) : 1;
-}
-
 void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     const uint64_t most_walked = 1000000;
     const double omega = b->omega, z = fmax(sqrt(p->stiffness / p->mass), p->damping / p->mass) * fabs(dt);
     const double local = 2 * DBL_EPSILON * pow(1 + z * z, 2);
-    const double push = fabs(p->load / p->mass * dt) / omega,
+    const double loaded = fabs(p->load / p->mass * dt) / omega,
                  smallest = 8 * DBL_TRUE_MIN * fmax(1, 1 / omega);
     affine step, solution;
     affine_init(&step);
     affine_init(&solution);
     rounded_step_map(&step, p, m, dt);
     solution_map(&solution, p, dt);
-    const plane_map M = plane_of(&step, omega), truth = plane_of(&solution, omega);
+    const plane_map M = plane_of(&step, omega), exact = plane_of(&solution, omega);
     const plane_map defect = plane_difference(&step, &solution, omega);
     affine_clear(&step);
     affine_clear(&solution);
@@ -472,31 +481,34 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     b->walks[b->walk_count++] = (walk){M, walked ? n : 1};
     b->steps = grown(b->steps, b->step_count + (walked ? n : 1), sizeof *b->steps);
     if (!walked) {
-        const double carried = carried_by_many(m, z, n), all = (double)n * hypot(b->y.x, b->y.v) * carried;
+        reference_turn turn;
+        const bool turns = p->damping == 0 && p->load == 0 && reference_turn_of(&turn, m, omega, dt);
+        const double carried = turns ? reference_turn_norm(&turn, n) : NAN; /* a bound that nothing keeps */
+        const double all = (double)n * hypot(b->y.x, b->y.v) * carried;
         b->steps[b->step_count++] = (added){carried * all * local, all * plane_norm(&defect)};
         return;
     }
     for (uint64_t j = 0; j < n; j++) {
         const spring_state miss = plane_apply(&defect, b->exact);
         b->steps[b->step_count++] =
-            (added){local * (hypot(b->y.x, b->y.v) + push) + smallest, hypot(miss.x, miss.v)};
+            (added){local * (hypot(b->y.x, b->y.v) + loaded) + smallest, hypot(miss.x, miss.v)};
         b->y = plane_apply(&M, b->y);
-        b->exact = plane_apply(&truth, b->exact);
+        b->exact = plane_apply(&exact, b->exact);
     }
 }
 
 void reference_bounds_end(reference_bounds *b, double *rounding, double *truncation)
 {
-    plane_map rest = {1, 0, 0, 1, 0, 0}; /* the product of the steps that follow */
+    plane_map later = {1, 0, 0, 1, 0, 0}; /* the product of the steps that follow */
     uint64_t j = b->step_count;
     *rounding = *truncation = 0;
     for (uint64_t i = b->walk_count; i-- > 0;)
         for (uint64_t k = 0; k < b->walks[i].n; k++) {
-            const double norm = plane_norm(&rest);
+            const double norm = plane_norm(&later);
             j--;
             *rounding += norm * b->steps[j].rounding;
             *truncation += norm * b->steps[j].truncation;
-            rest = plane_product(&rest, &b->walks[i].step);
+            later = plane_product(&later, &b->walks[i].step);
         }
     free(b->steps);
     free(b->walks);
@@ -507,7 +519,7 @@ void reference_bounds_end(reference_bounds *b, double *rounding, double *truncat
    without damping has det = 1: the slack is far above what 384 bits round and far below what a double can tell. */
 static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
 {
-    rates r;
+    iterate_rates r;
     affine f;
     mpfr_t trace, det, edge;
     affine_init(&f);

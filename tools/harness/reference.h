@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * References in multiple precision (MPFR): the true solution of a spring, and the numerical solution that a method
+ * References in multiple precision (MPFR): the exact solution of a spring, and the numerical solution that a method
  * would give without rounding. Every number here has at least 30 digits to spare before it becomes a double.
  *
  * Distances are Euclidean in (x, v/omega), omega = sqrt(stiffness/mass), or in (x, v s) for a spring without stiffness.
  */
 #ifndef HARNESS_REFERENCE_H
 #define HARNESS_REFERENCE_H
+
+#include <stdbool.h>
 
 #include <mpfr.h>
 
@@ -24,13 +26,33 @@ void reference_clear(reference *r);
 /* Start from a state; distances are measured with the omega of p. */
 void reference_start(reference *r, const spring_params *p, spring_state start);
 
-/* The true solution, t later. */
+/* The exact solution, t later. */
 void reference_exact(reference *r, const spring_params *p, double t);
 
-/* n steps of Euler, leapfrog or RK4 in exact arithmetic, from w = k/m, g = c/m, a = f/m each rounded to a double, as the
-   library works from those. The step is applied to a basis in the textbook's form (RK4 by its four stages) and the
-   resulting affine map is raised to the power n by repeated squaring. */
+/* n steps of a method in exact arithmetic, from w = k/m, g = c/m, a = f/m each rounded to a double, as the library works
+   from those. The step of iterates.h is applied to a basis, and the resulting affine map is raised to the power n by
+   repeated squaring. */
 void reference_iterate(reference *r, const spring_params *p, spring_method m, double dt, uint64_t n);
+
+/* n steps of x'' = -omega^2 x, likewise. */
+void reference_mode(spring_method m, long double omega, double h, uint64_t n, long double *x, long double *v);
+
+/* A step of any method on x'' = -omega^2 x turns (x, v/omega), as long as the eigenvalues of its matrix M are complex:
+ *
+ *     M^n = exp(n log_growth) (cos(n angle) + sin(n angle) J),    J = (x_to_x, v_to_x; x_to_v, -x_to_x),   J^2 = -1
+ *
+ * Of the exact solution the angle is omega h, and J = (0, 1; -1, 0). */
+typedef struct reference_turn {
+    double log_growth;
+    double angle, ahead; /* [rad]; ahead = angle - omega h, to all digits */
+    double x_to_x, v_to_x, x_to_v;
+} reference_turn;
+
+/* Returns false if they are not. */
+bool reference_turn_of(reference_turn *t, spring_method m, double omega, double h);
+
+/* A bound of the norm of up to n steps. */
+double reference_turn_norm(const reference_turn *t, uint64_t n);
 
 /* |got - reference| [m] */
 double reference_distance(const reference *r, spring_state got);
@@ -43,13 +65,12 @@ double reference_energy_error(const reference *r, spring_state got);
  *     rounding    between the computed steps and reference_iterate(). A step adds at most
  *                 2 eps (1 + z^2)^2 (|y| + |a| dt/omega) + 8 DBL_TRUE_MIN,   z = max(omega, g) |dt|
  *                 (counting roundings: 4 half ulps of |y| suffice as z -> 0, 11 at z = 1, 44 at z = 2; z^4 is RK4's)
- *     truncation  between reference_iterate() and reference_exact(). A step adds |one step of the method - the true
- *                 solution| from the true y, the difference formed in multiple precision
+ *     truncation  between reference_iterate() and reference_exact(). A step adds |one step of the method - the exact
+ *                 solution| from the exact y, the difference formed in multiple precision
  *
  * What a step adds, the steps that follow carry on: at most by the norm of the product of their matrices. The bounds are
  * the sums over all steps (Lady Windermere's fan), walked through in double precision. More than 10^6 equal steps are
- * not walked, and must be all there is, without damping and load: then by the closed forms for the norm,
- * 1/sqrt(1 - z^2/4) of leapfrog, (1 + z^2)^(n/2) of Euler and 1 of RK4 in its stable range. */
+ * not walked, and must be all there is, without damping and load: then by reference_turn_norm(). */
 typedef struct reference_bounds reference_bounds;
 
 reference_bounds *reference_bounds_new(const spring_params *p, spring_state start); /* exits without memory */

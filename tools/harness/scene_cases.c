@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The catalogue of hard scenes; see scenes.h.
+ * The catalogue of corner cases of scenes; see scenes.h.
  *
  * Digits at the end of nonlinear cases were computed in quadruple precision, twice, with steps of different length. Of
  * cases that fix k = m = 1 the mass is another, and the forces are as many times larger.
@@ -358,32 +358,6 @@ static void build_mode(const scene_case *c, scene_problem *p)
 
 /* ------------------------------------------------------------------------------------------------ linear scenes */
 
-/* n steps of one mode, x'' = -omega^2 x: a rotation and a growth in (x, v/scale). */
-static void mode_steps(spring_method m, long double omega, long double h, uint64_t n, long double *x,
-                       long double *v)
-{
-    const long double z = omega * h, N = (long double)n;
-    long double scale = omega, angle, growth = 1;
-    if (omega == 0) {
-        *x += N * h * *v;
-        return;
-    }
-    if (m == SPRING_EULER) { /* (1 - i z)^n */
-        angle = N * atanl(z);
-        growth = expl(N / 2 * log1pl(z * z));
-    } else if (m == SPRING_LEAPFROG) {
-        angle = N * 2 * asinl(z / 2);
-        scale *= sqrtl(1 - z * z / 4);
-    } else { /* (1 - z^2/2 + z^4/24 - i (z - z^3/6))^n */
-        const long double zz = z * z;
-        angle = N * atan2l(z * (1 - zz / 6), 1 - zz / 2 + zz * zz / 24);
-        growth = expl(N / 2 * log1pl(zz * zz * zz * (zz / 8 - 1) / 72));
-    }
-    const long double C = growth * cosl(angle), S = growth * sinl(angle), x0 = *x;
-    *x = C * x0 + S * *v / scale;
-    *v = C * *v - S * scale * x0;
-}
-
 static const double chain_stiffness = 2.7, chain_spacing = 0.5; /* [N/m], [m] */
 
 /* Equal masses between two walls. */
@@ -416,7 +390,7 @@ static void chain_modes(const scene_case *c, const scene_problem *p, spring_meth
             x += sine[i * j % period] * (p->position[i] - chain_spacing * (long double)i);
             v += sine[i * j % period] * p->velocity[i];
         }
-        mode_steps(m, highest * sinl(quarter * (long double)j / (long double)(n + 1)), h, steps, &x, &v);
+        reference_mode(m, highest * sinl(quarter * (long double)j / (long double)(n + 1)), h, steps, &x, &v);
         for (size_t i = 1; i <= n; i++) {
             end[i - 1] += sine[i * j % period] * x;
             end[n + i - 1] += sine[i * j % period] * v;
@@ -430,19 +404,19 @@ static void chain_modes(const scene_case *c, const scene_problem *p, spring_meth
     free(end);
 }
 
-/* Two particles and a link; all that moves moves along the way from one to the other, or with both. */
+/* Two particles and a link; all that moves moves along the line from one to the other, or with both. */
 static const double pair_mass[] = {1.3, 0.4}, pair_stiffness = 2.7, pair_rest = 1.25; /* [kg], [N/m], [m] */
-static const double pair_way[] = {0.5, 1, 1}, pair_length = 1.5; /* [m] exactly: without rotation */
-static const double pair_rate = -0.75;                           /* [m/s] of the length */
-static const double pair_drift[] = {0.3, -0.2, 0.1};             /* [m/s] of the first particle */
+static const double pair_delta[] = {0.5, 1, 1}, pair_length = 1.5; /* [m] exactly: without rotation */
+static const double pair_rate = -0.75;                             /* [m/s] of the length */
+static const double pair_drift[] = {0.3, -0.2, 0.1};               /* [m/s] of the first particle */
 
 static void build_pair(const scene_case *c, scene_problem *p)
 {
     const uint32_t axes = (uint32_t)c->count;
     make(p, axes, 2, 1);
     for (uint32_t d = 0; d < axes; d++) {
-        const double along = axes == 1 ? 1 : pair_way[d] / pair_length;
-        p->position[axes + d] = axes == 1 ? pair_length : pair_way[d];
+        const double along = axes == 1 ? 1 : pair_delta[d] / pair_length;
+        p->position[axes + d] = axes == 1 ? pair_length : pair_delta[d];
         p->velocity[d] = pair_drift[d];
         p->velocity[axes + d] = pair_drift[d] + pair_rate * along;
     }
@@ -464,12 +438,12 @@ static void place_pair(const scene_case *c, const scene_problem *p, long double 
     const size_t axes = c->count;
     const long double share = pair_mass[1] / ((long double)pair_mass[0] + pair_mass[1]);
     for (size_t d = 0; d < axes; d++) {
-        const long double along = axes == 1 ? 1 : pair_way[d] / (long double)pair_length;
+        const long double along = axes == 1 ? 1 : pair_delta[d] / (long double)pair_length;
         const long double drift = p->velocity[d] + share * pair_rate * along;
         const long double centre = p->position[d] + share * pair_length * along + drift * t;
-        const long double way = (pair_rest + x) * along, rate = v * along;
-        y[d] = (double)(centre - share * way);
-        y[axes + d] = (double)(centre + (1 - share) * way);
+        const long double delta = (pair_rest + x) * along, rate = v * along;
+        y[d] = (double)(centre - share * delta);
+        y[axes + d] = (double)(centre + (1 - share) * delta);
         y[2 * axes + d] = (double)(drift - share * rate);
         y[3 * axes + d] = (double)(drift + (1 - share) * rate);
     }
@@ -480,7 +454,7 @@ static void iterate_pair(const scene_case *c, const scene_problem *p, spring_met
 {
     const long double inverse = 1 / (long double)pair_mass[0] + 1 / (long double)pair_mass[1];
     long double x = (long double)pair_length - pair_rest, v = pair_rate;
-    mode_steps(m, sqrtl(pair_stiffness * inverse), h, n, &x, &v);
+    reference_mode(m, sqrtl(pair_stiffness * inverse), h, n, &x, &v);
     place_pair(c, p, (long double)n * h, x, v, y);
 }
 
@@ -488,33 +462,33 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 {
     const spring_params reduced = {1 / (1 / pair_mass[0] + 1 / pair_mass[1]), pair_stiffness,
                                    p->link[0].damping, 0};
-    reference truth;
-    reference_init(&truth);
-    reference_start(&truth, &reduced, (spring_state){pair_length - pair_rest, pair_rate});
-    reference_exact(&truth, &reduced, c->duration);
-    place_pair(c, p, c->duration, mpfr_get_ld(truth.x, MPFR_RNDN), mpfr_get_ld(truth.v, MPFR_RNDN), y);
-    reference_clear(&truth);
+    reference exact;
+    reference_init(&exact);
+    reference_start(&exact, &reduced, (spring_state){pair_length - pair_rest, pair_rate});
+    reference_exact(&exact, &reduced, c->duration);
+    place_pair(c, p, c->duration, mpfr_get_ld(exact.x, MPFR_RNDN), mpfr_get_ld(exact.v, MPFR_RNDN), y);
+    reference_clear(&exact);
 }
 
 /* ------------------------------------------------------------------------------------------------ the catalogue */
 
-#define STEPS(euler, leapfrog, rk4) .steps = {euler, leapfrog, rk4}
-#define CHAIN(n, first, last)                                                          \
-    .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .closed = "modes", \
+#define STEPS(first, second, fourth) .steps = {first, second, fourth} /* order */
+#define CHAIN(n, first, last)                                                           \
+    .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .formula = "modes", \
     .iterate = chain_modes, .slowest = first, .fastest = last
-#define PAIR(axes)                                                                            \
-    .build = build_pair, .count = axes, .omega = 2.97, .length = 1, .closed = "reduced-mass", \
+#define PAIR(axes)                                                                             \
+    .build = build_pair, .count = axes, .omega = 2.97, .length = 1, .formula = "reduced-mass", \
     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972
 #define LONG  .duration = 16, STEPS(1024, 512, 512)
 #define BRIEF .duration = 0.125, STEPS(4, 4, 4)
-/* A mode for some eighths of a second. RK4 takes about half its stable step, 2.61/sqrt(8 k/m) with structural links, with all
+/* A mode for some eighths of a second, by methods of order 2 or more. RK4 takes about half its stable step, 2.61/sqrt(8 k/m) with structural links, with all
    families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step alone makes the frequency of mode (3, 1) at
    15 x 15 wrong by z^2/24, more than half a percent. .length and .omega follow from the mode. */
-#define MODE(name, purpose, eighths, leapfrog, rk4, takes_long)                         \
-    {                                                                                   \
-        name, purpose, build_mode, .duration = (eighths) / 8.0,                         \
-                                   STEPS(0, (eighths) * (leapfrog), (eighths) * (rk4)), \
-                                   .closed = "dispersion", .slow = (takes_long)         \
+#define MODE(name, purpose, eighths, second, fourth, takes_long)                         \
+    {                                                                                    \
+        name, purpose, build_mode, .duration = (eighths) / 8.0,                          \
+                                   STEPS(0, (eighths) * (second), (eighths) * (fourth)), \
+                                   .formula = "dispersion", .slow = (takes_long)         \
     }
 #define WAVE(mode, N, eighths, takes_long)                                                                 \
     MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, \
@@ -528,55 +502,55 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
     {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32), .omega = 1,
-     .length = 1, .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .peers = true},
+     .length = 1, .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .external = true},
     {"duffing-period", "the same for one period, back to the start", build_duffing,
      .duration = 4.768022029102460806304518, STEPS(4096, 512, 128), .omega = 1, .length = 1, .callback = 1,
      .known = 2, .digits = {1, 0}},
     {"pendulum", "a pendulum that starts next to its highest point", build_pendulum, .duration = 10,
      STEPS(10240, 1280, 160), .omega = 1, .length = 3, .callback = 1, .known = 1,
-     .digits = {-2.650674563598209613232602}, .peers = true},
+     .digits = {-2.650674563598209613232602}, .external = true},
     {"pendulum-period", "the same for one period, past the highest point", build_pendulum,
      .duration = 16.15553937239337476376028, STEPS(65536, 2048, 256), .omega = 1, .length = 3, .callback = 1,
      .known = 2, .digits = {3, 0}},
     {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280),
      .omega = 1, .length = 4, .callback = 100, .known = 2,
-     .digits = {-0.92175345784461174225, 5.2692478469465402339}, .peers = true},
+     .digits = {-0.92175345784461174225, 5.2692478469465402339}, .external = true},
     {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200), .omega = 1,
      .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
-     .peers = true, .slow = true},
+     .external = true, .slow = true},
     {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
      .duration = 20, STEPS(81920, 10240, 1280), .omega = 1, .length = 2, .callback = 17, .known = 2,
-     .digits = {2.0081497621749485920, -0.042508875273202146986}, .peers = true},
+     .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
     {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
      STEPS(327680, 40960, 2560), .omega = 1, .length = 2, .callback = 205, .known = 2,
-     .digits = {-1.6012968795428539088, 0.19832667633866208454}, .peers = true, .slow = true},
+     .digits = {-1.6012968795428539088, 0.19832667633866208454}, .external = true, .slow = true},
     {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
      STEPS(16384, 2048, 512), .omega = 50, .length = 1, .callback = 12, .known = 2,
-     .digits = {0.51767820806882268094, 0.53980860868328140544}, .peers = true},
+     .digits = {0.51767820806882268094, 0.53980860868328140544}, .external = true},
     {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 40960, 2560),
      .omega = 50, .length = 1, .callback = 12, .known = 2,
-     .digits = {0.75633242161029198993, 0.71735962155453710255}, .peers = true, .slow = true},
+     .digits = {0.75633242161029198993, 0.71735962155453710255}, .external = true, .slow = true},
     {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
      STEPS(81920, 10240, 640), .omega = 3, .length = 1, .callback = 256, .known = 2,
-     .digits = {-0.62718670506653073014, -1.3013155502098116779}, .peers = true},
+     .digits = {-0.62718670506653073014, -1.3013155502098116779}, .external = true},
     {"resonant-drive", "a drive in the callback, sampled at every stage", build_resonance, .duration = 20,
-     STEPS(20480, 2560, 640), .omega = 1, .length = 7, .callback = 0.7, .closed = "formula",
-     .solution = solve_resonance, .peers = true},
+     STEPS(20480, 2560, 640), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
+     .solution = solve_resonance, .external = true},
     /* links */
     {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8,
-     STEPS(65536, 4096, 1024), .omega = 6, .length = 1, .peers = true},
+     STEPS(65536, 4096, 1024), .omega = 6, .length = 1, .external = true},
     {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
-     STEPS(0, 4096, 1024), .omega = 6325, .length = 0.1, .peers = true, .slow = true},
+     STEPS(0, 4096, 1024), .omega = 6325, .length = 0.1, .external = true, .slow = true},
     {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
-     STEPS(0, 4096, 1024), .omega = 2038, .length = 0.5, .peers = true, .slow = true},
+     STEPS(0, 4096, 1024), .omega = 2038, .length = 0.5, .external = true, .slow = true},
     {"patchwork", "rows of links of which none is like the next, on a line", build_patchwork, .count = 1,
-     .duration = 0.5, STEPS(512, 128, 64), .omega = 21, .length = 0.3, .peers = true},
+     .duration = 0.5, STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
     {"patchwork-2d", "the same in the plane, falling", build_patchwork, .count = 2, .duration = 0.5,
-     STEPS(512, 128, 64), .omega = 21, .length = 0.3, .peers = true},
+     STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
     {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128),
-     .omega = 100, .length = 0.2, .peers = true, .slow = true},
+     .omega = 100, .length = 0.2, .external = true, .slow = true},
     {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21,
-     .length = 0.1, .peers = true, .slow = true},
+     .length = 0.1, .external = true, .slow = true},
     /* linear chains, with fixed ends */
     {"chain-1", "one mass between walls", CHAIN(1, 2.038, 2.039), LONG},
     {"chain-2", "two", CHAIN(2, 1.441, 2.497), LONG},
@@ -590,8 +564,8 @@ const scene_case scene_cases[] = {
     {"pair-3d", "the same in space, adrift", PAIR(3), LONG},
     {"pair-briefly", "the same, so few steps that rounding errors cannot cancel", PAIR(3), BRIEF},
     {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
-     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .closed = "reduced-mass",
-     .solution = solve_damped_pair, .peers = true},
+     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .formula = "reduced-mass",
+     .solution = solve_damped_pair, .external = true},
     /* standing waves */
     WAVE("1-1", "15", 4, false),
     WAVE("2-1", "15", 4, false),
@@ -607,5 +581,13 @@ const scene_case scene_cases[] = {
     WAVE("3-1", "35", 6, true),
     MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43, false),
 };
+
+uint64_t scene_case_steps(const scene_case *c, spring_method m)
+{
+    const spring_method_info *info = spring_method_describe(m);
+    if (!info->scenes)
+        return 0;
+    return c->steps[info->order < 2 ? 0 : info->order < 4 ? 1 : 2];
+}
 
 const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];

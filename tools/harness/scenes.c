@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The equation of a scene and its methods, a second time; see scenes.h. */
+/* The equation of a scene, a second time; see scenes.h. */
 #include "harness/scenes.h"
 
 #include <float.h>
@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "harness/iterates.h"
+#include "harness/reference.h"
 
 void *scene_room(size_t count, size_t size)
 {
@@ -33,7 +36,6 @@ void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_
     for (size_t i = 0; i < particles; i++)
         p->mass[i] = mass;
     p->def = (spring_scene_def){.axes = axes,
-                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
                                 .particles = particles,
                                 .links = links,
                                 .position = p->position,
@@ -41,6 +43,9 @@ void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_
                                 .mass_all = mass,
                                 .pinned = p->pinned,
                                 .link = p->link};
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if (spring_method_describe((spring_method)m)->scenes)
+            p->def.methods |= 1u << m;
 }
 
 void scene_problem_init(scene_problem *p, const scene_case *c)
@@ -53,6 +58,9 @@ void scene_problem_init(scene_problem *p, const scene_case *c)
     for (size_t i = 0; i < axes * particles; i++)
         if (!p->pinned[i / axes])
             p->coordinate[p->moving++] = i;
+    p->drag = numbers(p->moving);
+    for (size_t i = 0; i < p->moving; i++)
+        p->drag[i] = p->def.drag / p->mass[p->coordinate[i] / axes];
 }
 
 void scene_problem_clear(scene_problem *p)
@@ -63,6 +71,7 @@ void scene_problem_clear(scene_problem *p)
     free(p->pinned);
     free(p->link);
     free(p->coordinate);
+    free(p->drag);
     free(p->room);
 }
 
@@ -98,34 +107,35 @@ static double *axis_of(const scene_problem *p, int what, size_t axis)
 static void pull(const scene_problem *p, const spring_link *link)
 {
     const size_t axes = p->def.axes, a = link->a, b = link->b;
-    double way[3], length = 0, rate = 0;
+    double delta[3], length = 0, rate = 0;
     for (size_t d = 0; d < axes; d++) {
-        way[d] = axis_of(p, POSITION, d)[b] - axis_of(p, POSITION, d)[a];
-        length += way[d] * way[d];
-        rate += way[d] * (axis_of(p, VELOCITY, d)[b] - axis_of(p, VELOCITY, d)[a]);
+        delta[d] = axis_of(p, POSITION, d)[b] - axis_of(p, POSITION, d)[a];
+        length += delta[d] * delta[d];
+        rate += delta[d] * (axis_of(p, VELOCITY, d)[b] - axis_of(p, VELOCITY, d)[a]);
     }
-    length = axes == 1 ? way[0] : sqrt(length);
+    length = axes == 1 ? delta[0] : sqrt(length);
     if (axes == 1) {
         rate = axis_of(p, VELOCITY, 0)[b] - axis_of(p, VELOCITY, 0)[a];
-        way[0] = 1;
+        delta[0] = 1;
     } else if (length > 0) {
         rate /= length;
         for (size_t d = 0; d < axes; d++)
-            way[d] /= length;
+            delta[d] /= length;
     }
     const double force = link->stiffness * (length - link->rest) + link->damping * rate;
     const double size = link->stiffness * (fabs(length) + link->rest) + link->damping * fabs(rate);
     for (size_t d = 0; d < axes; d++) {
-        axis_of(p, FORCE, d)[a] += force * way[d];
-        axis_of(p, FORCE, d)[b] -= force * way[d];
-        axis_of(p, SIZE, d)[a] += size * fabs(way[d]);
-        axis_of(p, SIZE, d)[b] += size * fabs(way[d]);
+        axis_of(p, FORCE, d)[a] += force * delta[d];
+        axis_of(p, FORCE, d)[b] -= force * delta[d];
+        axis_of(p, SIZE, d)[a] += size * fabs(delta[d]);
+        axis_of(p, SIZE, d)[b] += size * fabs(delta[d]);
     }
 }
 
 /* Acceleration of all that moves, without drag. */
-static void accelerations(const scene_problem *p, double t, const double *x, const double *v, double *a)
+static void accelerations(const void *data, double t, const double *x, const double *v, double *a)
 {
+    const scene_problem *p = data;
     const spring_scene_def *def = &p->def;
     const size_t axes = def->axes;
     double *axis[4][3] = {{NULL}};
@@ -153,11 +163,6 @@ static void accelerations(const scene_problem *p, double t, const double *x, con
     }
 }
 
-static double drag_rate(const scene_problem *p, size_t i)
-{
-    return p->def.drag / p->mass[p->coordinate[i] / p->def.axes];
-}
-
 void scene_derivative(double t, const double *y, double *dy, const void *data)
 {
     const scene_problem *p = data;
@@ -165,74 +170,16 @@ void scene_derivative(double t, const double *y, double *dy, const void *data)
     accelerations(p, t, y, v, dy + p->moving);
     for (size_t i = 0; i < p->moving; i++) {
         dy[i] = v[i];
-        dy[p->moving + i] -= drag_rate(p, i) * v[i];
+        dy[p->moving + i] -= p->drag[i] * v[i];
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ methods */
-
-static bool velocity_forces(const scene_problem *p)
+/* One step of y; room is for iterate_room(moving) numbers. */
+static void step(const scene_problem *p, spring_method m, double h, double t, double *y, double *room)
 {
-    for (size_t i = 0; i < p->def.links; i++)
-        if (p->link[i].damping > 0)
-            return true;
-    return p->def.force != NULL && (p->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
-}
-
-static void euler_step(const scene_problem *p, double h, double t, double *y, double *work)
-{
-    scene_derivative(t, y, work, p);
-    for (size_t i = 0; i < 2 * p->moving; i++)
-        y[i] += h * work[i];
-}
-
-/* v1 = (v' + h/2 a)/(1 + h/2 drag/mass) */
-static void last_kick(const scene_problem *p, double h, const double *a, const double *v, double *v1)
-{
-    for (size_t i = 0; i < p->moving; i++)
-        v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * drag_rate(p, i));
-}
-
-static void leapfrog_step(const scene_problem *p, double h, double t, double *y, double *work)
-{
-    double *x = y, *v = y + p->moving, *a = work + p->moving, *predicted = work;
-    scene_derivative(t, y, work, p);
-    for (size_t i = 0; i < p->moving; i++) {
-        v[i] += h / 2 * a[i];
-        x[i] += h * v[i];
-    }
-    accelerations(p, t + h, x, v, a);
-    if (velocity_forces(p)) {
-        last_kick(p, h, a, v, predicted);
-        accelerations(p, t + h, x, predicted, a);
-    }
-    last_kick(p, h, a, v, v);
-}
-
-static void rk4_step(const scene_problem *p, double h, double t, double *y, double *work)
-{
-    static const double at[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};
-    const size_t size = 2 * p->moving;
-    double *k = work, *stage = work + size, *sum = work + 2 * size;
-    memset(k, 0, size * sizeof *k);
-    memset(sum, 0, size * sizeof *sum);
-    for (int s = 0; s < 4; s++) {
-        for (size_t i = 0; i < size; i++)
-            stage[i] = y[i] + at[s] * h * k[i];
-        scene_derivative(t + at[s] * h, stage, k, p);
-        for (size_t i = 0; i < size; i++)
-            sum[i] += weight[s] * k[i];
-    }
-    for (size_t i = 0; i < size; i++)
-        y[i] += h / 6 * sum[i];
-}
-
-/* work has room for three vectors. */
-static void step(const scene_problem *p, spring_method m, double h, double t, double *y, double *work)
-{
-    static void (*const steps[])(const scene_problem *, double, double, double *,
-                                 double *) = {euler_step, leapfrog_step, rk4_step};
-    steps[m](p, h, t, y, work);
+    const iterate_scene scene = {
+        .count = p->moving, .acceleration = accelerations, .data = p, .drag = p->drag, .room = room};
+    iterate_of(m)->scene(&scene, t, h, y, y + p->moving);
 }
 
 /* ----------------------------------------------------------------------------------------------------- rounding */
@@ -275,7 +222,7 @@ static double added(const scene_case *c, const scene_problem *p, const roundings
         const size_t at = p->coordinate[i];
         const double v = y[p->moving + i];
         const double F = axis_of(p, SIZE, at % axes)[at / axes] / p->mass[at / axes] +
-                         fabs(p->def.gravity[at % axes]) + c->callback + drag_rate(p, i) * fabs(v);
+                         fabs(p->def.gravity[at % axes]) + c->callback + p->drag[i] * fabs(v);
         state += y[i] * y[i] + v * v / (c->omega * c->omega);
         speed += v * v;
         force += F * F;
@@ -285,14 +232,26 @@ static double added(const scene_case *c, const scene_problem *p, const roundings
            (r->state * sqrt(state) + 4 * h * sqrt(speed) + (15 + r->links) * h * sqrt(force) / c->omega);
 }
 
-/* Of a linear scene: n steps of a mode have at most the norm 1/sqrt(1 - z^2/4), (1 + z^2)^(n/2), 1 in (x, v/rate). In
-   (x, v/omega) that is larger by the ratio of the rates, but a slow mode cannot do more than drift for as long. */
-static double carried(const scene_case *c, spring_method m, double h, uint64_t n)
+/* What many steps of a linear scene do to an error: n steps of a mode have the norm of reference_turn_norm() in (x, v/rate),
+   at most that of the fastest mode. In (x, v/omega) that is larger by the ratio of the rates, but a slow mode cannot do
+   more than drift for as long. */
+typedef struct carrier {
+    reference_turn turn; /* of the fastest mode in a step */
+    bool turns;
+} carrier;
+
+static carrier carrier_of(const scene_case *c, spring_method m, double h)
 {
-    const double z = c->fastest * h, duration = (double)n * h;
-    const double norm[] = {exp((double)n / 2 * log1p(z * z)), 1 / sqrt(1 - z * z / 4), 1};
-    const double slow = fmin(c->omega / c->slowest, 1 + c->omega * duration);
-    return norm[m] * fmax(1, fmax(slow, c->fastest / c->omega));
+    carrier r;
+    r.turns = reference_turn_of(&r.turn, m, c->fastest, h);
+    return r;
+}
+
+static double carried(const scene_case *c, const carrier *r, double h, uint64_t n)
+{
+    const double duration = (double)n * h, slow = fmin(c->omega / c->slowest, 1 + c->omega * duration);
+    const double norm = r->turns ? reference_turn_norm(&r->turn, n) : NAN; /* a bound that nothing keeps */
+    return norm * fmax(1, fmax(slow, c->fastest / c->omega));
 }
 
 /* The matrix of a step in (x, v/omega) by one-sided differences, relative error of about 1e-7 h times a rate. */
@@ -301,13 +260,13 @@ static void step_matrix(const scene_case *c, const scene_problem *p, spring_meth
 {
     const size_t size = 2 * p->moving;
     const double nudge = 1e-7 * c->length;
-    double *base = work + 3 * size, *moved = work + 4 * size;
+    double *base = work, *moved = work + size, *room = work + 2 * size;
     memcpy(base, y, size * sizeof *y);
-    step(p, m, h, t, base, work);
+    step(p, m, h, t, base, room);
     for (size_t j = 0; j < size; j++) {
         memcpy(moved, y, size * sizeof *y);
         moved[j] += nudge * (j < p->moving ? 1 : c->omega);
-        step(p, m, h, t, moved, work);
+        step(p, m, h, t, moved, room);
         for (size_t i = 0; i < size; i++)
             matrix[i * size + j] = (moved[i] - base[i]) / nudge / (i < p->moving ? 1 : c->omega);
     }
@@ -349,19 +308,19 @@ static double walked_back(const scene_case *c, const scene_problem *p, spring_me
                           const double *states, const double *local)
 {
     const size_t size = 2 * p->moving;
-    double *rest = numbers(size * size), *matrix = numbers(size * size), *product = numbers(size * size),
-           *work = numbers(5 * size), sum = 0;
+    double *later = numbers(size * size), *matrix = numbers(size * size), *product = numbers(size * size),
+           *work = numbers(2 * size + iterate_room(p->moving)), sum = 0;
     for (size_t i = 0; i < size; i++)
-        rest[i * size + i] = 1;
+        later[i * size + i] = 1;
     for (uint64_t i = n; i-- > 0;) {
-        sum += local[i] * (i + 1 < n ? norm_bound(rest, size, work) : 1);
+        sum += local[i] * (i + 1 < n ? norm_bound(later, size, work) : 1);
         step_matrix(c, p, m, h, (double)i * h, states + i * size, matrix, work);
-        multiply(product, rest, matrix, size);
-        double *const swapped = rest;
-        rest = product;
+        multiply(product, later, matrix, size);
+        double *const swapped = later;
+        later = product;
         product = swapped;
     }
-    free(rest);
+    free(later);
     free(matrix);
     free(product);
     free(work);
@@ -374,20 +333,22 @@ double scene_rounding(const scene_case *c, const scene_problem *p, spring_method
     const size_t size = 2 * p->moving;
     const bool linear = c->fastest > 0;
     const roundings r = count_roundings(c, p);
-    double *states = numbers(linear ? 0 : n * size), *local = numbers(n), *work = numbers(3 * size), sum = 0;
+    const carrier linearly = linear ? carrier_of(c, m, h) : (carrier){.turns = false};
+    double *states = numbers(linear ? 0 : n * size), *local = numbers(n),
+           *room = numbers(iterate_room(p->moving)), sum = 0;
     scene_start(p, end);
     for (uint64_t i = 0; i < n; i++) {
         if (!linear)
             memcpy(states + i * size, end, size * sizeof *end);
-        step(p, m, h, (double)i * h, end, work);
+        step(p, m, h, (double)i * h, end, room);
         local[i] = added(c, p, &r, h, end);
         if (linear)
-            sum += local[i] * carried(c, m, h, n - 1 - i);
+            sum += local[i] * carried(c, &linearly, h, n - 1 - i);
     }
     if (!linear)
         sum = walked_back(c, p, m, h, n, states, local);
     free(states);
     free(local);
-    free(work);
+    free(room);
     return sum;
 }

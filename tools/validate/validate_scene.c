@@ -25,19 +25,24 @@
 
 #include "common/cli.h"
 #include "harness/ode.h"
+#include "harness/reference.h"
 #include "validate.h"
 
 typedef struct trial {
     const scene_case *c;
     const scene_problem *p;
     spring_method m;
+    uint64_t steps;           /* of the shortest run */
     double *run[3], *best[2]; /* n, 2n, 4n steps; extrapolated from the first and the last two */
     double b;                 /* [m] the distance of those */
     double rounding;          /* [m] of n steps */
     double rounding_of_all;   /* [m] of every run, and of what is extrapolated from them */
 } trial;
 
-static const double ratios[] = {2, 4, 16}; /* 2^order, by spring_method */
+static double ratio_of(spring_method m) /* 2^order */
+{
+    return ldexp(1, spring_method_describe(m)->order);
+}
 
 static void *vectors(const scene_problem *p, size_t count)
 {
@@ -76,7 +81,7 @@ static void run(const scene_problem *p, spring_method m, double dt, uint64_t n, 
 
 static double step_of(const trial *t, int run_index)
 {
-    return t->c->duration / (double)(t->c->steps[t->m] << run_index);
+    return t->c->duration / (double)(t->steps << run_index);
 }
 
 static finding row(const trial *t, const char *witness, int run_index)
@@ -85,7 +90,7 @@ static finding row(const trial *t, const char *witness, int run_index)
                      .method = spring_method_name(t->m),
                      .witness = witness,
                      .dt = step_of(t, run_index),
-                     .steps = t->c->steps[t->m] << run_index,
+                     .steps = t->steps << run_index,
                      .scene = true};
 }
 
@@ -105,7 +110,7 @@ static void against_same(const trial *t, const char *witness, const double *y, i
 static void against_solution(const trial *t, const char *witness, const double *y, size_t known, bool runs,
                              double uncertainty, double witness_bound, uint64_t evaluations)
 {
-    const double R = ratios[t->m];
+    const double R = ratio_of(t->m);
     const double first = scene_distance(t->c, t->p, t->run[1], t->run[0], known) / (R - 1);
     const struct {
         const double *got;
@@ -131,9 +136,9 @@ static void against_solution(const trial *t, const char *witness, const double *
 
 static void try_method(trial *t)
 {
-    const double R = ratios[t->m];
+    const double R = ratio_of(t->m);
     for (int i = 0; i < 3; i++)
-        run(t->p, t->m, step_of(t, i), t->c->steps[t->m] << i, t->run[i]);
+        run(t->p, t->m, step_of(t, i), t->steps << i, t->run[i]);
     for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < 2 * t->p->moving; i++)
             t->best[k][i] = t->run[k + 1][i] + (t->run[k + 1][i] - t->run[k][i]) / (R - 1);
@@ -159,8 +164,7 @@ static void against_rk4(const trial *t, const char *witness,
     double *y = vectors(t->p, 1), *scale = scale_of(t->c, t->p);
     ode o = {.size = 2 * t->p->moving, .derivative = scene_derivative, .data = t->p, .scale = scale};
     scene_start(t->p, y);
-    const char *message =
-        solve(&o, y, our_steps_a_step * step_of(t, 0), t->c->steps[t->m] / our_steps_a_step);
+    const char *message = solve(&o, y, our_steps_a_step * step_of(t, 0), t->steps / our_steps_a_step);
     if (message != NULL)
         cli_fail(CLI_FAILED, "%s: %s: %s", t->c->name, witness, message);
     against_same(t, witness, y, 2, o.evaluations);
@@ -390,6 +394,12 @@ typedef struct followed {
     double q, p, phase;
 } followed;
 
+/* What turns with q as sine and cosine do: see reference_turn. */
+static double across(const reference_turn *step, const followed *f)
+{
+    return step->x_to_x * f->q + step->v_to_x * f->p;
+}
+
 static followed look_at_mode(const trial *t, const sheet_mode *s, const spring_scene *scene, double *room)
 {
     const size_t axes = t->p->def.axes, count = t->p->def.particles;
@@ -405,23 +415,10 @@ static followed look_at_mode(const trial *t, const sheet_mode *s, const spring_s
     return f;
 }
 
-/* Turn and growth of a mode in a step, and the ratio of axes. */
-typedef struct turn {
-    double angle, growth, axes;
-} turn;
-
-static turn turn_of(spring_method m, double z)
-{
-    if (m == SPRING_LEAPFROG)
-        return (turn){2 * asin(z / 2), 1, sqrt(1 - z * z / 4)};
-    const double along = 1 - z * z / 2 + pow(z, 4) / 24, across = z - pow(z, 3) / 6;
-    return (turn){atan2(across, along), hypot(along, across), 1};
-}
-
-static followed follow(const trial *t, const sheet_mode *s)
+static followed follow(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
     const spring_scene_def *def = &t->p->def;
-    const double dt = step_of(t, 0), ratio = turn_of(t->m, s->omega * dt).axes;
+    const double dt = step_of(t, 0);
     size_t bytes = 0;
     spring_scene *scene = NULL;
     followed f = {NAN, NAN, NAN};
@@ -434,11 +431,11 @@ static followed follow(const trial *t, const sheet_mode *s)
     bool well = spring_scene_init(memory, bytes, def, &scene) == SPRING_OK;
     if (well)
         f = look_at_mode(t, s, scene, room);
-    for (uint64_t i = 0; i < t->c->steps[t->m] && well; i++) {
+    for (uint64_t i = 0; i < t->steps && well; i++) {
         well = spring_scene_advance(scene, t->m, dt, 1) == SPRING_OK;
         followed next = look_at_mode(t, s, scene, room);
-        next.phase = f.phase + atan2(next.q * f.p / ratio - next.p / ratio * f.q,
-                                     next.q * f.q + next.p / ratio * (f.p / ratio));
+        const double p = across(step, &f), next_p = across(step, &next);
+        next.phase = f.phase + atan2(next.q * p - next_p * f.q, next.q * f.q + next_p * p);
         f = next;
     }
     free(memory);
@@ -446,22 +443,23 @@ static followed follow(const trial *t, const sheet_mode *s)
     return well ? f : (followed){NAN, NAN, NAN};
 }
 
+static const double requirement = 0.005; /* of a frequency, relative */
+
 /* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how far
    the frequency is from a simpler theory. */
-static void judge_mode(const trial *t, const sheet_mode *s)
+static void judge_mode(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
-    const double h = step_of(t, 0), n = (double)t->c->steps[t->m], whole = s->omega * t->c->duration;
-    const turn step = turn_of(t->m, s->omega * h);
-    const double size = pow(step.growth, n) / whole, error_of_step = fabs(step.angle / (s->omega * h) - 1);
-    const followed f = follow(t, s);
-    const double requirement = 0.005;
-    finding row_of = row(t, t->c->closed, 0);
+    const double h = step_of(t, 0), n = (double)t->steps, whole = s->omega * t->c->duration;
+    const double size = exp(n * step->log_growth) / whole, error_of_step = fabs(step->ahead / (s->omega * h));
+    const followed f = follow(t, s, step);
+    finding row_of = row(t, t->c->formula, 0);
     row_of.uncertainty = s->uncertainty;
     row_of.error = fabs(f.phase / whole - 1);
     row_of.bound = requirement;
     row_of.reason = "frequency: the requirement, half a percent";
     judge(&row_of);
-    row_of.error = hypot(f.q - size * cos(n * step.angle), f.p + size * step.axes * sin(n * step.angle));
+    const double C = cos(n * step->angle), S = sin(n * step->angle);
+    row_of.error = hypot(f.q - size * (C + step->x_to_x * S), f.p - size * step->x_to_v * S);
     row_of.bound = t->rounding + s->uncertainty + s->nonlinear / (whole * whole);
     row_of.reason = s->nonlinear > 0 ? "motion with this step: rounding, and the amplitude"
                                      : "motion with this step: rounding";
@@ -470,6 +468,16 @@ static void judge_mode(const trial *t, const sheet_mode *s)
     row_of.bound = s->comparison_bound + error_of_step;
     row_of.reason = s->comparison;
     judge(&row_of);
+}
+
+/* The turn in steps that are so short that they alone shift the frequency by no more than most of the requirement. */
+static reference_turn choose_steps(trial *t, const sheet_mode *s)
+{
+    reference_turn step;
+    while (!reference_turn_of(&step, t->m, s->omega, step_of(t, 0)) ||
+           fabs(step.ahead) > 0.9 * requirement * s->omega * step_of(t, 0))
+        t->steps *= 2;
+    return step;
 }
 
 static void validate_mode(const scene_case *c, scene_problem *p, sheet_mode *s)
@@ -482,14 +490,18 @@ static void validate_mode(const scene_case *c, scene_problem *p, sheet_mode *s)
     of.fastest = sqrt((has_all_families(s) ? 24 : 8) * p->link->stiffness / p->mass[0]);
     for (size_t i = 0; i < p->def.particles; i++)
         p->position[axes * i + axes - 1] = p->pinned[i] ? 0 : amplitude * s->shape[i];
-    for (int m = SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
-        trial t = {.c = &of, .p = p, .m = (spring_method)m};
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        trial t = {.c = &of, .p = p, .m = spring_method_at(i)};
+        t.steps = scene_case_steps(c, t.m);
+        if (t.steps == 0)
+            continue;
+        const reference_turn step = choose_steps(&t, s);
         double *all = vectors(p, 2), *by_definition = all + 2 * p->moving;
         t.run[0] = all;
-        t.rounding = scene_rounding(&of, p, t.m, step_of(&t, 0), of.steps[m], by_definition);
-        run(p, t.m, step_of(&t, 0), of.steps[m], t.run[0]);
+        t.rounding = scene_rounding(&of, p, t.m, step_of(&t, 0), t.steps, by_definition);
+        run(p, t.m, step_of(&t, 0), t.steps, t.run[0]);
         against_same(&t, "definition", by_definition, 2, 0);
-        judge_mode(&t, s);
+        judge_mode(&t, s, &step);
         free(all);
     }
 }
@@ -502,11 +514,11 @@ static void same_method(const trial *t, const double *by_definition)
     against_same(t, "definition", by_definition, 2, 0);
     if (c->iterate != NULL) {
         double *y = vectors(t->p, 1);
-        c->iterate(c, t->p, t->m, step_of(t, 0), c->steps[t->m], y);
-        against_same(t, c->closed, y, 1, 0);
+        c->iterate(c, t->p, t->m, step_of(t, 0), t->steps, y);
+        against_same(t, c->formula, y, 1, 0);
         free(y);
     }
-    if (c->peers && t->m == SPRING_RK4) {
+    if (c->external && t->m == SPRING_RK4) {
         against_rk4(t, "gsl-rk4", ode_gsl_rk4, 2);
         against_rk4(t, "arkode-rk4", ode_arkstep_rk4, 1);
     }
@@ -520,7 +532,7 @@ static void solutions(const trial *t, const adaptive *solvers, size_t solver_cou
     if (c->solution != NULL) {
         double *y = vectors(t->p, 1);
         c->solution(c, t->p, y);
-        against_solution(t, c->closed, y, 0, true, 0, 0, 0);
+        against_solution(t, c->formula, y, 0, true, 0, 0, 0);
         free(y);
     }
     const bool unknown = c->known == 0 && c->solution == NULL; /* then the first solver stands in */
@@ -533,7 +545,7 @@ void validate_scene(const scene_case *c)
 {
     adaptive solvers[] = {{.name = "gsl-rk8pd", .solve = ode_gsl_rk8pd},
                           {.name = "cvode-adams", .solve = adams}};
-    const size_t solver_count = c->peers ? sizeof solvers / sizeof solvers[0] : 0;
+    const size_t solver_count = c->external ? sizeof solvers / sizeof solvers[0] : 0;
     scene_problem p;
     sheet_mode mode;
     scene_problem_init(&p, c);
@@ -545,14 +557,15 @@ void validate_scene(const scene_case *c)
     }
     for (adaptive *a = solvers; a < solvers + solver_count; a++)
         solve_adaptive(a, c, &p);
-    for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
-        if (c->steps[m] == 0)
+    for (int k = 0; k < SPRING_METHOD_COUNT; k++) {
+        trial t = {.c = c, .p = &p, .m = spring_method_at(k)};
+        t.steps = scene_case_steps(c, t.m);
+        if (t.steps == 0)
             continue;
-        trial t = {.c = c, .p = &p, .m = (spring_method)m};
         double *all = vectors(&p, 6), *by_definition = all + 10 * p.moving;
         for (int i = 0; i < 5; i++)
             *(i < 3 ? &t.run[i] : &t.best[i - 3]) = all + 2 * p.moving * (size_t)i;
-        t.rounding = scene_rounding(c, &p, t.m, step_of(&t, 0), c->steps[m], by_definition);
+        t.rounding = scene_rounding(c, &p, t.m, step_of(&t, 0), t.steps, by_definition);
         try_method(&t);
         same_method(&t, by_definition);
         solutions(&t, solvers, solver_count);

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The methods a second time; see iterates.h.
+ *
+ * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler, RK4);
+ *           Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1 (leapfrog)
+ */
+#include "harness/iterates.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const mpfr_rnd_t nearest = MPFR_RNDN;
+
+/* a - w x - g v */
+static void spring_acceleration(mpfr_t out, const iterate_rates *r, const mpfr_t x, const mpfr_t v)
+{
+    mpfr_fmma(out, r->w, x, r->g, v, nearest);
+    mpfr_sub(out, r->a, out, nearest);
+}
+
+static void scene_acceleration(const iterate_scene *s, double t, const double *x, const double *v, double *a)
+{
+    s->acceleration(s->data, t, x, v, a);
+    for (size_t i = 0; i < s->count; i++)
+        a[i] -= s->drag[i] * v[i];
+}
+
+/* ------------------------------------------------------------------------------------------------ explicit Euler */
+
+static void euler_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t a;
+    mpfr_init2(a, mpfr_get_prec(x));
+    spring_acceleration(a, r, x, v);
+    mpfr_fma(x, h, v, x, nearest);
+    mpfr_fma(v, h, a, v, nearest);
+    mpfr_clear(a);
+}
+
+static void euler_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    double *a = s->room;
+    scene_acceleration(s, t, x, v, a);
+    for (size_t i = 0; i < s->count; i++) {
+        x[i] += h * v[i];
+        v[i] += h * a[i];
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ leapfrog */
+
+static void leapfrog_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t a, half, zero;
+    mpfr_inits2(mpfr_get_prec(x), a, half, zero, (mpfr_ptr)NULL);
+    mpfr_set_zero(zero, 1);
+    mpfr_div_ui(half, h, 2, nearest);
+    spring_acceleration(a, r, x, v);
+    mpfr_fma(v, half, a, v, nearest);
+    mpfr_fma(x, h, v, x, nearest);
+    spring_acceleration(a, r, x, zero);
+    mpfr_fma(v, half, a, v, nearest);
+    mpfr_mul(a, half, r->g, nearest);
+    mpfr_add_ui(a, a, 1, nearest);
+    mpfr_div(v, v, a, nearest);
+    mpfr_clears(a, half, zero, (mpfr_ptr)NULL);
+}
+
+/* v1 = (v' + h/2 a)/(1 + h/2 drag) */
+static void last_kick(const iterate_scene *s, double h, const double *a, const double *v, double *v1)
+{
+    for (size_t i = 0; i < s->count; i++)
+        v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * s->drag[i]);
+}
+
+/* Forces that depend on velocities see one that is predicted by a first last kick; to the others it makes no difference. */
+static void leapfrog_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    double *a = s->room, *predicted = s->room + s->count;
+    scene_acceleration(s, t, x, v, a);
+    for (size_t i = 0; i < s->count; i++) {
+        v[i] += h / 2 * a[i];
+        x[i] += h * v[i];
+    }
+    s->acceleration(s->data, t + h, x, v, a);
+    last_kick(s, h, a, v, predicted);
+    s->acceleration(s->data, t + h, x, predicted, a);
+    last_kick(s, h, a, v, v);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- RK4 */
+
+enum { RK4_STAGES = 4 };
+static const int rk4_at[RK4_STAGES] = {0, 1, 1, 2}; /* in half steps */
+static const unsigned rk4_weight[RK4_STAGES] = {1, 2, 2, 1};
+
+static void rk4_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t kx, kv, sum_x, sum_v, stage_x, stage_v, part;
+    mpfr_inits2(mpfr_get_prec(x), kx, kv, sum_x, sum_v, stage_x, stage_v, part, (mpfr_ptr)NULL);
+    mpfr_set_zero(kx, 1);
+    mpfr_set_zero(kv, 1);
+    mpfr_set_zero(sum_x, 1);
+    mpfr_set_zero(sum_v, 1);
+    for (int i = 0; i < RK4_STAGES; i++) {
+        mpfr_mul_si(part, h, rk4_at[i], nearest);
+        mpfr_div_ui(part, part, 2, nearest);
+        mpfr_fma(stage_x, part, kx, x, nearest);
+        mpfr_fma(stage_v, part, kv, v, nearest);
+        mpfr_set(kx, stage_v, nearest);
+        spring_acceleration(kv, r, stage_x, stage_v);
+        mpfr_mul_ui(part, kx, rk4_weight[i], nearest);
+        mpfr_add(sum_x, sum_x, part, nearest);
+        mpfr_mul_ui(part, kv, rk4_weight[i], nearest);
+        mpfr_add(sum_v, sum_v, part, nearest);
+    }
+    mpfr_div_ui(part, h, 6, nearest);
+    mpfr_fma(x, part, sum_x, x, nearest);
+    mpfr_fma(v, part, sum_v, v, nearest);
+    mpfr_clears(kx, kv, sum_x, sum_v, stage_x, stage_v, part, (mpfr_ptr)NULL);
+}
+
+static void rk4_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    const size_t n = s->count;
+    double *kx = s->room, *kv = kx + n, *stage_x = kv + n, *stage_v = stage_x + n, *sum_x = stage_v + n,
+           *sum_v = sum_x + n;
+    memset(s->room, 0, 6 * n * sizeof *s->room);
+    for (int k = 0; k < RK4_STAGES; k++) {
+        const double part = h / 2 * rk4_at[k];
+        for (size_t i = 0; i < n; i++) {
+            stage_x[i] = x[i] + part * kx[i];
+            stage_v[i] = v[i] + part * kv[i];
+        }
+        memcpy(kx, stage_v, n * sizeof *kx);
+        scene_acceleration(s, t + part, stage_x, stage_v, kv);
+        for (size_t i = 0; i < n; i++) {
+            sum_x[i] += rk4_weight[k] * kx[i];
+            sum_v[i] += rk4_weight[k] * kv[i];
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        x[i] += h / 6 * sum_x[i];
+        v[i] += h / 6 * sum_v[i];
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- the methods */
+
+static const iterate iterates[] = {
+    [SPRING_EULER] = {.spring = euler_spring, .scene = euler_scene, .vectors = 1},
+    [SPRING_LEAPFROG] = {.spring = leapfrog_spring, .scene = leapfrog_scene, .vectors = 2},
+    [SPRING_RK4] = {.spring = rk4_spring, .scene = rk4_scene, .vectors = 6},
+    [SPRING_EXACT] = {.spring = NULL}, /* takes no steps */
+};
+_Static_assert(sizeof iterates / sizeof iterates[0] == SPRING_METHOD_COUNT, "each method has an entry");
+
+const iterate *iterate_of(spring_method m)
+{
+    if ((unsigned)m >= SPRING_METHOD_COUNT || iterates[m].spring == NULL || iterates[m].scene == NULL) {
+        fprintf(stderr, "iterates: method %d takes no steps, or has no entry\n", (int)m);
+        exit(EXIT_FAILURE);
+    }
+    return &iterates[m];
+}
+
+size_t iterate_room(size_t count)
+{
+    size_t most = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        most = iterates[m].vectors > most ? iterates[m].vectors : most;
+    return most * count;
+}
