@@ -2,8 +2,7 @@
 /*
  * spring-energy: the error in the energy of an undamped spring after 1, 10, 100 ... seconds.
  *
- * The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m, with E0 = 1/2 J. With z = dt/s, theory
- * says E0 ((1 + z^2)^n - 1) for Euler, at most E0 z^2/4 for leapfrog, and a loss of about n z^6/72 of E0 for RK4.
+ * The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m, with the energy 1/2 J.
  */
 #include <math.h>
 #include <stddef.h>
@@ -22,8 +21,8 @@ static double dt = 0.01, duration = 1e8;
 static bool half_step_velocity, jitter;
 
 static const cli_option options[] = {
-    {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
-     .help = "euler, leapfrog, rk4 or exact"},
+    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true,
+     .value = "M"},
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s] (default: 0.01)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
      .help = "a row for each power of ten from 1 s to H [s] (default: 1e8)"},
@@ -44,9 +43,9 @@ static const cli_program program = {
         "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
         "1/2 J.\n\n"
         "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity),\n"
-        "duration_s, steps (duration/dt to the nearest whole number, at least 1) and energy_error_J,\n"
-        "the distance |E - 1/2 J|. An energy that overflows has the error inf; that is a result, with\n"
-        "status 0.\n\n"
+        "duration_s (steps times DT), steps (the whole number that comes nearest to the power of ten, at\n"
+        "least 1) and energy_error_J, the distance |E - 1/2 J|. An energy that overflows has the error\n"
+        "inf; that is a result, with status 0.\n\n"
         "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
         "terminal.\n"
         "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
@@ -85,8 +84,8 @@ static void write_energies(cli_table *table)
             step += n;
             cli_progress((double)step * dt / duration);
         }
-        cli_row(table, "%s\t%s\t%.17g\t%" PRIu64 "\t%.17g", cli_methods[chosen.method],
-                half_step_velocity ? "half_step_ahead" : "synchronised", H, steps,
+        cli_row(table, "%s\t%s\t%.17g\t%" PRIu64 "\t%.17g", stepper_name(&chosen),
+                half_step_velocity ? "half_step_ahead" : "synchronised", (double)steps * dt, steps,
                 finite ? energy_error(s) : INFINITY);
     }
 }
@@ -98,7 +97,7 @@ int main(int argc, char **argv)
     stepper_check(&chosen);
     if (half_step_velocity && chosen.method != SPRING_LEAPFROG)
         cli_fail(CLI_USAGE, "--half-step-velocity: with --method %s; it should be leapfrog",
-                 cli_methods[chosen.method]);
+                 stepper_name(&chosen));
     if (!(duration >= 1))
         cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at least 1 s", duration);
     if (!(duration / dt <= most_steps))

@@ -23,8 +23,8 @@ static spring_params spring = {.mass = 1, .stiffness = 1};
 static spring_state start = {.x = 1};
 
 static const cli_option options[] = {
-    {"method", CLI_CHOICE, .choice = &chosen.method, .choices = cli_methods, .required = true, .value = "M",
-     .help = "euler, leapfrog, rk4 or exact"},
+    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true,
+     .value = "M"},
     {"duration", CLI_POSITIVE, .real = &duration, .required = true, .value = "H", .help = "time to run [s]"},
     {"steps", CLI_COUNT, .count = &steps, .least = 1, .most = UINT64_C(1) << 53, .required = true,
      .value = "N", .help = "number of steps; each is H/N long"},
@@ -61,8 +61,8 @@ static const cli_program program = {
         "has its own), and the error is what rounding adds up to.\n\n"
         "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
         "these with the sign of x_m - exact_x_m. Parts without a step have no row.\n\n"
-        "A state that becomes infinite ends the run with a message and status 1, after the rows before\n"
-        "it.",
+        "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
+        "is told, and the status is 1.",
     .options = options,
 };
 
@@ -84,8 +84,8 @@ static double exact_x(uint64_t step)
 static void write_state(cli_table *table, uint64_t step, const spring_state *s)
 {
     const double exact = exact_x(step);
-    cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
-            step, (double)step * dt, s->x, s->v, spring_energy(s, &spring), exact, fabs(s->x - exact));
+    cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", stepper_name(&chosen), step,
+            (double)step * dt, s->x, s->v, spring_energy(s, &spring), exact, fabs(s->x - exact));
 }
 
 /* ------------------------------------------------------------------------------------------------- the envelope */
@@ -98,7 +98,7 @@ typedef struct envelope {
 
 static void write_part(const envelope *e)
 {
-    cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", cli_methods[chosen.method],
+    cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", stepper_name(&chosen),
             ((double)e->part + 0.5) / (double)envelope_columns * duration, e->min, e->max);
 }
 
@@ -129,18 +129,30 @@ static uint64_t steps_at_once(uint64_t step)
     return n < steps - step ? n : steps - step;
 }
 
-/* Advancing n steps from here fails: say where. */
-static _Noreturn void fail_at_overflow(spring_state *s, uint64_t step, uint64_t n)
+/* Takes n steps, or none if the state or its energy would become infinite. */
+static bool take(spring_state *s, uint64_t n)
+{
+    spring_state next = *s;
+    if (stepper_advance(&chosen, &next, &spring, dt, n) != SPRING_OK ||
+        !isfinite(spring_energy(&next, &spring)))
+        return false;
+    *s = next;
+    return true;
+}
+
+/* Taking n steps from here fails: say where. */
+static void tell_explosion(spring_state *s, uint64_t step, uint64_t n)
 {
     for (; n > 0; n /= 2)
-        while (stepper_advance(&chosen, s, &spring, dt, n) == SPRING_OK)
+        while (take(s, n))
             step += n;
-    cli_fail(CLI_FAILED,
-             "step %" PRIu64 ", to t = %.17g s, makes the state infinite: it was x = %g m, v = %g m/s",
+    cli_warn("the spring explodes: step %" PRIu64
+             ", to t = %.17g s, makes its state or its energy infinite; it was x = %g m, v = %g m/s",
              step + 1, (double)(step + 1) * dt, s->x, s->v);
 }
 
-static void run(cli_table *table, envelope *e)
+/* Returns whether the spring survived. */
+static bool run(cli_table *table, envelope *e)
 {
     spring_state s = start;
     for (uint64_t step = 0;;) {
@@ -150,10 +162,12 @@ static void run(cli_table *table, envelope *e)
         if (e->table != NULL)
             add_to_envelope(e, step, &s);
         if (step == steps)
-            return;
+            return true;
         const uint64_t n = steps_at_once(step);
-        if (stepper_advance(&chosen, &s, &spring, dt, n) != SPRING_OK)
-            fail_at_overflow(&s, step, n);
+        if (!take(&s, n)) {
+            tell_explosion(&s, step, n);
+            return false;
+        }
         step += n;
         cli_progress((double)step / (double)steps);
     }
@@ -165,7 +179,7 @@ static void check_options(void)
     if (!(dt > 0))
         cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger",
                  duration, steps);
-    if (spring_advance(&start, &spring, SPRING_EXACT, dt, 0) != SPRING_OK)
+    if (!spring_params_valid(&spring))
         cli_fail(CLI_USAGE,
                  "--mass: \"%g\" is too small: stiffness/mass, damping/mass, load/mass should be finite",
                  spring.mass);
@@ -187,9 +201,9 @@ int main(int argc, char **argv)
         stepper_comment(&chosen, e.table);
         cli_columns(e.table, "method t_s error_min_m error_max_m");
     }
-    run(table, &e);
+    const bool survived = run(table, &e);
     if (e.table != NULL)
         write_part(&e);
     cli_finish();
-    return 0;
+    return survived ? 0 : CLI_FAILED;
 }

@@ -31,6 +31,8 @@ def test_study(how):
     pytest.param('leapfrog --duration 100 --dt 0.03', 'steps', ['33', '333', '3333'], id='whole steps, nearest'),
     pytest.param('exact --duration 100 --dt 0.06', 'steps', ['17', '167', '1667'], id='up as well as down'),
     pytest.param('exact --duration 100 --dt 3', 'steps', ['1', '3', '33'], id='at least one step'),
+    pytest.param('rk4 --duration 1 --dt 10', 'duration_s', ['10'], id='the time that was run, of one step'),
+    pytest.param('rk4 --duration 10 --dt 0.75', 'duration_s', ['0.75', '9.75'], id='the time that was run'),
 ])
 def test_rows(how, name, want):
     assert [row[name] for row in energies(how)] == want

@@ -20,7 +20,7 @@ static const cli_option options[] = {
     {"real", CLI_REAL, .real = &number},
     {"not-negative", CLI_NOT_NEGATIVE, .real = &number},
     {"positive", CLI_POSITIVE, .real = &number},
-    {"method", CLI_CHOICE, .choice = &choice, .choices = cli_methods},
+    {"method", CLI_METHOD, .choice = &choice, .offers = cli_for_springs},
     {"reals", CLI_REALS, .real = numbers, .least = 3},
     {"file", CLI_FILE, .file = &file},
     {"folder", CLI_FOLDER, .file = &file},
@@ -111,7 +111,8 @@ static void check_options(const char *word)
              word);
         must(o->kind != CLI_NOT_NEGATIVE || number >= 0, "a negative number", word);
         must(o->kind != CLI_POSITIVE || number > 0, "not a positive number", word);
-        must(o->kind != CLI_CHOICE || strcmp(word, cli_methods[choice]) == 0, "another choice", word);
+        must(o->kind != CLI_METHOD || strcmp(word, spring_method_name((spring_method)choice)) == 0,
+             "another method", word);
         must((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
     }
     const char *value;

@@ -23,16 +23,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <springstep/spring.h>
-
-const char *const cli_methods[] = {
-    [SPRING_EULER] = "euler",
-    [SPRING_LEAPFROG] = "leapfrog",
-    [SPRING_RK4] = "rk4",
-    [SPRING_EXACT] = "exact",
-    NULL,
-};
-
 struct cli_table {
     FILE *stream;
     const char *option;       /* that names the file */
@@ -356,6 +346,55 @@ static bool parse_choice(const char *text, const char *const *choices, int *valu
     return false;
 }
 
+/* ------------------------------------------------------------------------------------------------------ methods */
+
+bool cli_for_springs(const spring_method_info *method)
+{
+    return method->springs;
+}
+
+bool cli_for_steps(const spring_method_info *method)
+{
+    return method->springs && method->order > 0;
+}
+
+bool cli_for_scenes(const spring_method_info *method)
+{
+    return method->scenes;
+}
+
+static bool parse_method(const char *text, const cli_option *o)
+{
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        const spring_method_info *info = spring_method_describe(m);
+        if (o->offers(info) && strcmp(text, info->name) == 0) {
+            *o->choice = (int)m;
+            return true;
+        }
+    }
+    return false;
+}
+
+void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_method_info *method))
+{
+    size_t length = 0;
+    text[0] = '\0';
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method_info *info = spring_method_describe(spring_method_at(i));
+        if (offers(info) && length < size)
+            length +=
+                (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "", info->name);
+    }
+}
+
+static void print_methods(FILE *out, const cli_option *o)
+{
+    char text[200];
+    cli_list_methods(text, sizeof text, o->offers);
+    fputs(text, out);
+}
+
 /* ------------------------------------------------------------------------------------------------------ options */
 
 static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
@@ -390,6 +429,10 @@ static void print_expectation(FILE *out, const cli_option *o)
         fputs("one of", out);
         for (int i = 0; o->choices[i] != NULL; i++)
             fprintf(out, "%s %s", i > 0 ? "," : "", o->choices[i]);
+        break;
+    case CLI_METHOD:
+        fputs("one of ", out);
+        print_methods(out, o);
         break;
     case CLI_REALS:
         fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
@@ -429,6 +472,8 @@ static bool store(const cli_option *o, const char *value)
         return parse_real(value, o->real) && *o->real > 0;
     case CLI_CHOICE:
         return parse_choice(value, o->choices, o->choice);
+    case CLI_METHOD:
+        return parse_method(value, o);
     case CLI_REALS:
         return parse_reals(value, o->real, o->least);
     case CLI_FILE:
@@ -456,6 +501,11 @@ static void print_options(const cli_option *options)
     for (const cli_option *o = options; o->name != NULL; o++) {
         int width =
             printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+        if (o->kind == CLI_METHOD) {
+            printf("%*s", column - width, "");
+            print_methods(stdout, o);
+            putchar('\n');
+        }
         for (const char *line = o->help; line != NULL; width = 0) {
             const char *end = strchr(line, '\n');
             printf("%*s%.*s\n", width < column ? column - width : 2, "",

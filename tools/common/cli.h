@@ -10,7 +10,10 @@
 
 #include <inttypes.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+
+#include <springstep/spring.h>
 
 typedef enum cli_status {
     CLI_FAILED = 1, /* the computation failed, or a check did not hold */
@@ -26,6 +29,7 @@ typedef enum cli_kind {
     CLI_POSITIVE,     /* a finite number > 0 */
     CLI_REALS,        /* as many finite numbers as `least` says, separated by commas */
     CLI_CHOICE,       /* one of a list of words */
+    CLI_METHOD,       /* the name of a method that the tool offers */
     CLI_FILE,         /* the name of a file to write */
     CLI_FOLDER        /* the name of a folder to write to */
 } cli_kind;
@@ -39,13 +43,14 @@ typedef struct cli_option {
         bool *flag;
         uint64_t *count;
         double *real; /* CLI_REALS: the first of them */
-        int *choice;  /* index into choices */
+        int *choice;  /* index into choices; CLI_METHOD: a spring_method */
         const char **file;
     };
-    const char *value; /* what --help calls the value */
-    const char *help;
-    const char *const *choices; /* CLI_CHOICE: ended by NULL */
-    uint64_t least, most;       /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
+    const char *value;                                /* what --help calls the value */
+    const char *help;                                 /* CLI_METHOD: NULL, the names say it */
+    const char *const *choices;                       /* CLI_CHOICE: ended by NULL */
+    bool (*offers)(const spring_method_info *method); /* CLI_METHOD */
+    uint64_t least, most; /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
     bool required;
 } cli_option;
 
@@ -56,8 +61,13 @@ typedef struct cli_program {
     const cli_option *options; /* besides --output, --help and --version, which every tool has */
 } cli_program;
 
-/* The words for --method, in the order of spring_method. */
-extern const char *const cli_methods[];
+/* What tools offer: methods for one spring, those of them that take steps, methods for scenes. */
+bool cli_for_springs(const spring_method_info *method);
+bool cli_for_steps(const spring_method_info *method);
+bool cli_for_scenes(const spring_method_info *method);
+
+/** Their names, separated by commas. */
+void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_method_info *method));
 
 /** Read the command line. Prints --help or --version and exits; exits with CLI_USAGE if anything is wrong. */
 void cli_parse(const cli_program *program, int argc, char **argv);

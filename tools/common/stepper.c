@@ -11,25 +11,29 @@ enum { LIBRARY, STAGES };
 
 const char *const stepper_arithmetics[] = {[LIBRARY] = "library", [STAGES] = "stages", NULL};
 
+const char *stepper_name(const stepper *m)
+{
+    return spring_method_name((spring_method)m->method);
+}
+
 void stepper_check(const stepper *m)
 {
     if (m->arithmetic == STAGES && m->method != SPRING_RK4)
         cli_fail(CLI_USAGE, "--arithmetic: \"stages\" is for rk4 only; with --method %s it should be library",
-                 cli_methods[m->method]);
+                 stepper_name(m));
 }
 
 void stepper_comment(const stepper *m, cli_table *table)
 {
-    cli_comment(table, "method: %s, arithmetic: %s", cli_methods[m->method],
-                stepper_arithmetics[m->arithmetic]);
+    cli_comment(table, "method: %s, arithmetic: %s", stepper_name(m), stepper_arithmetics[m->arithmetic]);
 }
 
-/* As spring_advance() does it: the state is kept if it would overflow, and that is noticed within 4096 steps. */
+/* As spring_advance() does it: the state is kept if it would overflow, and that is noticed as soon. */
 static spring_status advance_by_stages(spring_state *s, const spring_params *p, double dt, uint64_t n)
 {
     spring_state now = *s;
     while (n > 0) {
-        const uint64_t some = n < 4096 ? n : 4096;
+        const uint64_t some = n < SPRING_CHECK_INTERVAL ? n : SPRING_CHECK_INTERVAL;
         stages_advance(&now, p, dt, some);
         if (!isfinite(now.x) || !isfinite(now.v))
             return SPRING_ENONFINITE;

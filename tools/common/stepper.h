@@ -8,7 +8,7 @@
 #include "common/cli.h"
 
 typedef struct stepper {
-    int method;     /* spring_method; int, as the target of an option */
+    int method;     /* a spring_method; int, as the target of an option */
     int arithmetic; /* index into stepper_arithmetics: 0 the library's */
 } stepper;
 
@@ -16,6 +16,9 @@ extern const char *const stepper_arithmetics[];
 
 /* Steps to take between two looks at the clock: a fraction of a second. */
 static const uint64_t stepper_leap = UINT64_C(1) << 24;
+
+/** The name of the method. */
+const char *stepper_name(const stepper *m);
 
 /** Exit with CLI_USAGE if the method does not come in that arithmetic. */
 void stepper_check(const stepper *m);

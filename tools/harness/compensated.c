@@ -26,7 +26,7 @@ static void leapfrog_steps(compensated_state *s, double w, double h, uint64_t n)
         }
 }
 
-/* src/rk4.c without damping: E = 1/2 - W/24, F = -W/6. */
+/* src/rk4.h without damping: E = 1/2 - W/24, F = -W/6. */
 static void rk4_steps(compensated_state *s, double w, double h, uint64_t n)
 {
     const double hw = h * w, W = h * hw, same = -W * (12 - W) / 24, cross = -W / 6;
@@ -37,6 +37,11 @@ static void rk4_steps(compensated_state *s, double w, double h, uint64_t n)
             add(&s->x[i], &s->x_rest[i], h * v + (same * x + hcross * v));
             add(&s->v[i], &s->v_rest[i], (same * v - hwcross * x) - hw * x);
         }
+}
+
+bool compensated_knows(spring_method m)
+{
+    return m == SPRING_LEAPFROG || m == SPRING_RK4;
 }
 
 void compensated_advance(compensated_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)

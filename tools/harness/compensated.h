@@ -7,6 +7,7 @@
 #ifndef SPRINGSTEP_HARNESS_COMPENSATED_H
 #define SPRINGSTEP_HARNESS_COMPENSATED_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include <springstep/spring.h>
@@ -18,6 +19,9 @@ typedef struct compensated_state {
     double x[compensated_springs], v[compensated_springs];           /* [m], [m/s] */
     double x_rest[compensated_springs], v_rest[compensated_springs]; /* 0 at the start */
 } compensated_state;
+
+/** Are there compensated sums of this method? */
+bool compensated_knows(spring_method m);
 
 /** n steps of all springs, with the library's formulas for SPRING_LEAPFROG or SPRING_RK4; no damping, no load. */
 void compensated_advance(compensated_state *s, const spring_params *p, spring_method m, double dt,

@@ -2,21 +2,21 @@
 /*
  * The smallest n from which on the error never exceeds E.
  *
- * In exact arithmetic n steps of z = H/n give x_n = rho^n cos(n phi), with growth rho and phase phi a step. Hence
+ * In exact arithmetic n steps of any method of z = H/n turn the start (see reference_turn):
  *
- *     |x_n - cos H| <= |rho^n - 1| + |n phi - H|,
+ *     x_n = A (cos(H + d) + a sin(H + d)),   A = exp(n log_growth), d = n ahead, a = x_to_x
  *
- * and both terms fall as n grows, at least while z <= 1: log(rho)/z and (phi - z)/z are monotone in z there.
+ * Hence |x_n - cos H| <= |A - 1| + |d| + A |a|. All three fall as n grows while z <= 1: log_growth/z, ahead/z and a are
+ * power series in z of which the first term outweighs the others there; that the bound falls is looked at, too. So where it
+ * comes down to E, found by bisection, everything above is settled.
+ * Below, x_n itself is looked at. Since A, d and a are monotone, x_n at one end of a range of n differs from all others in
+ * it by no more than
  *
- *     Euler     rho^2 = 1 + z^2                 phi = atan z             (log(1 + z^2)/z rises up to z = 1.98)
- *     leapfrog  rho = 1                         phi = 2 asin(z/2)
- *     RK4       rho^2 = 1 - z^6/72 + z^8/576    tan phi = (z - z^3/6)/(1 - z^2/2 + z^4/24)
- *               (z^5/72 - z^7/576 rises up to z = 2.39; 1 - dphi/dz = z^4 (1 - z^2/2 + z^4/24)/(24 rho^2) up to 1.27)
+ *     |difference of A| (1 + |a|) + A (1 + |a|) |difference of d| + A |difference of a|        (the largest A and |a|)
  *
- * So where this bound comes down to E, found by bisection, everything above is settled; below, x_n itself is looked at
- * for one n after the other until its error exceeds E.
- * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps a step (src/leapfrog.c, and the same for the others), which the
- * bound includes; it grows with n and would in the end exceed any E, so "never" is meant up to that.
+ * and is no larger than A sqrt(1 + a^2): a whole range is passed at once where that settles it.
+ * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps a step (harness/reference.h), which the bound includes; it grows with n
+ * and would in the end exceed any E, so "never" is meant up to that.
  */
 #include "equal_error.h"
 
@@ -24,29 +24,25 @@
 #include <math.h>
 
 #include "common/cli.h"
+#include "harness/reference.h"
 
-typedef struct iterate {
-    double log_growth, phase; /* after all n steps: n log(rho), n phi */
-} iterate;
+static const spring_params spring = {.mass = 1, .stiffness = 1};
 
-static iterate iterate_after(spring_method m, double duration, uint64_t n)
+typedef struct iterate_end { /* what n steps lead to */
+    double A, d, a;
+    double error; /* |x_n - cos H| */
+} iterate_end;
+
+static iterate_end end_of(spring_method m, double duration, uint64_t n)
 {
-    const double z = duration / (double)n, z2 = z * z;
-    double log_rho2 = 0, phi = 0; /* of one step */
-    switch (m) {
-    case SPRING_EULER:
-        log_rho2 = log1p(z2);
-        phi = atan(z);
-        break;
-    case SPRING_LEAPFROG:
-        phi = 2 * asin(z / 2); /* NaN where unstable */
-        break;
-    default:
-        log_rho2 = log1p(z2 * z2 * z2 * (z2 / 576 - 1.0 / 72));
-        phi = atan2(z - z * z2 / 6, 1 - z2 / 2 + z2 * z2 / 24);
-        break;
-    }
-    return (iterate){(double)n * log_rho2 / 2, (double)n * phi};
+    reference_turn t;
+    if (!reference_turn_of(&t, m, 1, duration / (double)n))
+        return (iterate_end){INFINITY, INFINITY, INFINITY, INFINITY};
+    const double N = (double)n, A = exp(N * t.log_growth), d = N * t.ahead, a = t.x_to_x;
+    const double half = d / 2; /* cos(H + d) - cos H, without cancellation */
+    const double turned = -2 * sin(duration + half) * sin(half);
+    const double error = fabs(A * (turned + a * sin(duration + d)) + expm1(N * t.log_growth) * cos(duration));
+    return (iterate_end){A, d, a, error};
 }
 
 static double rounding_bound(uint64_t n)
@@ -56,14 +52,8 @@ static double rounding_bound(uint64_t n)
 
 static double error_bound(spring_method m, double duration, uint64_t n)
 {
-    const iterate u = iterate_after(m, duration, n);
-    return fabs(expm1(u.log_growth)) + fabs(u.phase - duration) + rounding_bound(n);
-}
-
-static double iterate_error(spring_method m, double duration, uint64_t n)
-{
-    const iterate u = iterate_after(m, duration, n);
-    return fabs(exp(u.log_growth) * cos(u.phase) - cos(duration));
+    const iterate_end e = end_of(m, duration, n);
+    return fabs(e.A - 1) + fabs(e.d) + e.A * fabs(e.a) + rounding_bound(n);
 }
 
 static _Noreturn void fail_for_rounding(spring_method m, double error)
@@ -72,15 +62,33 @@ static _Noreturn void fail_for_rounding(spring_method m, double error)
              spring_method_name(m), error);
 }
 
+/* Longer steps than 1 s, where the turn may be none: by the n-th power of the step, one n after the other. */
+static const uint64_t most_tried = 100000;
+
+static double error_of_long_steps(spring_method m, double duration, uint64_t n)
+{
+    long double x = 1, v = 0;
+    reference_mode(m, 1, duration / (double)n, n, &x, &v);
+    return fabs((double)x - cos(duration));
+}
+
+/* Of at most 1 s. */
+static uint64_t fewest(double duration)
+{
+    return (uint64_t)fmax(ceil(duration), 1);
+}
+
 static uint64_t settled_from(spring_method m, double duration, double error)
 {
     const double largest = 1e9; /* [s]; the phase at the end is then known to 1e-7 */
     if (error < 100 * DBL_EPSILON * duration || duration > largest)
         fail_for_rounding(m, error);
-    uint64_t low = (uint64_t)duration, high = low + 1; /* z <= 1 from high on */
-    while (!(error_bound(m, duration, high) <= error)) {
-        if (rounding_bound(high) > error)
+    uint64_t low = fewest(duration) - 1, high = low + 1;
+    double bound, before = INFINITY;
+    while (!((bound = error_bound(m, duration, high)) <= error)) {
+        if (rounding_bound(high) > error || !(bound <= before))
             fail_for_rounding(m, error);
+        before = bound;
         low = high;
         high *= 2;
     }
@@ -94,18 +102,81 @@ static uint64_t settled_from(spring_method m, double duration, double error)
     return high;
 }
 
+/* How much x_n can differ from that at one end of a range, given both ends. */
+static double spread(const iterate_end *p, const iterate_end *q)
+{
+    const double A = fmax(p->A, q->A), a = fmax(fabs(p->a), fabs(q->a));
+    return fabs(p->A - q->A) * (1 + a) + A * (1 + a) * fabs(p->d - q->d) + A * fabs(p->a - q->a);
+}
+
 uint64_t equal_error_steps(spring_method m, double duration, double error)
 {
-    uint64_t n = settled_from(m, duration, error);
-    while (n > 1 && iterate_error(m, duration, n - 1) <= error)
+    const uint64_t least = fewest(duration);
+    uint64_t n = settled_from(m, duration, error), some = 1;
+    iterate_end last = end_of(m, duration, n);
+    while (n > least) {
+        some = some < n - least ? some : n - least;
+        const iterate_end first = end_of(m, duration, n - some);
+        const double largest = fmax(first.A, last.A) * hypot(1, fmax(fabs(first.a), fabs(last.a)));
+        const bool within = some == 1 ? first.error <= error
+                                      : first.error + spread(&first, &last) <= error ||
+                                            largest + fabs(cos(duration)) <= error;
+        if (!within && some == 1)
+            break;
+        if (!within) {
+            some /= 2;
+            continue;
+        }
+        n -= some;
+        last = first;
+        some *= 2;
+    }
+    while (n <= least && least <= most_tried && n > 1 && error_of_long_steps(m, duration, n - 1) <= error)
         n--;
     return n;
 }
 
 uint64_t equal_error_first_steps(spring_method m, double duration, double error)
 {
-    uint64_t n = 1;
-    while (!(iterate_error(m, duration, n) <= error))
-        n++;
+    const uint64_t least = fewest(duration);
+    if (least > most_tried)
+        return 0;
+    for (uint64_t n = 1; n < least; n++)
+        if (error_of_long_steps(m, duration, n) <= error)
+            return n;
+    uint64_t n = least, some = 1;
+    iterate_end first = end_of(m, duration, n);
+    while (!(first.error <= error)) {
+        const iterate_end last = end_of(m, duration, n + some);
+        const bool beyond = some == 1 || first.error - spread(&first, &last) > error;
+        if (!beyond) {
+            some /= 2;
+            continue;
+        }
+        n += some;
+        first = last;
+        some *= 2;
+    }
     return n;
+}
+
+double error_coefficient(spring_method m, double duration)
+{
+    const int order = spring_method_describe(m)->order;
+    const int bits =
+        order * 60 <= 240 ? 60 : 240 / order; /* n^-order leaves a hundred bits of the references */
+    reference r;
+    mpfr_t error;
+    reference_init(&r);
+    mpfr_init2(error, mpfr_get_prec(r.x));
+    reference_start(&r, &spring, (spring_state){1, 0});
+    reference_iterate(&r, &spring, m, ldexp(duration, -bits), UINT64_C(1) << bits);
+    mpfr_set_d(error, duration, MPFR_RNDN);
+    mpfr_cos(error, error, MPFR_RNDN);
+    mpfr_sub(error, r.x, error, MPFR_RNDN);
+    mpfr_mul_2si(error, error, (long)order * bits, MPFR_RNDN);
+    const double coefficient = fabs(mpfr_get_d(error, MPFR_RNDN));
+    mpfr_clear(error);
+    reference_clear(&r);
+    return coefficient;
 }
