@@ -15,39 +15,36 @@
 #include <unistd.h>
 
 #include "common/cli.h"
-#include "pushes.h"
 #include "common/random.h"
-#include "ready_scene.h"
+#include "disturbances.h"
+#include "presets.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */
-
-static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
 
 static const char *const links[] = {"all", "structural", NULL};
 
 static int kind, method, link_choice;
 static uint64_t size, axes, seed = 1;
-static double dt, duration = 5, fps = 60, push_duration = 0.02, rain;
+static double dt, duration = 5, fps = 60, disturbance_time = 0.02, rain;
 static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
 
-/* Physical parameters of the same name as in ready_settings. */
+/* Physical parameters of the same name as in preset_settings. */
 enum { LENGTH, MASS, END_MASS, STIFFNESS, DAMPING, DRAG, GRAVITY, STRETCH, parameters };
 static double given[parameters] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
 static const size_t setting[parameters] = {
-    offsetof(ready_settings, length),   offsetof(ready_settings, mass),
-    offsetof(ready_settings, end_mass), offsetof(ready_settings, stiffness),
-    offsetof(ready_settings, damping),  offsetof(ready_settings, drag),
-    offsetof(ready_settings, gravity),  offsetof(ready_settings, stretch)};
+    offsetof(preset_settings, length),   offsetof(preset_settings, mass),
+    offsetof(preset_settings, end_mass), offsetof(preset_settings, stiffness),
+    offsetof(preset_settings, damping),  offsetof(preset_settings, drag),
+    offsetof(preset_settings, gravity),  offsetof(preset_settings, stretch)};
 
 static const cli_option options[] = {
-    {"scene", CLI_CHOICE, .choice = &kind, .choices = ready_names, .required = true, .value = "S",
+    {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S",
      .help = "rope, cloth, jelly, chain or water"},
-    {"method", CLI_CHOICE, .choice = &method, .choices = methods, .required = true, .value = "M",
-     .help = "euler, leapfrog or rk4"},
+    {"method", CLI_METHOD, .choice = &method, .offers = cli_for_scenes, .required = true, .value = "M"},
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
      .help = "step [s] (default: the frame in as many steps as make it at most half\n"
-             "the stable step of leapfrog, and an eighth of a push)"},
+             "the stable step of leapfrog, and an eighth of --push-duration)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move\n"
@@ -87,7 +84,7 @@ static const cli_option options[] = {
     {"drop-box", CLI_REALS, .real = box, .least = 2, .value = "T,MASS",
      .help = "a box of MASS [kg] falls from 1 m, at 9.81 m/s^2, and hits the middle\n"
              "at the time T [s]"},
-    {"push-duration", CLI_POSITIVE, .real = &push_duration, .value = "D",
+    {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D",
      .help = "of a poke, a drop, the box [s] (default: 0.02)"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second (default: 60)"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
@@ -105,32 +102,34 @@ static const cli_program program = {
         "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
         "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
         "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
-        "Of frames: t_s, particle, its place i j k in the grid, and x_m y_m z_m, z up.\n\n"
+        "Of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.\n\n"
         "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
         "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
-        "pinned; where no push is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
-        "A push that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain it is\n"
+        "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
+        "A disturbance that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain "
+        "it is\n"
         "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
         "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
-        "one particle at 10 m/s; drops come at random times to random places.\n\n"
+        "one particle at 10 m/s; drops come at random times to random points.\n\n"
         "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
-        "so long, D/4 or more, that a push loses or gains by it. When the energy overflows the rows end,\n"
+        "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows "
+        "end,\n"
         "the time is told, and the status is 1.",
     .options = options,
 };
 
-static ready_settings chosen_settings(void)
+static preset_settings chosen_settings(void)
 {
-    ready_settings s = ready_defaults((ready_kind)kind);
+    preset_settings s = preset_defaults((preset_kind)kind);
     if (size > 0)
         s.size = size;
-    if (axes > 0 && s.kind != READY_WATER && axes != s.axes)
+    if (axes > 0 && s.kind != PRESET_WATER && axes != s.axes)
         cli_fail(CLI_USAGE,
                  "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given",
-                 axes, ready_names[kind], s.axes);
-    if (axes == 2 && s.kind == READY_WATER)
+                 axes, preset_names[kind], s.axes);
+    if (axes == 2 && s.kind == PRESET_WATER)
         cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
-    if (axes == 3 && s.kind == READY_WATER) {
+    if (axes == 3 && s.kind == PRESET_WATER) {
         s.axes = 3;
         s.stretch = 1.25;
     }
@@ -144,21 +143,21 @@ static ready_settings chosen_settings(void)
             continue;
         if (isnan(*value))
             cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none",
-                     i == GRAVITY ? "gravity" : "end-mass", given[i], ready_names[kind]);
+                     i == GRAVITY ? "gravity" : "end-mass", given[i], preset_names[kind]);
         *value = given[i];
     }
-    if (s.kind == READY_WATER && s.axes == 1 && !isnan(given[STRETCH]) && !(s.stretch > 1))
+    if (s.kind == PRESET_WATER && s.axes == 1 && !isnan(given[STRETCH]) && !(s.stretch > 1))
         cli_fail(CLI_USAGE, "--stretch: \"%g\" gives water no stiffness across; it should be greater than 1",
                  s.stretch);
     return s;
 }
 
-/* -------------------------------------------------------------------------------------------------------- pushes */
+/* -------------------------------------------------------------------------------------------------- disturbances */
 
 static const double box_height = 1, drop_speed = 10; /* [m], [m/s] */
 static const double mean_of_profile = 3.0 / 8;       /* of sin^4 over its duration */
 
-static void check_poke(const ready_scene *r)
+static void check_poke(const preset *r)
 {
     const double *far = &r->start[3 * (r->def.particles - 1)];
     if (!(poke[0] >= 0))
@@ -168,7 +167,7 @@ static void check_poke(const ready_scene *r)
     if (!(poke[1] >= 0 && poke[1] <= far[0] && poke[2] >= 0 && poke[2] <= far[1]))
         cli_fail(
             CLI_USAGE,
-            "--poke: \"%g,%g\" is not a place X,Y on the scene; X should be from 0 to %g, Y from 0 to %g m",
+            "--poke: \"%g,%g\" is not a point X,Y of the scene; X should be from 0 to %g, Y from 0 to %g m",
             poke[1], poke[2], far[0], far[1]);
 }
 
@@ -181,7 +180,7 @@ static void check_box(void)
 }
 
 /* Writes the drops to `list`, unless that is NULL; returns how many there are. */
-static size_t fall(const ready_scene *r, const ready_settings *s, push *list)
+static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 {
     const double *far = &r->start[3 * (r->def.particles - 1)], edge = s->length / 16;
     uint64_t state = seed;
@@ -192,42 +191,47 @@ static size_t fall(const ready_scene *r, const ready_settings *s, push *list)
         if (!(t < duration))
             return count;
         if (list != NULL)
-            list[count] = (push){.start = t,
-                                 .duration = push_duration,
-                                 .x = x,
-                                 .y = y,
-                                 .area = edge * edge,
-                                 .peak = s->mass * drop_speed / (mean_of_profile * push_duration)};
+            list[count] = (disturbance){.start = t,
+                                        .duration = disturbance_time,
+                                        .x = x,
+                                        .y = y,
+                                        .area = edge * edge,
+                                        .peak = s->mass * drop_speed / (mean_of_profile * disturbance_time)};
     }
 }
 
-static pushes *chosen_pushes(const ready_scene *r, const ready_settings *s)
+static disturbances *chosen_disturbances(const preset *r, const preset_settings *s)
 {
     const double most_drops = 1e5, area = s->length * s->length / 64;
     const double *far = &r->start[3 * (r->def.particles - 1)];
-    const bool water_alone = s->kind == READY_WATER && isnan(poke[0]) && isnan(box[0]) && rain == 0;
+    const bool water_alone = s->kind == PRESET_WATER && isnan(poke[0]) && isnan(box[0]) && rain == 0;
     if (!(rain * duration <= most_drops))
         cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
                  most_drops, duration, most_drops / duration);
     const size_t drops = rain > 0 ? fall(r, s, NULL) : 0;
-    push *list = malloc((drops + 2) * sizeof *list);
+    disturbance *list = malloc((drops + 2) * sizeof *list);
     if (list == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
     size_t count = rain > 0 ? fall(r, s, list) : 0;
     if (!isnan(poke[0])) {
         check_poke(r);
-        list[count++] = (push){poke[0], push_duration, poke[1], poke[2], poke[3], poke[4], PUSH_ROUND};
+        list[count++] =
+            (disturbance){poke[0], disturbance_time, poke[1], poke[2], poke[3], poke[4], DISTURBANCE_ROUND};
     }
     if (water_alone)
-        list[count++] = pushes_poke(r, s, push_duration);
+        list[count++] = disturbances_poke(r, s, disturbance_time);
     if (!isnan(box[0])) {
         check_box();
         const double momentum = box[1] * sqrt(2 * 9.81 * box_height);
-        list[count++] = (push){
-            box[0], push_duration, far[0] / 2, far[1] / 2, momentum / (mean_of_profile * push_duration),
-            area,   PUSH_SQUARE};
+        list[count++] = (disturbance){box[0],
+                                      disturbance_time,
+                                      far[0] / 2,
+                                      far[1] / 2,
+                                      momentum / (mean_of_profile * disturbance_time),
+                                      area,
+                                      DISTURBANCE_SQUARE};
     }
-    pushes *p = count > 0 ? pushes_new(r, list, count) : NULL;
+    disturbances *p = count > 0 ? disturbances_new(r, list, count) : NULL;
     free(list);
     return p;
 }
@@ -268,7 +272,7 @@ static void prepare_frames(uint64_t count)
     }
 }
 
-static void write_positions(cli_table *table, const ready_scene *r, double t, const double *xyz)
+static void write_positions(cli_table *table, const preset *r, double t, const double *xyz)
 {
     const uint32_t *n = r->count;
     for (size_t i = 0; i < r->def.particles; i++)
@@ -276,7 +280,7 @@ static void write_positions(cli_table *table, const ready_scene *r, double t, co
                 i / n[0] / n[1], xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
 }
 
-static void write_frame(uint64_t frame, const ready_scene *r, double t, const double *xyz)
+static void write_frame(uint64_t frame, const preset *r, double t, const double *xyz)
 {
     name_frame(frame);
     cli_table *table = cli_open_file("frames", frame_path);
@@ -288,7 +292,7 @@ static void write_frame(uint64_t frame, const ready_scene *r, double t, const do
 /* ------------------------------------------------------------------------------------------------------- the run */
 
 typedef struct view { /* a scene, and what is shown of it */
-    const ready_scene *ready;
+    const preset *preset;
     spring_scene *scene;
     void *saved;  /* a copy, to return to */
     size_t bytes; /* of both */
@@ -301,9 +305,9 @@ static void write_row(view *v)
 {
     const spring_scene_energies e = spring_scene_energy(v->scene);
     double most = 0;
-    ready_positions(v->ready, v->scene, v->xyz);
-    for (size_t i = 0; i < v->ready->def.particles; i++) {
-        const double *p = &v->xyz[3 * i], *q = &v->ready->start[3 * i];
+    preset_positions(v->preset, v->scene, v->xyz);
+    for (size_t i = 0; i < v->preset->def.particles; i++) {
+        const double *p = &v->xyz[3 * i], *q = &v->preset->start[3 * i];
         most = fmax(most, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
     }
     cli_row(v->rows, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
@@ -314,9 +318,9 @@ static void write_pictures(const view *v, uint64_t frame)
 {
     const double t = spring_scene_time(v->scene);
     if (frames != NULL)
-        write_frame(frame, v->ready, t, v->xyz);
+        write_frame(frame, v->preset, t, v->xyz);
     if (v->positions != NULL)
-        write_positions(v->positions, v->ready, t, v->xyz);
+        write_positions(v->positions, v->preset, t, v->xyz);
 }
 
 /* Takes n steps, or none if the state or its energy would overflow. */
@@ -371,42 +375,42 @@ static bool run(view *v, uint64_t steps, uint64_t frame_count)
 }
 
 /* The steps of a frame are whole, so that frames are equally far apart. */
-static double default_step(spring_scene *scene, bool pushed)
+static double default_step(spring_scene *scene, bool disturbed)
 {
     double longest = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
-    if (pushed)
-        longest = fmin(longest, push_duration / 8);
+    if (disturbed)
+        longest = fmin(longest, disturbance_time / 8);
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
 }
 
-static void remark_on_step(spring_scene *scene, bool pushed)
+static void remark_on_step(spring_scene *scene, bool disturbed)
 {
     const double stable = spring_scene_stable_step(scene, (spring_method)method);
     if (stable == 0)
-        cli_warn("no step is stable with %s in this scene", methods[method]);
+        cli_warn("no step is stable with %s in this scene", spring_method_name((spring_method)method));
     else if (!(dt < stable))
         cli_warn("the step of %g s is not below the stable step of %s in this scene, %g s", dt,
-                 methods[method], stable);
-    if (pushed && !(dt < push_duration / 4))
-        cli_warn(
-            "the step of %g s is not below a quarter of --push-duration, %g s: pushes lose or gain by it", dt,
-            push_duration / 4);
+                 spring_method_name((spring_method)method), stable);
+    if (disturbed && !(dt < disturbance_time / 4))
+        cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances lose or "
+                 "gain by it",
+                 dt, disturbance_time / 4);
 }
 
-static view open_view(const ready_scene *ready, spring_scene *scene, uint64_t frame_count)
+static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64_t frame_count)
 {
-    view v = {.ready = ready, .scene = scene, .rows = cli_open_output()};
+    view v = {.preset = r, .scene = scene, .bytes = bytes, .rows = cli_open_output()};
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
     if (frames != NULL)
         prepare_frames(frame_count);
-    spring_scene_bytes(&ready->def, &v.bytes);
     v.saved = aligned_alloc(SPRING_SCENE_ALIGN, v.bytes);
-    v.xyz = malloc(3 * ready->def.particles * sizeof *v.xyz);
+    v.xyz = malloc(3 * r->def.particles * sizeof *v.xyz);
     if (v.saved == NULL || v.xyz == NULL)
-        cli_fail(CLI_FAILED, "no memory for %zu particles", ready->def.particles);
-    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", ready_names[kind], ready->def.particles,
-                ready->def.links);
-    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", methods[method], dt,
+        cli_fail(CLI_FAILED, "no memory for %zu particles", r->def.particles);
+    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles,
+                r->def.links);
+    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s",
+                spring_method_name((spring_method)method), dt,
                 spring_scene_stable_step(scene, (spring_method)method));
     cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
     if (v.positions != NULL)
@@ -429,15 +433,16 @@ static void check_amounts(void)
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
-    const ready_settings settings = chosen_settings();
-    ready_scene ready;
-    ready_init(&ready, &settings);
-    pushes *p = chosen_pushes(&ready, &settings);
+    const preset_settings settings = chosen_settings();
+    preset r;
+    preset_init(&r, &settings);
+    disturbances *p = chosen_disturbances(&r, &settings);
     if (p != NULL) {
-        ready.def.force = pushes_force;
-        ready.def.user = p;
+        r.def.force = disturbances_force;
+        r.def.user = p;
     }
-    spring_scene *scene = ready_start(&ready.def);
+    size_t bytes;
+    spring_scene *scene = preset_start(&r, (spring_method)method, &bytes);
     if (dt == 0)
         dt = default_step(scene, p != NULL);
     check_amounts();
@@ -445,7 +450,7 @@ int main(int argc, char **argv)
 
     const uint64_t steps = (uint64_t)fmax(rint(duration / dt), 1),
                    frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
-    view v = open_view(&ready, scene, frame_count);
+    view v = open_view(&r, scene, bytes, frame_count);
     const bool survived = run(&v, steps, frame_count);
     cli_finish();
     if (!survived)
@@ -454,7 +459,7 @@ int main(int argc, char **argv)
     free(v.saved);
     free(scene);
     if (p != NULL)
-        pushes_free(p);
-    ready_clear(&ready);
+        disturbances_free(p);
+    preset_clear(&r);
     return survived ? 0 : CLI_FAILED;
 }

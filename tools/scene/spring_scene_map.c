@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-scene-map: what becomes of each ready scene with each method, when a frame of 1/60 s is one step, two, three ...
+ * spring-scene-map: what becomes of each preset with each method, when a frame of 1/60 s is one step, two, three ...
  *
  * Method    Each scene as spring-scene makes it, for four seconds. Its energy at every frame is compared with that of
  *           leapfrog in steps of a sixteenth of its stable step, in parts of the largest kinetic energy there:
@@ -12,21 +12,20 @@
 #include <string.h>
 
 #include "common/cli.h"
-#include "pushes.h"
-#include "ready_scene.h"
 #include "common/timing.h"
+#include "disturbances.h"
+#include "presets.h"
 
-static const double frame_time = 1.0 / 60; /* [s] */
-static const double push_duration = 0.02;  /* [s] */
+static const double frame_time = 1.0 / 60;   /* [s] */
+static const double disturbance_time = 0.02; /* [s] */
 
-static const char *const methods[] = {"euler", "leapfrog", "rk4", NULL}; /* in the order of spring_method */
 static int only_scene = -1, only_method = -1;
 static bool quick, timed;
 
 static const cli_option options[] = {
-    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = ready_names, .value = "S",
+    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S",
      .help = "only this scene"},
-    {"method", CLI_CHOICE, .choice = &only_method, .choices = methods, .value = "M",
+    {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M",
      .help = "only this method"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
     {"time", CLI_FLAG, .flag = &timed,
@@ -38,7 +37,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-scene-map",
-    .summary = "What becomes of each ready scene with each method and number of steps a frame.",
+    .summary = "What becomes of each preset with each method and number of steps a frame.",
     .details =
         "Columns: scene, method, particles, links, substeps (steps in a frame of 1/60 s), dt_s, "
         "stable_step_s\n"
@@ -56,8 +55,8 @@ static const cli_program program = {
 /* ------------------------------------------------------------------------------------------------------- a run */
 
 typedef struct subject {
-    ready_scene ready;
-    pushes *pushes; /* NULL: none */
+    preset preset;
+    disturbances *poke; /* NULL: none */
     uint64_t frames;
     double *energy; /* [frames] of the reference */
     double kinetic; /* the largest in the reference */
@@ -74,9 +73,15 @@ static double total(const spring_scene_energies *e)
     return e->kinetic + e->elastic + e->gravity;
 }
 
+static spring_scene *start(const subject *s, spring_method m)
+{
+    size_t bytes;
+    return preset_start(&s->preset, m, &bytes);
+}
+
 static void run_reference(subject *s)
 {
-    spring_scene *scene = ready_start(&s->ready.def);
+    spring_scene *scene = start(s, SPRING_LEAPFROG);
     const double finest = spring_scene_stable_step(scene, SPRING_LEAPFROG) / 16;
     const uint64_t substeps = (uint64_t)ceil(frame_time / finest);
     for (uint64_t i = 0; i < s->frames; i++) {
@@ -93,7 +98,7 @@ static void run_reference(subject *s)
 static outcome run(const subject *s, spring_method m, uint64_t substeps)
 {
     const double much = 10;
-    spring_scene *scene = ready_start(&s->ready.def);
+    spring_scene *scene = start(s, m);
     outcome o = {0, false};
     for (uint64_t i = 0; i < s->frames && !o.exploded; i++) {
         const spring_status status = spring_scene_advance(scene, m, frame_time / (double)substeps, substeps);
@@ -123,15 +128,15 @@ static uint64_t next_number(uint64_t substeps)
     return quick ? 2 * substeps : substeps + 1 + substeps / 8;
 }
 
-static void begin(subject *s, const ready_settings *settings)
+static void begin(subject *s, const preset_settings *settings)
 {
     *s = (subject){.frames = quick ? 60 : 240};
-    ready_init(&s->ready, settings);
-    if (settings->kind == READY_WATER) {
-        push poke = pushes_poke(&s->ready, settings, push_duration);
-        s->pushes = pushes_new(&s->ready, &poke, 1);
-        s->ready.def.force = pushes_force;
-        s->ready.def.user = s->pushes;
+    preset_init(&s->preset, settings);
+    if (settings->kind == PRESET_WATER) {
+        disturbance poke = disturbances_poke(&s->preset, settings, disturbance_time);
+        s->poke = disturbances_new(&s->preset, &poke, 1);
+        s->preset.def.force = disturbances_force;
+        s->preset.def.user = s->poke;
     }
     s->energy = calloc(s->frames, sizeof *s->energy);
     if (s->energy == NULL)
@@ -141,14 +146,14 @@ static void begin(subject *s, const ready_settings *settings)
 static void end(subject *s)
 {
     free(s->energy);
-    if (s->pushes != NULL)
-        pushes_free(s->pushes);
-    ready_clear(&s->ready);
+    if (s->poke != NULL)
+        disturbances_free(s->poke);
+    preset_clear(&s->preset);
 }
 
 static double stable_step(const subject *s, spring_method m)
 {
-    spring_scene *scene = ready_start(&s->ready.def);
+    spring_scene *scene = start(s, m);
     const double step = spring_scene_stable_step(scene, m);
     free(scene);
     return step;
@@ -156,7 +161,7 @@ static double stable_step(const subject *s, spring_method m)
 
 /* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine and below the
    stable step, or 0: not every scene that is grown from this one would survive longer ones. */
-static uint64_t map_method(cli_table *table, const subject *s, ready_kind kind, spring_method m)
+static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
     const double stable = stable_step(s, m);
@@ -169,9 +174,9 @@ static uint64_t map_method(cli_table *table, const subject *s, ready_kind kind, 
         else if (fewest == 0)
             fewest = n;
         if (table != NULL)
-            cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", ready_names[kind],
-                    methods[m], s->ready.def.particles, s->ready.def.links, n, frame_time / (double)n, stable,
-                    fabs(o.error), verdict);
+            cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", preset_names[kind],
+                    spring_method_name(m), s->preset.def.particles, s->preset.def.links, n,
+                    frame_time / (double)n, stable, fabs(o.error), verdict);
     }
     return fewest;
 }
@@ -185,12 +190,12 @@ static double time_frames(const subject *s, spring_method m, uint64_t substeps)
     double best = INFINITY;
     uint64_t frames = 1;
     for (int loops = 0; loops < 5; loops++) {
-        spring_scene *scene = ready_start(&s->ready.def);
-        const double start = timing_busy();
+        spring_scene *scene = start(s, m);
+        const double before = timing_busy();
         for (uint64_t i = 0; i < frames; i++)
             if (spring_scene_advance(scene, m, frame_time / (double)substeps, substeps) != SPRING_OK)
                 cli_fail(CLI_FAILED, "a scene overflows while it is timed");
-        const double spent = nanosecond * (timing_busy() - start);
+        const double spent = nanosecond * (timing_busy() - before);
         free(scene);
         best = fmin(best, spent / (double)frames);
         if (spent < long_enough) {
@@ -203,13 +208,13 @@ static double time_frames(const subject *s, spring_method m, uint64_t substeps)
 }
 
 /* Lets a scene grow, by particles at about the same distances, until a frame takes about a millisecond. */
-static void time_method(cli_table *table, ready_kind kind, spring_method m, uint64_t substeps)
+static void time_method(cli_table *table, preset_kind kind, spring_method m, uint64_t substeps)
 {
     static const double directions[] = {
-        [READY_ROPE] = 1, [READY_CLOTH] = 2, [READY_JELLY] = 3, [READY_CHAIN] = 1, [READY_WATER] = 2};
+        [PRESET_ROPE] = 1, [PRESET_CLOTH] = 2, [PRESET_JELLY] = 3, [PRESET_CHAIN] = 1, [PRESET_WATER] = 2};
     const double most_size = 1e6;
     const int rounds = 4;
-    ready_settings settings = ready_defaults(kind);
+    preset_settings settings = preset_defaults(kind);
     const double spacing = settings.length / (double)settings.size;
     double frame = 1;
     for (int round = 0; round < rounds; round++) {
@@ -220,25 +225,27 @@ static void time_method(cli_table *table, ready_kind kind, spring_method m, uint
         begin(&s, &settings);
         frame = time_frames(&s, m, substeps);
         if (round == rounds - 1)
-            cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", ready_names[kind],
-                    methods[m], substeps, frame_time / (double)substeps, stable_step(&s, m),
-                    s.ready.def.particles, s.ready.def.links, frame, (double)s.ready.def.particles / frame);
+            cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", preset_names[kind],
+                    spring_method_name(m), substeps, frame_time / (double)substeps, stable_step(&s, m),
+                    s.preset.def.particles, s.preset.def.links, frame,
+                    (double)s.preset.def.particles / frame);
         end(&s);
     }
 }
 
-static void work_on(cli_table *table, ready_kind kind)
+static void work_on(cli_table *table, preset_kind kind)
 {
-    const ready_settings settings = ready_defaults(kind);
+    const preset_settings settings = preset_defaults(kind);
     subject s;
     begin(&s, &settings);
     run_reference(&s);
-    for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
-        if (only_method >= 0 && m != only_method)
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        if (!spring_method_describe(m)->scenes || (only_method >= 0 && (int)m != only_method))
             continue;
-        const uint64_t fewest = map_method(timed ? NULL : table, &s, kind, (spring_method)m);
+        const uint64_t fewest = map_method(timed ? NULL : table, &s, kind, m);
         if (timed && fewest > 0)
-            time_method(table, kind, (spring_method)m, fewest);
+            time_method(table, kind, m, fewest);
     }
     end(&s);
 }
@@ -252,10 +259,10 @@ int main(int argc, char **argv)
     cli_columns(table,
                 timed ? "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms"
                       : "scene method particles links substeps dt_s stable_step_s energy_error verdict");
-    for (int kind = 0; kind < ready_kinds; kind++) {
+    for (int kind = 0; kind < preset_kinds; kind++) {
         if (only_scene < 0 || kind == only_scene)
-            work_on(table, (ready_kind)kind);
-        cli_progress((kind + 1.0) / ready_kinds);
+            work_on(table, (preset_kind)kind);
+        cli_progress((kind + 1.0) / preset_kinds);
     }
     cli_finish();
     return 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pushes on a scene; see pushes.h. */
-#include "pushes.h"
+/* Disturbances on a scene; see disturbances.h. */
+#include "disturbances.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,49 +9,49 @@
 
 typedef struct share {
     uint32_t particle;
-    double part; /* of the force of a push */
+    double part; /* of the force of a disturbance */
 } share;
 
-struct pushes {
+struct disturbances {
     uint32_t last_axis;
     size_t count;
-    push *push;    /* [count] by start */
-    size_t *first; /* [count + 1] of each in share */
+    disturbance *list; /* [count] by start */
+    size_t *first;     /* [count + 1] of each in share */
     share *share;
 };
 
 static const double pi = 3.14159265358979323846;
 
-push pushes_poke(const ready_scene *r, const ready_settings *s, double duration)
+disturbance disturbances_poke(const preset *r, const preset_settings *s, double duration)
 {
     const double *far = &r->start[3 * (r->def.particles - 1)];
-    return (push){.start = 0,
-                  .duration = duration,
-                  .x = far[0] / 2,
-                  .y = far[1] / 2,
-                  .peak = 1e5,
-                  .area = s->length * s->length / 64,
-                  .shape = PUSH_ROUND};
+    return (disturbance){.start = 0,
+                         .duration = duration,
+                         .x = far[0] / 2,
+                         .y = far[1] / 2,
+                         .peak = 1e5,
+                         .area = s->length * s->length / 64,
+                         .shape = DISTURBANCE_ROUND};
 }
 
 static void *room(void *old, size_t bytes)
 {
     void *memory = realloc(old, bytes > 0 ? bytes : 1);
     if (memory == NULL)
-        cli_fail(CLI_FAILED, "no memory for the pushes on a scene");
+        cli_fail(CLI_FAILED, "no memory for the disturbances on a scene");
     return memory;
 }
 
-static double weight(const push *p, double dx, double dy)
+static double weight(const disturbance *p, double dx, double dy)
 {
     const double half = 0.5 * sqrt(p->area), relative = (dx * dx + dy * dy) * pi / p->area;
-    if (p->shape == PUSH_SQUARE)
+    if (p->shape == DISTURBANCE_SQUARE)
         return fabs(dx) <= half && fabs(dy) <= half ? 1 : 0;
     return relative < 1 ? (1 - relative) * (1 - relative) : 0;
 }
 
-/* Writes the shares of one push behind those that there are; returns where they end. */
-static size_t spread(pushes *all, const ready_scene *r, const push *p, size_t begin, size_t *capacity)
+/* Writes the shares of one disturbance behind those that there are; returns where they end. */
+static size_t spread(disturbances *all, const preset *r, const disturbance *p, size_t begin, size_t *capacity)
 {
     double sum = 0, least = INFINITY;
     size_t end = begin, nearest = 0;
@@ -82,41 +82,41 @@ static size_t spread(pushes *all, const ready_scene *r, const push *p, size_t be
 
 static int by_start(const void *a, const void *b)
 {
-    const push *p = a, *q = b;
+    const disturbance *p = a, *q = b;
     return (p->start > q->start) - (p->start < q->start);
 }
 
-pushes *pushes_new(const ready_scene *r, push *list, size_t count)
+disturbances *disturbances_new(const preset *r, disturbance *list, size_t count)
 {
-    pushes *p = room(NULL, sizeof *p);
+    disturbances *p = room(NULL, sizeof *p);
     size_t capacity = 0;
     qsort(list, count, sizeof *list, by_start);
-    *p = (pushes){.last_axis = r->def.axes - 1, .count = count};
-    p->push = room(NULL, count * sizeof *p->push);
+    *p = (disturbances){.last_axis = r->def.axes - 1, .count = count};
+    p->list = room(NULL, count * sizeof *p->list);
     p->first = room(NULL, (count + 1) * sizeof *p->first);
     p->first[0] = 0;
     for (size_t i = 0; i < count; i++) {
-        p->push[i] = list[i];
+        p->list[i] = list[i];
         p->first[i + 1] = spread(p, r, &list[i], p->first[i], &capacity);
     }
     return p;
 }
 
-void pushes_free(pushes *p)
+void disturbances_free(disturbances *p)
 {
-    free(p->push);
+    free(p->list);
     free(p->first);
     free(p->share);
     free(p);
 }
 
-/* The first push that has not ended at t. */
-static size_t first_active(const pushes *p, double t)
+/* The first disturbance that has not ended at t. */
+static size_t first_active(const disturbances *p, double t)
 {
     size_t low = 0, high = p->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (p->push[middle].start + p->push[middle].duration > t)
+        if (p->list[middle].start + p->list[middle].duration > t)
             high = middle;
         else
             low = middle + 1;
@@ -124,17 +124,17 @@ static size_t first_active(const pushes *p, double t)
     return low;
 }
 
-void pushes_force(void *user, double t, size_t particles, const double *const position[3],
-                  const double *const velocity[3], double *const force[3])
+void disturbances_force(void *user, double t, size_t particles, const double *const position[3],
+                        const double *const velocity[3], double *const force[3])
 {
     (void)particles;
     (void)position;
     (void)velocity;
-    const pushes *p = user;
+    const disturbances *p = user;
     double *down = force[p->last_axis];
-    for (size_t i = first_active(p, t); i < p->count && p->push[i].start < t; i++) {
-        const double s = sin(pi * (t - p->push[i].start) / p->push[i].duration);
-        const double strength = p->push[i].peak * s * s * s * s;
+    for (size_t i = first_active(p, t); i < p->count && p->list[i].start < t; i++) {
+        const double s = sin(pi * (t - p->list[i].start) / p->list[i].duration);
+        const double strength = p->list[i].peak * s * s * s * s;
         for (size_t k = p->first[i]; k < p->first[i + 1]; k++)
             down[p->share[k].particle] -= strength * p->share[k].part;
     }

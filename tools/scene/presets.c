@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Five scenes that are ready to be run; see ready_scene.h. */
-#include "ready_scene.h"
+/* Five scenes with all that they are made of; see presets.h. */
+#include "presets.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,20 +8,20 @@
 
 #include "common/cli.h"
 
-const char *const ready_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
+const char *const preset_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
 
 enum { all_families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND };
 
-static const ready_settings defaults[] = {
+static const preset_settings defaults[] = {
     /* size, axes, families, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity, stretch */
-    [READY_ROPE] = {READY_ROPE, 20, 2, SPRING_GRID_STRUCTURAL, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
-    [READY_CLOTH] = {READY_CLOTH, 25, 3, all_families, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
-    [READY_JELLY] = {READY_JELLY, 8, 3, all_families, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
-    [READY_CHAIN] = {READY_CHAIN, 50, 1, SPRING_GRID_STRUCTURAL, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
-    [READY_WATER] = {READY_WATER, 25, 1, all_families, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
+    [PRESET_ROPE] = {PRESET_ROPE, 20, 2, SPRING_GRID_STRUCTURAL, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
+    [PRESET_CLOTH] = {PRESET_CLOTH, 25, 3, all_families, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
+    [PRESET_JELLY] = {PRESET_JELLY, 8, 3, all_families, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
+    [PRESET_CHAIN] = {PRESET_CHAIN, 50, 1, SPRING_GRID_STRUCTURAL, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
+    [PRESET_WATER] = {PRESET_WATER, 25, 1, all_families, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
 };
 
-ready_settings ready_defaults(ready_kind kind)
+preset_settings preset_defaults(preset_kind kind)
 {
     return defaults[kind];
 }
@@ -34,7 +34,7 @@ static void *room(size_t count, size_t size)
     return memory;
 }
 
-static spring_grid grid_of(const ready_settings *s)
+static spring_grid grid_of(const preset_settings *s)
 {
     const uint32_t n = (uint32_t)s->size;
     const uint32_t all_edges =
@@ -46,18 +46,18 @@ static spring_grid grid_of(const ready_settings *s)
                      .spacing = s->length / (n - 1),
                      .families = s->families};
     switch (s->kind) {
-    case READY_ROPE:
+    case PRESET_ROPE:
         g.count[0] = n;
         g.pinned = SPRING_GRID_FIRST_X;
         break;
-    case READY_CLOTH: /* two of its corners are pinned later on */
+    case PRESET_CLOTH: /* two of its corners are pinned later on */
         g.count[0] = g.count[1] = n;
         break;
-    case READY_JELLY:
+    case PRESET_JELLY:
         g.count[0] = g.count[1] = g.count[2] = n;
         g.pinned = SPRING_GRID_FIRST_Z;
         break;
-    case READY_CHAIN:
+    case PRESET_CHAIN:
         g.count[0] = n + 2;
         g.spacing = s->length / (n + 1);
         g.pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X;
@@ -75,7 +75,7 @@ static spring_grid grid_of(const ready_settings *s)
 }
 
 /* Where the particles of a grid stand, on three axes. */
-static void fill_start(ready_scene *r, double spacing)
+static void fill_start(preset *r, double spacing)
 {
     const uint32_t *n = r->count;
     double *p = r->start;
@@ -89,7 +89,7 @@ static void fill_start(ready_scene *r, double spacing)
 }
 
 /* Drawn aside at its middle, by half the distance of two masses. */
-static void pluck(ready_scene *r, double spacing)
+static void pluck(preset *r, double spacing)
 {
     const double end = r->count[0] - 1;
     for (uint32_t i = 0; i < r->count[0]; i++) {
@@ -99,15 +99,14 @@ static void pluck(ready_scene *r, double spacing)
     }
 }
 
-void ready_init(ready_scene *r, const ready_settings *s)
+void preset_init(preset *r, const preset_settings *s)
 {
     const spring_grid g = grid_of(s);
     size_t particles, links;
     if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
         cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have",
                  s->size);
-    *r = (ready_scene){
-        .count = {g.count[0], g.count[1] > 0 ? g.count[1] : 1, g.count[2] > 0 ? g.count[2] : 1}};
+    *r = (preset){.count = {g.count[0], g.count[1] > 0 ? g.count[1] : 1, g.count[2] > 0 ? g.count[2] : 1}};
     r->start = room(3 * particles, sizeof *r->start);
     r->position = room(3 * particles, sizeof *r->position);
     r->pinned = room(particles, sizeof *r->pinned);
@@ -115,30 +114,30 @@ void ready_init(ready_scene *r, const ready_settings *s)
     r->link = room(links, sizeof *r->link);
     spring_grid_fill(&g, r->position, r->pinned, r->link);
     fill_start(r, g.spacing);
-    r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
-                                .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* pushes look at the time alone */
-                                .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
-                                .particles = particles,
-                                .links = links,
-                                .position = r->position,
-                                .mass_all = s->mass,
-                                .pinned = r->pinned,
-                                .link = r->link,
-                                .drag = s->drag};
+    r->def = (spring_scene_def){
+        .axes = (uint32_t)s->axes,
+        .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* disturbances look at the time alone */
+        .particles = particles,
+        .links = links,
+        .position = r->position,
+        .mass_all = s->mass,
+        .pinned = r->pinned,
+        .link = r->link,
+        .drag = s->drag};
     if (!isnan(s->gravity))
         r->def.gravity[s->axes - 1] = -s->gravity;
-    if (s->kind == READY_CLOTH)
+    if (s->kind == PRESET_CLOTH)
         r->pinned[0] = r->pinned[r->count[0] - 1] = 1;
-    if (s->kind == READY_CHAIN)
+    if (s->kind == PRESET_CHAIN)
         pluck(r, g.spacing);
-    if (s->kind == READY_ROPE && s->end_mass != s->mass) {
+    if (s->kind == PRESET_ROPE && s->end_mass != s->mass) {
         for (size_t i = 0; i < particles; i++)
             r->mass[i] = i + 1 < particles ? s->mass : s->end_mass;
         r->def.mass = r->mass;
     }
 }
 
-void ready_clear(ready_scene *r)
+void preset_clear(preset *r)
 {
     free(r->start);
     free(r->position);
@@ -147,26 +146,28 @@ void ready_clear(ready_scene *r)
     free(r->link);
 }
 
-spring_scene *ready_start(const spring_scene_def *def)
+spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes)
 {
+    spring_scene_def def = r->def;
+    def.methods = 1u << m | 1u << SPRING_LEAPFROG;
     const char *field;
-    size_t index, bytes;
+    size_t index;
     spring_scene *scene;
-    const spring_status status = spring_scene_check(def, &field, &index);
+    const spring_status status = spring_scene_check(&def, &field, &index);
     if (status != SPRING_OK)
         cli_fail(
             CLI_USAGE,
             "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
             "drag/mass should be finite",
             field, index);
-    spring_scene_bytes(def, &bytes);
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
-    if (memory == NULL || spring_scene_init(memory, bytes, def, &scene) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def->particles, bytes);
+    spring_scene_bytes(&def, bytes);
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
+    if (memory == NULL || spring_scene_init(memory, *bytes, &def, &scene) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
     return scene;
 }
 
-void ready_positions(const ready_scene *r, const spring_scene *s, double *xyz)
+void preset_positions(const preset *r, const spring_scene *s, double *xyz)
 {
     static const int shown[4][3] = {{0}, {0}, {0, 2}, {0, 1, 2}}; /* by the number of axes: where each goes */
     const uint32_t axes = r->def.axes;

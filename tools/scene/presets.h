@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Five scenes that are ready to be run: what they are made of, and how they look at the start.
+ * Five scenes with all that they are made of, and how they look at the start.
  *
  *     rope   particles in a row, level, held at one end, with gravity: it swings down
  *     cloth  a level sheet that hangs on two of its corners, with gravity
@@ -8,29 +8,29 @@
  *     chain  masses on a line between two that are fixed, plucked in the middle; it moves along itself
  *     water  a sheet whose edges are pinned. On one axis it is a height field: each particle moves up and down only
  *
- * Source of the water (4 m x 4 m, three families of links of 25 000 N/m, 1 kg a particle, drag 0.5 N s/m): a public study
- * of the three methods, whose numbers for one spring the report reproduces.
+ * Source of the water (4 m x 4 m, three families of links of 25 000 N/m, 1 kg a particle, drag 0.5 N s/m): the original
+ * study, whose numbers for one spring the report reproduces.
  */
-#ifndef SPRINGSTEP_READY_SCENE_H
-#define SPRINGSTEP_READY_SCENE_H
+#ifndef SPRINGSTEP_PRESETS_H
+#define SPRINGSTEP_PRESETS_H
 
 #include <springstep/scene.h>
 
-typedef enum ready_kind {
-    READY_ROPE,
-    READY_CLOTH,
-    READY_JELLY,
-    READY_CHAIN,
-    READY_WATER,
-    ready_kinds
-} ready_kind;
+typedef enum preset_kind {
+    PRESET_ROPE,
+    PRESET_CLOTH,
+    PRESET_JELLY,
+    PRESET_CHAIN,
+    PRESET_WATER,
+    preset_kinds
+} preset_kind;
 
 /* The words for them, in that order, ended by NULL. */
-extern const char *const ready_names[];
+extern const char *const preset_names[];
 
 /* NaN, or 0 for a count, where a scene has no such thing. */
-typedef struct ready_settings {
-    ready_kind kind;
+typedef struct preset_settings {
+    preset_kind kind;
     uint64_t size;     /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
     uint64_t axes;     /* water: 1 or 3 */
     uint32_t families; /* of links, SPRING_GRID_...; rope and chain have structural ones alone */
@@ -44,13 +44,13 @@ typedef struct ready_settings {
     double
         stretch; /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
                          as stiff across as they are along; else > 1: their stiffness across is 1 - 1/stretch of that */
-} ready_settings;
+} preset_settings;
 
 /* What a scene is made of unless the user says otherwise. */
-ready_settings ready_defaults(ready_kind kind);
+preset_settings preset_defaults(preset_kind kind);
 
 /* A definition, and the arrays that it needs. */
-typedef struct ready_scene {
+typedef struct preset {
     spring_scene_def def;
     uint32_t
         count[3];  /* particles along x, y, z; particle (i, j, k) has index i + count[0] (j + count[1] k) */
@@ -59,16 +59,17 @@ typedef struct ready_scene {
     uint8_t *pinned;   /* [particles] */
     double *mass;      /* [particles] */
     spring_link *link; /* [links] */
-} ready_scene;
+} preset;
 
-/** Make the definition of a scene. All methods are prepared for. Exits with a message without memory. */
-void ready_init(ready_scene *r, const ready_settings *s);
-void ready_clear(ready_scene *r);
+/** Make the definition of a scene, but for its methods. Exits with a message without memory. */
+void preset_init(preset *r, const preset_settings *s);
+void preset_clear(preset *r);
 
-/** A scene of a definition, in memory of its own: release it with free(). Exits with a message if it is not valid. */
-spring_scene *ready_start(const spring_scene_def *def);
+/** The scene, for one method and for leapfrog, whose stable step is a measure for all; in memory of its own of so many bytes:
+    release it with free(). Exits with a message if it is not valid. */
+spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes);
 
 /** Positions [particles*3] x y z [m] as in `start`. */
-void ready_positions(const ready_scene *r, const spring_scene *s, double *xyz);
+void preset_positions(const preset *r, const spring_scene *s, double *xyz);
 
 #endif
