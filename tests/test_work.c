@@ -103,10 +103,11 @@ static void counts_of_the_peers(void)
 {
     const spring_params p = {1.3, 2.7, 0.2, 0.4};
     const double scale[] = {1, 1};
-    for (const work_solver *s = work_solvers; s < work_solvers + work_solver_count; s++) {
+    for (size_t i = 0; i < WORK_SOLVERS; i++) {
+        const work_solver *s = work_solver_at(i);
         ode o = {.size = 2, .derivative = counted_derivative, .data = &p, .scale = scale};
         double y[] = {0.8, -0.9};
-        if (s->side != WORK_PEER)
+        if (s->side != WORK_EXTERNAL)
             continue;
         derivatives = 0;
         CHECK((s->fixed != NULL ? s->fixed(&o, y, 0.013, steps) : s->adaptive(&o, y, 0.5, 1e-6)) == NULL,
@@ -128,7 +129,7 @@ static void one_equation(work *w)
         largest = fmax(largest, l->stiffness);
     const double size = 8 * largest / w->scene.mass[0] * fmax(1, w->motion) + 10;
     for (int at = 0; at < 2; at++) {
-        const double *y = at == 0 ? w->start : w->truth;
+        const double *y = at == 0 ? w->start : w->exact;
         work_equation_derivative(0.3, y, ours, &w->equation);
         scene_derivative(0.3, y, theirs, &w->scene);
         for (size_t i = 0; i < w->size; i++)
@@ -143,11 +144,11 @@ static void one_equation(work *w)
 static void truth_of_a_scene(work *w)
 {
     double *y = scene_room(w->size, sizeof *y);
-    const work_solver *const rk4 = &work_solvers[SPRING_RK4];
+    const work_solver *const rk4 = work_solver_of(SPRING_RK4);
     const uint64_t n =
         (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 64)) + 1;
     CHECK_BELOW(w->uncertainty, 1e-12, "the truth is good for every error of the table");
-    CHECK_CLOSE(work_error(w, w->truth), 5 * w->uncertainty, 0, "no error below what the truth is known to");
+    CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what the truth is known to");
     CHECK(work_run(w, rk4, (work_effort){.steps = n}, 1, y).failure == NULL, "it moves");
     const double coarse = work_error(w, y);
     work_run(w, rk4, (work_effort){.steps = 2 * n}, 1, y);

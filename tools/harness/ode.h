@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Other people's solvers behind one small interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE.
+ * External solvers behind one small interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE.
  *
  * Each takes the state y at t = 0 to its end in place. NULL means done; anything else is a message, and y is unspecified.
  */
@@ -52,6 +52,16 @@ typedef enum ode_cvode_method {
     ODE_BDF    /* Newton iteration; dense matrix, of more than a hundred unknowns none: GMRES */
 } ode_cvode_method;
 const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance);
+
+static inline const char *ode_adams(ode *o, double *y, double duration, double tolerance)
+{
+    return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
+}
+
+static inline const char *ode_bdf(ode *o, double *y, double duration, double tolerance)
+{
+    return ode_cvode(o, y, duration, ODE_BDF, tolerance);
+}
 
 /* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);

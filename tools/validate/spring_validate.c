@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-validate: every method on every hard case, against independent witnesses; scenes are in validate_scene.c.
+ * spring-validate: every method on every corner case, against independent references; scenes are in validate_scene.c.
  *
- * For each case and method: the same method in exact arithmetic (what differs is rounding), the true solution (what
- * differs is rounding and truncation), and other people's solvers. Every bound is derived, and says from what.
+ * For each case and method: the same method in exact arithmetic (what differs is rounding), the exact solution (what
+ * differs is rounding and truncation), and external solvers. Every bound is derived, and says from what.
  */
 #include <float.h>
 #include <math.h>
@@ -17,7 +17,8 @@
 #include "harness/ode.h"
 #include "harness/reference.h"
 #include "harness/scenes.h"
-#include "validate.h"
+#include "rows.h"
+#include "validate_scene.h"
 
 static const char **case_names; /* ended by NULL */
 static int only_case = -1;
@@ -32,55 +33,41 @@ static cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-validate",
-    .summary = "Check every method on a catalogue of hard cases against independent witnesses.",
+    .summary = "Check every method on a catalogue of corner cases against independent references.",
     .details =
-        "Columns: case, method, witness, dt_s, steps, error and bound (both [m], distances in (x, "
-        "v/omega)), verdict\n"
-        "(pass, fail, skip), reason (what the bound is made of), uncertainty (of the witness [m]: the "
-        "difference to a\n"
-        "ten times coarser run of its own; 0 for closed forms in multiple precision), "
-        "force_evaluations (of the\n"
-        "witness; 0 where it has none) and shape (spring or scene). Witnesses of springs: iterate, the "
-        "same method in\n"
-        "107-digit arithmetic; solution, the true solution in 107 digits; gsl-rk4, arkode-rk4, "
-        "gsl-rk8pd, cvode-adams,\n"
-        "cvode-bdf. Of scenes: definition, the same method from a second program; modes and "
-        "reduced-mass, its closed\n"
-        "form in linear scenes; dispersion, the frequency of standing waves on sheets, which run 1 m in (x, "
-        "v/omega), so that\n"
-        "errors are those of the frequency, relative; digits and formula, the true solution; gsl-rk4, "
-        "arkode-rk4, gsl-rk8pd, "
-        "cvode-adams.\n"
-        "Against a true solution (the first solver, where there is none) each scene has a row for a step, "
-        "one for "
-        "half of\n"
-        "it and one for the value extrapolated from both. Status 1 if any check fails.",
+        "Columns: case, method, witness (the reference solution), dt_s, steps, error and bound (both [m],\n"
+        "distances in (x, v/omega)), verdict (pass, fail, skip), reason (what the bound is made of),\n"
+        "uncertainty (of the reference [m]: the difference to a ten times coarser run of its own; 0 for "
+        "exact\n"
+        "solutions in multiple precision), force_evaluations (of the reference; 0 where it has none) and "
+        "shape\n"
+        "(spring or scene). References of springs: iterate, the same method in 107-digit arithmetic; "
+        "solution,\n"
+        "the exact solution in 107 digits; drive, the motion under the drive that the loads are samples of;\n"
+        "gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Of scenes: definition, the same method from "
+        "a\n"
+        "second program; modes and reduced-mass, exact expressions for linear scenes; dispersion, the "
+        "frequency\n"
+        "of standing waves on sheets, which run 1 m in (x, v/omega), so that errors are those of the "
+        "frequency,\n"
+        "relative; digits and formula, the exact solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams.\n"
+        "Against an exact solution (the first solver, where there is none) each scene has a row for a step, "
+        "one\n"
+        "for half of it and one for the value extrapolated from both. Status 1 if any check fails.",
     .options = options,
 };
 
-static cli_table *table;
-static unsigned failures;
-
-void judge(const finding *f)
-{
-    const bool pass = f->error <= f->bound; /* false for NaN */
-    failures += !pass;
-    cli_row(table, "%s\t%s\t%s\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%s\t%s\t%.17g\t%" PRIu64 "\t%s", f->of,
-            f->method, f->witness, f->dt, f->steps, f->error, f->bound, pass ? "pass" : "fail", f->reason,
-            f->uncertainty, f->evaluations, f->scene ? "scene" : "spring");
-}
-
 /* ------------------------------------------------------------------------ multiple precision, segment by segment */
 
-/* What the closed form itself may lose (spring.h), and what the response to a load adds. */
-static double closed_form_bound(const reference *truth, const segment *s, double t)
+/* What the exact solution itself may lose (spring.h), and what the response to a load adds. */
+static double exact_bound(const reference *exact, const segment *s, double t)
 {
     const double omega = sqrt(s->p.stiffness / s->p.mass), g = s->p.damping / s->p.mass;
     const double zeta = omega > 0 ? g / (2 * omega) : 0;
     const double relative = 4 * DBL_EPSILON * (1 + omega * fabs(t) * fmax(1, zeta));
     const double load = fabs(s->p.load / s->p.mass);
     const double response = load * (omega > 0 ? fmin(t * t, 2 / (omega * omega)) : t * t);
-    return relative * (mpfr_get_d(truth->size, MPFR_RNDU) + 2 * response) + DBL_MIN;
+    return relative * (mpfr_get_d(exact->size, MPFR_RNDU) + 2 * response) + DBL_MIN;
 }
 
 static void against_references(const validation_case *c, spring_method m)
@@ -88,14 +75,14 @@ static void against_references(const validation_case *c, spring_method m)
     spring_state got;
     const segment first = case_segment(c, m, &got);
     const uint64_t segments = c->vary != NULL ? first.n : 1;
-    reference iterate, truth;
+    reference iterate, exact;
     reference_init(&iterate);
-    reference_init(&truth);
+    reference_init(&exact);
     reference_start(&iterate, &first.p, got);
-    reference_start(&truth, &first.p, got);
+    reference_start(&exact, &first.p, got);
     reference_bounds *bounds = reference_bounds_new(&first.p, got);
     bool done = true;
-    double closed_form = 0;
+    double exact_rounding = 0;
     for (uint64_t i = 0; i < segments; i++) {
         segment s = first;
         if (c->vary != NULL) {
@@ -104,9 +91,9 @@ static void against_references(const validation_case *c, spring_method m)
         }
         done = done && spring_advance(&got, &s.p, m, s.dt, s.n) == SPRING_OK;
         const double t = s.dt * (double)s.n;
-        reference_exact(&truth, &s.p, t);
+        reference_exact(&exact, &s.p, t);
         if (m == SPRING_EXACT) {
-            closed_form += closed_form_bound(&truth, &s, t);
+            exact_rounding += exact_bound(&exact, &s, t);
         } else {
             reference_iterate(&iterate, &s.p, m, s.dt, s.n);
             reference_bounds_add(bounds, &s.p, m, s.dt, s.n);
@@ -117,38 +104,38 @@ static void against_references(const validation_case *c, spring_method m)
     double rounding, truncation;
     reference_bounds_end(bounds, &rounding, &truncation);
 
-    finding f = {.of = c->name, .method = spring_method_name(m), .dt = first.dt, .steps = first.n};
+    validate_row f = {.of = c->name, .method = spring_method_name(m), .dt = first.dt, .steps = first.n};
     if (m != SPRING_EXACT) {
-        f.witness = "iterate";
+        f.reference = "iterate";
         f.error = reference_distance(&iterate, got);
         f.bound = rounding;
         f.reason = "rounding";
-        judge(&f);
+        validate_check(&f);
     }
-    f.witness = "solution";
-    f.error = reference_distance(&truth, got);
-    f.bound = m == SPRING_EXACT ? closed_form : rounding + truncation;
-    f.reason = m == SPRING_EXACT ? "closed form" : "truncation + rounding";
-    judge(&f);
+    f.reference = "solution";
+    f.error = reference_distance(&exact, got);
+    f.bound = m == SPRING_EXACT ? exact_rounding : rounding + truncation;
+    f.reason = m == SPRING_EXACT ? "rounding of the exact solution" : "truncation + rounding";
+    validate_check(&f);
     if (c->exact != NULL) {
         spring_state drive;
         const double sampling = c->exact(c, first.dt, first.dt * (double)first.n, &drive);
         const double omega = sqrt(first.p.stiffness / first.p.mass);
-        f.witness = "drive";
+        f.reference = "drive";
         f.error = hypot(got.x - drive.x, (got.v - drive.v) / omega);
         f.bound += sampling;
         f.reason = m == SPRING_EXACT ? "load sampled once a step"
                                      : "load sampled once a step + truncation + rounding";
-        judge(&f);
+        validate_check(&f);
     }
     reference_clear(&iterate);
-    reference_clear(&truth);
+    reference_clear(&exact);
 }
 
-/* -------------------------------------------------------------------------------------- other people's solvers */
+/* -------------------------------------------------------------------------------------- external solvers */
 
 /* RK4 with the same step in another implementation: what differs is rounding, on both sides. */
-static void against_rk4(const validation_case *c, const char *witness,
+static void against_rk4(const validation_case *c, const char *reference_name,
                         const char *(*solve)(ode *, double *, double, uint64_t), unsigned our_steps_a_step)
 {
     spring_state start;
@@ -161,36 +148,29 @@ static void against_rk4(const validation_case *c, const char *witness,
     reference_bounds *bounds = reference_bounds_new(&s.p, start);
     reference_bounds_add(bounds, &s.p, SPRING_RK4, s.dt, n * our_steps_a_step);
     reference_bounds_end(bounds, &rounding, &truncation);
-    finding f = {
-        .of = c->name, .method = "rk4", .witness = witness, .dt = s.dt, .steps = n * our_steps_a_step};
+    validate_row f = {.of = c->name,
+                      .method = "rk4",
+                      .reference = reference_name,
+                      .dt = s.dt,
+                      .steps = n * our_steps_a_step};
     const char *message = solve(&o, y, s.dt * our_steps_a_step, n);
     if (message != NULL)
-        cli_fail(CLI_FAILED, "%s: %s: %s", c->name, witness, message);
+        cli_fail(CLI_FAILED, "%s: %s: %s", c->name, reference_name, message);
     spring_state got = start;
     spring_advance(&got, &s.p, SPRING_RK4, s.dt, f.steps);
     f.error = hypot(got.x - y[0], (got.v - y[1]) / omega);
     f.bound = 2 * rounding;
     f.reason = "rounding on both sides";
     f.evaluations = o.evaluations;
-    judge(&f);
+    validate_check(&f);
 }
 
 typedef const char *adaptive_solver(ode *o, double *y, double duration, double tolerance);
 
-const char *adams(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
-}
-
-const char *bdf(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_BDF, tolerance);
-}
-
-/* The closed form against a solver that knows nothing of springs. Its error is not known, only estimated, by a run with
+/* The exact solution against a solver that knows nothing of springs. Its error is not known, only estimated, by a run with
    ten times its tolerance: if the error of this one is at most two thirds of that one's, it is at most twice the
    difference. The last step may be off by the local tolerance whatever the difference. */
-static void against_adaptive(const validation_case *c, const char *witness, adaptive_solver *solve)
+static void against_adaptive(const validation_case *c, const char *reference_name, adaptive_solver *solve)
 {
     const double finest = 1e-11; /* below, CVODE's errors stop falling */
     const double tolerance = c->tolerance > 0 ? c->tolerance : finest;
@@ -206,22 +186,23 @@ static void against_adaptive(const validation_case *c, const char *witness, adap
         y[i][1] = start.v;
         const char *message = solve(&o, y[i], duration, i == 0 ? 10 * tolerance : tolerance);
         if (message != NULL)
-            cli_fail(CLI_FAILED, "%s: %s: %s", c->name, witness, message);
+            cli_fail(CLI_FAILED, "%s: %s: %s", c->name, reference_name, message);
     }
-    reference truth;
-    reference_init(&truth);
-    reference_start(&truth, &s.p, start);
-    reference_exact(&truth, &s.p, duration);
+    reference exact;
+    reference_init(&exact);
+    reference_start(&exact, &s.p, start);
+    reference_exact(&exact, &s.p, duration);
     spring_state got = start;
     spring_advance(&got, &s.p, SPRING_EXACT, s.dt, s.n);
-    finding f = {.of = c->name, .method = "exact", .witness = witness, .dt = s.dt, .steps = s.n};
+    validate_row f = {
+        .of = c->name, .method = "exact", .reference = reference_name, .dt = s.dt, .steps = s.n};
     f.error = hypot(got.x - y[1][0], (got.v - y[1][1]) / omega);
     f.uncertainty = hypot(y[0][0] - y[1][0], (y[0][1] - y[1][1]) / omega);
-    f.bound = 2 * f.uncertainty + tolerance * size + closed_form_bound(&truth, &s, duration);
-    f.reason = "twice the uncertainty of the witness + its local tolerance";
+    f.bound = 2 * f.uncertainty + tolerance * size + exact_bound(&exact, &s, duration);
+    f.reason = "twice the uncertainty of the reference + its local tolerance";
     f.evaluations = o.evaluations;
-    judge(&f);
-    reference_clear(&truth);
+    validate_check(&f);
+    reference_clear(&exact);
 }
 
 static void run_case(const validation_case *c)
@@ -234,8 +215,8 @@ static void run_case(const validation_case *c)
     against_rk4(c, "gsl-rk4", ode_gsl_rk4, 2);
     against_rk4(c, "arkode-rk4", ode_arkstep_rk4, 1);
     against_adaptive(c, "gsl-rk8pd", ode_gsl_rk8pd);
-    against_adaptive(c, "cvode-adams", adams);
-    against_adaptive(c, "cvode-bdf", bdf);
+    against_adaptive(c, "cvode-adams", ode_adams);
+    against_adaptive(c, "cvode-bdf", ode_bdf);
 }
 
 static void name_cases(void)
@@ -254,7 +235,8 @@ int main(int argc, char **argv)
 {
     name_cases();
     cli_parse(&program, argc, argv);
-    table = cli_open_output();
+    cli_table *table = cli_open_output();
+    validate_into(table);
     cli_columns(table, list_only ? "case purpose"
                                  : "case method witness dt_s steps error bound verdict reason uncertainty "
                                    "force_evaluations shape");
@@ -280,5 +262,5 @@ int main(int argc, char **argv)
     cli_finish();
     free(case_names);
     mpfr_free_cache();
-    return failures > 0 ? CLI_FAILED : 0;
+    return validate_failures() > 0 ? CLI_FAILED : 0;
 }

@@ -14,7 +14,7 @@
  *     y_4n            |y_2n - y_n|/(R - 1)/R      + 2 b (3R - 1)/(R (2R - 1))
  *     extrapolated                                  2 b/(2R - 1)
  *
- * and rounding. No witness enters them. The second holds only if the error really falls by R, and the third says how far
+ * and rounding. No reference enters them. The second holds only if the error really falls by R, and the third says how far
  * from R: a method of order p - 1 would miss it by factors of 3.5 (leapfrog) and 2.2 (RK4). Steps are small enough, and
  * not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
  */
@@ -26,7 +26,8 @@
 #include "common/cli.h"
 #include "harness/ode.h"
 #include "harness/reference.h"
-#include "validate.h"
+#include "rows.h"
+#include "validate_scene.h"
 
 typedef struct trial {
     const scene_case *c;
@@ -84,31 +85,30 @@ static double step_of(const trial *t, int run_index)
     return t->c->duration / (double)(t->steps << run_index);
 }
 
-static finding row(const trial *t, const char *witness, int run_index)
+static validate_row row(const trial *t, const char *by, int run_index)
 {
-    return (finding){.of = t->c->name,
-                     .method = spring_method_name(t->m),
-                     .witness = witness,
-                     .dt = step_of(t, run_index),
-                     .steps = t->steps << run_index,
-                     .scene = true};
+    return (validate_row){.of = t->c->name,
+                          .method = spring_method_name(t->m),
+                          .reference = by,
+                          .dt = step_of(t, run_index),
+                          .steps = t->steps << run_index,
+                          .scene = true};
 }
 
-/* The same method with the same step, by somebody else: what differs is rounding, on as many sides as do. */
-static void against_same(const trial *t, const char *witness, const double *y, int sides,
-                         uint64_t evaluations)
+/* The same method with the same step, by another program: what differs is rounding, on as many sides as do. */
+static void against_same(const trial *t, const char *by, const double *y, int sides, uint64_t evaluations)
 {
-    finding f = row(t, witness, 0);
+    validate_row f = row(t, by, 0);
     f.error = scene_distance(t->c, t->p, t->run[0], y, 0);
     f.bound = sides * t->rounding;
     f.reason = sides == 2 ? "rounding on both sides" : "rounding";
     f.evaluations = evaluations;
-    judge(&f);
+    validate_check(&f);
 }
 
-/* The true solution, as far as the witness knows it: y_2n and y_4n if runs, and in any case the extrapolated value. */
-static void against_solution(const trial *t, const char *witness, const double *y, size_t known, bool runs,
-                             double uncertainty, double witness_bound, uint64_t evaluations)
+/* The exact solution, as far as the reference knows it: y_2n and y_4n if runs, and in any case the extrapolated value. */
+static void against_solution(const trial *t, const char *by, const double *y, size_t known, bool runs,
+                             double uncertainty, double reference_bound, uint64_t evaluations)
 {
     const double R = ratio_of(t->m);
     const double first = scene_distance(t->c, t->p, t->run[1], t->run[0], known) / (R - 1);
@@ -124,13 +124,13 @@ static void against_solution(const trial *t, const char *witness, const double *
         {t->best[1], 2, 2 / (2 * R - 1) * t->b, "extrapolated: truncation of the next order"},
     };
     for (int i = runs ? 0 : 2; i < 3; i++) {
-        finding f = row(t, witness, rows[i].run_index);
+        validate_row f = row(t, by, rows[i].run_index);
         f.error = scene_distance(t->c, t->p, rows[i].got, y, known);
-        f.bound = rows[i].bound + t->rounding_of_all + witness_bound;
+        f.bound = rows[i].bound + t->rounding_of_all + reference_bound;
         f.reason = rows[i].reason;
         f.uncertainty = uncertainty;
         f.evaluations = evaluations;
-        judge(&f);
+        validate_check(&f);
     }
 }
 
@@ -148,7 +148,7 @@ static void try_method(trial *t)
     t->rounding_of_all = 8 * t->rounding * (R + 1) / (R - 1);
 }
 
-/* -------------------------------------------------------------------------------------- other people's solvers */
+/* -------------------------------------------------------------------------------------- external solvers */
 
 static double *scale_of(const scene_case *c, const scene_problem *p)
 {
@@ -158,7 +158,7 @@ static double *scale_of(const scene_case *c, const scene_problem *p)
     return scale;
 }
 
-static void against_rk4(const trial *t, const char *witness,
+static void against_rk4(const trial *t, const char *by,
                         const char *(*solve)(ode *, double *, double, uint64_t), unsigned our_steps_a_step)
 {
     double *y = vectors(t->p, 1), *scale = scale_of(t->c, t->p);
@@ -166,8 +166,8 @@ static void against_rk4(const trial *t, const char *witness,
     scene_start(t->p, y);
     const char *message = solve(&o, y, our_steps_a_step * step_of(t, 0), t->steps / our_steps_a_step);
     if (message != NULL)
-        cli_fail(CLI_FAILED, "%s: %s: %s", t->c->name, witness, message);
-    against_same(t, witness, y, 2, o.evaluations);
+        cli_fail(CLI_FAILED, "%s: %s: %s", t->c->name, by, message);
+    against_same(t, by, y, 2, o.evaluations);
     free(y);
     free(scale);
 }
@@ -249,13 +249,14 @@ static double lattice_sum(const sheet_mode *s, int power)
 /* m/k times what links of all families do to a sheet of heights u, from the stencil; 0 at the edges. */
 static void pull_sheet(unsigned N, const double *u, double *force)
 {
-    static const int way[][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
+    static const int offset[][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
     const int n = (int)N;
     memset(force, 0, (size_t)N * N * sizeof *force);
     for (int y = 1; y < n - 1; y++)
         for (int x = 1; x < n - 1; x++)
             for (int i = 0; i < 12; i++) {
-                const int sign = i < 6 ? 1 : -1, ox = x + sign * way[i % 6][0], oy = y + sign * way[i % 6][1];
+                const int sign = i < 6 ? 1 : -1, ox = x + sign * offset[i % 6][0],
+                          oy = y + sign * offset[i % 6][1];
                 if (ox >= 0 && ox < n && oy >= 0 && oy < n)
                     force[y * n + x] += u[y * n + x] - u[oy * n + ox];
             }
@@ -280,22 +281,22 @@ static void normalise(size_t count, double *u)
 static void solve_sheet(unsigned N, const double *right, double *u, double *work)
 {
     const size_t count = (size_t)N * N;
-    double *rest = work, *direction = work + count, *image = work + 2 * count;
+    double *residue = work, *direction = work + count, *image = work + 2 * count;
     pull_sheet(N, u, image);
     for (size_t i = 0; i < count; i++)
-        direction[i] = rest[i] = right[i] - image[i];
-    double square = dot(count, rest, rest);
+        direction[i] = residue[i] = right[i] - image[i];
+    double square = dot(count, residue, residue);
     const double enough = 1e-26 * dot(count, right, right);
     for (size_t k = 0; k < count && square > enough; k++) {
         pull_sheet(N, direction, image);
         const double along = square / dot(count, direction, image), before = square;
         for (size_t i = 0; i < count; i++) {
             u[i] += along * direction[i];
-            rest[i] -= along * image[i];
+            residue[i] -= along * image[i];
         }
-        square = dot(count, rest, rest);
+        square = dot(count, residue, residue);
         for (size_t i = 0; i < count; i++)
-            direction[i] = rest[i] + square / before * direction[i];
+            direction[i] = residue[i] + square / before * direction[i];
     }
 }
 
@@ -447,27 +448,27 @@ static const double requirement = 0.005; /* of a frequency, relative */
 
 /* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how far
    the frequency is from a simpler theory. */
-static void judge_mode(const trial *t, const sheet_mode *s, const reference_turn *step)
+static void check_mode(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
     const double h = step_of(t, 0), n = (double)t->steps, whole = s->omega * t->c->duration;
     const double size = exp(n * step->log_growth) / whole, error_of_step = fabs(step->ahead / (s->omega * h));
     const followed f = follow(t, s, step);
-    finding row_of = row(t, t->c->formula, 0);
+    validate_row row_of = row(t, t->c->formula, 0);
     row_of.uncertainty = s->uncertainty;
     row_of.error = fabs(f.phase / whole - 1);
     row_of.bound = requirement;
     row_of.reason = "frequency: the requirement, half a percent";
-    judge(&row_of);
+    validate_check(&row_of);
     const double C = cos(n * step->angle), S = sin(n * step->angle);
     row_of.error = hypot(f.q - size * (C + step->x_to_x * S), f.p - size * step->x_to_v * S);
     row_of.bound = t->rounding + s->uncertainty + s->nonlinear / (whole * whole);
     row_of.reason = s->nonlinear > 0 ? "motion with this step: rounding, and the amplitude"
                                      : "motion with this step: rounding";
-    judge(&row_of);
+    validate_check(&row_of);
     row_of.error = fabs(f.phase / t->c->duration / s->compared - 1);
     row_of.bound = s->comparison_bound + error_of_step;
     row_of.reason = s->comparison;
-    judge(&row_of);
+    validate_check(&row_of);
 }
 
 /* The turn in steps that are so short that they alone shift the frequency by no more than most of the requirement. */
@@ -501,7 +502,7 @@ static void validate_mode(const scene_case *c, scene_problem *p, sheet_mode *s)
         t.rounding = scene_rounding(&of, p, t.m, step_of(&t, 0), t.steps, by_definition);
         run(p, t.m, step_of(&t, 0), t.steps, t.run[0]);
         against_same(&t, "definition", by_definition, 2, 0);
-        judge_mode(&t, s, &step);
+        check_mode(&t, s, &step);
         free(all);
     }
 }
@@ -544,7 +545,7 @@ static void solutions(const trial *t, const adaptive *solvers, size_t solver_cou
 void validate_scene(const scene_case *c)
 {
     adaptive solvers[] = {{.name = "gsl-rk8pd", .solve = ode_gsl_rk8pd},
-                          {.name = "cvode-adams", .solve = adams}};
+                          {.name = "cvode-adams", .solve = ode_adams}};
     const size_t solver_count = c->external ? sizeof solvers / sizeof solvers[0] : 0;
     scene_problem p;
     sheet_mode mode;

@@ -4,17 +4,17 @@
  *
  * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five times,
  *           or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers are called
- *           as their manuals recommend, do no output while they are timed, and all peers evaluate the same right-hand
- *           side. What sets a solver or a scene up is not timed.
- * Error     |(x, v/omega) - true| at the end, relative to the size of the motion; see work_problems.c for the truth.
+ *           as their manuals recommend, do no output while they are timed, and all external ones evaluate the same
+ *           right-hand side. What sets a solver or a scene up is not timed.
+ * Error     |(x, v/omega) - exact| at the end, relative to the size of the motion; see work_problems.c.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/cli.h"
-#include "order/equal_error.h"
 #include "common/timing.h"
+#include "order/equal_error.h"
 #include "work.h"
 
 /* -------------------------------------------------------------------------------------------- the command line */
@@ -31,7 +31,7 @@ static const cli_option options[] = {
      .help = "only this problem"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer points, none that takes long"},
     {"table", CLI_FILE, .file = &table_file, .value = "FILE",
-     .help = "write the cheapest stepper and the cheapest peer for every error"},
+     .help = "write the cheapest stepper and the cheapest external solver for every error"},
     {.name = NULL},
 };
 
@@ -39,14 +39,14 @@ static const cli_program program = {
     .name = "spring-work",
     .summary = "Time against error of every stepper, beside GSL and SUNDIALS, in one run.",
     .details =
-        "Columns: problem, solver, steps, force_evaluations (of one spring with the library 1 or 4 a\n"
-        "step by definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
-        "in them), error (|(x, v/omega) - true| relative to the size of the motion), error_x (|x - true\n"
+        "Columns: problem, solver, steps, force_evaluations (of one spring with the library by\n"
+        "definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
+        "in them), error (|(x, v/omega) - exact| relative to the size of the motion), error_x (|x - exact\n"
         "x| [m], nan: a scene), effort: sweep (of steps or tolerances), seed (the number of steps of\n"
-        "the seed study), equal (the smallest number of steps from which on the error in x never\n"
+        "the original study), equal (the smallest number of steps from which on the error in x never\n"
         "exceeds Euler's at 10^7 steps) or crossing (the last number of evaluations with which leapfrog\n"
         "is ahead of RK4, and the next one), tolerance (0 for fixed steps), energy_error (relative to\n"
-        "the energy at the start, nan: a scene) and uncertainty (of the true end of a scene: an error\n"
+        "the energy at the start, nan: a scene) and uncertainty (of the exact end of a scene: an error\n"
         "of five times that is an upper bound, and not resolved).\n"
         "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
         "2.7 N/m.\n"
@@ -57,7 +57,7 @@ static const cli_program program = {
         "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
         "finer one if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
         "(peer,\n"
-        "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the closed form; nan: none.",
+        "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
     .options = options,
 };
 
@@ -111,7 +111,7 @@ static double measure(cli_table *table, work *w, const work_solver *s, work_effo
         const bool scene = w->problem->kind == WORK_SCENE;
         const uint64_t evaluations =
             scene && s->side == WORK_STEPPER ? work_count(w, s->method, e.steps) : r.evaluations;
-        const double error_x = scene ? NAN : fabs(y[0] - w->truth[0]), energy_error = work_energy_error(w, y);
+        const double error_x = scene ? NAN : fabs(y[0] - w->exact[0]), energy_error = work_energy_error(w, y);
         const double time = time_of(w, s, e, r.spent, y);
         cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g",
                 w->problem->name, s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance,
@@ -148,26 +148,30 @@ static void sweep_tolerances(cli_table *table, work *w, const work_solver *s)
         spent = measure(table, w, s, (work_effort){.tolerance = tolerance}, "sweep");
 }
 
-/* The seed study's comparison: as exact as Euler in 10^7 steps, by its numbers of steps and by those found here. */
+/* The original study's comparison: as exact as Euler in 10^7 steps, by its numbers of steps and by those found here. */
 static void equal_error(cli_table *table, work *w)
 {
-    static const uint64_t of_the_seed[] = {
+    static const uint64_t of_the_study[SPRING_METHOD_COUNT] = {
         [SPRING_EULER] = 10000000, [SPRING_LEAPFROG] = 35000, [SPRING_RK4] = 3700};
     double y[2];
-    work_run(w, &work_solvers[SPRING_EULER], (work_effort){.steps = of_the_seed[SPRING_EULER]}, 1, y);
-    const double error = fabs(y[0] - w->truth[0]);
-    for (int m = SPRING_EULER; m <= SPRING_RK4; m++) {
-        const uint64_t found =
-            m == SPRING_EULER ? of_the_seed[m] : equal_error_steps((spring_method)m, w->duration, error);
-        measure(table, w, &work_solvers[m], (work_effort){.steps = of_the_seed[m]}, "seed");
-        measure(table, w, &work_solvers[m], (work_effort){.steps = found}, "equal");
+    work_run(w, work_solver_of(SPRING_EULER), (work_effort){.steps = of_the_study[SPRING_EULER]}, 1, y);
+    const double error = fabs(y[0] - w->exact[0]);
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        const work_solver *s = work_solver_of(m);
+        if (s->side != WORK_STEPPER || !work_applies(w, s))
+            continue;
+        const uint64_t found = m == SPRING_EULER ? of_the_study[m] : equal_error_steps(m, w->duration, error);
+        if (of_the_study[m] > 0)
+            measure(table, w, s, (work_effort){.steps = of_the_study[m]}, "seed");
+        measure(table, w, s, (work_effort){.steps = found}, "equal");
     }
 }
 
 static double error_after(work *w, spring_method m, uint64_t steps)
 {
     double y[2];
-    work_run(w, &work_solvers[m], (work_effort){.steps = steps}, 1, y);
+    work_run(w, work_solver_of(m), (work_effort){.steps = steps}, 1, y);
     return work_error(w, y);
 }
 
@@ -183,8 +187,8 @@ static void crossing(cli_table *table, work *w)
         cli_fail(CLI_FAILED, "%s: RK4 is not ahead with %" PRIu64 " evaluations; it should be",
                  w->problem->name, most);
     for (uint64_t evaluations = found - 4; evaluations <= found; evaluations += 4) {
-        measure(table, w, &work_solvers[SPRING_LEAPFROG], (work_effort){.steps = evaluations}, "crossing");
-        measure(table, w, &work_solvers[SPRING_RK4], (work_effort){.steps = evaluations / 4}, "crossing");
+        measure(table, w, work_solver_of(SPRING_LEAPFROG), (work_effort){.steps = evaluations}, "crossing");
+        measure(table, w, work_solver_of(SPRING_RK4), (work_effort){.steps = evaluations / 4}, "crossing");
     }
 }
 
@@ -216,13 +220,14 @@ static void write_levels(cli_table *table, const work *w)
 {
     for (int power = 1; power <= 12; power++) {
         const double error = pow(10, -power);
-        const work_row *ours = cheapest(WORK_STEPPER, error), *peer = cheapest(WORK_PEER, error),
-                       *closed = cheapest(WORK_CLOSED, error);
+        const work_row *ours = cheapest(WORK_STEPPER, error), *external = cheapest(WORK_EXTERNAL, error),
+                       *exact = cheapest(WORK_EXACT, error);
         cli_row(table, "%s\t1e-%d\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%" PRIu64 "\t%.4g", w->problem->name,
                 power, ours != NULL ? ours->solver->name : "none",
                 ours != NULL ? w->duration / (double)ours->steps : NAN, time_or_nan(ours),
-                peer != NULL ? peer->solver->name : "none", time_or_nan(peer),
-                time_or_nan(peer) / time_or_nan(ours), ours != NULL ? ours->steps : 0, time_or_nan(closed));
+                external != NULL ? external->solver->name : "none", time_or_nan(external),
+                time_or_nan(external) / time_or_nan(ours), ours != NULL ? ours->steps : 0,
+                time_or_nan(exact));
     }
 }
 
@@ -233,20 +238,20 @@ static void work_on(cli_table *table, cli_table *levels, const work_problem *pro
     work w;
     work_open(&w, problem);
     row_count = 0;
-    for (size_t i = 0; i < work_solver_count; i++) {
-        const work_solver *s = &work_solvers[i];
+    for (size_t i = 0; i < WORK_SOLVERS; i++) {
+        const work_solver *s = work_solver_at(i);
         if (!work_applies(&w, s))
             continue;
-        if (s->side == WORK_CLOSED)
+        if (s->side == WORK_EXACT)
             measure(table, &w, s, (work_effort){.steps = 1}, "sweep");
         else if (s->adaptive != NULL)
             sweep_tolerances(table, &w, s);
         else
             sweep_steps(table, &w, s);
     }
-    if (levels != NULL && problem->kind != WORK_SEED)
+    if (levels != NULL && problem->kind != WORK_STUDY)
         write_levels(levels, &w);
-    if (problem->kind == WORK_SEED)
+    if (problem->kind == WORK_STUDY)
         equal_error(table, &w);
     if (problem->periods > 0)
         crossing(table, &w);

@@ -3,7 +3,7 @@
  * What spring-work compares: problems, which are opened one at a time, and solvers, which are run on the one that is open.
  *
  * The state of a problem is a vector y, positions before velocities. Distances are Euclidean in (x, v/omega), and errors
- * are distances to the true end relative to the size of the motion.
+ * are distances to the exact end relative to the size of the motion.
  */
 #ifndef SPRINGSTEP_WORK_H
 #define SPRINGSTEP_WORK_H
@@ -21,7 +21,7 @@
 
 typedef enum work_kind {
     WORK_SPRING, /* one spring, for spring_advance() */
-    WORK_SEED,   /* the seed study's, beside which no peers run */
+    WORK_STUDY,  /* the original study's, beside which no external solvers run */
     WORK_SCENE   /* for spring_scene_advance() */
 } work_kind;
 
@@ -50,19 +50,19 @@ extern const size_t work_problem_count;
 typedef struct work {
     const work_problem *problem;
     size_t size; /* numbers in y */
-    double *start, *truth;
-    double *scale; /* [size] magnitudes, for the tolerances of the peers */
+    double *start, *exact;
+    double *scale; /* [size] magnitudes, for the tolerances of external solvers */
     double duration, omega;
     double motion;           /* [m] amplitude, or half the largest distance of a scene from its start */
-    double uncertainty;      /* of the truth, relative to motion */
+    double uncertainty;      /* of the exact end, relative to motion */
     double coarsest, finest; /* [s] steps of a sweep */
     double (*clock)(void);   /* [ns] by which runs are timed */
 
-    /* what peers integrate */
+    /* what external solvers integrate */
     void (*derivative)(double t, const double *y, double *dy, const void *data);
     const void *data;
 
-    reference exact; /* of a spring */
+    reference reference; /* of a spring */
 
     /* of a scene: as the library moves it, as it was at the start, and with calls counted */
     scene_problem scene;
@@ -77,10 +77,10 @@ typedef struct work {
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED where it cannot be done */
 void work_close(work *w);
 
-/* Relative to the motion; never below what the truth is known to. */
+/* Relative to the motion; never below what the exact end is known to. */
 double work_error(const work *w, const double *y);
 
-/* |energy - true energy| relative to that at the start, of a spring; NaN of a scene. */
+/* |energy - exact energy| relative to that at the start, of a spring; NaN of a scene. */
 double work_energy_error(const work *w, const double *y);
 
 typedef struct work_effort { /* what is varied: one of them */
@@ -90,9 +90,9 @@ typedef struct work_effort { /* what is varied: one of them */
 
 typedef enum work_side {
     WORK_STEPPER, /* of the library */
-    WORK_CLOSED,  /* the closed form: no stepper */
-    WORK_STAGES,  /* the seed's arithmetic, on the seed's problem */
-    WORK_PEER
+    WORK_EXACT,   /* the exact solution: no stepper */
+    WORK_STAGES,  /* the original study's arithmetic, on its problem */
+    WORK_EXTERNAL
 } work_side;
 
 typedef struct work_result {
@@ -107,15 +107,20 @@ typedef struct work_solver work_solver;
 struct work_solver {
     const char *name;
     work_side side;
-    spring_method method; /* of a stepper and the closed form */
+    spring_method method; /* of a stepper and the exact solution */
     uint64_t a_step; /* force evaluations that a step of one spring stands for: there is nothing to count */
-    /* of a peer, one of them; ODE_... for CVODE */
+    /* of an external solver, one of them */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
 };
 
-extern const work_solver work_solvers[];
-extern const size_t work_solver_count;
+enum { WORK_EXTERNAL_SOLVERS = 8, WORK_SOLVERS = SPRING_METHOD_COUNT + 1 + WORK_EXTERNAL_SOLVERS };
+
+/* Each method by its name, rk4-stages, and the external solvers. */
+const work_solver *work_solver_at(size_t i);
+
+/* The solver that is a method. */
+const work_solver *work_solver_of(spring_method m);
 
 bool work_applies(const work *w, const work_solver *s);
 

@@ -17,7 +17,7 @@ static void tie(work_equation *e, const scene_problem *p, const spring_link *l, 
     if (e->axes == 1 && moving == l->b)
         t->rest = -l->rest;
     for (size_t d = 0; d < e->axes; d++)
-        t->place[d] = p->position[held * e->axes + d];
+        t->point[d] = p->position[held * e->axes + d];
 }
 
 void work_equation_init(work_equation *e, const scene_problem *p)
@@ -37,7 +37,7 @@ void work_equation_init(work_equation *e, const scene_problem *p)
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *l = &p->link[i];
         if (l->damping > 0)
-            cli_fail(CLI_FAILED, "link %zu is damped, which the peers' equation does not know", i);
+            cli_fail(CLI_FAILED, "link %zu is damped, which the external solvers' equation does not know", i);
         if (!p->pinned[l->a] && !p->pinned[l->b])
             e->link[e->links++] = (work_link){number[l->a], number[l->b], l->stiffness, l->rest};
         else if (!p->pinned[l->a])
@@ -95,11 +95,11 @@ static inline void pull_3(const double *a, const double *b, double stiffness, do
 static inline void add_forces(size_t axes, puller *pull, const work_equation *e, const double *x,
                               const double *v, double *sum)
 {
-    double nobody[3] = {0};
+    double unused[3] = {0};
     for (const work_link *l = e->link; l < e->link + e->links; l++)
         pull(x + axes * l->a, x + axes * l->b, l->stiffness, l->rest, sum + axes * l->a, sum + axes * l->b);
     for (const work_tie *t = e->tie; t < e->tie + e->ties; t++)
-        pull(x + axes * t->a, t->place, t->stiffness, t->rest, sum + axes * t->a, nobody);
+        pull(x + axes * t->a, t->point, t->stiffness, t->rest, sum + axes * t->a, unused);
     for (size_t i = 0; i < axes * e->particles && e->drag > 0; i++)
         sum[i] -= e->drag * v[i];
 }

@@ -15,9 +15,9 @@ typedef struct work_link {
     double stiffness, rest;
 } work_link;
 
-typedef struct work_tie { /* a link to a place that does not move */
+typedef struct work_tie { /* a link to a point that does not move */
     uint32_t a;
-    double place[3]; /* [m] */
+    double point[3]; /* [m] */
     double stiffness, rest;
 } work_tie;
 

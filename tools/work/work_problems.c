@@ -2,8 +2,8 @@
 /*
  * The problems of spring-work; see work.h.
  *
- * Truth     Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once more with
- *           half as many: the difference, and the distance to the digits that the harness knows, is its uncertainty.
+ * The exact end   Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once more
+ *                 with half as many: the difference, and the distance to the digits that the harness knows, is its uncertainty.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -47,7 +47,7 @@ static void build_cloth(const scene_case *c, scene_problem *p)
     p->def.drag = 0.001;
 }
 
-/* The sheet of water of the seed study: 4 m x 4 m, masses of 1 kg, 25 000 N/m, drag. Poked near a corner. */
+/* The sheet of water of the original study: 4 m x 4 m, masses of 1 kg, 25 000 N/m, drag. Poked near a corner. */
 static void build_water(const scene_case *c, scene_problem *p)
 {
     const double spacing = 4.0 / (SIDE - 1), wide = 0.5, at[] = {1.4, 1.7}; /* [m] */
@@ -78,7 +78,7 @@ static const scene_case water = {
 #define SPRING     .kind = WORK_SPRING, .start = {0.8, -0.9}, .longest = 0.01
 
 const work_problem work_problems[] = {
-    {"seed-1000s", WORK_SEED, 1000, INFINITY, .p = {1, 1, 0, 0}, .start = {1, 0}, .finest = 1e-4},
+    {"seed-1000s", WORK_STUDY, 1000, INFINITY, .p = {1, 1, 0, 0}, .start = {1, 0}, .finest = 1e-4},
     {"ideal-1", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(1), .finest = 1e-5, .periods = 1},
     {"ideal-10", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(10), .finest = 5e-5, .periods = 10},
     {"ideal-100", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(100), .finest = 2e-4},
@@ -112,12 +112,12 @@ static void open_spring(work *w)
     w->motion = hypot(s.x - p->load / p->stiffness, s.v / w->omega);
     w->start[0] = s.x;
     w->start[1] = s.v;
-    reference_init(&w->exact);
-    reference_start(&w->exact, p, s);
-    reference_exact(&w->exact, p, w->duration);
-    w->truth[0] = mpfr_get_d(w->exact.x, MPFR_RNDN);
-    w->truth[1] = mpfr_get_d(w->exact.v, MPFR_RNDN);
-    /* more than anybody's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega, without damping */
+    reference_init(&w->reference);
+    reference_start(&w->reference, p, s);
+    reference_exact(&w->reference, p, w->duration);
+    w->exact[0] = mpfr_get_d(w->reference.x, MPFR_RNDN);
+    w->exact[1] = mpfr_get_d(w->reference.v, MPFR_RNDN);
+    /* more than any solver's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega, without damping */
     w->coarsest = 6 / w->omega;
     w->finest = w->problem->finest;
     w->derivative = ode_spring_derivative;
@@ -199,14 +199,14 @@ static double refer(const work *w, uint64_t n, double *y)
     return largest;
 }
 
-static void find_truth(work *w, const scene_case *c)
+static void find_exact_end(work *w, const scene_case *c)
 {
     double *coarse = scene_room(w->size, sizeof *coarse), unknown;
     refer(w, w->problem->reference_steps / 2, coarse);
-    w->motion = refer(w, w->problem->reference_steps, w->truth) / 2;
-    unknown = distance(w, w->truth, coarse);
+    w->motion = refer(w, w->problem->reference_steps, w->exact) / 2;
+    unknown = distance(w, w->exact, coarse);
     if (c->known > 0)
-        unknown = fmax(unknown, scene_distance(c, &w->scene, w->truth, c->digits, c->known));
+        unknown = fmax(unknown, scene_distance(c, &w->scene, w->exact, c->digits, c->known));
     w->uncertainty = unknown / w->motion;
     if (!(w->uncertainty <= 1e-9))
         cli_fail(CLI_FAILED, "%s: its reference is uncertain by %g", w->problem->name, w->uncertainty);
@@ -225,7 +225,7 @@ static void open_scene(work *w)
     w->duration = c->duration;
     w->omega = c->omega;
     w->start = scene_room(w->size, sizeof *w->start);
-    w->truth = scene_room(w->size, sizeof *w->truth);
+    w->exact = scene_room(w->size, sizeof *w->exact);
     w->scale = scene_room(w->size, sizeof *w->scale);
     w->gathered = scene_room(w->scene.def.axes * w->scene.def.particles, sizeof *w->gathered);
     for (size_t i = 0; i < w->size; i++)
@@ -233,7 +233,7 @@ static void open_scene(work *w)
     scene_start(&w->scene, w->start);
     w->derivative = work_equation_derivative;
     w->data = &w->equation;
-    find_truth(w, c);
+    find_exact_end(w, c);
     /* likewise; the stable step is a bound, and takes no notice of callbacks */
     w->coarsest = fmin(5 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);
     w->finest = 0;
@@ -249,7 +249,7 @@ void work_open(work *w, const work_problem *problem)
         return;
     }
     w->start = scene_room(w->size, sizeof *w->start);
-    w->truth = scene_room(w->size, sizeof *w->truth);
+    w->exact = scene_room(w->size, sizeof *w->exact);
     w->scale = scene_room(w->size, sizeof *w->scale);
     open_spring(w);
     w->scale[0] = w->motion;
@@ -259,10 +259,10 @@ void work_open(work *w, const work_problem *problem)
 void work_close(work *w)
 {
     free(w->start);
-    free(w->truth);
+    free(w->exact);
     free(w->scale);
     if (w->problem->kind != WORK_SCENE) {
-        reference_clear(&w->exact);
+        reference_clear(&w->reference);
         return;
     }
     scene_problem_clear(&w->scene);
@@ -277,8 +277,8 @@ double work_error(const work *w, const double *y)
 {
     const double resolved = 5; /* uncertainties: the error is within a quarter where it is more than that */
     if (w->problem->kind != WORK_SCENE)
-        return reference_distance(&w->exact, (spring_state){y[0], y[1]}) / w->motion;
-    const double error = distance(w, y, w->truth) / w->motion;
+        return reference_distance(&w->reference, (spring_state){y[0], y[1]}) / w->motion;
+    const double error = distance(w, y, w->exact) / w->motion;
     return error > (resolved - 1) * w->uncertainty || isnan(error) ? error : resolved * w->uncertainty;
 }
 
@@ -287,5 +287,5 @@ double work_energy_error(const work *w, const double *y)
     const spring_params *p = &w->problem->p;
     if (w->problem->kind == WORK_SCENE)
         return NAN;
-    return fabs(energy(p, y) - energy(p, w->truth)) / energy(p, w->start);
+    return fabs(energy(p, y) - energy(p, w->exact)) / energy(p, w->start);
 }

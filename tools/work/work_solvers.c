@@ -6,40 +6,47 @@
 #include "harness/stages.h"
 #include "work.h"
 
-static const char *adams(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
-}
+static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4};
 
-static const char *bdf(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_BDF, tolerance);
-}
-
-const work_solver work_solvers[] = {
-    {.name = "euler", .side = WORK_STEPPER, .method = SPRING_EULER, .a_step = 1},
-    {.name = "leapfrog", .side = WORK_STEPPER, .method = SPRING_LEAPFROG, .a_step = 1},
-    {.name = "rk4", .side = WORK_STEPPER, .method = SPRING_RK4, .a_step = 4},
-    {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4},
-    {.name = "exact", .side = WORK_CLOSED, .method = SPRING_EXACT},
-    {.name = "gsl-rk4", .side = WORK_PEER, .fixed = ode_gsl_rk4},
-    {.name = "gsl-rk4-adaptive", .side = WORK_PEER, .adaptive = ode_gsl_rk4_adaptive},
-    {.name = "gsl-rk8pd", .side = WORK_PEER, .fixed = ode_gsl_rk8pd_fixed},
-    {.name = "gsl-rk8pd-adaptive", .side = WORK_PEER, .adaptive = ode_gsl_rk8pd},
-    {.name = "arkode-rk4", .side = WORK_PEER, .fixed = ode_arkstep_rk4},
-    {.name = "arkode-adaptive", .side = WORK_PEER, .adaptive = ode_arkstep_adaptive},
-    {.name = "cvode-adams", .side = WORK_PEER, .adaptive = adams},
-    {.name = "cvode-bdf", .side = WORK_PEER, .adaptive = bdf},
+static const work_solver external[] = {
+    {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4},
+    {.name = "gsl-rk4-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk4_adaptive},
+    {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed},
+    {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
+    {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
+    {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
+    {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_adams},
+    {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_bdf},
 };
-const size_t work_solver_count = sizeof work_solvers / sizeof work_solvers[0];
+_Static_assert(sizeof external / sizeof external[0] == WORK_EXTERNAL_SOLVERS, "as work.h says");
+
+const work_solver *work_solver_of(spring_method m)
+{
+    static work_solver methods[SPRING_METHOD_COUNT];
+    const spring_method_info *info = spring_method_describe(m);
+    methods[m] = (work_solver){.name = info->name,
+                               .side = info->order > 0 ? WORK_STEPPER : WORK_EXACT,
+                               .method = m,
+                               .a_step = (uint64_t)info->forces_per_step};
+    return &methods[m];
+}
+
+const work_solver *work_solver_at(size_t i)
+{
+    if (i < SPRING_METHOD_COUNT)
+        return work_solver_of(spring_method_at((int)i));
+    return i == SPRING_METHOD_COUNT ? &stages : &external[i - SPRING_METHOD_COUNT - 1];
+}
 
 bool work_applies(const work *w, const work_solver *s)
 {
+    const bool scene = w->problem->kind == WORK_SCENE, study = w->problem->kind == WORK_STUDY;
     if (s->side == WORK_STAGES)
-        return w->problem->kind == WORK_SEED;
-    if (s->side == WORK_CLOSED)
-        return w->problem->kind != WORK_SCENE;
-    return s->side == WORK_STEPPER || w->problem->kind != WORK_SEED;
+        return study;
+    if (s->side == WORK_EXTERNAL)
+        return !study;
+    const spring_method_info *info = spring_method_describe(s->method);
+    return scene ? info->scenes : info->springs;
 }
 
 /* What a run of a spring takes may be less than a look at the clock: all runs together. */
@@ -93,7 +100,7 @@ static work_result run_scene(const work *w, const work_solver *s, uint64_t steps
     return r;
 }
 
-static work_result run_peer(const work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
+static work_result run_external(const work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
     ode o = {
         .size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale, .clock = w->clock};
@@ -112,8 +119,8 @@ static work_result run_peer(const work *w, const work_solver *s, work_effort e, 
 
 work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
-    if (s->side == WORK_PEER)
-        return run_peer(w, s, e, runs, y);
+    if (s->side == WORK_EXTERNAL)
+        return run_external(w, s, e, runs, y);
     return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y)
                                           : run_spring(w, s, e.steps, runs, y);
 }
