@@ -9,10 +9,11 @@
 
 #include <springstep/batch.h>
 
-#include "bench.h"
 #include "bench_limits.h"
 #include "common/cli.h"
 #include "common/timing.h"
+#include "parts.h"
+#include "rows.h"
 
 enum { alignment = 64 }; /* bytes: the widest vector, a line of the cache */
 
@@ -22,7 +23,7 @@ typedef enum sharing { NONE, SHARED, OWN, ZERO } sharing; /* ZERO: an array of z
 typedef enum beside {
     LIMITS,   /* the kernels of bench_limits.h */
     ORDINARY, /* the same kernel with an ordinary start in aligned arrays */
-    TEXTBOOK  /* the textbook's closed form, spring by spring */
+    TEXTBOOK  /* the textbook's formula, spring by spring */
 } beside;
 
 typedef struct subject {
@@ -173,7 +174,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
     else if (which == 1)
         move_streams(limits, s, calls);
     else
-        limits->arithmetic[s->method][s->gamma != NONE][s->accel != NONE](steps);
+        bench_arithmetic_of(limits, s->method)->run[s->gamma != NONE][s->accel != NONE](steps);
     const double elapsed = timing_busy() - begin;
     return which == 2 ? elapsed * springs / (double)steps : elapsed;
 }
@@ -186,13 +187,6 @@ static const size_t from_memory = 10000000, in_cache = 1000;
 
 static void add(const char *feature, subject s, double goal_ns)
 {
-    enum { most_rows = 256 };
-    static subject subjects[most_rows];
-    static size_t used;
-    if (used == most_rows)
-        cli_fail(CLI_FAILED, "more than %d rows", most_rows);
-    subject *kept = &subjects[used++];
-    *kept = s;
     const bool limited = s.beside == LIMITS;
     bench_row row = {
         .part = "batch",
@@ -209,34 +203,43 @@ static void add(const char *feature, subject s, double goal_ns)
                                           : "textbook",
                    limited ? "arithmetic" : NULL},
         .time = run,
-        .subject = kept,
     };
     snprintf(row.kernel, sizeof row.kernel, "%s_batch_%d%s", spring_method_name(s.method), (int)s.steps,
              feature);
-    bench_add(&row);
+    bench_add(&row, &s, sizeof s);
+}
+
+static void add_counts(spring_method m, uint64_t steps, double goal_ns)
+{
+    const bool exact = m == SPRING_EXACT; /* of own stiffnesses: add_special() */
+    for (int single = 0; single < 2; single++)
+        for (size_t count = in_cache; count <= from_memory; count *= 10)
+            add(exact ? "_shared_omega2" : "",
+                (subject){m, count, steps, exact ? SHARED : OWN, .single = single},
+                goal_ns * (single ? 0.6 : 1));
 }
 
 /* Every method, at every count, in both precisions. */
 static void add_methods(void)
 {
-    static const struct {
-        spring_method method;
-        uint64_t steps;
-        sharing omega2;
-        double goal_ns; /* of double, on the processor that it was set for */
-    } methods[] = {
-        {SPRING_EULER, 1, OWN, INFINITY},    {SPRING_EULER, 16, OWN, INFINITY},
-        {SPRING_LEAPFROG, 1, OWN, INFINITY}, {SPRING_LEAPFROG, 16, OWN, 0.13},
-        {SPRING_RK4, 1, OWN, INFINITY},      {SPRING_RK4, 16, OWN, 0.20},
-        {SPRING_EXACT, 1, SHARED, INFINITY},
-    };
-    for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++)
-        for (int single = 0; single < 2; single++)
-            for (size_t count = in_cache; count <= from_memory; count *= 10)
-                add(methods[m].omega2 == SHARED ? "_shared_omega2" : "",
-                    (subject){methods[m].method, count, methods[m].steps, methods[m].omega2,
-                              .single = single},
-                    methods[m].goal_ns * (single ? 0.6 : 1));
+    /* of 16 steps in double, on the processor that it was set for; 0: none */
+    static const double goals_ns[SPRING_METHOD_COUNT] = {[SPRING_LEAPFROG] = 0.13, [SPRING_RK4] = 0.20};
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        const spring_method_info *info = spring_method_describe(m);
+        if (!info->springs)
+            continue;
+        add_counts(m, 1, INFINITY);
+        if (info->order > 0)
+            add_counts(m, 16, goals_ns[m] > 0 ? goals_ns[m] : INFINITY);
+    }
+}
+
+/* Of order 2 or more. */
+static bool is_accurate(spring_method m)
+{
+    const spring_method_info *info = spring_method_describe(m);
+    return info->springs && info->order > 1;
 }
 
 /* One feature after the other. */
@@ -255,11 +258,11 @@ static void add_features(void)
         size_t count;
         uint64_t steps;
     } at[] = {{1000, 16}, {1000, 1}, {10000000, 1}};
-    for (spring_method m = SPRING_LEAPFROG; m <= SPRING_RK4; m++)
-        for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
+    for (int k = 0; k < SPRING_METHOD_COUNT; k++)
+        for (size_t i = 0; is_accurate(spring_method_at(k)) && i < sizeof at / sizeof at[0]; i++)
             for (size_t f = 0; f < sizeof features / sizeof features[0]; f++)
                 add(features[f].name,
-                    (subject){.method = m,
+                    (subject){.method = spring_method_at(k),
                               .count = at[i].count,
                               .steps = at[i].steps,
                               .omega2 = features[f].omega2,
@@ -272,9 +275,10 @@ static void add_special(void)
 {
     const subject exact = {SPRING_EXACT, in_cache, 1, OWN, .beside = TEXTBOOK};
     add("", exact, INFINITY);
-    for (spring_method m = SPRING_LEAPFROG; m <= SPRING_RK4; m++) {
-        const subject s = {m, in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
-        add("_settled", s, INFINITY);
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const subject s = {spring_method_at(i), in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
+        if (is_accurate(s.method))
+            add("_settled", s, INFINITY);
     }
     const subject settled = {SPRING_LEAPFROG,    in_cache,       16, OWN, .single = true,
                              .beside = ORDINARY, .settled = true};

@@ -11,10 +11,11 @@
 
 #include <springstep/scene.h>
 
-#include "bench.h"
 #include "bench_limits.h"
 #include "common/cli.h"
 #include "common/timing.h"
+#include "parts.h"
+#include "rows.h"
 
 typedef enum scene_shape { SHEET, JELLY, WATER } scene_shape;
 typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED } scene_order; /* SHUFFLED: the particles, too */
@@ -202,6 +203,7 @@ typedef struct built {
     bool single;
     spring_scene *scene; /* one of the two */
     spring_scenef *scenef;
+    double stable_step; /* [s] of its method */
 } built;
 
 static built ours, other;
@@ -217,6 +219,11 @@ static void init(built *b, const spring_scene_def *def)
     }
 }
 
+static double stable_step(const built *b, spring_method m)
+{
+    return b->single ? spring_scenef_stable_step(b->scenef, m) : spring_scene_stable_step(b->scene, m);
+}
+
 static void build(built *b, const feature *f, scene_shape shape, bool is_single)
 {
     const spring_scene_def def = definition(f, shape);
@@ -226,14 +233,14 @@ static void build(built *b, const feature *f, scene_shape shape, bool is_single)
     free(b->memory);
     b->memory = allocate(b->bytes);
     init(b, &def);
-    dt = 0.5 * (is_single ? spring_scenef_stable_step(b->scenef, SPRING_LEAPFROG)
-                          : spring_scene_stable_step(b->scene, SPRING_LEAPFROG));
+    b->stable_step = stable_step(b, f->method);
+    dt = 0.5 * stable_step(b, SPRING_LEAPFROG);
 }
 
 static void advance(const built *b, spring_method method, uint64_t steps, uint64_t calls)
 {
-    /* with Euler a scene blows up at any step: here after more steps than a row takes */
-    const double h = method == SPRING_EULER ? 1e-6 * dt : dt;
+    /* where no step is stable a scene blows up: here after more steps than a row takes */
+    const double h = b->stable_step > 0 ? fmin(dt, 0.5 * b->stable_step) : 1e-6 * dt;
     for (; calls > 0; calls--)
         check(b->single ? spring_scenef_advance(b->scenef, method, h, steps)
                         : spring_scene_advance(b->scene, method, h, steps));
@@ -416,13 +423,6 @@ static const char *const shapes[] = {[SHEET] = "sheet", [JELLY] = "jelly", [WATE
 /* A row beside the limits and the plain loop, or beside another scene. */
 static void add(const char *name, subject s, const char *beside, double goal_ratio, double goal_ns)
 {
-    enum { most_rows = 128 };
-    static subject subjects[most_rows];
-    static size_t used;
-    if (used == most_rows)
-        cli_fail(CLI_FAILED, "more than %d rows", most_rows);
-    subject *kept = &subjects[used++];
-    *kept = s;
     const bool looped = beside == NULL && s.shape != WATER && !s.single;
     const size_t links = links_of(&s);
     bench_row row = {
@@ -437,14 +437,13 @@ static void add(const char *name, subject s, const char *beside, double goal_rat
         .goal_speedup = looped && s.order == NATURAL && s.shape == SHEET && s.side >= 35 ? least_speedup : 0,
         .long_only = links > 2000000,
         .time = run,
-        .subject = kept,
     };
     if (s.init)
         snprintf(row.kernel, sizeof row.kernel, "init_%s%s", shapes[s.shape], orders[s.order]);
     else
         snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s.feature.method),
                  shapes[s.shape], (int)s.steps, orders[s.order], name);
-    bench_add(&row);
+    bench_add(&row, &s, sizeof s);
 }
 
 static void add_shapes(void)
@@ -493,30 +492,35 @@ static void add_shapes(void)
     }
 }
 
-/* One feature after the other, beside the scene without it. */
+static const double most_rk4 = 4.3; /* what the library promises, beside leapfrog */
+
+/* The other methods, then one feature after the other, beside the scene without it. */
 static void add_features(void)
 {
     static const struct {
         const char *name;
         feature feature;
-        double goal_ratio;
     } features[] = {
-        {"", {.method = SPRING_EULER}, INFINITY},
-        {"", {.method = SPRING_RK4}, 4.3},
-        {"_drag", {.method = SPRING_LEAPFROG, .drag = 0.01}, INFINITY},
-        {"_damping", {.method = SPRING_LEAPFROG, .damping = 0.05}, INFINITY},
-        {"_masses", {.method = SPRING_LEAPFROG, .masses = true}, INFINITY},
-        {"_callback", {.method = SPRING_LEAPFROG, .force = blow}, INFINITY},
+        {"_drag", {.method = SPRING_LEAPFROG, .drag = 0.01}},
+        {"_damping", {.method = SPRING_LEAPFROG, .damping = 0.05}},
+        {"_masses", {.method = SPRING_LEAPFROG, .masses = true}},
+        {"_callback", {.method = SPRING_LEAPFROG, .force = blow}},
         {"_callback_still",
-         {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY},
-         INFINITY},
-        {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}, INFINITY},
-        {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}, INFINITY},
+         {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
+        {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
+        {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
     };
-    for (uint32_t side = 35; side <= 128; side += 93)
+    for (uint32_t side = 35; side <= 128; side += 93) {
+        for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+            const spring_method m = spring_method_at(i);
+            if (m != SPRING_LEAPFROG && spring_method_describe(m)->scenes)
+                add("", (subject){SHEET, side, NATURAL, {.method = m}, .steps = 16}, "leapfrog",
+                    m == SPRING_RK4 ? most_rk4 : INFINITY, INFINITY);
+        }
         for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
             add(features[i].name, (subject){SHEET, side, NATURAL, features[i].feature, .steps = 16},
-                "leapfrog", features[i].goal_ratio, INFINITY);
+                "leapfrog", INFINITY, INFINITY);
+    }
 }
 
 static void add_init(void)

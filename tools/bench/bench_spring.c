@@ -5,10 +5,12 @@
  * Start and parameters come out of volatile objects and the end goes into one: nothing can be computed by the compiler,
  * or left out.
  */
-#include "bench.h"
-#include "common/timing.h"
-
 #include <stdio.h>
+
+#include "common/cli.h"
+#include "common/timing.h"
+#include "parts.h"
+#include "rows.h"
 
 /* Light damping and short steps: over the few hundred seconds that a sample lasts for the spring,
    nothing overflows, dies out or becomes denormal. */
@@ -42,6 +44,13 @@ INLINE double acceleration(double x, double v, model m)
 INLINE spring_state plain_euler(spring_state s, model m, double h)
 {
     return (spring_state){s.x + h * s.v, s.v + h * acceleration(s.x, s.v, m)};
+}
+
+INLINE spring_state plain_kick_and_drift(spring_state s, model m, double h)
+{
+    s.v += h * acceleration(s.x, s.v, m);
+    s.x += h * s.v;
+    return s;
 }
 
 INLINE spring_state plain_leapfrog(spring_state s, model m, double h)
@@ -94,51 +103,87 @@ spring_state bench_textbook(spring_state s, double w, double g, double a, double
 {
     const double b = g / 2, split = sqrt(w - b * b);
     const double E = damped ? exp(-b * t) : 1, C = cos(split * t), S = sin(split * t) / split;
-    const double rest = loaded ? a / w : 0, y = s.x - rest;
-    return (spring_state){rest + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (w * y + b * s.v))};
+    const double rest_x = loaded ? a / w : 0, y = s.x - rest_x;
+    return (spring_state){rest_x + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (w * y + b * s.v))};
 }
 
-static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
-                              uint64_t n)
+/* As many steps of a loop, from the parameters of a spring. */
+typedef spring_state plain_run(spring_state s, const spring_params *p, double h, uint64_t n);
+
+static model model_of(const spring_params *p)
 {
-    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
-                     p->load != 0};
-    switch (method) {
-    case SPRING_EULER:
-        return plain_steps(plain_euler, s, m, h, n);
-    case SPRING_LEAPFROG:
-        return plain_steps(plain_leapfrog, s, m, h, n);
-    case SPRING_RK4:
-        return plain_steps(plain_rk4, s, m, h, n);
-    case SPRING_EXACT:
-        for (; n > 0; n--)
-            s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped,
-                               m.loaded); /* volatile dt: evaluated anew at every step, as the library does */
-    }
+    return (model){p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
+                   p->load != 0};
+}
+
+static spring_state run_kicks(spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    return plain_steps(plain_kick_and_drift, s, model_of(p), h, n);
+}
+
+static spring_state run_euler(spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    return plain_steps(plain_euler, s, model_of(p), h, n);
+}
+
+static spring_state run_leapfrog(spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    return plain_steps(plain_leapfrog, s, model_of(p), h, n);
+}
+
+static spring_state run_rk4(spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    return plain_steps(plain_rk4, s, model_of(p), h, n);
+}
+
+static spring_state run_textbook(spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    const model m = model_of(p);
+    (void)h;
+    for (; n > 0; n--) /* volatile dt: evaluated anew at every step, as the library does */
+        s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped, m.loaded);
     return s;
+}
+
+/* What people write; of other methods one kick and drift for each force evaluation. */
+static const struct {
+    const char *name;
+    plain_run *run;
+} plain_runs[SPRING_METHOD_COUNT] = {
+    [SPRING_EULER] = {"loop", run_euler},
+    [SPRING_LEAPFROG] = {"loop", run_leapfrog},
+    [SPRING_RK4] = {"loop", run_rk4},
+    [SPRING_EXACT] = {"textbook", run_textbook},
+};
+
+static const char *limit_of(spring_method m)
+{
+    return plain_runs[m].name != NULL ? plain_runs[m].name : "kicks";
+}
+
+static spring_state run_plain(spring_method m, spring_state s, const spring_params *p, double h, uint64_t n)
+{
+    if (plain_runs[m].run != NULL)
+        return plain_runs[m].run(s, p, h, n);
+    const uint64_t forces = (uint64_t)spring_method_describe(m)->forces_per_step;
+    return run_kicks(s, p, h / (double)forces, n * forces);
 }
 
 /* --------------------------------------------------------------------------------------------------- the library */
 
 typedef enum form { ADVANCE, CALL, ADVANCE_1 } form;
 
-static void (*const kernels[])(spring_state *s, const spring_params *p, double dt) = {
-    [SPRING_EULER] = spring_step_euler,
-    [SPRING_LEAPFROG] = spring_step_leapfrog,
-    [SPRING_RK4] = spring_step_rk4,
-    [SPRING_EXACT] = spring_step_exact,
-};
-
 static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p,
                                 double h, uint64_t n)
 {
+    spring_step_fn *const step = spring_method_kernel(method);
     switch (f) {
     case ADVANCE:
         spring_advance(&s, p, method, h, n);
         break;
     case CALL:
         for (; n > 0; n--)
-            kernels[method](&s, p, h);
+            step(&s, p, h);
         break;
     case ADVANCE_1:
         for (; n > 0; n--)
@@ -151,12 +196,10 @@ static spring_state run_library(spring_method method, form f, spring_state s, co
 /* ------------------------------------------------------------------------------------------------------- the rows */
 
 typedef struct subject {
-    const char *kernel;
     spring_method method;
     form form;
     bool damped, loaded;
-    double goal_ratio, goal_ns; /* [1], [ns] */
-    double size;                /* of the start; where it is not 1, the limit is the same kernel at 1 */
+    double size; /* of the start; if it is not 1, the limit is the same kernel at 1 */
 } subject;
 
 static double run(const bench_row *row, int which, uint64_t n)
@@ -173,50 +216,41 @@ static double run(const bench_row *row, int which, uint64_t n)
     return elapsed;
 }
 
-static const subject subjects[] = {
-    {"euler", SPRING_EULER, ADVANCE, false, false, INFINITY, INFINITY, 1},
-    {"euler_damped", SPRING_EULER, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"euler_loaded", SPRING_EULER, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"euler_damped_loaded", SPRING_EULER, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"leapfrog", SPRING_LEAPFROG, ADVANCE, false, false, 0.95, INFINITY, 1},
-    {"leapfrog_damped", SPRING_LEAPFROG, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"leapfrog_loaded", SPRING_LEAPFROG, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"leapfrog_damped_loaded", SPRING_LEAPFROG, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"rk4", SPRING_RK4, ADVANCE, false, false, 0.45, INFINITY, 1},
-    {"rk4_damped", SPRING_RK4, ADVANCE, true, false, INFINITY, INFINITY, 1},
-    {"rk4_loaded", SPRING_RK4, ADVANCE, false, true, INFINITY, INFINITY, 1},
-    {"rk4_damped_loaded", SPRING_RK4, ADVANCE, true, true, INFINITY, INFINITY, 1},
-    {"euler_call", SPRING_EULER, CALL, false, false, INFINITY, 12, 1},
-    {"euler_advance_1", SPRING_EULER, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"leapfrog_call", SPRING_LEAPFROG, CALL, false, false, INFINITY, 12, 1},
-    {"leapfrog_advance_1", SPRING_LEAPFROG, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"rk4_call", SPRING_RK4, CALL, false, false, INFINITY, 12, 1},
-    {"rk4_advance_1", SPRING_RK4, ADVANCE_1, false, false, INFINITY, 12, 1},
-    {"exact_call", SPRING_EXACT, CALL, false, false, INFINITY, INFINITY, 1},
-    {"exact_damped_call", SPRING_EXACT, CALL, true, false, INFINITY, INFINITY, 1},
-    {"exact_damped_loaded_call", SPRING_EXACT, CALL, true, true, INFINITY, INFINITY, 1},
-    {"exact_damped_loaded_advance_1", SPRING_EXACT, ADVANCE_1, true, true, INFINITY, INFINITY, 1},
-    {"leapfrog_denormal", SPRING_LEAPFROG, ADVANCE, false, false, INFINITY, INFINITY, 1e-310},
-};
+static void add(const subject *r, const char *ending)
+{
+    const char *name = spring_method_name(r->method);
+    const bool whole = r->form == ADVANCE && r->size == 1 && !r->damped && !r->loaded;
+    bench_row row = {
+        .part = "spring",
+        .precision = "double",
+        .count = 1,
+        .steps = 1,
+        .goal_ratio = whole && r->method == SPRING_LEAPFROG ? 0.95
+                      : whole && r->method == SPRING_RK4    ? 0.45
+                                                            : INFINITY,
+        .goal_ns = r->form != ADVANCE && r->method != SPRING_EXACT ? 12 : INFINITY,
+        .limits = {r->size != 1 ? "ordinary" : limit_of(r->method)},
+        .time = run,
+    };
+    snprintf(row.kernel, sizeof row.kernel, "%s%s%s%s%s", name, r->damped ? "_damped" : "",
+             r->loaded ? "_loaded" : "", r->size != 1 ? "_denormal" : "", ending);
+    bench_add(&row, r, sizeof *r);
+}
 
 void bench_add_springs(void)
 {
-    for (size_t i = 0; i < sizeof subjects / sizeof subjects[0]; i++) {
-        const subject *r = &subjects[i];
-        bench_row row = {
-            .part = "spring",
-            .precision = "double",
-            .count = 1,
-            .steps = 1,
-            .goal_ratio = r->goal_ratio,
-            .goal_ns = r->goal_ns,
-            .limits = {r->size != 1                ? "ordinary"
-                       : r->method == SPRING_EXACT ? "textbook"
-                                                   : "loop"},
-            .time = run,
-            .subject = r,
-        };
-        snprintf(row.kernel, sizeof row.kernel, "%s", r->kernel);
-        bench_add(&row);
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        if (!cli_for_steps(spring_method_describe(m)))
+            continue;
+        for (int features = 0; features < 4; features++)
+            add(&(subject){m, ADVANCE, features % 2 == 1, features / 2 == 1, 1}, "");
+        add(&(subject){m, CALL, false, false, 1}, "_call");
+        add(&(subject){m, ADVANCE_1, false, false, 1}, "_advance_1");
     }
+    add(&(subject){SPRING_EXACT, CALL, false, false, 1}, "_call");
+    add(&(subject){SPRING_EXACT, CALL, true, false, 1}, "_call");
+    add(&(subject){SPRING_EXACT, CALL, true, true, 1}, "_call");
+    add(&(subject){SPRING_EXACT, ADVANCE_1, true, true, 1}, "_advance_1");
+    add(&(subject){SPRING_LEAPFROG, ADVANCE, false, false, 1e-310}, "");
 }

@@ -11,9 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench.h"
 #include "common/cli.h"
 #include "common/timing.h"
+#include "parts.h"
+#include "rows.h"
 
 static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double",
                                                                                               "float", NULL};
@@ -21,15 +22,10 @@ static int only_part = -1, only_kernel = -1, only_precision = -1;
 static uint64_t only_count, calls;
 static bool quick;
 
-enum { most_rows = 256 };
-static bench_row rows[most_rows];
-static size_t row_count;
-static const char *kernels[most_rows + 1]; /* each name once, ended by NULL */
-
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
      .help = "spring (one at a time), batch or scene"},
-    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
+    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = bench_kernels, .value = "NAME",
      .help = "only the rows of this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
@@ -54,17 +50,20 @@ static const cli_program program = {
         "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
         "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
         "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
-        "Euler; kick, drift, kick; the four stages of rk4. \"textbook\": the formula of an\n"
-        "underdamped spring, exp, cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
+        "Euler; kick, drift, kick; the four stages of rk4. \"kicks\", of other methods: one kick and\n"
+        "one drift for each force evaluation. \"textbook\": the formula of an underdamped spring, exp,\n"
+        "cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
         "\"ordinary\", is leapfrog from an ordinary start.\n\n"
         "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
         "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
         "1e-310 m (float: 1e-41); _unaligned: arrays that begin 8 bytes after a multiple of 64.\n"
         "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
         "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
-        "does the multiplications and additions of a step in registers, with ready coefficients.\n"
+        "does the multiplications and additions of a step in registers, with coefficients that are\n"
+        "there: those of leapfrog, rk4 and the exact solution; of other methods those of one kick and\n"
+        "one drift, which no step can do without.\n"
         "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
-        "parameters of the closed form it is the textbook's formula; for settled and unaligned,\n"
+        "parameters of the exact solution it is the textbook's formula; for settled and unaligned,\n"
         "the same kernel without that.\n\n"
         "Part scene: METHOD_SHAPE_N is spring_scene_advance() by N steps a call: a sheet or a block of\n"
         "jelly with structural, shear and bend links, or water, a height field; with gravity and\n"
@@ -81,17 +80,6 @@ static const cli_program program = {
         "judge.",
     .options = options,
 };
-
-void bench_add(const bench_row *row)
-{
-    if (row_count == most_rows)
-        cli_fail(CLI_FAILED, "more than %d rows", most_rows);
-    rows[row_count] = *row;
-    int k = 0;
-    while (kernels[k] != NULL && strcmp(kernels[k], row->kernel) != 0)
-        k++;
-    kernels[k] = rows[row_count++].kernel;
-}
 
 /* ---------------------------------------------------------------------------------------------------- the samples */
 
@@ -170,7 +158,8 @@ static void measure(cli_table *table, const bench_row *r)
 static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
-           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
+           (only_kernel < 0 || strcmp(bench_kernels[only_kernel], r->kernel) == 0) &&
+           !(quick && r->long_only) &&
            (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
@@ -187,14 +176,16 @@ int main(int argc, char **argv)
         table,
         "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
         "baseline_ns speedup goal_speedup");
-    for (size_t i = 0; i < row_count; i++) {
-        cli_progress((double)i / (double)row_count);
-        if (!wanted(&rows[i]))
+    size_t count;
+    const bench_row *rows = bench_rows(&count);
+    for (const bench_row *r = rows; r < rows + count; r++) {
+        cli_progress((double)(r - rows) / (double)count);
+        if (!wanted(r))
             continue;
         if (calls > 0)
-            rows[i].time(&rows[i], 0, calls);
+            r->time(r, 0, calls);
         else
-            measure(table, &rows[i]);
+            measure(table, r);
     }
     cli_finish();
     return 0;

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the files of spring-bench share. bench_spring.c, bench_batch.c and bench_scene.c each know their rows: what is
- * timed, and beside what. spring_bench.c takes the samples and writes the table.
+ * The rows of spring-bench: what is timed, and beside what. parts.h puts them into the table; spring_bench.c takes the
+ * samples and writes it.
  */
-#ifndef SPRINGSTEP_BENCH_H
-#define SPRINGSTEP_BENCH_H
+#ifndef SPRINGSTEP_BENCH_ROWS_H
+#define SPRINGSTEP_BENCH_ROWS_H
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
-
-#include <springstep/spring.h>
 
 enum { bench_most_limits = 2, bench_baseline = bench_most_limits + 1 };
 
@@ -18,7 +17,7 @@ typedef struct bench_row bench_row;
 
 struct bench_row {
     const char *part;
-    char kernel[48];
+    char kernel[64];
     const char *precision;
     uint64_t count, steps;      /* springs, or links; steps a call */
     double goal_ratio, goal_ns; /* [1], [ns]; INFINITY: none */
@@ -34,15 +33,11 @@ struct bench_row {
     const void *subject; /* what time() works from */
 };
 
-/** Put a row into the table. The row is copied, what it points to is not. */
-void bench_add(const bench_row *row);
+/** Put a row and its subject, of so many bytes, into the table: both are copied. */
+void bench_add(const bench_row *row, const void *subject, size_t bytes);
 
-/* Each puts the rows of its part into the table. */
-void bench_add_springs(void);
-void bench_add_batches(void);
-void bench_add_scenes(void);
-
-/** The textbook formula of an underdamped spring; damped, loaded: say false where g, a are zero. */
-spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);
+/** The rows so far; the names of their kernels, each once, ended by NULL. */
+const bench_row *bench_rows(size_t *count);
+extern const char *bench_kernels[];
 
 #endif

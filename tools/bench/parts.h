@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* The parts of spring-bench. */
+#ifndef SPRINGSTEP_BENCH_PARTS_H
+#define SPRINGSTEP_BENCH_PARTS_H
+
+#include <stdbool.h>
+
+#include <springstep/spring.h>
+
+/* Each puts the rows of its part into the table. */
+void bench_add_springs(void);
+void bench_add_batches(void);
+void bench_add_scenes(void);
+
+/** The textbook formula of an underdamped spring; damped, loaded: say false where g, a are zero. */
+spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);
+
+#endif
