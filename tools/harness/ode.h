@@ -46,22 +46,10 @@ const char *ode_gsl_rk8pd_fixed(ode *o, double *y, double h, uint64_t n);
 const char *ode_gsl_rk4_adaptive(ode *o, double *y, double duration, double tolerance);
 const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance);
 
-/* CVODE: variable order, variable step, local tolerance relative to scale; no limit on the number of steps. */
-typedef enum ode_cvode_method {
-    ODE_ADAMS, /* fixed-point iteration */
-    ODE_BDF    /* Newton iteration; dense matrix, of more than a hundred unknowns none: GMRES */
-} ode_cvode_method;
-const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance);
-
-static inline const char *ode_adams(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_ADAMS, tolerance);
-}
-
-static inline const char *ode_bdf(ode *o, double *y, double duration, double tolerance)
-{
-    return ode_cvode(o, y, duration, ODE_BDF, tolerance);
-}
+/* CVODE: variable order, variable step, local tolerance relative to scale; no limit on the number of steps. Adams with
+   fixed-point iteration; BDF with Newton's, by a dense matrix, of more than a hundred unknowns by none: GMRES. */
+const char *ode_cvode_adams(ode *o, double *y, double duration, double tolerance);
+const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance);
 
 /* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);

@@ -86,10 +86,9 @@ static void close_session(session *s)
 /* Above, CVODE's manual would have a sparse solver or an iterative one, for a dense matrix takes size^3 operations. */
 static const size_t dense_at_most = 100;
 
-static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_method method,
-                                double tolerance)
+static const char *set_up_cvode(session *s, ode *o, double duration, int method, double tolerance)
 {
-    s->memory = CVodeCreate(method == ODE_ADAMS ? CV_ADAMS : CV_BDF, s->context);
+    s->memory = CVodeCreate(method, s->context);
     if (s->memory == NULL || CVodeInit(s->memory, derivative, 0, s->y) != CV_SUCCESS)
         return "CVODE: cannot start";
     CVodeSetErrFile(s->memory, NULL);
@@ -97,7 +96,7 @@ static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_m
         CVodeSetUserData(s->memory, o) != CV_SUCCESS || CVodeSetMaxNumSteps(s->memory, -1) != CV_SUCCESS ||
         CVodeSetStopTime(s->memory, duration) != CV_SUCCESS)
         return "CVODE: refuses its settings";
-    if (method == ODE_ADAMS) {
+    if (method == CV_ADAMS) {
         s->nonlinear = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
         if (s->nonlinear == NULL || CVodeSetNonlinearSolver(s->memory, s->nonlinear) != CV_SUCCESS)
             return "CVODE: no fixed-point solver";
@@ -114,7 +113,7 @@ static const char *set_up_cvode(session *s, ode *o, double duration, ode_cvode_m
     return NULL;
 }
 
-const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method method, double tolerance)
+static const char *cvode(ode *o, double *y, double duration, int method, double tolerance)
 {
     session s;
     const char *message = open_session(&s, o, y, tolerance);
@@ -132,6 +131,16 @@ const char *ode_cvode(ode *o, double *y, double duration, ode_cvode_method metho
         CVodeFree(&s.memory);
     close_session(&s);
     return message;
+}
+
+const char *ode_cvode_adams(ode *o, double *y, double duration, double tolerance)
+{
+    return cvode(o, y, duration, CV_ADAMS, tolerance);
+}
+
+const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance)
+{
+    return cvode(o, y, duration, CV_BDF, tolerance);
 }
 
 static void *create_arkstep(const session *s)

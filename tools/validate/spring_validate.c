@@ -215,8 +215,8 @@ static void run_case(const validation_case *c)
     against_rk4(c, "gsl-rk4", ode_gsl_rk4, 2);
     against_rk4(c, "arkode-rk4", ode_arkstep_rk4, 1);
     against_adaptive(c, "gsl-rk8pd", ode_gsl_rk8pd);
-    against_adaptive(c, "cvode-adams", ode_adams);
-    against_adaptive(c, "cvode-bdf", ode_bdf);
+    against_adaptive(c, "cvode-adams", ode_cvode_adams);
+    against_adaptive(c, "cvode-bdf", ode_cvode_bdf);
 }
 
 static void name_cases(void)

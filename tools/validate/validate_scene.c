@@ -545,7 +545,7 @@ static void solutions(const trial *t, const adaptive *solvers, size_t solver_cou
 void validate_scene(const scene_case *c)
 {
     adaptive solvers[] = {{.name = "gsl-rk8pd", .solve = ode_gsl_rk8pd},
-                          {.name = "cvode-adams", .solve = ode_adams}};
+                          {.name = "cvode-adams", .solve = ode_cvode_adams}};
     const size_t solver_count = c->external ? sizeof solvers / sizeof solvers[0] : 0;
     scene_problem p;
     sheet_mode mode;

@@ -15,8 +15,8 @@ static const work_solver external[] = {
     {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
     {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
-    {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_adams},
-    {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_bdf},
+    {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
+    {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
 };
 _Static_assert(sizeof external / sizeof external[0] == WORK_EXTERNAL_SOLVERS, "as work.h says");
 
