@@ -16,6 +16,9 @@ static const mpfr_rnd_t nearest = MPFR_RNDN;
 
 void reference_init(reference *r)
 {
+    mpfr_set_emin(
+        mpfr_get_emin_min()); /* exp(b t) of a heavily damped spring after a long time is beyond 2^(2^30) */
+    mpfr_set_emax(mpfr_get_emax_max());
     mpfr_inits2(precision, r->x, r->v, r->omega, r->size, (mpfr_ptr)NULL);
 }
 
@@ -465,7 +468,7 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     const double omega = b->omega, z = fmax(sqrt(p->stiffness / p->mass), p->damping / p->mass) * fabs(dt);
     const double local = 2 * DBL_EPSILON * pow(1 + z * z, 2);
     const double loaded = fabs(p->load / p->mass * dt) / omega,
-                 smallest = 8 * DBL_TRUE_MIN * fmax(1, 1 / omega);
+                 smallest = 8 * DBL_TRUE_MIN * fmax(fmax(1, 1 / omega), fabs(dt));
     affine step, solution;
     affine_init(&step);
     affine_init(&solution);

@@ -63,7 +63,7 @@ double reference_energy_error(const reference *r, spring_state got);
 /* What the steps of a method can add, in [m], the distances of reference_distance():
  *
  *     rounding    between the computed steps and reference_iterate(). A step adds at most
- *                 2 eps (1 + z^2)^2 (|y| + |a| dt/omega) + 8 DBL_TRUE_MIN,   z = max(omega, g) |dt|
+ *                 2 eps (1 + z^2)^2 (|y| + |a| dt/omega) + 8 DBL_TRUE_MIN max(1, |dt|),   z = max(omega, g) |dt|
  *                 (counting roundings: 4 half ulps of |y| suffice as z -> 0, 11 at z = 1, 44 at z = 2; z^4 is RK4's)
  *     truncation  between reference_iterate() and reference_exact(). A step adds |one step of the method - the exact
  *                 solution| from the exact y, the difference formed in multiple precision
