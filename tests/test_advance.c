@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* spring_advance(): n kernel calls bit for bit, every error path, and no change of state after an error. */
+/* spring_advance(): n kernel calls bit for bit, every error path, and no change of state after an error;
+   the table of methods. */
 #include <math.h>
 #include <string.h>
 
 #include "check.h"
-
-static const spring_method steppers[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
-static void (*const kernels[])(spring_state *, const spring_params *, double) = {
-    spring_step_euler,
-    spring_step_leapfrog,
-    spring_step_rk4,
-};
+#include "methods.h"
 
 static const double bad_numbers[] = {NAN, INFINITY, -INFINITY};
 
@@ -27,20 +22,21 @@ static spring_params random_params(void)
 static void equals_kernel_calls(void)
 {
     static const uint64_t counts[] = {1, 2, 7, 4095, 4096, 4097, 10000};
-    for (size_t i = 0; i < 3 * 7 * 20; i++) {
-        const size_t m = i % 3;
-        const uint64_t n = counts[i / 3 % 7];
+    for (size_t i = 0; i < 7 * 20; i++) {
+        const uint64_t n = counts[i % 7];
         const spring_params p = random_params();
         const double dt = (i % 2 ? -0.001 : 0.01) * sqrt(p.mass / p.stiffness);
         const spring_state start = {random_uniform(-1, 1), random_uniform(-1, 1)};
-        spring_state all = start, ones = start, kernel = start;
-        CHECK(spring_advance(&all, &p, steppers[m], dt, n) == SPRING_OK, "good input");
-        for (uint64_t j = 0; j < n; j++) {
-            spring_advance(&ones, &p, steppers[m], dt, 1);
-            kernels[m](&kernel, &p, dt);
+        for (const spring_method *m = steppers(); *m != no_method; m++) {
+            spring_state all = start, ones = start, kernel = start;
+            CHECK(spring_advance(&all, &p, *m, dt, n) == SPRING_OK, "good input");
+            for (uint64_t j = 0; j < n; j++) {
+                spring_advance(&ones, &p, *m, dt, 1);
+                spring_method_kernel (*m)(&kernel, &p, dt);
+            }
+            CHECK_STATE(all, kernel, "n steps are n kernel calls");
+            CHECK_STATE(all, ones, "n steps are n times one step");
         }
-        CHECK_STATE(all, kernel, "n steps are n kernel calls");
-        CHECK_STATE(all, ones, "n steps are n times one step");
     }
 }
 
@@ -62,11 +58,11 @@ static void nothing_to_do(void)
 {
     const spring_params p = {1.3, 2.7, 0.6, 0.4};
     const spring_state start = {-0.0, 5e-324};
-    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         spring_state s = start;
-        CHECK(spring_advance(&s, &p, (spring_method)m, 0.1, 0) == SPRING_OK, "n = 0");
-        CHECK(spring_advance(&s, &p, (spring_method)m, 0.0, 5) == SPRING_OK, "dt = 0");
-        CHECK(spring_advance(&s, &p, (spring_method)m, -0.0, UINT64_MAX) == SPRING_OK, "dt = -0");
+        CHECK(spring_advance(&s, &p, *m, 0.1, 0) == SPRING_OK, "n = 0");
+        CHECK(spring_advance(&s, &p, *m, 0.0, 5) == SPRING_OK, "dt = 0");
+        CHECK(spring_advance(&s, &p, *m, -0.0, UINT64_MAX) == SPRING_OK, "dt = -0");
         CHECK_STATE(s, start, "changes nothing");
     }
 }
@@ -83,34 +79,33 @@ static void refuses_bad_input(void)
 {
     const spring_params good = {1.3, 2.7, 0.6, 0.4};
     const spring_state start = {0.3, -0.7};
-    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
-        const spring_method method = (spring_method)m;
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         spring_state s = start;
-        CHECK(spring_advance(NULL, &good, method, 0.1, 1) == SPRING_EINVAL, "no state");
-        CHECK(spring_advance(&s, NULL, method, 0.1, 1) == SPRING_EINVAL, "no parameters");
+        CHECK(spring_advance(NULL, &good, *m, 0.1, 1) == SPRING_EINVAL, "no state");
+        CHECK(spring_advance(&s, NULL, *m, 0.1, 1) == SPRING_EINVAL, "no parameters");
         CHECK_STATE(s, start, "an error leaves the state as it was");
         for (size_t i = 0; i < 3; i++) {
             const double bad = bad_numbers[i];
-            refuse((spring_state){bad, 1}, good, method, 0.1, 1, "x not finite");
-            refuse((spring_state){1, bad}, good, method, 0.1, 1, "v not finite");
-            refuse(start, good, method, bad, 1, "dt not finite");
-            refuse(start, good, method, bad, 0, "dt not finite, even for no steps");
-            refuse(start, (spring_params){bad, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass not finite");
-            refuse(start, (spring_params){1.3, bad, 0.6, 0.4}, method, 0.1, 1, "stiffness not finite");
-            refuse(start, (spring_params){1.3, 2.7, bad, 0.4}, method, 0.1, 1, "damping not finite");
-            refuse(start, (spring_params){1.3, 2.7, 0.6, bad}, method, 0.1, 1, "load not finite");
+            refuse((spring_state){bad, 1}, good, *m, 0.1, 1, "x not finite");
+            refuse((spring_state){1, bad}, good, *m, 0.1, 1, "v not finite");
+            refuse(start, good, *m, bad, 1, "dt not finite");
+            refuse(start, good, *m, bad, 0, "dt not finite, even for no steps");
+            refuse(start, (spring_params){bad, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass not finite");
+            refuse(start, (spring_params){1.3, bad, 0.6, 0.4}, *m, 0.1, 1, "stiffness not finite");
+            refuse(start, (spring_params){1.3, 2.7, bad, 0.4}, *m, 0.1, 1, "damping not finite");
+            refuse(start, (spring_params){1.3, 2.7, 0.6, bad}, *m, 0.1, 1, "load not finite");
         }
-        refuse(start, (spring_params){0, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass 0");
-        refuse(start, (spring_params){-0.0, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass -0");
-        refuse(start, (spring_params){-1.3, 2.7, 0.6, 0.4}, method, 0.1, 1, "mass negative");
-        refuse(start, (spring_params){1.3, -2.7, 0.6, 0.4}, method, 0.1, 1, "stiffness negative");
-        refuse(start, (spring_params){1.3, 2.7, -5e-324, 0.4}, method, 0.1, 1, "damping negative");
-        refuse(start, (spring_params){1e-200, 1e200, 0.6, 0.4}, method, 0.1, 1, "stiffness/mass overflows");
-        refuse(start, (spring_params){1e-200, 2.7, 1e200, 0.4}, method, 0.1, 1, "damping/mass overflows");
-        refuse(start, (spring_params){1e-200, 2.7, 0.6, -1e200}, method, 0.1, 1, "load/mass overflows");
+        refuse(start, (spring_params){0, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass 0");
+        refuse(start, (spring_params){-0.0, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass -0");
+        refuse(start, (spring_params){-1.3, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass negative");
+        refuse(start, (spring_params){1.3, -2.7, 0.6, 0.4}, *m, 0.1, 1, "stiffness negative");
+        refuse(start, (spring_params){1.3, 2.7, -5e-324, 0.4}, *m, 0.1, 1, "damping negative");
+        refuse(start, (spring_params){1e-200, 1e200, 0.6, 0.4}, *m, 0.1, 1, "stiffness/mass overflows");
+        refuse(start, (spring_params){1e-200, 2.7, 1e200, 0.4}, *m, 0.1, 1, "damping/mass overflows");
+        refuse(start, (spring_params){1e-200, 2.7, 0.6, -1e200}, *m, 0.1, 1, "load/mass overflows");
     }
     for (int m = -2; m < 100; m++)
-        if (m < SPRING_EULER || m > SPRING_EXACT)
+        if (m < 0 || m >= SPRING_METHOD_COUNT)
             refuse(start, good, (spring_method)m, 0.1, 1, "no such method");
 }
 
@@ -133,13 +128,12 @@ static void overflow(void)
 {
     const spring_state start = {1, 0.5};
     const spring_params p = {1.3, 2.7, 0.1, 0.2};
-    for (size_t m = 0; m < 3; m++) {
+    for (const spring_method *m = steppers(); *m != no_method; m++) {
         spring_state s = start;
-        CHECK(spring_advance(&s, &p, steppers[m], 10, UINT64_MAX) == SPRING_ENONFINITE,
-              "far beyond the stable step");
+        CHECK(spring_advance(&s, &p, *m, 10, UINT64_MAX) == SPRING_ENONFINITE, "far beyond the stable step");
         CHECK_STATE(s, start, "an overflow leaves the state as it was");
         s = start;
-        CHECK(spring_advance(&s, &p, steppers[m], 1.7e308, 1) == SPRING_ENONFINITE, "coefficients overflow");
+        CHECK(spring_advance(&s, &p, *m, 1.7e308, 1) == SPRING_ENONFINITE, "coefficients overflow");
         CHECK_STATE(s, start, "an overflow leaves the state as it was");
     }
     /* overflows in the last step of a call, and in the first after a look */
@@ -161,19 +155,23 @@ static void overflow(void)
     CHECK_STATE(s, start, "an overflow leaves the state as it was");
 }
 
-/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. */
+/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. Here some,
+   for every build of the tests; of every method in tests/headers/bits.txt. */
 static void golden_bits(void)
 {
-    static const double want[][2] = {
-        {-0x1.c22e5860eee3p-6, 0x1.7db45eb12fd5fp-3},
-        {-0x1.03323afb9c126p-6, 0x1.539531f94a59ap-3},
-        {-0x1.0368ba1574829p-6, 0x1.53842b8aeac52p-3},
+    static const struct {
+        spring_method method;
+        spring_state end;
+    } pinned[] = {
+        {SPRING_EULER, {-0x1.c22e5860eee3p-6, 0x1.7db45eb12fd5fp-3}},
+        {SPRING_LEAPFROG, {-0x1.03323afb9c126p-6, 0x1.539531f94a59ap-3}},
+        {SPRING_RK4, {-0x1.0368ba1574829p-6, 0x1.53842b8aeac52p-3}},
     };
     const spring_params p = {1.3, 2.7, 0.6, 0.4};
-    for (size_t m = 0; m < 3; m++) {
+    for (size_t i = 0; i < sizeof pinned / sizeof pinned[0]; i++) {
         spring_state s = {0.8, -0.9};
-        spring_advance(&s, &p, steppers[m], 0.013, 500);
-        CHECK_STATE(s, ((spring_state){want[m][0], want[m][1]}), "pinned when the version was released");
+        spring_advance(&s, &p, pinned[i].method, 0.013, 500);
+        CHECK_STATE(s, pinned[i].end, "pinned when the version was released");
     }
 }
 
@@ -193,15 +191,15 @@ static void golden_bits_of_heavy_damping(void)
 static void one_is_not_special(void)
 {
     const spring_state start = {0.8, -0.9};
-    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         const spring_params at[] = {{2, 2.7, 2, 0}, {2, 2.7, 0, 2}, {2, 2.7, 2, 2}};
         for (int i = 0; i < 3; i++) {
             spring_params beside = at[i];
             beside.damping *= 1 + DBL_EPSILON;
             beside.load *= 1 + DBL_EPSILON;
             spring_state a = start, b = start;
-            spring_advance(&a, &at[i], (spring_method)m, 0.013, 100);
-            spring_advance(&b, &beside, (spring_method)m, 0.013, 100);
+            spring_advance(&a, &at[i], *m, 0.013, 100);
+            spring_advance(&b, &beside, *m, 0.013, 100);
             CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON,
                         "an ulp of the parameters, and rounding of 100 steps");
             CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON,
@@ -210,13 +208,51 @@ static void one_is_not_special(void)
     }
 }
 
+/* Every value of the enumeration stands once in the table, under a name of its own. */
+static void table_of_methods(void)
+{
+    bool seen[SPRING_METHOD_COUNT] = {false};
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        const spring_method_info *info = spring_method_describe(m);
+        CHECK(m >= 0 && m < no_method && !seen[m] && info != NULL, "a method, for the first time");
+        seen[m] = true;
+        CHECK(info->springs || info->scenes, "a method is for something");
+        CHECK(info->order >= 0 && (info->order > 0) == (info->forces_per_step > 0),
+              "who steps evaluates forces");
+        CHECK((spring_method_kernel(m) != NULL) == info->springs, "a kernel for one spring");
+        CHECK(spring_method_name(m) == info->name && strlen(info->label) > 0,
+              "names for programs and for texts");
+        CHECK(strspn(info->name, "abcdefghijklmnopqrstuvwxyz0123456789-") == strlen(info->name) &&
+                  strlen(info->name) > 0,
+              "a word of the command line");
+        for (int j = 0; j < i; j++)
+            CHECK(strcmp(info->name, spring_method_name(spring_method_at(j))) != 0, "of no other method");
+    }
+    const spring_method none[] = {(spring_method)-1, no_method, spring_method_at(-1),
+                                  spring_method_at(SPRING_METHOD_COUNT)};
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
+        CHECK(spring_method_describe(none[i]) == NULL && spring_method_name(none[i]) == NULL &&
+                  spring_method_kernel(none[i]) == NULL,
+              "no method");
+}
+
 static void names(void)
 {
-    static const char *const want[] = {"euler", "leapfrog", "rk4", "exact"};
-    for (int m = 0; m < 4; m++)
-        CHECK(strcmp(spring_method_name((spring_method)m), want[m]) == 0, "the names of the command line");
-    CHECK(spring_method_name((spring_method)4) == NULL && spring_method_name((spring_method)-1) == NULL,
-          "no method");
+    static const struct {
+        spring_method method;
+        const char *name;
+        spring_step_fn *kernel;
+    } fixed[] = {
+        {SPRING_EULER, "euler", spring_step_euler},
+        {SPRING_LEAPFROG, "leapfrog", spring_step_leapfrog},
+        {SPRING_RK4, "rk4", spring_step_rk4},
+        {SPRING_EXACT, "exact", spring_step_exact},
+    };
+    for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++)
+        CHECK(strcmp(spring_method_name(fixed[i].method), fixed[i].name) == 0 &&
+                  spring_method_kernel(fixed[i].method) == fixed[i].kernel,
+              "what other programs rely on");
     for (int i = SPRING_OK; i <= SPRING_EUNSUPPORTED; i++)
         for (int j = SPRING_OK; j < i; j++)
             CHECK(strcmp(spring_status_string((spring_status)i), spring_status_string((spring_status)j)) != 0,
@@ -237,6 +273,7 @@ int main(void)
         {"pinned bits", golden_bits},
         {"pinned bits, heavy damping", golden_bits_of_heavy_damping},
         {"rates of 1", one_is_not_special},
+        {"the table of methods", table_of_methods},
         {"names", names},
     };
     return RUN_TESTS("advance", tests);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels compiled without vectors, for compilers that have none, against those of vectors: the same bits. */
 #include "batch_kernels.h"
+#include "methods.h"
 #include "test_scene.h"
 
 extern const batch_kernels plain_batch;
@@ -34,14 +35,14 @@ static void draw(springs_at *s, uint64_t bad_of_8)
 /* Bit i of features: the array of w, g or a is shared; 8 and 16: no g, no a. */
 static spring_batch batch_of(springs_at *s, unsigned features)
 {
-    return (spring_batch){springs,     s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a,
-                   features & 7};
+    return (spring_batch){
+        springs, s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a, features & 7};
 }
 
 static void batches(void)
 {
     static springs_at plain, vectors;
-    for (int m = SPRING_EULER; m <= SPRING_EXACT; m++)
+    for (const spring_method *m = spring_methods(); *m != no_method; m++)
         for (unsigned features = 0; features < 32; features++)
             for (size_t k = 0; k < 9; k++) {
                 const uint64_t n = k % 3 != 0      ? k % 3
@@ -52,8 +53,8 @@ static void batches(void)
                 draw(&plain, bad_of_8);
                 vectors = plain;
                 const spring_batch b = batch_of(&plain, features), c = batch_of(&vectors, features);
-                const spring_status got = spring_batch_advance_with(&plain_batch, &b, (spring_method)m, dt, n);
-                const spring_status want = spring_batch_advance_with(&spring_batch_v128, &c, (spring_method)m, dt, n);
+                const spring_status got = spring_batch_advance_with(&plain_batch, &b, *m, dt, n);
+                const spring_status want = spring_batch_advance_with(&spring_batch_v128, &c, *m, dt, n);
                 CHECK(got == want, "lane by lane the same operations");
                 CHECK(memcmp(&plain, &vectors, sizeof plain) == 0, "lane by lane the same operations");
             }
@@ -65,31 +66,33 @@ static void scenes(void)
 {
     static model m;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 5)
-            for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
-                build(&m, (uint32_t[]){7, 4, 1}, axes, features);
+        for (unsigned features = 0; features < feature_masks; features += 5) {
+            build(&m, (uint32_t[]){7, 4, 1}, axes, features);
+            const method_list all = methods_of(m.def);
+            for (const spring_method *method = all.at; *method != no_method; method++) {
                 spring_scene *plain = scene_of(&m.def), *vectors = scene_of(&m.def);
-                CHECK(spring_scene_advance_with(&plain_scene, plain, (spring_method)method, 0.004, 5) ==
-                              SPRING_OK &&
-                          spring_scene_advance_with(&spring_scene_v128, vectors, (spring_method)method, 0.004, 5) ==
+                CHECK(spring_scene_advance_with(&plain_scene, plain, *method, 0.004, 5) == SPRING_OK &&
+                          spring_scene_advance_with(&spring_scene_v128, vectors, *method, 0.004, 5) ==
                               SPRING_OK,
                       "stable");
                 CHECK(same_bits(plain, vectors, m.def.particles, axes), "lane by lane the same operations");
                 free(plain);
                 free(vectors);
             }
+        }
 }
 
 static void lost_scenes(void)
 {
     static model m;
     const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200;
-    for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
-        build(&m, (uint32_t[]){7, 4, 1}, 2, DAMPED);
+    build(&m, (uint32_t[]){7, 4, 1}, 2, DAMPED);
+    const method_list all = methods_of(m.def);
+    for (const spring_method *method = all.at; *method != no_method; method++) {
         spring_scene *s = scene_of(&m.def), *before = scene_of(&m.def);
-        CHECK(spring_scene_advance_with(&plain_scene, s, (spring_method)method, huge, 9) == SPRING_ENONFINITE,
+        CHECK(spring_scene_advance_with(&plain_scene, s, *method, huge, 9) == SPRING_ENONFINITE,
               "overflow is noticed");
-        CHECK(same_bits(s, before, m.def.particles, 2), "and undone");
+        CHECK(same_bits(s, before, m.def.particles, 2), "and rolled back");
         free(s);
         free(before);
     }

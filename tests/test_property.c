@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "check.h"
+#include "methods.h"
 
 static const int draws = 100000;
 
@@ -28,9 +29,9 @@ static draw random_draw(void)
     return d;
 }
 
-static spring_state run(draw d, int m)
+static spring_state run(draw d, spring_method m)
 {
-    CHECK(spring_advance(&d.s, &d.p, (spring_method)m, d.dt, d.n) == SPRING_OK, "a stable run");
+    CHECK(spring_advance(&d.s, &d.p, m, d.dt, d.n) == SPRING_OK, "a stable run");
     return d.s;
 }
 
@@ -41,8 +42,8 @@ static void mirror(void)
         draw mirrored = d;
         mirrored.s = (spring_state){-d.s.x, -d.s.v};
         mirrored.p.load = -d.p.load;
-        for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
-            const spring_state a = run(d, m), b = run(mirrored, m);
+        for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+            const spring_state a = run(d, *m), b = run(mirrored, *m);
             CHECK_STATE(b, ((spring_state){-a.x, -a.v}), "x, v, load -> -x, -v, -load");
         }
     }
@@ -59,10 +60,10 @@ static void powers_of_two(void)
         slower.p = (spring_params){d.p.mass, d.p.stiffness / 4, d.p.damping / 2, d.p.load / 4};
         slower.s.v /= 2;
         slower.dt *= 2;
-        for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
-            const spring_state a = run(d, m), b = run(longer, m), c = run(slower, m);
+        for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+            const spring_state a = run(d, *m), b = run(longer, *m), c = run(slower, *m);
             CHECK_STATE(b, ((spring_state){a.x * 8, a.v * 8}), "length in other units");
-            CHECK_STATE(run(heavier, m), a, "mass in other units");
+            CHECK_STATE(run(heavier, *m), a, "mass in other units");
             CHECK_STATE(c, ((spring_state){a.x, a.v / 2}), "time in other units");
         }
     }
@@ -85,8 +86,8 @@ static void superposition(void)
         both.p.load = a.p.load + b.p.load;
         const double omega = sqrt(a.p.stiffness / a.p.mass);
         const double bound = 6 * (double)(a.n + 1) * DBL_EPSILON * (size_of(a) + size_of(b) + size_of(both));
-        for (int m = SPRING_EULER; m <= SPRING_EXACT; m++) {
-            const spring_state ya = run(a, m), yb = run(b, m), sum = run(both, m);
+        for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+            const spring_state ya = run(a, *m), yb = run(b, *m), sum = run(both, *m);
             CHECK_CLOSE(sum.x, ya.x + yb.x, bound, "linear, but for 6 eps a step");
             CHECK_CLOSE(sum.v, ya.v + yb.v, bound * omega, "linear, but for 6 eps a step");
         }

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "methods.h"
 #include "scene_block.h"
 #include "simd/targets.h"
 
@@ -19,7 +20,7 @@ typedef spring_scene scene;
 #define EPS DBL_EPSILON
 #endif
 
-enum { all_methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4, kernel_count = 3 };
+enum { kernel_count = 3 };
 
 /* By ascending length of the vectors; NULL: this processor lacks the instructions. */
 SPRING_INLINE const scene_kernels *kernels_of(int i)
@@ -28,9 +29,39 @@ SPRING_INLINE const scene_kernels *kernels_of(int i)
     if (i == 1)
         return __builtin_cpu_supports("avx2") ? &spring_scene_v256 : NULL;
     if (i == 2)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512 : NULL;
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512
+                                                                                       : NULL;
 #endif
     return i == 0 ? &spring_scene_v128 : NULL;
+}
+
+/* The methods that take a definition, in the order of the table, up to no_method. */
+typedef struct method_list {
+    spring_method at[SPRING_METHOD_COUNT + 1];
+} method_list;
+
+SPRING_INLINE method_list methods_of(spring_scene_def def)
+{
+    method_list list;
+    int count = 0;
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        def.methods = 1u << spring_method_at(i);
+        if (spring_scene_check(&def, NULL, NULL) == SPRING_OK)
+            list.at[count++] = spring_method_at(i);
+    }
+    list.at[count] = no_method;
+    CHECK(count > 0, "some method takes it");
+    return list;
+}
+
+/* Has a definition ask for all methods that take it; returns them. */
+SPRING_INLINE method_list use_all_methods(spring_scene_def *def)
+{
+    const method_list list = methods_of(*def);
+    def->methods = 0;
+    for (const spring_method *m = list.at; *m != no_method; m++)
+        def->methods |= 1u << *m;
+    return list;
 }
 
 /* A scene in memory of its own, to be given to free(). */
@@ -52,10 +83,10 @@ enum { most = 512, most_links = 6000 }; /* particles and links of a model */
 /* features of a model, random numbers where there are numbers */
 enum {
     OWN = 1,      /* each link has its own stiffness and rest length */
-    SHUFFLED = 2, /* no order among the links, and no common direction: no rows */
+    SHUFFLED = 2, /* no order among the links, and no common direction: no bands */
     REVERSED = 4, /* links run from the upper particle to the lower */
     DAMPED = 8,   /* links */
-    STRAY = 16,   /* links between any two particles as well: rows and a list */
+    STRAY = 16,   /* links between any two particles as well: bands and an edge list */
     MASSES = 32,  /* each particle its own */
     PINNED = 64,  /* some particles, moving */
     DRAG = 128,
@@ -133,7 +164,6 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
-        .methods = all_methods,
         .particles = particles,
         .links = links,
         .position = m->position,
@@ -146,6 +176,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
                     features & GRAVITY ? 0.4 : 0},
         .drag = features & DRAG ? 0.37 : 0,
     };
+    use_all_methods(&m->def);
 }
 
 SPRING_INLINE double mass_in(const spring_scene_def *def, size_t i)
@@ -179,7 +210,8 @@ SPRING_INLINE void set_state(spring_scene *s, size_t particles, const state *y)
 }
 
 /* Positions and velocities of two scenes of equal size, to the bit. */
-SPRING_INLINE bool same_bits(const spring_scene *s, const spring_scene *other, size_t particles, uint32_t axes)
+SPRING_INLINE bool same_bits(const spring_scene *s, const spring_scene *other, size_t particles,
+                             uint32_t axes)
 {
     static state a, b;
     get_state(s, particles, &a);
@@ -202,7 +234,7 @@ SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t 
 
 /* What a link does, from its definition in scene.h. On one axis length and rate are those from a to b. */
 typedef struct drawn_link {
-    double way[3], length, rate, tension;
+    double delta[3], length, rate, tension;
 } drawn_link;
 
 SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
@@ -210,11 +242,11 @@ SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const
     drawn_link d = {{0}, 0, 0, 0};
     double square = 0, product = 0;
     for (uint32_t a = 0; a < axes; a++) {
-        d.way[a] = x[link->b * axes + a] - x[link->a * axes + a];
-        square += d.way[a] * d.way[a];
-        product += d.way[a] * (v[link->b * axes + a] - v[link->a * axes + a]);
+        d.delta[a] = x[link->b * axes + a] - x[link->a * axes + a];
+        square += d.delta[a] * d.delta[a];
+        product += d.delta[a] * (v[link->b * axes + a] - v[link->a * axes + a]);
     }
-    d.length = axes == 1 ? d.way[0] : sqrt(square);
+    d.length = axes == 1 ? d.delta[0] : sqrt(square);
     d.rate = d.length != 0 ? product / d.length : axes == 1 ? v[link->b] - v[link->a] : 0;
     d.tension = (double)(scalar)link->stiffness * (d.length - (double)(scalar)link->rest) +
                 (double)(scalar)link->damping * d.rate;
@@ -230,7 +262,7 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
         const spring_link *link = &def->link[i];
         const drawn_link d = draw_link(link, axes, x, v);
         for (uint32_t a = 0; a < axes; a++) {
-            const double f = axes == 1 ? d.tension : d.length > 0 ? d.tension * d.way[a] / d.length : 0;
+            const double f = axes == 1 ? d.tension : d.length > 0 ? d.tension * d.delta[a] / d.length : 0;
             force[link->a * axes + a] += f;
             force[link->b * axes + a] -= f;
         }

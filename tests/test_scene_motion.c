@@ -302,16 +302,16 @@ static void check_mode(uint32_t nx, uint32_t ny, int j, int k, spring_method met
             (how & LINK_DAMPING ? damping / mass * curvature : 0) + (how & RUBBING ? friction / mass : 0),
     };
     const spring_scene_def def = {.axes = 1,
-                           .methods = all_methods,
-                           .particles = particles,
-                           .links = links,
-                           .position = position,
-                           .velocity = velocity,
-                           .mass_all = mass,
-                           .pinned = pinned,
-                           .link = link,
-                           .drag = how & WITH_DRAG ? drag : 0,
-                           .force = how & RUBBING ? rub : NULL};
+                                  .methods = all_methods,
+                                  .particles = particles,
+                                  .links = links,
+                                  .position = position,
+                                  .velocity = velocity,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .drag = how & WITH_DRAG ? drag : 0,
+                                  .force = how & RUBBING ? rub : NULL};
     spring_scene *s = scene_of(&def);
     const double omega = sqrt(q.omega2), fastest = sqrt(stiffness / mass * (rope ? 4 : 8)),
                  h = (method == SPRING_EULER ? 0.05 : 0.6) / fastest;
@@ -394,15 +394,16 @@ static void momentum(void)
         for (int method = SPRING_EULER; method <= SPRING_RK4; method++) {
             build_free(&m, features & (SHUFFLED | DAMPED));
             spring_scene *s = scene_of(&m.def);
-            const double dt =
-                0.1 * spring_scene_stable_step(s, method == SPRING_EULER ? SPRING_LEAPFROG : (spring_method)method);
+            const double dt = 0.1 * spring_scene_stable_step(
+                                        s, method == SPRING_EULER ? SPRING_LEAPFROG : (spring_method)method);
             const momenta before = momenta_of(&m, s);
             double all = 0, force = 0;
             for (size_t i = 0; i < m.def.particles; i++)
                 all += m.mass[i];
             for (size_t i = 0; i < m.def.links; i++)
                 force += m.link[i].stiffness * 10 + m.link[i].damping * 20; /* [N] below 10 m, 20 m/s */
-            CHECK(spring_scene_advance(s, (spring_method)method, dt, (uint64_t)n) == SPRING_OK, "stable, or short");
+            CHECK(spring_scene_advance(s, (spring_method)method, dt, (uint64_t)n) == SPRING_OK,
+                  "stable, or short");
             const momenta after = momenta_of(&m, s);
             const double speed = 20, links = 40; /* of a particle, no more */
             const double bound = n * EPS * (dt * 2 * force * links + 4 * all * speed);

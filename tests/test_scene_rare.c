@@ -136,8 +136,7 @@ static void many_offsets(void)
                 for (uint32_t i = offset % 5 == 0 ? shorter : 0; i < lowers; i++)
                     m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
             spring_scene *s = scene_of(&m.def);
-            CHECK(s->plan.bands == most_bands &&
-                      s->plan.edges == (offsets - most_bands) * (lowers - shorter),
+            CHECK(s->plan.bands == most_bands && s->plan.edges == (offsets - most_bands) * (lowers - shorter),
                   "the longest have rows, what has none is in the list");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
@@ -157,10 +156,10 @@ static void offsets_that_meet(void)
         for (uint32_t i = 0; i < most_bands * lowers; i++)
             link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0};
         const spring_scene_def def = {.axes = 1,
-                               .particles = lowers + most_bands * widths[w],
-                               .links = most_bands * lowers,
-                               .position = position,
-                               .link = link};
+                                      .particles = lowers + most_bands * widths[w],
+                                      .links = most_bands * lowers,
+                                      .position = position,
+                                      .link = link};
         spring_scene *s = scene_of(&def);
         CHECK(s->plan.bands == most_bands && s->plan.edges == 0, "each has its row");
         free(s);
@@ -246,7 +245,8 @@ static void question_after_edit(void)
             CHECK(spring_scene_set_link(s, 3, &link) == SPRING_OK, "an edit");
             spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
             if (s == asked)
-                CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) < before, "a question, and a stiffer link");
+                CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) < before,
+                      "a question, and a stiffer link");
             spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
         }
         CHECK(same_bits(asked, other, m.def.particles, axes), "asking changes nothing");
@@ -278,7 +278,8 @@ static void check_gap(uint32_t axes, unsigned how)
         .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
     CHECK((s->plan.edges == 0) == !(how & LISTED), "where the links lie");
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK,
+          "their distance is nobody's business");
     double x[3];
     spring_scene_get(s, SPRING_POSITION, x, 0, 5, 1);
     CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
@@ -331,7 +332,8 @@ static void bad_number_at_the_end(void)
         for (size_t i = 0; i < m.def.particles * axes; i++)
             y.x[i] = 7;
         y.x[m.def.particles * axes - 1] = NAN;
-        CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL, "not a number");
+        CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL,
+              "not a number");
         CHECK(same_bits(s, other, m.def.particles, axes), "nothing has been set");
         free(s);
         free(other);
@@ -342,37 +344,37 @@ static void bad_number_at_the_end(void)
 static void lost(void)
 {
     enum { particles = 2 };
-    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
     const double position[3 * particles] = {0.3, 0.1, -0.2, -0.9, 0.4, 0.6}, still[3 * particles] = {0};
     const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (size_t fast = 0; fast < particles * axes; fast++)
-            for (size_t k = 0; k < 3; k++) {
-                double velocity[3 * particles] = {0}, y[3 * particles];
-                velocity[fast] = 10;
-                const spring_scene_def def = {.axes = axes,
-                                       .flags = SPRING_SCENE_NO_UNDO,
-                                       .methods = all_methods,
-                                       .particles = particles,
-                                       .position = position,
-                                       .velocity = velocity};
+        for (size_t fast = 0; fast < particles * axes; fast++) {
+            double velocity[3 * particles] = {0}, y[3 * particles];
+            velocity[fast] = 10;
+            spring_scene_def def = {.axes = axes,
+                                    .flags = SPRING_SCENE_NO_UNDO,
+                                    .particles = particles,
+                                    .position = position,
+                                    .velocity = velocity};
+            const method_list all = use_all_methods(&def);
+            for (const spring_method *k = all.at; *k != no_method; k++) {
                 spring_scene *s = scene_of(&def);
-                CHECK(spring_scene_advance(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+                CHECK(spring_scene_advance(s, *k, huge, 1) == SPRING_ENONFINITE, "overflow");
                 CHECK(!spring_scene_at_rest(s, INFINITY, INFINITY), "what is lost is not at rest");
                 for (spring_quantity q = SPRING_POSITION; q <= SPRING_VELOCITY; q++) {
                     spring_scene_get(s, q, y, 0, 0, particles);
                     for (size_t i = 0; i < particles * axes; i++)
                         CHECK(isnan(y[i]), "nothing is left");
                     for (size_t i = 0; i < particles; i++) {
-                        CHECK(spring_scene_advance(s, methods[k], 0.1, 1) == SPRING_ENONFINITE,
+                        CHECK(spring_scene_advance(s, *k, 0.1, 1) == SPRING_ENONFINITE,
                               "not all is set again");
                         spring_scene_set(s, q, q == SPRING_POSITION ? position + i * axes : still, 0, i, 1);
                     }
                 }
-                CHECK(spring_scene_advance(s, methods[k], 0.1, 1) == SPRING_OK, "usable again");
+                CHECK(spring_scene_advance(s, *k, 0.1, 1) == SPRING_OK, "usable again");
                 CHECK(spring_scene_at_rest(s, 0, 0), "and at rest");
                 free(s);
             }
+        }
 }
 
 /* A scene that may use more methods has more memory, and the same steps. */
@@ -380,54 +382,58 @@ static void methods_not_used(void)
 {
     static model m;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned features = 0; features < EDITABLE; features += 3)
-            for (uint32_t method = SPRING_EULER; method <= SPRING_RK4; method++) {
-                build(&m, (uint32_t[]){7, 5, 1}, axes, features);
-                spring_scene *all = scene_of(&m.def);
-                m.def.methods = 1u << method;
+        for (unsigned features = 0; features < EDITABLE; features += 3) {
+            build(&m, (uint32_t[]){7, 5, 1}, axes, features);
+            const spring_scene_def of_all = m.def;
+            const method_list list = methods_of(of_all);
+            for (const spring_method *method = list.at; *method != no_method; method++) {
+                spring_scene *all = scene_of(&of_all);
+                m.def.methods = 1u << *method;
                 m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
                 spring_scene *one = scene_of(&m.def);
-                CHECK_BITS(spring_scene_stable_step(one, SPRING_RK4), spring_scene_stable_step(all, SPRING_RK4),
-                           "nor other limits");
+                for (const spring_method *other = list.at; *other != no_method; other++)
+                    CHECK_BITS(spring_scene_stable_step(one, *other), spring_scene_stable_step(all, *other),
+                               "nor other limits");
                 for (int i = 0; i < 2; i++) {
-                    spring_scene_advance(all, (spring_method)method, 0.009, 3);
-                    spring_scene_advance(one, (spring_method)method, 0.009, 3);
+                    spring_scene_advance(all, *method, 0.009, 3);
+                    spring_scene_advance(one, *method, 0.009, 3);
                 }
                 CHECK(same_bits(one, all, m.def.particles, axes), "the same steps");
                 free(all);
                 free(one);
             }
+        }
 }
 
 /* A callback that looks into a table by position must not be handed NaN. */
 static void callback_is_left_alone(void)
 {
-    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
     const double position[] = {0.3, -0.9}, fast[] = {10, -20}, at_rest[] = {0, 0}, dt = 0.013;
     const double huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
-    for (size_t k = 0; k < 3; k++) {
-        int calls = 0;
-        const spring_scene_def def = {.axes = 1,
-                               .flags = SPRING_SCENE_NO_UNDO,
-                               .methods = all_methods,
-                               .particles = 2,
-                               .position = position,
-                               .velocity = fast,
-                               .mass_all = 1.7,
-                               .force = count_calls,
-                               .user = &calls};
+    int calls = 0;
+    spring_scene_def def = {.axes = 1,
+                            .flags = SPRING_SCENE_NO_UNDO,
+                            .particles = 2,
+                            .position = position,
+                            .velocity = fast,
+                            .mass_all = 1.7,
+                            .force = count_calls,
+                            .user = &calls};
+    const method_list all = use_all_methods(&def);
+    for (const spring_method *k = all.at; *k != no_method; k++) {
+        calls = 0;
         spring_scene *s = scene_of(&def);
-        CHECK(spring_scene_advance(s, methods[k], huge, 1) == SPRING_ENONFINITE, "overflow");
+        CHECK(spring_scene_advance(s, *k, huge, 1) == SPRING_ENONFINITE, "overflow");
         CHECK(calls > 0, "the callback was asked before");
         calls = 0;
         CHECK(!spring_scene_at_rest(s, 1, 1) && calls == 0, "nor is it for a question");
         spring_scene_set(s, SPRING_POSITION, position, 0, 0, 1);
         spring_scene_set(s, SPRING_VELOCITY, at_rest, 0, 0, 2);
         calls = 0;
-        CHECK(spring_scene_advance(s, methods[k], dt, 1) == SPRING_ENONFINITE, "one particle is still lost");
+        CHECK(spring_scene_advance(s, *k, dt, 1) == SPRING_ENONFINITE, "one particle is still lost");
         CHECK(calls == 0, "nothing is computed from what is lost");
         spring_scene_set(s, SPRING_POSITION, position, 0, 0, 2);
-        CHECK(spring_scene_advance(s, methods[k], dt, 1) == SPRING_OK && calls > 0, "usable again");
+        CHECK(spring_scene_advance(s, *k, dt, 1) == SPRING_OK && calls > 0, "usable again");
         free(s);
     }
 }
@@ -445,27 +451,27 @@ static void ask_finite(void *user, double t, size_t particles, const scalar *con
 /* A callback is not handed infinite numbers or NaN in the step in which a scene overflows, wherever in the step that is. */
 static void finite_for_callbacks(void)
 {
-    const spring_method methods[] = {SPRING_EULER, SPRING_LEAPFROG, SPRING_RK4};
     const double position[] = {0, 1.5}, fastest = sizeof(scalar) == 4 ? 1e38 : 1e300;
-    for (unsigned how = 0; how < 4; how++)
-        for (size_t k = 0; k < 3; k++)
+    for (unsigned how = 0; how < 4; how++) {
+        bool finite = true;
+        const spring_link link = {0, 1, 1, 100, how % 2 != 0 ? 0.7 : 0};
+        spring_scene_def def = {.axes = 1,
+                                .flags = how / 2 != 0 ? SPRING_SCENE_NO_UNDO : 0,
+                                .particles = 2,
+                                .links = 1,
+                                .position = position,
+                                .link = &link,
+                                .force = ask_finite,
+                                .user = &finite};
+        const method_list all = use_all_methods(&def);
+        for (const spring_method *k = all.at; *k != no_method; k++)
             for (double dt = 0.1; dt < fastest; dt *= 7.3) {
-                bool finite = true;
-                const spring_link link = {0, 1, 1, 100, how % 2 != 0 ? 0.7 : 0};
-                const spring_scene_def def = {.axes = 1,
-                                       .flags = how / 2 != 0 ? SPRING_SCENE_NO_UNDO : 0,
-                                       .methods = all_methods,
-                                       .particles = 2,
-                                       .links = 1,
-                                       .position = position,
-                                       .link = &link,
-                                       .force = ask_finite,
-                                       .user = &finite};
                 spring_scene *s = scene_of(&def);
-                CHECK(spring_scene_advance(s, methods[k], dt, 4000) == SPRING_ENONFINITE || dt < 1, "overflow");
+                CHECK(spring_scene_advance(s, *k, dt, 4000) == SPRING_ENONFINITE || dt < 1, "overflow");
                 CHECK(finite, "the callback sees finite numbers alone");
                 free(s);
             }
+    }
 }
 
 /* Twice the inverse mass overflows, and twice the stiffness over the mass does not. */
