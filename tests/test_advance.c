@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "methods.h"
+#include "test_methods.h"
 
 static const double bad_numbers[] = {NAN, INFINITY, -INFINITY};
 

@@ -15,7 +15,7 @@
 #include "propagator.h"
 #include "simd/targets.h"
 #include "check.h"
-#include "methods.h"
+#include "test_methods.h"
 
 static const batch_kernels *kernels;
 

@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "harness/reference.h"
-#include "methods.h"
+#include "test_methods.h"
 
 static const char rounding[] = "rounding of n steps, counted in reference.h";
 

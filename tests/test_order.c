@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "harness/reference.h"
-#include "methods.h"
+#include "test_methods.h"
 
 typedef struct matrix {
     double a[2][2];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels compiled without vectors, for compilers that have none, against those of vectors: the same bits. */
 #include "batch_kernels.h"
-#include "methods.h"
+#include "test_methods.h"
 #include "test_scene.h"
 
 extern const batch_kernels plain_batch;

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "methods.h"
+#include "test_methods.h"
 
 static const int draws = 100000;
 

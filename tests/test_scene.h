@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "methods.h"
+#include "test_methods.h"
 #include "scene_block.h"
 #include "simd/targets.h"
 

@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "harness/reference.h"
-#include "methods.h"
+#include "test_methods.h"
 
 static spring_params spring_of(double omega, double zeta, double mass)
 {
