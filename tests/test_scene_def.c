@@ -198,11 +198,11 @@ static double particle_cost(spring_scene_def def)
 /* A particle has axes numbers for each of: */
 static const cost particle_costs[] = {
     {"x and v twice, force, predicted v", 6, 0},
-    {"without undo: once", 4, 0},
+    {"without rollback: once", 4, 0},
     {"no callback with velocities, no damped links: no predicted v", 5, 0},
-    {"RK4 too: one more frame and two sums", 10, 0},
+    {"RK4 too: one more buffer and two sums", 10, 0},
     {"Euler alone: no predicted v", 5, 0},
-    {"RK4 alone, without undo", 7, 0},
+    {"RK4 alone, without rollback", 7, 0},
 };
 
 static void bytes_of_a_particle(void)
@@ -228,6 +228,49 @@ static void bytes_of_a_particle(void)
         }
 }
 
+/* What a method stores in a scene without damping whose forces do not depend on velocities, numbers for each axis of a
+   particle: nothing if it evaluates the force of a state alone; of a stage at least x and v. Methods share what both have. */
+static void methods_store_what_they_use(void)
+{
+    const spring_scene_def still = {.axes = 2, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY};
+    spring_scene_def def = still, one = {.particles = 1, .position = (double[3]){0}};
+    const double axis = 2 * sizeof(scalar);
+    const method_list all = methods_of(one);
+    for (const spring_method *m = all.at; *m != no_method; m++) {
+        def.methods = 1u << *m;
+        const double alone = particle_cost(def) / axis;
+        CHECK(spring_method_describe(*m)->forces_per_step == 1 ? alone == 5 : alone >= 7,
+              "x and v twice, the force; and x and v of a stage");
+        for (const spring_method *other = all.at; *other != no_method; other++) {
+            def.methods = 1u << *other;
+            const double of_other = particle_cost(def) / axis;
+            def.methods |= 1u << *m;
+            const double both = particle_cost(def) / axis;
+            CHECK(both >= fmax(alone, of_other) && both <= alone + of_other - 5,
+                  "what both need is stored once");
+        }
+    }
+}
+
+/* A method for springs knows damping, so it takes every scene; what is not for scenes takes none. */
+static void methods_of_a_scene(void)
+{
+    static model m;
+    for (unsigned features = 0; features < feature_masks; features += 7) {
+        build(&m, sheet, 2, features);
+        for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+            const spring_method_info *info = spring_method_describe(spring_method_at(i));
+            const char *field = NULL;
+            m.def.methods = 1u << spring_method_at(i);
+            const spring_status status = spring_scene_check(&m.def, &field, NULL);
+            CHECK(info->scenes || status == SPRING_EUNSUPPORTED, "not for scenes");
+            CHECK(!info->scenes || !(info->springs || features == 0) || status == SPRING_OK,
+                  "for this scene");
+            CHECK(status == SPRING_OK || strcmp(field, "methods") == 0, "nothing else is wrong");
+        }
+    }
+}
+
 /* Bytes for each link of a long rope more, its particles left out. */
 static double link_cost(unsigned kind, double damping, uint32_t flags)
 {
@@ -236,7 +279,7 @@ static double link_cost(unsigned kind, double damping, uint32_t flags)
     for (uint32_t i = 0; i < many; i++)
         link[i] = (spring_link){i, i + 1, 0.4, kind == 0 ? 12.5 : 12.5 + i, damping};
     if (kind == 2)
-        for (uint32_t i = 0; i < many; i++) /* descending: no row */
+        for (uint32_t i = 0; i < many; i++) /* descending: no band */
             link[i] = (spring_link){many - 1 - i, many - i, 0.4, 12.5, damping};
     const spring_scene_def def = {
         .flags = flags, .particles = many + 1, .position = zeros, .link = link, .links = many};
@@ -248,7 +291,7 @@ static double link_cost(unsigned kind, double damping, uint32_t flags)
 static void bytes_of_a_link(void)
 {
     const struct {
-        unsigned kind; /* equal, own numbers, list */
+        unsigned kind; /* equal, own numbers, edge list */
         double damping;
         uint32_t flags;
         cost cost;
@@ -528,6 +571,8 @@ int main(void)
         {"what is accepted", accepted},
         {"memory too small or misaligned", bad_memory},
         {"bytes of a particle", bytes_of_a_particle},
+        {"methods store what they use", methods_store_what_they_use},
+        {"methods of a scene", methods_of_a_scene},
         {"bytes of a link", bytes_of_a_link},
         {"bytes of a scene", bytes_of_a_scene},
         {"looks no further", looks_no_further},

@@ -66,6 +66,24 @@ static void formulas(void)
         }
 }
 
+/* Twice the stiffness or damping of a link is more than the largest number, but over these masses it is not large. */
+static void stiff_and_heavy(void)
+{
+    const bool single = sizeof(scalar) == 4;
+    const double x[] = {0, 1}, huge = single ? 3e38 : 1.7e308, mass = single ? 1e30 : 1e300,
+                 rate = huge / mass;
+    for (int damped = 0; damped < 2; damped++) {
+        const spring_link link = {0, 1, 0.7, huge, damped ? huge : 0};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 2, .links = 1, .position = x, .mass_all = mass, .link = &link};
+        spring_scene *s = scene_of(&def);
+        const double want = damped ? 1 / rate : 2 / sqrt(2 * rate);
+        CHECK_CLOSE(spring_scene_stable_step(s, SPRING_LEAPFROG), want, 8 * EPS * want,
+                    "2/omega or 2/G, a few roundings, none of them an overflow");
+        free(s);
+    }
+}
+
 static void nothing_to_be_unstable_with(void)
 {
     const double x[] = {0, 1};
@@ -465,6 +483,7 @@ int main(void)
 {
     static const test tests[] = {
         {"formulas of stable steps", formulas},
+        {"stiffness and mass near the largest number", stiff_and_heavy},
         {"no force", nothing_to_be_unstable_with},
         {"stable at 0.95 of the stable step", stable_below},
 #ifndef SPRING_FLOAT

@@ -42,6 +42,22 @@ static void scale(spring_scene *s, spring_quantity q, double factor)
     }
 }
 
+/* A method of the highest order below; m itself if there is none. */
+static spring_method next_lower(spring_method m)
+{
+    const int order = spring_method_describe(m)->order;
+    spring_method lower = m;
+    int highest = 0;
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method_info *info = spring_method_describe(spring_method_at(i));
+        if (info->scenes && info->order < order && info->order > highest) {
+            lower = spring_method_at(i);
+            highest = info->order;
+        }
+    }
+    return lower;
+}
+
 spring_status wrong_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 spring_status wrong_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n)
@@ -53,10 +69,10 @@ spring_status wrong_scene_advance(spring_scene *s, spring_method m, double dt, u
         return SPRING_ENONFINITE;
     if (strcmp(way, "unmoved") == 0)
         return SPRING_OK;
-    if (strcmp(way, "lower order") ==
-        0) /* RK4 becomes leapfrog, leapfrog becomes Euler, Euler a shorter run */
-        return m == SPRING_EULER ? spring_scene_advance(s, m, dt, n - 1)
-                                 : spring_scene_advance(s, (spring_method)(m - 1), dt, n);
+    if (strcmp(way, "lower order") == 0) { /* and the lowest a shorter run */
+        const spring_method lower = next_lower(m);
+        return lower == m ? spring_scene_advance(s, m, dt, n - 1) : spring_scene_advance(s, lower, dt, n);
+    }
     const spring_status status = spring_scene_advance(s, m, dt, n);
     if (strcmp(way, "x off") == 0)
         scale(s, SPRING_POSITION, 1 + 1e-5);
