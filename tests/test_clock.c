@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "test_methods.h"
 
 static void whole_frames(void)
 {
@@ -75,6 +76,35 @@ static void nothing_is_dropped_without_need(void)
     }
 }
 
+/* A goal jumps, and what is drawn between the last two states does not: x is the position, of which load = stiffness goal
+   changes nothing until time passes. */
+static void drawn_while_the_goal_jumps(void)
+{
+    const double dt = 1.0 / 240, frame = 1.5 * dt, goal = 100;
+    spring_params p = spring_params_hertz(2, 0.5);
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+        spring_clock clock = {0};
+        spring_state previous = {0, 0}, now = previous;
+        double drawn = 0, time = 0; /* [s] since the jump */
+        for (int i = 0; i < 20; i++) {
+            const bool jumped = i >= 4;
+            p.load = jumped ? p.stiffness * goal : 0;
+            double alpha = -1;
+            for (uint64_t n = spring_clock_tick(&clock, frame, dt, 8, &alpha); n > 0; n--) {
+                previous = now;
+                CHECK(spring_advance(&now, &p, *m, dt, 1) == SPRING_OK, "a step");
+                time += jumped ? dt : 0;
+            }
+            const double before = drawn;
+            drawn = previous.x + alpha * (now.x - previous.x);
+            CHECK(drawn >= before && drawn <= now.x, "between where it was and where it is");
+            CHECK(drawn <= p.stiffness / p.mass * goal * time * time,
+                  "twice what this acceleration can do so far");
+        }
+        CHECK(drawn > 0.01 * goal && drawn < 0.5 * goal, "under way");
+    }
+}
+
 static void refuse(spring_clock start, double frame_dt, double dt, const char *why)
 {
     spring_clock clock = start;
@@ -108,6 +138,7 @@ int main(void)
         {"dropped time", dropped_time},
         {"nothing is lost", nothing_is_lost},
         {"nothing is dropped without need", nothing_is_dropped_without_need},
+        {"drawn while the goal jumps", drawn_while_the_goal_jumps},
         {"bad input", bad_input},
     };
     return RUN_TESTS("clock", tests);

@@ -79,6 +79,21 @@ static double size(void)
 
 /* ---------------------------------------------------------------------------------------------------- definitions */
 
+static bool for_scenes(int m)
+{
+    const spring_method_info *info = spring_method_describe((spring_method)m);
+    return info != NULL && info->scenes;
+}
+
+/* As bits. */
+static uint32_t scene_methods(void)
+{
+    uint32_t all = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        all |= for_scenes(m) ? 1u << m : 0;
+    return all;
+}
+
 typedef struct definition {
     spring_scene_def def;
     double position[3 * most_particles], velocity[3 * most_particles], mass[most_particles];
@@ -198,7 +213,7 @@ static void define(definition *d)
     const uint32_t axes = choose(5), what = take();
     wild = choose(4) == 0;
     d->def.flags = choose(9);
-    d->def.methods = choose(4) == 3 ? choose(17) : choose(8);
+    d->def.methods = choose(4) == 3 ? choose(2u << SPRING_METHOD_COUNT) : take() & scene_methods();
     d->def.axes = axes == 4 && choose(8) > 0 ? 1 : axes;
     if (what & 1)
         grid(d);
@@ -290,7 +305,7 @@ typedef struct life {
     definition *d;
     place one, other;
     uint32_t axes;
-    bool broken; /* an advance without undo has failed */
+    bool broken; /* an advance without rollback has failed */
 } life;
 
 /* The other one becomes a copy, as a snapshot is taken. */
@@ -310,7 +325,7 @@ static void must_agree(const life *l)
 static void advance(life *l)
 {
     static state before, after;
-    const spring_method m = (spring_method)((int)choose(6) - 1);
+    const spring_method m = (spring_method)((int)choose(SPRING_METHOD_COUNT + 2) - 1);
     const double dt = choose(4) == 0 ? number() : number() / 64;
     const uint64_t n = choose(20);
     look(l->one.s, l->d, &before);
@@ -480,10 +495,9 @@ static void ask(const life *l)
 {
     const spring_scene_energies e = spring_scene_energy(l->one.s);
     must(!(e.kinetic < 0) && !(e.elastic < 0), "energies of motion and of springs are not negative");
-    for (int m = -1; m < 5; m++) {
+    for (int m = -1; m <= SPRING_METHOD_COUNT; m++) {
         const double step = spring_scene_stable_step(l->one.s, (spring_method)m);
-        must(m >= SPRING_EULER && m <= SPRING_RK4 ? step >= 0 : isnan(step),
-             "a step, 0 or infinite; NaN for no method");
+        must(for_scenes(m) ? step >= 0 : isnan(step), "a step, 0 or infinite; NaN for no method");
     }
     must(isnan(spring_scene_tension(l->one.s, l->d->def.links)), "there are no more links");
     const double v_tol = size(), a_tol = size();
@@ -498,7 +512,8 @@ static void goes_on_alike(life *l, const place *p)
     const double dt = 1.0 / 64;
     copy_over(l);
     const spring_status status = spring_scene_advance(l->other.s, SPRING_LEAPFROG, dt, 3);
-    must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status || !isfinite(spring_scene_time(l->one.s) + 3 * dt),
+    must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status ||
+             !isfinite(spring_scene_time(l->one.s) + 3 * dt),
          "the same answer");
     look(l->other.s, l->d, &old);
     look(p->s, l->d, &made);
@@ -576,7 +591,7 @@ static bool check_definition(const definition *d, size_t *bytes)
     scene *s = (scene *)1;
     uint64_t tiny[SPRING_SCENE_ALIGN / sizeof(uint64_t)];
     const spring_status status = spring_scene_check(&d->def, &field, &index);
-    must((field == NULL) == (status == SPRING_OK), "the culprit is named");
+    must((field == NULL) == (status == SPRING_OK), "the error is named");
     must(index == 0 || index < d->def.particles || index < d->def.links || index < 3, "and where it is");
     must(spring_scene_bytes(&d->def, bytes) == status, "bytes() agrees with check()");
     if (status == SPRING_OK) {
@@ -585,7 +600,8 @@ static bool check_definition(const definition *d, size_t *bytes)
     }
     must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
          "no other status");
-    must(spring_scene_init(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL, "no scene of a bad definition");
+    must(spring_scene_init(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL,
+         "no scene of a bad definition");
     return false;
 }
 
@@ -600,9 +616,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
         return 0;
     life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
     l.axes = d.def.axes == 0 ? 3 : d.def.axes;
-    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM &&
+             l.one.s == NULL,
          "too small");
-    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN &&
+             l.one.s == NULL,
          "not aligned");
     check_guards(&l.one);
     must(spring_scene_init(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&
