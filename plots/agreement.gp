@@ -2,25 +2,21 @@
 # How near every check came to failing: its error as a fraction of the bound it had to meet, a dot a row of the table. A
 # dot to the right of the line would be a failure, and would have stopped the report. Errors below a hundred-millionth of
 # their bound, or of 0, are drawn on the left edge.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 1040
-call plots."need.gp" ARG2 "method witness error bound"
-array witnesses[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" "990 + 24*key_rows"
+call plots."need.gp" ARG3 "method witness error bound"
+array kinds[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
     "definition", "modes", "reduced-mass", "digits", "formula", "dispersion"]
-array names[15] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nclosed form", "solution,\ndriven", \
+array titles[15] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nexact", "solution,\ndriven", \
     "RK4 of GSL", "RK4 of\nARKODE", "GSL rk8pd", "CVODE\nAdams", "CVODE BDF", \
     "scene, second\nprogram", "scene,\nmodes", "scene,\nreduced mass", "scene,\ndigits", "scene,\nformula", "scene,\ndispersion"]
-rows = |witnesses|
+rows = |kinds|
 least = 1e-8
 
-# The second row of the two that share a witness is the closed form's.
-belongs(i) = strcol("witness") eq witnesses[i] && (i != 2 || strcol("method") ne "exact") && (i != 3 || strcol("method") eq "exact")
+# The second row of the two that share a reference is the exact solution's.
+belongs(i) = strcol("witness") eq kinds[i] && (i != 2 || strcol("method") ne "exact") && (i != 3 || strcol("method") eq "exact")
 fraction = 0.6180339887498949 # spreads the dots of a line evenly, whatever their number
 height_in_row(row) = 0.6*(fraction*row - floor(fraction*row) - 0.5)
 shown(i) = belongs(i) ? (column("error") > least*column("bound") ? column("error")/column("bound") : least) : NaN
-
-array methods[4] = ["euler", "leapfrog", "rk4", "exact"]
-array titles[4] = ["Euler", "leapfrog", "RK4", "closed form"]
-array marks[4] = [7, 5, 9, 6]
 
 set logscale x
 set xrange [0.5*least:3]
@@ -31,15 +27,13 @@ set mxtics 1
 set xlabel "error / bound"
 set ytics ()
 do for [i = 1:rows] {
-    set ytics add (names[i] i)
+    set ytics add (titles[i] i)
 }
-unset key
-set tmargin 4
-do for [m = 1:4] {
-    set label titles[m] at screen 0.12 + 0.5*((m - 1)%2),0.985 - 0.028*((m - 1)/2) point linetype m pointtype marks[m] offset 1,0
-}
+set key @method_key
 set lmargin 13
 set arrow from 1,0.5 to 1,rows + 0.5 nohead linetype theory dashtype solid
+set linetype exact pointtype 6 # more easily seen than a cross
 set output ARG1
-plot for [m = 1:4] for [i = 1:rows] ARG2 using (strcol("method") eq methods[m] ? shown(i) : NaN):(i + height_in_row($0)) \
-         with points linetype m pointtype marks[m] pointsize 0.6
+plot for [m = 1:methods] for [i = 1:rows] ARG3 using (strcol("method") eq names[m] ? shown(i) : NaN):(i + height_in_row($0)) \
+         with points linetype types[m] pointsize 0.6 notitle, \
+     for [m = 1:methods] NaN with points linetype types[m] title labels[m]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The cloth of the figure above, as fast as it falls.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 360 4
-call plots."grid.gp" ARG2
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 360 4
+call plots."grid.gp" ARG3 1
 unset key
 unset border
 unset tics
@@ -16,5 +16,5 @@ set output ARG1
 do for [f = 0:frames - 1] {
     set label 1 sprintf("%.2f s", time_at(f)) at screen 0.03,0.93
     splot sample [u=0:edge-1][v=0:edge-1] '++' using (x_at(f, $1, $2)):(y_at(f, $1, $2)):(z_at(f, $1, $2)) \
-          with lines linetype leapfrog linewidth 1 dashtype solid
+          with lines linetype types[1] linewidth 1 dashtype solid
 }

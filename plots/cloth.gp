@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
 # A cloth of 25 × 25 particles, held at two corners and let go level, moved by leapfrog in steps of a tenth of a frame,
 # 1/600 s.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 470
-call plots."need.gp" ARG2 "t_s"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 470
+call plots."need.gp" ARG3 "t_s"
 instants = "0.2 0.4 0.6 0.8 1.2 2" # [s]
 array firsts[words(instants)]
 do for [i = 1:words(instants)] {
     seconds = word(instants, i)
-    call plots."instant.gp" ARG2 seconds
+    call plots."instant.gp" ARG3 seconds
     firsts[i] = first
 }
-call plots."grid.gp" ARG2
+call plots."grid.gp" ARG3 1
 
 unset key
 unset border
@@ -31,6 +31,6 @@ do for [i = 1:words(instants)] {
     set origin (i - 1)%3/3.0 - 0.1,0.25 - 0.5*((i - 1)/3)
     set label 1 word(instants, i)." s" at screen (i - 1)%3/3.0 + 0.03,0.96 - 0.5*((i - 1)/3)
     splot sample [u=0:edge-1][v=0:edge-1] '++' using (x_at(f, $1, $2)):(y_at(f, $1, $2)):(z_at(f, $1, $2)) \
-          with lines linetype leapfrog linewidth 0.7 dashtype solid
+          with lines linetype types[1] linewidth 0.7 dashtype solid
 }
 unset multiplot

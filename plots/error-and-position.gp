@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-# Position and error over the last ten seconds of the long run. Dotted lines stand at the turning points. Euler's error is
-# an amplitude that grew: it is greatest there, and zero where the spring passes its rest position. Leapfrog's is a clock
-# that runs fast: it is zero at the turning points and greatest where the spring is fastest. What RK4 shows is rounding.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 700
-array runs[3] = [ARG2, ARG3, ARG4]
-array names[3] = ["Euler", "leapfrog", "RK4"]
-array exponents[3] = [-2, -7, -14]
-array tics[3] = [3, 2, 5]
-do for [m = 1:3] {
-    call plots."need.gp" runs[m] "t_s x_m exact_x_m"
+# Position and error over the last ten seconds of the long run, each error on a scale of its own. Dotted lines stand at
+# the turning points. Euler's error is an amplitude that grew: it is greatest there, and zero where the spring passes its
+# rest position. Leapfrog's is a clock that runs fast: it is zero at the turning points and greatest where the spring is
+# fastest. What RK4 shows is rounding.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "235 + 155*methods"
+runs = ARG3
+call plots."need.gp" runs "t_s x_m exact_x_m" methods
+array exponents[methods]
+array largest[methods] # in units of that power of ten
+do for [m = 1:methods] {
+    stats file(runs, m) using (abs(column("x_m") - column("exact_x_m"))) nooutput
+    exponents[m] = STATS_max > 0 ? floor(log10(STATS_max)) : 0
+    largest[m] = STATS_max > 0 ? STATS_max/10.0**exponents[m] : 1
 }
 
 set xrange [990:1000]
@@ -19,22 +22,22 @@ do for [half_periods = 316:318] {
     set arrow from half_periods*pi,graph 0 to half_periods*pi,graph 1 nohead linetype theory
 }
 set output ARG1
-set multiplot layout 4,1 margins 0.17,0.94,0.13,0.96 spacing 0.06
+set multiplot layout methods + 1,1 margins 0.17,0.94,75.0/height,1 - 30.0/height spacing 0,40.0/height
 set ylabel "position / m"
 set yrange [-1.5:1.5]
 set ytics 1
-set label 1 "exact" at graph 0.01,1.12
-plot runs[euler] using "t_s":"exact_x_m" with lines linetype exact
-set yrange [*:*]
-do for [m = 1:3] {
+set label 1 "exact" at graph 0.01,1.13
+plot file(runs, 1) using "t_s":"exact_x_m" with lines linetype exact
+do for [m = 1:methods] {
     unit = 10.0**exponents[m]
     set ylabel sprintf("error / 10^{%d} m", exponents[m])
-    set ytics tics[m]
-    set label 1 names[m] at graph 0.01,1.12 textcolor linetype m
-    if (m == 3) {
+    set yrange [-1.2*largest[m]:1.2*largest[m]]
+    set ytics largest[m] < 2 ? 1 : largest[m] < 5 ? 2 : 5
+    set label 1 labels[m] at graph 0.01,1.13 textcolor linetype types[m]
+    if (m == methods) {
         set format x
         set xlabel "time / s"
     }
-    plot runs[m] using "t_s":((column("x_m") - column("exact_x_m"))/unit) with lines linetype m dashtype solid
+    plot file(runs, m) using "t_s":((column("x_m") - column("exact_x_m"))/unit) with lines linetype types[m] dashtype solid
 }
 unset multiplot

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 # The water of the figure above, poked in the middle, a picture for each step of 2 ms, slowed down fifty times. What is
 # above or below 50 cm is drawn there.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 270 10
-call plots."grid.gp" ARG2 ARG3 ARG4
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "40 + 230*((methods + 2)/3)" 10
+call plots."grid.gp" ARG3 methods
 call plots."water-surface.gp"
-array names[3] = ["Euler", "leapfrog", "RK4"]
 most = 0.5 # [m]
 exploded = 1 # [m] from here on a surface is no longer one
 shown(z) = z > most ? most : z < -most ? -most : z
@@ -15,13 +14,13 @@ set cbrange [-0.15:0.15]
 set view 62,30,1.1,0.8
 set output ARG1
 do for [t = 0:frames - 1] {
-    set multiplot layout 1,3 margins 0.05,0.95,0.05,0.85 spacing 0.08
-    set label 4 sprintf("%.0f ms", 1000*time_at(t)) at screen 0.5,0.07 center front
-    do for [m = 1:3] {
+    set multiplot layout (methods + 2)/3,3 margins 0.05,0.95,30.0/height,1 - 45.0/height spacing 0.08,70.0/height
+    set label 4 sprintf("%.0f ms", 1000*time_at(t)) at screen 0.5,20.0/height center front
+    do for [m = 1:methods] {
         f = (m - 1)*frames + t
-        set label 1 names[m] at screen (m - 0.5)/3,0.93 center front
+        set label 1 labels[m] at graph 0.5,graph 0.5,graph 1 center offset 0,3.2 front
         set label 2 highest_at(f) > exploded ? "exploded: ".metres(highest_at(f)) : "" \
-            at screen (m - 0.5)/3,0.84 center front
+            at graph 0.5,graph 0.5,graph 1 center offset 0,2.2 front
         splot sample [u=0:edge-1][v=0:edge-1] '++' \
               using (x_at(f, $1, $2)):(y_at(f, $1, $2)):(shown(z_at(f, $1, $2))) with pm3d
     }

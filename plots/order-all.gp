@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-# The errors of all three methods with the lines of theory: called by order.gp and readme.gp.
+# The errors of several methods with the lines of theory: called by order.gp and readme.gp.
 #
-#     call plots."order-all.gp" OUTPUT COLUMN ERRORS... FITS...    three of each: Euler, leapfrog, RK4
+#     call plots."order-all.gp" OUTPUT COLUMN "ERRORS..." "FITS..."    a file of each for every method
 #
-# COLUMN is the horizontal axis: n, or force_evaluations, of which RK4 makes four a step and the others one.
+# COLUMN is the horizontal axis: n, or force_evaluations. Where theory says nothing of a method it has no line.
 
-array errors[3] = [ARG3, ARG4, ARG5]
-array fits[3] = [ARG6, ARG7, ARG8]
-array names[3] = ["Euler", "leapfrog", "RK4"]
-array orders[3] = [1, 2, 4]
-array a_step[3] = [1, 1, ARG2 eq "n" ? 1 : 4]
-array constants[3]
-do for [m = 1:3] {
-    call plots."need.gp" errors[m] "n force_evaluations error_m"
-    call plots."need.gp" fits[m] "theory_coefficient_m"
-    stats fits[m] using "theory_coefficient_m" nooutput
+errors = ARG3
+fits = ARG4
+call plots."need.gp" errors "n force_evaluations error_m" methods
+call plots."need.gp" fits "theory_coefficient_m" methods
+array constants[methods]
+array a_step[methods]
+do for [m = 1:methods] {
+    STATS_max = NaN
+    stats file(fits, m) using "theory_coefficient_m" nooutput
     constants[m] = STATS_max
+    a_step[m] = ARG2 eq "n" ? 1 : forces[m]
 }
 law(m, x) = constants[m] * (x / a_step[m])**-orders[m]
 
@@ -32,11 +32,9 @@ set format y "10^{%T}"
 set ytics 1e3
 set mytics 1
 set ylabel "error in position / m"
-unset key
-do for [m = 1:3] {
-    set label m names[m] at 200,law(m, 200) offset character 1,0.9 textcolor linetype m
-}
+set key @method_key
 set output ARG1
-plot for [m = 1:3] law(m, x) with lines linetype theory, \
-     for [m = 1:3] errors[m] using ARG2:"error_m" with lines linetype m, \
-     for [m = 1:3] last = -1, errors[m] using (spaced(column(ARG2))):"error_m" with points linetype m
+plot for [m = 1:methods] law(m, x) with lines linetype theory notitle, \
+     for [m = 1:methods] file(errors, m) using ARG2:"error_m" with lines linetype types[m] notitle, \
+     for [m = 1:methods] last = -1, file(errors, m) using (spaced(column(ARG2))):"error_m" with points linetype types[m] notitle, \
+     for [m = 1:methods] NaN with linespoints linetype types[m] title labels[m]

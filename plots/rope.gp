@@ -3,16 +3,15 @@
 # with leapfrog in steps of 0.1 ms, every quarter of a second. Middle: what Euler makes of it in the same steps, and
 # leapfrog in steps of 0.25 ms, just above its stable step; the rope is torn apart before it has begun to fall. Dotted:
 # where the particles belong. Bottom: the energy of the rope at the top, without drag; the sum stays what it was.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 900
-call plots."need.gp" ARG2 "t_s energy_J kinetic_J elastic_J gravity_J"
-do for [file in ARG3." ".ARG4." ".ARG5] {
-    call plots."need.gp" file "t_s particle x_m z_m"
-}
-energies = ARG2
-swing = ARG3
-array torn[2] = [ARG4, ARG5]
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 900
+call plots."need.gp" ARG3 "t_s energy_J kinetic_J elastic_J gravity_J"
+call plots."need.gp" ARG4." ".ARG5 "t_s particle x_m z_m" 3
+energies = ARG3
+swing = ARG4
+array torn[2] = [word(ARG5, 1), word(ARG5, 2)]
 array after[2] = [0.012, 0.01] # [s]
-array names[2] = ["Euler, 12 ms", "leapfrog, 10 ms"]
+array of[2] = ["euler", "leapfrog"]
+leapfrog = types[1]
 
 array firsts[7]
 do for [t = 1:7] {
@@ -66,10 +65,10 @@ set ylabel "x / m"
 do for [i = 1:2] {
     set lmargin at screen 0.17 + 0.41*(i - 1)
     set rmargin at screen 0.55 + 0.41*(i - 1)
-    set label 1 names[i] at graph 0.5,1.1 center
+    set label 1 sprintf("%s, %.0f ms", label_of(of[i]), 1000*after[i]) at graph 0.5,1.1 center
     plot length*x/last_particle with lines linetype theory, \
          torn[i] every ::torn_first[i]::torn_first[i] + last_particle using "particle":"x_m" \
-         with linespoints linetype i dashtype solid linewidth 1.5 pointtype 7 pointsize 0.5
+         with linespoints linetype linetype_of(of[i]) dashtype solid linewidth 1.5 pointtype 7 pointsize 0.5
     unset ylabel
     set format y ""
 }

@@ -3,15 +3,13 @@
 # from eight starts. With a step of 1/128 s leapfrog's coefficient dt ω²/2 is exact, and errors that point anywhere grow
 # like √n; with 0.01 s it is rounded, once for all steps, and errors that all point the same way grow like n. Compensated
 # sums take away most of the first kind, and nothing of the second.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 900
-array plain[3] = [ARG2, ARG4, ARG6]
-array compensated[3] = [ARG3, ARG5, ARG7]
-array titles[3] = ["leapfrog, dt = 1/128 s", "RK4, dt = 1/128 s", "leapfrog, dt = 0.01 s"]
-array colours[3] = [leapfrog, rk4, leapfrog]
-do for [i = 1:3] {
-    call plots."need.gp" plain[i] "steps state_error"
-    call plots."need.gp" compensated[i] "steps state_error"
-}
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 900
+plain = ARG3
+compensated = ARG4
+call plots."need.gp" plain "steps state_error" 3
+call plots."need.gp" compensated "steps state_error" 3
+array titles[3] = [labels[1].", dt = 1/128 s", labels[2].", dt = 1/128 s", labels[1].", dt = 0.01 s"]
+array colours[3] = [types[1], types[2], types[1]]
 epsilon = 2.0**-52
 
 set logscale xy
@@ -37,8 +35,8 @@ do for [i = 1:3] {
         set xlabel "steps n"
     }
     plot epsilon*sqrt(x) with lines linetype theory notitle, epsilon*x with lines linetype theory notitle, \
-         plain[i] using "steps":"state_error" with points linetype colours[i] pointsize 0.7 title "plain sums, as in the library", \
-         compensated[i] using "steps":"state_error" with points linetype exact pointtype 6 pointsize 0.9 title "compensated sums"
+         file(plain, i) using "steps":"state_error" with points linetype colours[i] pointsize 0.7 title "plain sums, as in the library", \
+         file(compensated, i) using "steps":"state_error" with points linetype exact pointtype 6 pointsize 0.9 title "compensated sums"
     unset key
 }
 unset multiplot

@@ -3,31 +3,30 @@
 # ms; from then on it should stay what it is, the dotted line, from leapfrog in steps of 0.02 ms. Euler gains without
 # end. RK4 loses, fast at first, while there are short waves. Leapfrog swings about the truth, by up to 4 % with so long
 # a step, and does not drift.
-call system("dirname '".ARG0."'")."/style.gp" ARG1
-array files[4] = [ARG2, ARG3, ARG4, ARG5]
-do for [i = 1:4] {
-    call plots."need.gp" files[i] "t_s energy_J"
-}
-stats files[euler] using "t_s":"energy_J" nooutput
-euler_time = STATS_max_x
-euler_energy = STATS_max_y
-power = floor(log10(euler_energy))
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "390 + 24*((methods + 2)/2)"
+energies = ARG3
+call plots."need.gp" energies "t_s energy_J" methods
+call plots."need.gp" ARG4 "t_s energy_J"
 
 kilojoule(y) = y/1000
+top = 24 # [kJ]
 set logscale x
 set xrange [0.004:4]
-set yrange [0:24]
+set yrange [0:top]
 set xtics ("0.01" 0.01, "0.1" 0.1, "1" 1)
 set xlabel "time / s"
 set ylabel "energy / kJ"
-unset key
-set label sprintf("Euler: %.0f⋅10^{%d} kJ\nafter %.2g s", euler_energy/10**power, power - 3, euler_time) \
-    at 0.022,22.5 textcolor linetype euler
-set label "leapfrog" at 1,17 center textcolor linetype leapfrog
-set label "RK4" at 0.5,8.5 center textcolor linetype rk4
+set key @method_key
 set output ARG1
-plot files[leapfrog] using "t_s":(kilojoule(column("energy_J"))) \
-         with lines linetype leapfrog linewidth 0.7 dashtype solid, \
-     files[rk4] using "t_s":(kilojoule(column("energy_J"))) with lines linetype rk4, \
-     files[euler] using "t_s":(kilojoule(column("energy_J"))) with lines linetype euler, \
-     files[4] using "t_s":(kilojoule(column("energy_J"))) with lines linetype theory
+
+# What leaves the picture says so in the key.
+array exploded[methods]
+do for [m = 1:methods] {
+    stats file(energies, m) using "energy_J" nooutput
+    exploded[m] = kilojoule(STATS_max) > 10*top
+}
+shown(y) = y < 10*top ? y : 10*top
+plot for [m = 1:methods] file(energies, m) using "t_s":(shown(kilojoule(column("energy_J")))) \
+         with lines linetype types[m] linewidth (symplectic[m] ? 0.7 : 2) dashtype solid \
+         title labels[m].(exploded[m] ? ": explodes" : ""), \
+     ARG4 using "t_s":(kilojoule(column("energy_J"))) with lines linetype theory title "true energy"

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-# The look of every figure: call it first, with the output file and, where 390 is not enough, the height in pixels.
+# The look of every figure, and its methods: call it first, with the output file, the table of the methods, which of
+# them the figure shows (see methods.gp) and, where 390 is not enough, the height in pixels, an expression that may
+# depend on the number of methods.
 #
-#     call system("dirname '".ARG0."'")."/style.gp" ARG1
+#     call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + 24*key_rows"
 #
 # An animation gives the height, and then the time of each of its frames in hundredths of a second.
 #
@@ -12,14 +14,38 @@ plots = system("dirname '".ARG0."'")."/"
 set encoding utf8
 set datafile separator tab
 
+# One line type a method, by its place in the table: colour (Okabe and Ito's palette, told apart by colour-blind eyes,
+# its yellow darkened to be seen on white), dash and marker. The exact solution is black wherever it stands.
+# page.py reads these lines, for the page has other colours in the dark.
+exact = 8
+theory = 9
+grid = 10
+page = 11
+set linetype 1      linecolor rgb "#D55E00" linewidth 2.5 dashtype solid          pointtype 7  pointsize 0.8
+set linetype 2      linecolor rgb "#CC79A7" linewidth 2.5 dashtype (16,3)         pointtype 13 pointsize 1
+set linetype 3      linecolor rgb "#0072B2" linewidth 2.5 dashtype (12,4)         pointtype 5  pointsize 0.8
+set linetype 4      linecolor rgb "#009E73" linewidth 2.5 dashtype (8,3,2,3)      pointtype 9  pointsize 1
+set linetype 5      linecolor rgb "#E69F00" linewidth 2.5 dashtype (5,3)          pointtype 11 pointsize 1
+set linetype 6      linecolor rgb "#56B4E9" linewidth 2.5 dashtype (12,3,2,3,2,3) pointtype 15 pointsize 0.9
+set linetype 7      linecolor rgb "#A89A00" linewidth 2.5 dashtype (8,3,5,3)      pointtype 3  pointsize 0.9
+set linetype exact  linecolor rgb "#000000" linewidth 1.5 dashtype solid          pointtype 1
+set linetype theory linecolor rgb "#767676" linewidth 1.5 dashtype (3,3)          pointtype 2
+set linetype grid   linecolor rgb "#D9D9D9" linewidth 0.5 dashtype solid
+set linetype page   linecolor rgb "#FFFFFF"
+
+call plots."methods.gp" ARG2 ARG3
+
 width = 520
-height = ARGC > 1 ? int(ARG2) : 390
+height = 390
+if (ARGC > 3) {
+    eval "height = int(".ARG4.")"
+}
 suffix = ARG1[strstrt(ARG1, ".") > 0 ? strlen(ARG1) - 3 : 1 : *]
-if (ARGC > 2) {
+if (ARGC > 4) {
     if (suffix ne ".gif") {
         exit error "\"".ARG1."\": an animation is written to a file that ends in .gif"
     }
-    set terminal gif animate delay int(ARG3) loop 0 optimize size width,height enhanced font "DejaVu Sans,13"
+    set terminal gif animate delay int(ARG5) loop 0 optimize size width,height enhanced font "DejaVu Sans,13"
 } else { if (suffix eq ".svg") {
     set terminal svg size width,height enhanced font "sans-serif,18" dashlength 0.7
 } else { if (suffix eq ".png") {
@@ -30,24 +56,10 @@ if (ARGC > 2) {
     exit error "\"".ARG1."\": a figure is written to a file that ends in .svg, .png or .pdf"
 }}}}
 
-# One line type a method, by its name: colour (Okabe and Ito's palette, told apart by colour-blind eyes), dash and marker.
-# page.py reads these lines, for the page has other colours in the dark.
-euler = 1
-leapfrog = 2
-rk4 = 3
-exact = 4
-theory = 5
-grid = 6
-page = 7
-set linetype euler    linecolor rgb "#D55E00" linewidth 2.5 dashtype solid   pointtype 7  pointsize 0.8
-set linetype leapfrog linecolor rgb "#0072B2" linewidth 2.5 dashtype (12,4)  pointtype 5  pointsize 0.8
-set linetype rk4      linecolor rgb "#009E73" linewidth 2.5 dashtype (8,3,2,3) pointtype 9 pointsize 1
-set linetype exact    linecolor rgb "#000000" linewidth 1.5 dashtype solid   pointtype 1
-set linetype theory   linecolor rgb "#767676" linewidth 1.5 dashtype (3,3)   pointtype 2
-set linetype grid     linecolor rgb "#D9D9D9" linewidth 0.5 dashtype solid
-set linetype page     linecolor rgb "#FFFFFF"
-
 set grid linetype grid
 set border 3 linecolor rgb "#000000"
 set tics nomirror scale 0.6
 set key samplen 2.5 spacing 1.15
+
+# set key @method_key: above the picture, two columns; key_rows lines of letters, 24 pixels each, for all methods.
+method_key = "tmargin center horizontal Left reverse samplen 2 maxcols 2"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Rain on the water, and a box after a quarter of a second, slowed down five times; heights are exaggerated. Leapfrog,
 # two steps of 4 ms for each picture; links of 1000 N/m, drag 4 N s/m.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 320 4
-call plots."grid.gp" ARG2
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 320 4
+call plots."grid.gp" ARG3 1
 call plots."water-surface.gp"
 set zrange [-0.3:0.3]
 set cbrange [-0.12:0.12]

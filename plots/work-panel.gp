@@ -2,22 +2,17 @@
 # Error against run time on one problem, every solver: called by work-springs.gp and work-scenes.gp.
 #
 #     call plots."work-panel.gp" FILE                  before the first panel: checks the file, sets what panels share
-#     call plots."work-panel.gp" FILE PROBLEM TITLE CLOSED      CLOSED: 1 where there is a closed form, or 0
+#     call plots."work-panel.gp" FILE PROBLEM TITLE EXACT       EXACT: 1 where there is an exact solution, or 0
 
-array solvers[8] = ["euler", "leapfrog", "rk4", "gsl-rk4", "gsl-rk8pd", "arkode-adaptive", "cvode-adams", "cvode-bdf"]
-array titles[8] = ["Euler", "leapfrog", "RK4", "GSL rk4", "GSL rk8pd", "ARKODE, order 4", "CVODE Adams", "CVODE BDF"]
-array markers[8] = [7, 5, 9, 4, 6, 8, 2, 1]
+array solvers[5] = ["gsl-rk4", "gsl-rk8pd", "arkode-adaptive", "cvode-adams", "cvode-bdf"]
+array titles[5] = ["GSL rk4", "GSL rk8pd", "ARKODE, order 4", "CVODE Adams", "CVODE BDF"]
+array markers[5] = [4, 6, 8, 2, 1]
 work = ARG1
 panel = ARG2
 is(solver) = strcol("problem") eq panel && strcol("effort") eq "sweep" && strcol("solver") eq solver
 least = 1e-16
 drawn(error) = error > least ? error : least
 seconds(solver) = is(solver) ? column("time_s") : NaN
-
-# A macro, which has to be there before the block that uses it is read.
-closed = ARG4 eq "1" ? 'work using (seconds("exact")):(drawn(column("error"))) title "closed form" with points ' \
-                       .'linetype exact pointtype 3 pointsize 1.4' \
-                     : 'NaN with points linetype page title " "'
 
 if (ARGC == 1) {
     call plots."need.gp" work "problem solver effort time_s error"
@@ -30,14 +25,16 @@ if (ARGC == 1) {
     set mxtics 1
     set mytics 1
     set ylabel "error / size of the motion"
-    set key at screen 0.05,0.997 left top Left reverse samplen 1.5 maxcols 2 maxrows 5
+    set key at screen 0.5,1 - 4.0/height center top horizontal Left reverse samplen 2 maxcols 2
 } else {
+    with_exact = int(ARG4)
     set title ARG3 offset 0,-0.6
-    plot for [s = 1:3] NaN with linespoints linetype s dashtype solid pointsize 0.6 title titles[s], \
-         @closed, \
-         NaN with points linetype page title " ", \
-         for [s = 4:8] work using (seconds(solvers[s])):(drawn(column("error"))) with linespoints linetype theory \
-             dashtype solid linewidth 0.8 pointtype markers[s] pointsize 0.6 title titles[s], \
-         for [s = 1:3] work using (seconds(solvers[s])):(drawn(column("error"))) with linespoints linetype s \
-             linewidth 1.5 dashtype solid pointsize 0.6 notitle
+    plot for [s = 1:5] work using (seconds(solvers[s])):(drawn(column("error"))) with linespoints linetype theory \
+             dashtype solid linewidth 0.8 pointtype markers[s] pointsize 0.6 notitle, \
+         for [m = 1:methods] work using (seconds(names[m])):(drawn(column("error"))) with linespoints linetype types[m] \
+             linewidth 1.5 dashtype solid pointsize 0.6 title labels[m], \
+         work using (with_exact ? seconds("exact") : NaN):(drawn(column("error"))) with points linetype exact pointtype 3 \
+             pointsize 1.4 title with_exact ? label_of("exact") : "", \
+         for [s = 1:5] NaN with linespoints linetype theory dashtype solid linewidth 0.8 pointtype markers[s] pointsize 0.6 \
+             title titles[s]
 }
