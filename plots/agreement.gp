@@ -2,7 +2,7 @@
 # How near every check came to failing: its error as a fraction of the bound it had to meet, a dot a row of the table. A
 # dot to the right of the line would be a failure, and would have stopped the report. Errors below a hundred-millionth of
 # their bound, or of 0, are drawn on the left edge.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" "990 + 24*key_rows"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" "990 + key_height(methods)"
 call plots."need.gp" ARG3 "method witness error bound"
 array kinds[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
     "definition", "modes", "reduced-mass", "digits", "formula", "dispersion"]
@@ -29,7 +29,7 @@ set ytics ()
 do for [i = 1:rows] {
     set ytics add (titles[i] i)
 }
-set key @method_key
+call plots."key.gp" methods
 set lmargin 13
 set arrow from 1,0.5 to 1,rows + 0.5 nohead linetype theory dashtype solid
 set linetype exact pointtype 6 # more easily seen than a cross

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # {method}: the error in energy against the time run. Grey: the law, where the text gives one.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(4)"
 synchronised = word(ARG4, 1)
 ahead = words(ARG4) > 1 ? word(ARG4, 2) : "" # with the velocity half a step ahead
 call plots."need.gp" ARG4 "duration_s steps energy_error_J"
@@ -37,7 +37,7 @@ set format xy "10^{%T}"
 set xtics 100
 set mxtics 1
 set mytics 1
-set key tmargin center vertical Left reverse samplen 2 maxcols 2
+call plots."key.gp" 4
 set output ARG1
 plot law(x) with lines linetype theory title law_title, \
      synchronised using "duration_s":(measured(column("energy_error_J"))) with points linetype type pointsize 1.2 \
@@ -46,4 +46,4 @@ plot law(x) with lines linetype theory title law_title, \
          title overflows ? "infinite" : "", \
      scatter with lines linetype theory dashtype (1,3) title ahead ne "" ? "E_0 z/2" : "", \
      word(ARG4, words(ARG4)) using (ahead ne "" ? column("duration_s") : NaN):"energy_error_J" \
-         with points linetype type pointtype 4 pointsize 1.2 title ahead ne "" ? "velocity half a step ahead" : ""
+         with points linetype type pointtype 4 pointsize 1.2 title ahead ne "" ? "half a step ahead" : ""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The last six hundredths of a second before the end of the long run. Methods whose markers lie inside each other, in
 # the rings of the exact solution, cannot be told apart; Euler's are beside them.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + 24*(methods/2)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods + 1)"
 runs = ARG3
 call plots."need.gp" runs "t_s x_m exact_x_m" methods
 
@@ -17,7 +17,8 @@ set format x "%.2f"
 set format y "%.2f"
 set yrange [0.56:0.68]
 set ytics 0.02
-set key @method_key
+entries = methods + 1
+call plots."key.gp" entries
 set output ARG1
 plot file(runs, 1) using (picked(column("t_s"))):"exact_x_m" with points linetype exact pointtype 6 pointsize 3 title "exact", \
      for [m = 1:methods] file(runs, m) using (picked(column("t_s"))):"x_m" \

@@ -40,5 +40,3 @@ place_of(name) = sum [p=1:place] (all_names[p] eq name ? p : 0)
 linetype_of(name) = all_types[place_of(name)]
 label_of(name) = all_labels[place_of(name)]
 file(list, m) = word(list, int(m))
-
-key_rows = (methods + 1)/2 # of a key with two columns

@@ -32,7 +32,7 @@ set format y "10^{%T}"
 set ytics 1e3
 set mytics 1
 set ylabel "error in position / m"
-set key @method_key
+call plots."key.gp" methods
 set output ARG1
 plot for [m = 1:methods] law(m, x) with lines linetype theory notitle, \
      for [m = 1:methods] file(errors, m) using ARG2:"error_m" with lines linetype types[m] notitle, \

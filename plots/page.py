@@ -116,23 +116,23 @@ def stem_of(path):
     return path.stem.removeprefix("quick-")
 
 
-def caption_of(stem):
-    """The comment that opens a figure's script, without the licence line."""
-    lines = (HERE / f"{stem}.gp").read_text(encoding="utf-8").splitlines()[1:]
+def caption_of(script, method):
+    """The comment that opens a figure's script, without the licence line, about the method where it is about one."""
+    lines = (HERE / f"{script}.gp").read_text(encoding="utf-8").splitlines()[1:]
     comment = []
     for line in lines:
         if not line.startswith("# "):
             break
         comment.append(line[2:])
     if not comment:
-        raise DataError(f"{stem}.gp: no caption in its first comment")
-    return " ".join(comment)
+        raise DataError(f"{script}.gp: no caption in its first comment")
+    return " ".join(comment).replace("{method}", method[:1].upper() + method[1:])
 
 
 def palette():
-    """The colours of the figures by name, from style.gp: {"euler": (213, 94, 0), ...}."""
+    """The colours of the figures by name, from style.gp: {"method-1": (213, 94, 0), "exact": (0, 0, 0), ...}."""
     lines = re.findall(r'^set linetype (\w+) +linecolor rgb "#(\w{6})"', (HERE / "style.gp").read_text(), re.MULTILINE)
-    return {name: tuple(bytes.fromhex(colour)) for name, colour in lines}
+    return {"method-" * name.isdigit() + name: tuple(bytes.fromhex(colour)) for name, colour in lines}
 
 
 def inline(path, label):
@@ -181,10 +181,10 @@ def make(arguments):
             raise DataError(f'no data file "{stem}"')
         return tables[stem]
 
-    def figure(stem):
+    def figure(stem, script=None, method=""):
         if stem not in pictures:
             raise DataError(f'no picture "{stem}"')
-        caption = caption_of(stem)
+        caption = caption_of(script or stem, method)
         used[f"<!-- picture {stem} -->"] = inline(pictures[stem], caption)
         return f'<figure id="{stem}">\n<!-- picture {stem} -->\n<figcaption>\n\n{caption}\n\n</figcaption>\n</figure>\n'
 
@@ -195,6 +195,9 @@ def make(arguments):
     jinja.globals.update(check=check, data=data, figure=figure, quick=arguments.quick, stems=sorted(tables))
 
     body = to_html(arguments.cmark, jinja.get_template("report.md.in").render())
+    for stem in pictures:
+        if f"<!-- picture {stem} -->" not in used:
+            raise DataError(f'picture "{stem}" is nowhere in the report')
     body = body.replace("<table>", '<div class="table"><table>').replace("</table>", "</table></div>")
     for mark, svg in used.items():
         body = body.replace(mark, svg)

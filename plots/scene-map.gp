@@ -11,13 +11,13 @@ array marks[4] = [7, 11, 9, 13]
 # Told apart by their shapes, too; to be seen on white and on black.
 array colours[4] = ["#2A86C8", "#9A7FC0", "#E08A00", "#DB4A38"]
 
-least = 0.055 # [ms] at the left
+least = 0.03 # [ms] at the left
 at(s, m) = (methods + 1)*(s - 1) + m
 row(s, m) = strcol("scene") eq scenes[s] && strcol("method") eq names[m]
 x(s, m, v) = row(s, m) && strcol("verdict") eq verdicts[v] ? 1000*column("dt_s") : NaN
 microseconds(step) = step > 0 ? sprintf("%.2g µs", 1e6*step) : "none"
 
-set xtics ("0.25" 0.25, "" 0.5, 1, 2, 4, 8, 16, 32)
+set xtics ("0.25" 0.25, "" 0.5, "1" 1, "" 2, "4" 4, "" 8, "16" 16, "" 32)
 set xlabel "step / ms"
 set ytics () scale 0
 longest = 0 # of the labels, in letters
@@ -33,7 +33,7 @@ do for [s = 1:5] {
         if (stable < least) {
             set label microseconds(stable/1000) at least,at(s, m) left offset 0.3,0
         } else {
-            set arrow from stable,at(s, m) - 0.5 to stable,at(s, m) + 0.5 nohead front linetype exact linewidth 3
+            set arrow from stable,at(s, m) - 0.4 to stable,at(s, m) + 0.4 nohead front linetype exact linewidth 3
         }
     }
 }

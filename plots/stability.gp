@@ -2,7 +2,7 @@
 # The largest stable step, as ω dt, over the damping ratio. Marks: found by taking steps and watching whether they grow,
 # without any formula. Lines: theory. Euler is stable only where there is damping, and best at critical damping; leapfrog
 # does not mind damping at all; RK4's limit rises before it falls.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + 24*key_rows"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 stability = ARG3
 call plots."need.gp" stability "method damping_ratio limit_measured limit_theory"
 
@@ -17,7 +17,7 @@ set xtics 10
 set mxtics 1
 set xlabel "damping ratio ζ"
 set ylabel "largest stable ω dt"
-set key @method_key
+call plots."key.gp" methods
 set output ARG1
 plot for [m = 1:methods] stability using "damping_ratio":(of(m, column("limit_theory"))) with lines linetype theory dashtype solid notitle, \
      for [m = 1:methods] stability using "damping_ratio":(of(m, column("limit_measured"))) with points linetype types[m] pointsize 0.45 \

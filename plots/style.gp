@@ -3,7 +3,7 @@
 # them the figure shows (see methods.gp) and, where 390 is not enough, the height in pixels, an expression that may
 # depend on the number of methods.
 #
-#     call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + 24*key_rows"
+#     call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 #
 # An animation gives the height, and then the time of each of its frames in hundredths of a second.
 #
@@ -37,6 +37,8 @@ call plots."methods.gp" ARG2 ARG3
 
 width = 520
 height = 390
+key_height(entries) = 24*((entries + 1)/2) # [px] of a key above the picture, see key.gp
+key_bottom(entries) = 1 - (20.0 + key_height(entries))/height
 if (ARGC > 3) {
     eval "height = int(".ARG4.")"
 }
@@ -60,6 +62,3 @@ set grid linetype grid
 set border 3 linecolor rgb "#000000"
 set tics nomirror scale 0.6
 set key samplen 2.5 spacing 1.15
-
-# set key @method_key: above the picture, two columns; key_rows lines of letters, 24 pixels each, for all methods.
-method_key = "tmargin center horizontal Left reverse samplen 2 maxcols 2"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The ideal spring after 10⁴ periods: error of the energy, relative to what it was, against run time. With long steps
 # RK4 loses all of it, while leapfrog's error depends on the step alone, not on how long the run is. Grey: GSL.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "470 + 24*key_rows"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "420 + key_height(methods + 3)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s energy_error"
 array others[3] = ["gsl-rk4", "gsl-rk8pd", "gsl-rk8pd-adaptive"]
@@ -19,7 +19,8 @@ set mxtics 1
 set mytics 1
 set xlabel "run time / s"
 set ylabel "error of the energy"
-set key @method_key
+entries = methods + 3
+call plots."key.gp" entries
 set output ARG1
 plot for [m = 1:methods] work using (seconds(names[m])):"energy_error" with linespoints linetype types[m] linewidth 1.5 \
          dashtype solid pointsize 0.6 title labels[m], \

@@ -2,7 +2,7 @@
 # The ideal spring after one period and after ten: error against force evaluations. Dotted: what theory says, exactly, of
 # Euler, leapfrog and RK4. The vertical line is where RK4 passes leapfrog. At the end rounding is all that is left, and
 # more steps make it more. Grey: GSL's rk4 and rk8pd.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "840 + 24*((methods + 3)/2)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "840 + key_height(methods + 2)"
 output = ARG1
 work = ARG3
 call plots."need.gp" work "problem solver effort force_evaluations error"
@@ -44,9 +44,10 @@ set ytics 1e3
 set mxtics 1
 set mytics 1
 set ylabel "error / size of the motion"
-set key at screen 0.5,1 - 4.0/height center top horizontal Left reverse samplen 2 maxcols 2
+entries = methods + 2
+call plots."key.gp" entries
 set output output
-set multiplot layout 2,1 margins 0.19,0.94,75.0/height,1 - (45.0 + 24*((methods + 3)/2))/height spacing 75.0/height
+set multiplot layout 2,1 margins 0.19,0.94,75.0/height,key_bottom(entries) - 35.0/height spacing 75.0/height
 do for [k = 1:2] {
     periods = lengths[k]
     panel = "ideal-".periods

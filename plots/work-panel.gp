@@ -25,7 +25,7 @@ if (ARGC == 1) {
     set mxtics 1
     set mytics 1
     set ylabel "error / size of the motion"
-    set key at screen 0.5,1 - 4.0/height center top horizontal Left reverse samplen 2 maxcols 2
+    call plots."key.gp" entries
 } else {
     with_exact = int(ARG4)
     set title ARG3 offset 0,-0.6

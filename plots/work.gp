@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The same long run in more and more steps: the error in position at its end against the time the run took. Rings mark
 # the smallest numbers of steps from which on the error never exceeds Euler's, the dotted line.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + 24*key_rows"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s error_x"
 
@@ -16,7 +16,7 @@ set ylabel "error in position / m"
 set format xy "10^{%T}"
 set ytics 1e3
 set mytics 1
-set key @method_key
+call plots."key.gp" methods
 set output ARG1
 plot euler_error with lines linetype theory notitle, \
      for [m = 1:methods] work using (is(names[m], "sweep") ? column("time_s") : NaN):"error_x" with lines linetype types[m] title labels[m], \
