@@ -181,6 +181,13 @@ def make(arguments):
             raise DataError(f'no data file "{stem}"')
         return tables[stem]
 
+    def label(method):
+        return data("methods").row(method=method).label
+
+    def steppers(shape):
+        """The rows of the methods for springs or scenes, in the order of the table, without the exact solution."""
+        return [row for row in data("methods").rows if getattr(row, shape) and row.order > 0]
+
     def figure(stem, script=None, method=""):
         if stem not in pictures:
             raise DataError(f'no picture "{stem}"')
@@ -192,7 +199,8 @@ def make(arguments):
         loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     jinja.filters.update(scientific=scientific, count=count)
-    jinja.globals.update(check=check, data=data, figure=figure, quick=arguments.quick, stems=sorted(tables))
+    jinja.globals.update(check=check, data=data, figure=figure, label=label, steppers=steppers)
+    jinja.globals.update(quick=arguments.quick, stems=sorted(tables))
 
     body = to_html(arguments.cmark, jinja.get_template("report.md.in").render())
     for stem in pictures:
