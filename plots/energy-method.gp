@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 # {method}: the error in energy against the time run. Grey: the law, where the text gives one.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(4)"
-synchronised = word(ARG4, 1)
-ahead = words(ARG4) > 1 ? word(ARG4, 2) : "" # with the velocity half a step ahead
-call plots."need.gp" ARG4 "duration_s steps energy_error_J"
+synchronised = ARG4
+ahead = ARGC > 4 ? ARG5 : "" # with the velocity half a step ahead
+call plots."need.gp" synchronised "duration_s steps energy_error_J" 1
+call plots."need.gp" ahead "duration_s energy_error_J"
 stats synchronised using (column("duration_s")/column("steps")) nooutput
 dt = STATS_mean
 
@@ -18,7 +19,7 @@ least = infinite
 most = 0
 extremes(y) = (overflows = overflows + (y >= infinite), most = y < infinite && y > most ? y : most, \
     least = y > 0 && y < least ? y : least, 0)
-do for [energies in ARG4] {
+do for [energies in synchronised." ".ahead] {
     stats energies using (extremes(column("energy_error_J"))) nooutput
 }
 
@@ -45,5 +46,5 @@ plot law(x) with lines linetype theory title law_title, \
      synchronised using "duration_s":(overflow(column("energy_error_J"))) with points linetype type pointtype 8 pointsize 1.5 \
          title overflows ? "infinite" : "", \
      scatter with lines linetype theory dashtype (1,3) title ahead ne "" ? "E_0 z/2" : "", \
-     word(ARG4, words(ARG4)) using (ahead ne "" ? column("duration_s") : NaN):"energy_error_J" \
-         with points linetype type pointtype 4 pointsize 1.2 title ahead ne "" ? "half a step ahead" : ""
+     for [energies in ahead] energies using "duration_s":"energy_error_J" with points linetype type pointtype 4 pointsize 1.2 \
+         title "half a step ahead"
