@@ -8,7 +8,7 @@
 
 if (ARGC > 2) {
     if (words(ARG1) != int(ARG3)) {
-        exit error sprintf("%d data files where there should be %s: %s", words(ARG1), ARG3, ARG1)
+        exit error sprintf("%d data files where there should be %s (meson setup --reconfigure?): %s", words(ARG1), ARG3, ARG1)
     }
 }
 do for [needed in ARG1] {
