@@ -107,66 +107,36 @@ spring_state bench_textbook(spring_state s, double w, double g, double a, double
     return (spring_state){rest_x + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (w * y + b * s.v))};
 }
 
-/* As many steps of a loop, from the parameters of a spring. */
-typedef spring_state plain_run(spring_state s, const spring_params *p, double h, uint64_t n);
-
-static model model_of(const spring_params *p)
-{
-    return (model){p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
-                   p->load != 0};
-}
-
-static spring_state run_kicks(spring_state s, const spring_params *p, double h, uint64_t n)
-{
-    return plain_steps(plain_kick_and_drift, s, model_of(p), h, n);
-}
-
-static spring_state run_euler(spring_state s, const spring_params *p, double h, uint64_t n)
-{
-    return plain_steps(plain_euler, s, model_of(p), h, n);
-}
-
-static spring_state run_leapfrog(spring_state s, const spring_params *p, double h, uint64_t n)
-{
-    return plain_steps(plain_leapfrog, s, model_of(p), h, n);
-}
-
-static spring_state run_rk4(spring_state s, const spring_params *p, double h, uint64_t n)
-{
-    return plain_steps(plain_rk4, s, model_of(p), h, n);
-}
-
-static spring_state run_textbook(spring_state s, const spring_params *p, double h, uint64_t n)
-{
-    const model m = model_of(p);
-    (void)h;
-    for (; n > 0; n--) /* volatile dt: evaluated anew at every step, as the library does */
-        s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped, m.loaded);
-    return s;
-}
-
-/* What people write; of other methods one kick and drift for each force evaluation. */
-static const struct {
-    const char *name;
-    plain_run *run;
-} plain_runs[SPRING_METHOD_COUNT] = {
-    [SPRING_EULER] = {"loop", run_euler},
-    [SPRING_LEAPFROG] = {"loop", run_leapfrog},
-    [SPRING_RK4] = {"loop", run_rk4},
-    [SPRING_EXACT] = {"textbook", run_textbook},
-};
-
 static const char *limit_of(spring_method m)
 {
-    return plain_runs[m].name != NULL ? plain_runs[m].name : "kicks";
+    static const char *const names[SPRING_METHOD_COUNT] = {[SPRING_EULER] = "loop",
+                                                           [SPRING_LEAPFROG] = "loop",
+                                                           [SPRING_RK4] = "loop",
+                                                           [SPRING_EXACT] = "textbook"};
+    return names[m] != NULL ? names[m] : "kicks";
 }
 
-static spring_state run_plain(spring_method m, spring_state s, const spring_params *p, double h, uint64_t n)
+static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
+                              uint64_t n)
 {
-    if (plain_runs[m].run != NULL)
-        return plain_runs[m].run(s, p, h, n);
-    const uint64_t forces = (uint64_t)spring_method_describe(m)->forces_per_step;
-    return run_kicks(s, p, h / (double)forces, n * forces);
+    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
+                     p->load != 0};
+    const uint64_t forces = (uint64_t)spring_method_describe(method)->forces_per_step;
+    switch (method) {
+    case SPRING_EULER:
+        return plain_steps(plain_euler, s, m, h, n);
+    case SPRING_LEAPFROG:
+        return plain_steps(plain_leapfrog, s, m, h, n);
+    case SPRING_RK4:
+        return plain_steps(plain_rk4, s, m, h, n);
+    case SPRING_EXACT:
+        for (; n > 0; n--)
+            s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped,
+                               m.loaded); /* volatile dt: evaluated anew at every step, as the library does */
+        return s;
+    default: /* "kicks": one and a drift for each force evaluation */
+        return plain_steps(plain_kick_and_drift, s, m, h / (double)forces, n * forces);
+    }
 }
 
 /* --------------------------------------------------------------------------------------------------- the library */
