@@ -384,6 +384,8 @@ static void without_rollback(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (uint32_t n = 1; n <= 19; n++) {
             build(&m, (uint32_t[]){n, 1, 1}, axes, OWN | DAMPED | DRAG | (n % 2 ? MASSES : 0));
+            for (uint32_t i = 0; i < n; i++)
+                m.mass[i] += 1; /* so that drag does not take all of a velocity in a long step */
             const method_list all = methods_of(m.def);
             for (const spring_method *k = all.at; *k != no_method; k++) {
                 m.def.flags = 0;
@@ -395,7 +397,7 @@ static void without_rollback(void)
                 spring_scene_advance(kept, *k, 0.0137, 6);
                 CHECK(same_bits(s, kept, n, axes), "rollback changes no bits");
                 const double time = spring_scene_time(s), huge = sizeof(scalar) == 4 ? 3e38 : 1e308;
-                const double fast[3] = {10, 10, 10};
+                const double fast[3] = {huge, huge, huge};
                 spring_scene_set(s, SPRING_VELOCITY, fast, 0, 0, 1);
                 CHECK(spring_scene_advance(s, *k, huge, 1) == SPRING_ENONFINITE, "overflow");
                 CHECK(spring_scene_advance(s, *k, 0.0137, 1) == SPRING_ENONFINITE,
