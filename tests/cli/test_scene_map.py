@@ -22,8 +22,11 @@ def test_scenes_and_methods(quick):
 def test_verdicts(quick):
     for row in quick:
         assert (row['verdict'] == 'fine') == (float(row['energy_error']) <= 0.05)
-        if float(row['dt_s']) < float(row['stable_step_s']):
-            assert row['verdict'] not in ('exploded', 'gaining')
+        stable = float(row['dt_s']) / float(row['stable_step_s']) if float(row['stable_step_s']) > 0 else math.inf
+        if stable < 1:
+            assert row['verdict'] != 'exploded'
+            # energy that comes and goes: with symplectic Euler z/2 of it, z = 2 at the stable step
+            assert row['verdict'] != 'gaining' or float(row['energy_error']) <= stable
 
 
 def test_euler_explodes(quick):
