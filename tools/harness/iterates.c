@@ -3,7 +3,8 @@
  * The methods a second time; see iterates.h.
  *
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler, RK4);
- *           Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1 (leapfrog)
+ *           Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
+ *           (symplectic Euler, leapfrog)
  */
 #include "harness/iterates.h"
 
@@ -46,6 +47,32 @@ static void euler_scene(const iterate_scene *s, double t, double h, double *x, d
     for (size_t i = 0; i < s->count; i++) {
         x[i] += h * v[i];
         v[i] += h * a[i];
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- symplectic Euler */
+
+static void symplectic_euler_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t a, zero;
+    mpfr_inits2(mpfr_get_prec(x), a, zero, (mpfr_ptr)NULL);
+    mpfr_set_zero(zero, 1);
+    spring_acceleration(a, r, x, zero);
+    mpfr_fma(v, h, a, v, nearest);
+    mpfr_mul(a, h, r->g, nearest);
+    mpfr_add_ui(a, a, 1, nearest);
+    mpfr_div(v, v, a, nearest);
+    mpfr_fma(x, h, v, x, nearest);
+    mpfr_clears(a, zero, (mpfr_ptr)NULL);
+}
+
+static void symplectic_euler_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    double *a = s->room;
+    s->acceleration(s->data, t, x, v, a);
+    for (size_t i = 0; i < s->count; i++) {
+        v[i] = (v[i] + h * a[i]) / (1 + h * s->drag[i]);
+        x[i] += h * v[i];
     }
 }
 
@@ -154,6 +181,7 @@ static const iterate iterates[] = {
     [SPRING_LEAPFROG] = {.spring = leapfrog_spring, .scene = leapfrog_scene, .vectors = 2},
     [SPRING_RK4] = {.spring = rk4_spring, .scene = rk4_scene, .vectors = 6},
     [SPRING_EXACT] = {.spring = NULL}, /* takes no steps */
+    [SPRING_SYMPLECTIC_EULER] = {.spring = symplectic_euler_spring, .scene = symplectic_euler_scene, .vectors = 1},
 };
 _Static_assert(sizeof iterates / sizeof iterates[0] == SPRING_METHOD_COUNT, "each method has an entry");
 
