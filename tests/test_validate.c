@@ -13,6 +13,7 @@
 #include "check.h"
 #include "harness/cases.h"
 #include "harness/scenes.h"
+#include "test_methods.h"
 
 typedef struct row {
     char of[40], method[20], witness[20], verdict[10], reason[80];
@@ -119,8 +120,23 @@ static void whole_catalogue(void)
     CHECK(row_count == expected, "and nothing twice");
 }
 
+static spring_method method_named(const char *name)
+{
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++)
+        if (strcmp(spring_method_name(spring_method_at(i)), name) == 0)
+            return spring_method_at(i);
+    CHECK(false, name);
+    return no_method;
+}
+
+static int order_of(const char *method)
+{
+    return spring_method_describe(method_named(method))->order;
+}
+
 /* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100. The
-   definition does much the same operations as the library, and rounds alike: there, within 1000. */
+   definition does much the same operations as the library, and rounds alike: there, within 1000. So it is with a method
+   that takes steps for its order which no undamped mode bears: bounds grow with modes that are not in the motion. */
 static void bounds_are_near(void)
 {
     for (const row *r = rows; r < rows + row_count; r++) {
@@ -129,19 +145,9 @@ static void bounds_are_near(void)
             if (strcmp(other->method, r->method) == 0 && strcmp(other->witness, r->witness) == 0 &&
                 other->error > nearest * other->bound)
                 nearest = other->error / other->bound;
-        CHECK(nearest >= (strcmp(r->witness, "definition") == 0 ? 0.001 : 0.01), r->witness);
+        const bool grows = order_of(r->method) > 1 && never_stable(method_named(r->method));
+        CHECK(nearest >= (grows || strcmp(r->witness, "definition") == 0 ? 0.001 : 0.01), r->witness);
     }
-}
-
-static int order_of(const char *method)
-{
-    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
-        const spring_method_info *info = spring_method_describe(spring_method_at(i));
-        if (strcmp(info->name, method) == 0)
-            return info->order;
-    }
-    CHECK(false, method);
-    return 0;
 }
 
 /* Errors of scenes have to fall like h^order to within half: so much the bounds on them allow. */
