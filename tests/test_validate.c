@@ -150,7 +150,18 @@ static void bounds_are_near(void)
     }
 }
 
-/* Errors of scenes have to fall like h^order to within half: so much the bounds on them allow. */
+/* What rounding may add to the bounds of a scene and method, as spring-validate has it: by the bound that its definition
+   has twice, of R = 2^order times the steps and extrapolated. */
+static double rounding_of(const row *of, double R)
+{
+    for (const row *r = rows; r < rows + row_count; r++)
+        if (strcmp(r->of, of->of) == 0 && strcmp(r->method, of->method) == 0 &&
+            strcmp(r->witness, "definition") == 0)
+            return 4 * r->bound * (R + 1) / (R - 1);
+    return 0;
+}
+
+/* Truncation errors of scenes have to fall like h^order to within half: so much the bounds on them allow. */
 static void bounds_fall(void)
 {
     unsigned pairs = 0;
@@ -160,7 +171,8 @@ static void bounds_fall(void)
         const double factor = ldexp(1, order_of(r->method));
         CHECK(strncmp(r[1].reason, "truncation measured at 4h", 25) == 0,
               "the next row is for half the step");
-        CHECK(r[1].bound * factor <= 1.5 * r->bound, r->of);
+        const double rounded = rounding_of(r, factor);
+        CHECK((r[1].bound - rounded) * factor <= 1.5 * (r->bound - rounded), r->of);
         pairs++;
     }
     CHECK(pairs >= 25, "of every method and scene that has a solution");
