@@ -10,7 +10,11 @@ exec </dev/null
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 work=$(mktemp -d)
 chmod 755 "$work" # tests run as another user, too
-trap 'rm -rf --one-file-system "$work"' EXIT
+clean_up() {
+    trap '' HUP INT PIPE TERM # one signal stops the script, the next does not stop rm
+    rm -rf --one-file-system "$work"
+}
+trap clean_up EXIT
 tree=$work/springstep
 mkdir "$tree"
 tar -C "$root" --exclude-vcs --exclude='./build*' -c . | tar -C "$tree" -x
