@@ -43,9 +43,9 @@ static bool batch_valid(const spring_batch *b)
         return true;
     return b->x != NULL && b->v != NULL && b->omega2 != NULL && b->count <= SIZE_MAX / sizeof(scalar) &&
            !overlap(b->x, b->count, b->v, b->count) && leaves_state_alone(b, b->omega2, SPRING_SHARED_OMEGA2) &&
-           leaves_state_alone(b, b->gamma, SPRING_SHARED_GAMMA) && leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
-           shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) &&
-           shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
+           leaves_state_alone(b, b->gamma, SPRING_SHARED_GAMMA) &&
+           leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
+           shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) && shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
            shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -INFINITY);
 }
 
@@ -83,8 +83,7 @@ static const batch_kernels *best_batch_kernels(void)
 
 /* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
    group is given up when all of them are lost. */
-static bool advance_tail(batch_kernel *kernel, size_t size, const spring_batch *b, const batch_block *all,
-                         size_t first)
+static bool advance_tail(batch_kernel *kernel, size_t size, const spring_batch *b, const batch_block *all, size_t first)
 {
     scalar x[largest_group] = {0}, v[largest_group] = {0}, w[largest_group] = {0}, g[largest_group] = {0},
            a[largest_group] = {0};
@@ -187,8 +186,7 @@ scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
     if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
         return NAN;
-    const bool all_shared = shared(b, SPRING_SHARED_OMEGA2) &&
-                            (b->gamma == NULL || shared(b, SPRING_SHARED_GAMMA)) &&
+    const bool all_shared = shared(b, SPRING_SHARED_OMEGA2) && (b->gamma == NULL || shared(b, SPRING_SHARED_GAMMA)) &&
                             (b->accel == NULL || shared(b, SPRING_SHARED_ACCEL));
     const size_t count = all_shared && b->count > 0 ? 1 : b->count;
     double least = INFINITY;

@@ -2,9 +2,9 @@
 /*
  * The kernels of a batch: one for each method and combination of features, in the vectors that real.h is set to.
  *
- * Method    A group of a few vectors is loaded, with its coefficients, into registers, takes all its steps there, and is
- *           stored: several independent chains of operations keep the processor busy, and memory is read once however many
- *           steps there are. Since nothing is stored before the end, rolling a spring back costs nothing.
+ * Method    A group of a few vectors is loaded, with its coefficients, into registers, takes all its steps there, and
+ *           is stored: several independent chains of operations keep the processor busy, and memory is read once
+ *           however many steps there are. Since nothing is stored before the end, rolling a spring back costs nothing.
  *           batch.c includes this for the declarations, kernels.h for each vector length and precision.
  */
 #ifndef SPRINGSTEP_BATCH_KERNELS_H
@@ -57,8 +57,7 @@ SPRING_INLINE real rate(const scalar *p, size_t i, enum sharing s)
 }
 
 /* The rates of the vector of springs from i. */
-SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing w, enum sharing g,
-                                    bool loaded)
+SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing w, enum sharing g, bool loaded)
 {
     return (spring_rates){
         rate(b->w, i, w),
@@ -69,7 +68,7 @@ SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing
 
 /* Stores the springs of a group that may advance; false if one keeps its state. */
 SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
-                              enum sharing w, enum sharing g)
+                                 enum sharing w, enum sharing g)
 {
     scalar x1[group], v1[group];
     memcpy(x1, x, many * sizeof *x);
@@ -87,8 +86,8 @@ SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, 
     return all;
 }
 
-/* Stores a group; false if a spring keeps its state. Whether one might have to is asked for all of them at once: a sum is
-   not finite if a part of it is not, nor is it if it overflows, and a sign is set if a rate is negative, or -0. */
+/* Stores a group; false if a spring keeps its state. Whether one might have to is asked for all of them at once: a sum
+   is not finite if a part of it is not, nor is it if it overflows, and a sign is set if a rate is negative, or -0. */
 SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
                                enum sharing w, enum sharing g)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The loop of a method over a batch, and its twelve kernels. Included by a method's header, with SPRING_METHOD its name. */
+/* The loop of a method over a batch, and its twelve kernels. Included by a method's header, with SPRING_METHOD its
+   name. */
 
-/* many: vectors in a group. A single step needs no more than one: there is nothing to wait for but the next group, which
-   the processor begins by itself. */
-SPRING_INLINE bool METHOD(groups)(const batch_block *b, enum sharing w, enum sharing g, bool loaded,
-                                  size_t many)
+/* many: vectors in a group. A single step needs no more than one: there is nothing to wait for but the next group,
+   which the processor begins by itself. */
+SPRING_INLINE bool METHOD(groups)(const batch_block *b, enum sharing w, enum sharing g, bool loaded, size_t many)
 {
     const real h = splat(b->dt);
     bool all = true;

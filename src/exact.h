@@ -3,7 +3,8 @@
  * The exact (closed-form) solution as a method: what exact.c computes once from a spring and a time, and how that moves
  * any state.
  *
- * Method    x1 = e ((e F) x + (e H) v) + P a,   v1 = e ((e G) v - (e w H) x) + e (e H) a,   e the square root of the decay
+ * Method    x1 = e ((e F) x + (e H) v) + P a,   v1 = e ((e G) v - (e w H) x) + e (e H) a,   e the square root of the
+ *           decay
  */
 #ifndef SPRINGSTEP_EXACT_H
 #define SPRINGSTEP_EXACT_H

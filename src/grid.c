@@ -17,14 +17,12 @@ typedef struct direction {
 
 /* One of each pair of opposite directions, so that the other end has the larger index. */
 static const direction directions[] = {
-    {{1, 0, 0}, SPRING_GRID_STRUCTURAL}, {{0, 1, 0}, SPRING_GRID_STRUCTURAL},
-    {{0, 0, 1}, SPRING_GRID_STRUCTURAL}, {{-1, 1, 0}, SPRING_GRID_SHEAR},
-    {{1, 1, 0}, SPRING_GRID_SHEAR},      {{-1, 0, 1}, SPRING_GRID_SHEAR},
-    {{1, 0, 1}, SPRING_GRID_SHEAR},      {{0, -1, 1}, SPRING_GRID_SHEAR},
-    {{0, 1, 1}, SPRING_GRID_SHEAR},      {{-1, -1, 1}, SPRING_GRID_SHEAR},
-    {{1, -1, 1}, SPRING_GRID_SHEAR},     {{-1, 1, 1}, SPRING_GRID_SHEAR},
-    {{1, 1, 1}, SPRING_GRID_SHEAR},      {{2, 0, 0}, SPRING_GRID_BEND},
-    {{0, 2, 0}, SPRING_GRID_BEND},       {{0, 0, 2}, SPRING_GRID_BEND},
+    {{1, 0, 0}, SPRING_GRID_STRUCTURAL}, {{0, 1, 0}, SPRING_GRID_STRUCTURAL}, {{0, 0, 1}, SPRING_GRID_STRUCTURAL},
+    {{-1, 1, 0}, SPRING_GRID_SHEAR},     {{1, 1, 0}, SPRING_GRID_SHEAR},      {{-1, 0, 1}, SPRING_GRID_SHEAR},
+    {{1, 0, 1}, SPRING_GRID_SHEAR},      {{0, -1, 1}, SPRING_GRID_SHEAR},     {{0, 1, 1}, SPRING_GRID_SHEAR},
+    {{-1, -1, 1}, SPRING_GRID_SHEAR},    {{1, -1, 1}, SPRING_GRID_SHEAR},     {{-1, 1, 1}, SPRING_GRID_SHEAR},
+    {{1, 1, 1}, SPRING_GRID_SHEAR},      {{2, 0, 0}, SPRING_GRID_BEND},       {{0, 2, 0}, SPRING_GRID_BEND},
+    {{0, 0, 2}, SPRING_GRID_BEND},
 };
 
 enum { direction_count = sizeof directions / sizeof directions[0] };
@@ -52,13 +50,12 @@ static bool wanted(const spring_grid *g, const direction *d)
 static bool valid(const spring_grid *g)
 {
     const uint32_t families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND;
-    const uint32_t faces = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
-                           SPRING_GRID_LAST_Y | SPRING_GRID_FIRST_Z | SPRING_GRID_LAST_Z;
+    const uint32_t faces = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y |
+                           SPRING_GRID_FIRST_Z | SPRING_GRID_LAST_Z;
     if (g == NULL || axes_of(g) > 3 || (g->height && g->axes > 1) || (g->families & ~families) != 0 ||
         (g->pinned & ~faces) != 0)
         return false;
-    for (int a = (int)axes_of(g); a < 3 && !g->height;
-         a++) /* nothing may lie along an axis that is not there */
+    for (int a = (int)axes_of(g); a < 3 && !g->height; a++) /* nothing may lie along an axis that is not there */
         if (count_of(g, a) > 1)
             return false;
     const double longest = 4; /* spacings: no link is longer */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * All kernels for one vector length and precision: SPRING_VECTOR bytes, double or with SPRING_FLOAT float, under the names
- * SPRING_BATCH_TABLE and SPRING_SCENE_TABLE. Included once in each of kernels_v128.c, ..., kernelsf_v512.c.
+ * All kernels for one vector length and precision: SPRING_VECTOR bytes, double or with SPRING_FLOAT float, under the
+ * names SPRING_BATCH_TABLE and SPRING_SCENE_TABLE. Included once in each of kernels_v128.c, ..., kernelsf_v512.c.
  */
 #define SPRING_SHAPE_BATCH
 #include "simd/targets.h"

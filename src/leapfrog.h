@@ -81,7 +81,13 @@ static double leapfrog_stable_step(const spring_roots *r)
 }
 
 static const one_method leapfrog_one = {
-    .info = {.name = "leapfrog", .order = 2, .forces_per_step = 1, .symplectic = true, .springs = true, .scenes = true, .label = "leapfrog"},
+    .info = {.name = "leapfrog",
+             .order = 2,
+             .forces_per_step = 1,
+             .symplectic = true,
+             .springs = true,
+             .scenes = true,
+             .label = "leapfrog"},
     .kernel = spring_step_leapfrog,
     .loop = {{leapfrog_plain, leapfrog_loaded}, {leapfrog_damped, leapfrog_damped_loaded}},
     .stable_step = leapfrog_stable_step,
@@ -92,8 +98,8 @@ static const one_method leapfrog_one = {
 #include "batch_loop.h"
 
 #elif defined(SPRING_SHAPE_SCENE)
-/* Velocities that forces depend on are predicted: v* = v' + h/2 a(x1, v'), v1 = v' + h/2 a(x1, v*). No force is kept then:
-   the last one is that of the prediction, and ten calls would differ from one call of ten steps. */
+/* Velocities that forces depend on are predicted: v* = v' + h/2 a(x1, v'), v1 = v' + h/2 a(x1, v*). No force is kept
+   then: the last one is that of the prediction, and ten calls would differ from one call of ten steps. */
 static scene_outcome leapfrog_scene_step(const scene_step *s)
 {
     scene_motion first = scene_motion_of(s);

@@ -5,8 +5,9 @@
  * The header, NAME.h, is read once for each shape of data, which the including file chooses by a definition:
  *
  *     SPRING_SHAPE_ONE     spring.c        NAME_one      one spring: what it is called, its kernel, loops, stable step
- *     SPRING_SHAPE_BATCH   kernels.h       NAME_batch    a loop over vectors of springs for each combination of features
- *     SPRING_SHAPE_SCENE   scene_step.c    NAME_scene    its step and stable step in a scene, what a scene stores for it
+ *     SPRING_SHAPE_BATCH   kernels.h       NAME_batch    a loop over vectors of springs for each combination of
+ *     features SPRING_SHAPE_SCENE   scene_step.c    NAME_scene    its step and stable step in a scene, what a scene
+ *     stores for it
  *
  * Each of these is a constant object of a type below; what a method does not offer is 0 in it.
  */

@@ -6,7 +6,7 @@
 #include "rk4.h"
 #include "exact.h"
 
-#define SPRING_METHODS(ROW)                         \
+#define SPRING_METHODS(ROW)                        \
     ROW(SPRING_EULER, euler)                       \
     ROW(SPRING_SYMPLECTIC_EULER, symplectic_euler) \
     ROW(SPRING_LEAPFROG, leapfrog)                 \

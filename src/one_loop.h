@@ -14,7 +14,7 @@ SPRING_INLINE spring_state METHOD(loop)(spring_state s, const spring_rates *r, d
     return s;
 }
 
-#define ONE_LOOP(name, damped, loaded)                                                                \
+#define ONE_LOOP(name, damped, loaded)                                                             \
     static spring_state METHOD(name)(spring_state s, const spring_rates *r, double dt, uint64_t n) \
     {                                                                                              \
         return METHOD(loop)(s, r, dt, n, damped, loaded);                                          \

@@ -18,8 +18,8 @@ typedef struct spring_rates {
 #ifndef SPRING_VECTOR
 SPRING_INLINE spring_rates spring_rates_of(const spring_params *p)
 {
-    return (spring_rates){
-        (real)(p->stiffness / p->mass + 0.0), (real)(p->damping / p->mass + 0.0), (real)(p->load / p->mass + 0.0)};
+    return (spring_rates){(real)(p->stiffness / p->mass + 0.0), (real)(p->damping / p->mass + 0.0),
+                          (real)(p->load / p->mass + 0.0)};
 }
 
 /* r is what spring_rates_of() made of p. */

@@ -79,8 +79,8 @@ void spring_step_rk4(spring_state *s, const spring_params *p, double dt)
 /* R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24 reaches -1..1 again at this distance along the negative real axis. */
 static const double rk4_real_limit = 2.785293563405282;
 
-/* |R(z)| = 1 along the ray z = r (-zeta + i eta), zeta^2 + eta^2 = 1, zeta >= 0. For every zeta there is one such r > 0;
-   it lies in [2.61, 2.97], and |R|^2 is convex in r from there to 3, so Newton's method descends to it from 3. */
+/* |R(z)| = 1 along the ray z = r (-zeta + i eta), zeta^2 + eta^2 = 1, zeta >= 0. For every zeta there is one such r >
+   0; it lies in [2.61, 2.97], and |R|^2 is convex in r from there to 3, so Newton's method descends to it from 3. */
 static double rk4_ray_limit(double zeta, double eta)
 {
     double r, next = 3;

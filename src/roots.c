@@ -3,9 +3,9 @@
  * The characteristic roots of a spring, r^2 + (c/m) r + k/m = 0, without cancellation.
  *
  * Method    omega^2 - b^2 = (omega - b)(omega + b). Near critical damping omega - b is all rounding error, so each of
- *           k/m, its square root and c/2m carries its own error along: n/d = q + fma(-q, d, n)/d to twice the precision.
- *           These fma() are calls for an exact remainder, in software where there is no such instruction; a product
- *           and a sum that merely stand side by side are never fused.
+ *           k/m, its square root and c/2m carries its own error along: n/d = q + fma(-q, d, n)/d to twice the
+ *           precision. These fma() are calls for an exact remainder, in software where there is no such instruction; a
+ *           product and a sum that merely stand side by side are never fused.
  * Accuracy  omega, b, and split: 2 eps, relative, at every damping ratio
  * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
@@ -14,8 +14,8 @@
 
 #include "simd/real.h"
 
-/* n/d - q, the rounding error of the quotient q. A denormal q is off by much more than eps of it, and is the spring that
-   the steppers move: there it counts as exact. */
+/* n/d - q, the rounding error of the quotient q. A denormal q is off by much more than eps of it, and is the spring
+   that the steppers move: there it counts as exact. */
 static double rest_of(double n, double d, double q)
 {
     return q >= DBL_MIN ? fma(-q, d, n) / d : 0;

@@ -8,8 +8,8 @@
 
 #include <springstep/spring.h>
 
-/* -b +- i split, or -b +- split where overdamped. Every quotient and square root enters with its own rounding error added
-   back, so that w - b^2 has full relative accuracy even where it is all but zero (critical damping). */
+/* -b +- i split, or -b +- split where overdamped. Every quotient and square root enters with its own rounding error
+   added back, so that w - b^2 has full relative accuracy even where it is all but zero (critical damping). */
 typedef struct spring_roots {
     double w;        /* [1/s^2] stiffness/mass, rounded once */
     double omega;    /* [1/s]   sqrt(stiffness/mass) */

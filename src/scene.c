@@ -74,7 +74,7 @@ static spring_status check_range(const spring_scene *s, spring_quantity q, const
 }
 
 spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out, size_t stride, size_t first,
-                         size_t count)
+                               size_t count)
 {
     const spring_status status = check_range(s, q, out, &stride, first, count);
     if (status != SPRING_OK)
@@ -88,7 +88,7 @@ spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double 
 }
 
 spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float *out, size_t stride, size_t first,
-                          size_t count)
+                                size_t count)
 {
     const spring_status status = check_range(s, q, out, &stride, first, count);
     if (status != SPRING_OK)
@@ -102,7 +102,7 @@ spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float 
 }
 
 spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double *in, size_t stride, size_t first,
-                         size_t count)
+                               size_t count)
 {
     const spring_status status = check_range(s, q, in, &stride, first, count);
     if (status != SPRING_OK)

@@ -14,9 +14,10 @@ enum {
     most_buffers = 3, /* of positions and velocities: two that take turns for rule "all or nothing", one for stages */
 };
 
-/* A band of links and its slots, one for each lower end from `padding` before the first to `padding` after the last. Each
-   slot has coefficients (stiffness, rest length, damping) and is occupied by a link or not; or, where all links are equal
-   and stay so, there is one vector of coefficients for all, and for each slot a byte that says whether it is occupied. */
+/* A band of links and its slots, one for each lower end from `padding` before the first to `padding` after the last.
+   Each slot has coefficients (stiffness, rest length, damping) and is occupied by a link or not; or, where all links
+   are equal and stay so, there is one vector of coefficients for all, and for each slot a byte that says whether it is
+   occupied. */
 typedef struct band_plan {
     uint32_t offset;     /* from the lower end of a link to its upper end */
     uint32_t first, end; /* of the lower ends */
@@ -48,9 +49,9 @@ typedef struct scene_plan {
 
 /* What bounds the stable step. */
 typedef struct scene_bounds {
-    double stiffness;     /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle, 1/mass with a pin */
-    double link_damping;  /* [1/s]   the same of damping */
-    double damping;       /* [1/s]   the same of damping, and drag/mass */
+    double stiffness;    /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle, 1/mass with a pin */
+    double link_damping; /* [1/s]   the same of damping */
+    double damping;      /* [1/s]   the same of damping, and drag/mass */
     double stiffness_sum; /* [N/m]   the same as stiffness, without the mass */
     double drag;          /* [N s/m] */
     double least_drag;    /* [1/s]   drag over the largest mass */

@@ -2,11 +2,11 @@
 /*
  * From a definition to a scene: checks, the plan of its memory, and filling it.
  *
- * Bands     The links of an offset, upper minus lower end, make a band as far as their lower ends ascend in the order of
- *           the links, so that no slot is occupied twice, if at least a quarter of the slots between the first and the
- *           last is occupied: then the band is cheaper than the edge list. Of too many bands the longest are kept. Offsets
- *           are counted in a small table. What finds no room there, or in its band, goes to the edge list, as do all links
- *           of particles without order.
+ * Bands     The links of an offset, upper minus lower end, make a band as far as their lower ends ascend in the order
+ *           of the links, so that no slot is occupied twice, if at least a quarter of the slots between the first and
+ *           the last is occupied: then the band is cheaper than the edge list. Of too many bands the longest are kept.
+ *           Offsets are counted in a small table. What finds no room there, or in its band, goes to the edge list, as
+ *           do all links of particles without order.
  */
 #include "scene_links.h"
 #include "scene_step.h"
@@ -145,8 +145,8 @@ static def_error check_links(const spring_scene_def *def)
             return invalid("link.b", i);
         const char *field = scene_link_invalid_field(link);
         if (field == NULL)
-            field =
-                scene_link_overflows(link, (double)inverse_mass_of(def, link->a), (double)inverse_mass_of(def, link->b));
+            field = scene_link_overflows(link, (double)inverse_mass_of(def, link->a),
+                                         (double)inverse_mass_of(def, link->b));
         if (field != NULL)
             return invalid(field, i);
     }
@@ -300,8 +300,7 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
         plan->sum_x = reserve(plan, quantity, sizeof(scalar));
         plan->sum_v = reserve(plan, quantity, sizeof(scalar));
     }
-    plan->inverse_mass =
-        def->mass != NULL || def->pinned != NULL ? reserve(plan, plan->stride, sizeof(scalar)) : 0;
+    plan->inverse_mass = def->mass != NULL || def->pinned != NULL ? reserve(plan, plan->stride, sizeof(scalar)) : 0;
     plan->band_occupied = reserve(plan, plan->band_bytes, 1);
     plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));
     plan->band_rest = reserve(plan, plan->band_coefficients, sizeof(scalar));

@@ -2,10 +2,10 @@
 /*
  * The loops over the particles and links of a scene, in the vectors that real.h is set to.
  *
- * Bands     Links of constant offset, as in a rope, a sheet or a block, lie in one band, by their lower end; where the band
- *           has no link its stiffness is 0. Bands are gathered: each particle looks at its neighbours at fixed distances on
- *           both sides, and nothing is scattered. Every force is computed twice, once for either end, with opposite signs
- *           and otherwise the same bits, so momentum is conserved to rounding.
+ * Bands     Links of constant offset, as in a rope, a sheet or a block, lie in one band, by their lower end; where the
+ *           band has no link its stiffness is 0. Bands are gathered: each particle looks at its neighbours at fixed
+ *           distances on both sides, and nothing is scattered. Every force is computed twice, once for either end, with
+ *           opposite signs and otherwise the same bits, so momentum is conserved to rounding.
  * Edges     All other links, the edge list, in blocks: gather, vector arithmetic, scatter in the order of the links.
  * Motion    The parts of a step: kick, solved kick, drift, stages. A particle that is pinned has inverse mass 0.
  */
@@ -16,19 +16,17 @@
 #include "solved_kick.h"
 #include "twins.h"
 
-enum {
-    padding = 16
-}; /* elements before and after what vectors read: as many as the longest vector has lanes */
+enum { padding = 16 }; /* elements before and after what vectors read: as many as the longest vector has lanes */
 
-/* Links whose upper end is `offset` particles after the lower one. Arrays start `padding` before the first lower end. */
+/* Links whose upper end is `offset` particles after the lower one. Arrays start `padding` before the first lower end.
+   */
 typedef struct scene_band {
     ptrdiff_t offset;
-    ptrdiff_t first, end;  /* of the lower ends */
-    const int8_t *occupied; /* -1 where there is a link, else 0; NULL: each slot has coefficients */
-    const scalar
-        *stiffness;        /* [N/m]; of a vector of equal links, or of each slot, 0 where there is no link */
-    const scalar *rest;    /* [m]; negative on one axis where the link runs from the upper end to the lower */
-    const scalar *damping; /* [N s/m]; NULL: none in the spring_scene */
+    ptrdiff_t first, end;    /* of the lower ends */
+    const int8_t *occupied;  /* -1 where there is a link, else 0; NULL: each slot has coefficients */
+    const scalar *stiffness; /* [N/m]; of a vector of equal links, or of each slot, 0 where there is no link */
+    const scalar *rest;      /* [m]; negative on one axis where the link runs from the upper end to the lower */
+    const scalar *damping;   /* [N s/m]; NULL: none in the scene */
 } scene_band;
 
 typedef struct scene_edges {
@@ -72,13 +70,13 @@ typedef bool scene_motion_kernel(const scene_motion *); /* false: a number is in
 typedef struct scene_kernels {
     scene_link_kernel *bands[3][2]; /* by axes - 1, damping */
     scene_link_kernel *edges[3][2];
-    scene_motion_kernel *kick_drift;  /* v = v0 + kick a(v0);       x = x0 + drift v */
-    scene_motion_kernel *solved_kick; /* v = v0 + kick a(v) */
+    scene_motion_kernel *kick_drift;        /* v = v0 + kick a(v0);       x = x0 + drift v */
+    scene_motion_kernel *solved_kick;       /* v = v0 + kick a(v) */
     scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
-    scene_motion_kernel *stage;       /* v = v0 + kick a(slope);    x = x0 + drift slope */
-    scene_motion_kernel *first_stage; /* the same, and the sums are slope and a(slope) */
-    scene_motion_kernel *next_stage;  /* the same, and they are added to the sums, times weight */
-    scene_motion_kernel *last_stage;  /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
+    scene_motion_kernel *stage;             /* v = v0 + kick a(slope);    x = x0 + drift slope */
+    scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
+    scene_motion_kernel *next_stage;        /* the same, and they are added to the sums, times weight */
+    scene_motion_kernel *last_stage;        /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
 } scene_kernels;
 
 extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v512; /* by bits of a vector */
@@ -87,10 +85,10 @@ extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v5
 
 /* ---------------------------------------------------------------------------------------------------------- links */
 
-/* The force of a link on one of its ends is this times the delta to the other end: k (1 - rest/length), and with damping
-   c (relative velocity . delta)/length^2. Not a number where both are at one point: see to_force(). */
-SPRING_INLINE real pull(uint32_t axes, const real *delta, const real *relative, real square, real k, real rest,
-                        real c, bool damped)
+/* The force of a link on one of its ends is this times the delta to the other end: k (1 - rest/length), and with
+   damping c (relative velocity . delta)/length^2. Not a number where both are at one point: see to_force(). */
+SPRING_INLINE real pull(uint32_t axes, const real *delta, const real *relative, real square, real k, real rest, real c,
+                        bool damped)
 {
     real scale = k * (1 - rest / vec_sqrt(square));
     if (damped) {
@@ -103,10 +101,10 @@ SPRING_INLINE real pull(uint32_t axes, const real *delta, const real *relative, 
     return scale;
 }
 
-/* Turns the delta from one end of a link to the other into the force on the one. Where there is no link, or no direction,
-   that is 0, selected and not multiplied: particles that are not joined may be infinitely far apart. */
-SPRING_INLINE void to_force(uint32_t axes, real *delta, const real *relative, mask joined, real k, real rest,
-                            real c, bool damped)
+/* Turns the delta from one end of a link to the other into the force on the one. Where there is no link, or no
+   direction, that is 0, selected and not multiplied: particles that are not joined may be infinitely far apart. */
+SPRING_INLINE void to_force(uint32_t axes, real *delta, const real *relative, mask joined, real k, real rest, real c,
+                            bool damped)
 {
     if (axes == 1) {
         const real pull = k * (delta[0] - rest);
@@ -124,8 +122,8 @@ SPRING_INLINE void to_force(uint32_t axes, real *delta, const real *relative, ma
 }
 
 /* Adds what one side of a band does to the vector of particles from i: the upper neighbours, or the lower. */
-SPRING_INLINE void gather_side(const scene_links *s, const scene_band *band, ptrdiff_t i, bool upper,
-                             uint32_t axes, bool damped, const real *x, const real *v, real *force)
+SPRING_INLINE void gather_side(const scene_links *s, const scene_band *band, ptrdiff_t i, bool upper, uint32_t axes,
+                               bool damped, const real *x, const real *v, real *force)
 {
     const ptrdiff_t offset = upper ? band->offset : -band->offset;
     const ptrdiff_t at = (upper ? i : i + offset) - band->first + padding;
@@ -239,8 +237,8 @@ typedef struct coordinates {
     size_t at;         /* in the arrays of a quantity */
     real inverse_mass; /* 0: pinned */
     scalar gravity;
-    real drag;          /* [1/s] */
-    solved_share share; /* of a solved kick; else unset */
+    real drag;                /* [1/s] */
+    solved_share share;       /* of a solved kick; else unset */
     real kick, drift, weight; /* as in scene_motion, where a store might have changed them for all a compiler knows */
 } coordinates;
 
@@ -251,8 +249,7 @@ SPRING_INLINE coordinates coordinates_from(const scene_motion *s, size_t i, coor
 {
     real inverse_mass = s->inverse_mass != NULL ? vec_load(s->inverse_mass + i) : splat(s->inverse_mass_all);
     if (i + lanes > s->particles) /* what fills the last vector stays where it is, and finite */
-        inverse_mass =
-            select_real(vec_load(lane_number) < splat((scalar)(s->particles - i)), inverse_mass, splat(0));
+        inverse_mass = select_real(vec_load(lane_number) < splat((scalar)(s->particles - i)), inverse_mass, splat(0));
     c.inverse_mass = inverse_mass;
     c.drag = s->drag * inverse_mass;
     if (solved)
@@ -411,15 +408,21 @@ LINK_KERNELS(edges, 1)
 LINK_KERNELS(edges, 2)
 LINK_KERNELS(edges, 3)
 
+/* clang-format off */
 #define LINK_TABLE(kernel) \
     {{kernel##_1, kernel##_1_damped}, {kernel##_2, kernel##_2_damped}, {kernel##_3, kernel##_3_damped}}
-
-#define SCENE_KERNELS                                                                                  \
-    {                                                                                                  \
-        .bands = LINK_TABLE(bands), .edges = LINK_TABLE(edges), .kick_drift = kick_drift,              \
-        .solved_kick = solved_kick, .solved_kick_drift = solved_kick_drift, .stage = stage,            \
-        .first_stage = first_stage, .next_stage = next_stage, .last_stage = last_stage,                \
-    }
+#define SCENE_KERNELS { \
+    .bands = LINK_TABLE(bands), \
+    .edges = LINK_TABLE(edges), \
+    .kick_drift = kick_drift, \
+    .solved_kick = solved_kick, \
+    .solved_kick_drift = solved_kick_drift, \
+    .stage = stage, \
+    .first_stage = first_stage, \
+    .next_stage = next_stage, \
+    .last_stage = last_stage, \
+}
+/* clang-format on */
 
 #endif
 

@@ -55,7 +55,7 @@ static inline const char *scene_link_invalid_field(const spring_link *link)
     return !scene_not_negative(link->rest)        ? "link.rest"
            : !scene_not_negative(link->stiffness) ? "link.stiffness"
            : !scene_not_negative(link->damping)   ? "link.damping"
-                                            : NULL;
+                                                  : NULL;
 }
 
 /* The field that is too large for the masses at the ends; NULL: none. */
@@ -64,7 +64,7 @@ static inline const char *scene_link_overflows(const spring_link *link, double i
     const double lightest = fmax(inverse_a, inverse_b);
     return !scene_fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
            : !scene_fits(2 * (link->damping * lightest)) ? "link.damping"
-                                                   : NULL;
+                                                         : NULL;
 }
 
 /* Write the coefficients of a link into its slot. */

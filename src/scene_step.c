@@ -2,9 +2,9 @@
 /*
  * A scene through time: its steps, its stable step, and whether it is at rest.
  *
- * Rollback  The state lies in one of two buffers. The first step of a call reads it there and writes into the other one, and
- *           further steps stay in that; only a call that succeeds makes it the state. So rolling back costs no copy.
- *           Without rollback there is one buffer.
+ * Rollback  The state lies in one of two buffers. The first step of a call reads it there and writes into the other
+ *           one, and further steps stay in that; only a call that succeeds makes it the state. So rolling back costs no
+ *           copy. Without rollback there is one buffer.
  */
 #define SPRING_SHAPE_SCENE
 #include "methods.h"
@@ -126,8 +126,8 @@ static int largest_exponent(const spring_scene *s, link_coefficient which)
     return exponent;
 }
 
-/* Over the particles that move the largest sum of twice a coefficient of their links, once where the other end is pinned,
-   and of what each particle has of its own; by_mass: times the inverse mass. Uses the memory of the forces. */
+/* Over the particles that move the largest sum of twice a coefficient of their links, once where the other end is
+   pinned, and of what each particle has of its own; by_mass: times the inverse mass. Uses the memory of the forces. */
 static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
     const scalar *inverse_mass = s->plan.inverse_mass != 0 ? scene_array(s, s->plan.inverse_mass) : NULL;
@@ -186,14 +186,14 @@ double spring_scene_stable_step(spring_scene *s, spring_method m)
 
 /* -------------------------------------------------------------------------------------------------------- at rest */
 
-/* Forces of the state, unless they are at hand. Those of a callback are not kept: what *user holds may change before the
-   next step. */
+/* Forces of the state, unless they are at hand. Those of a callback are not kept: what *user holds may change before
+   the next step. */
 static void update_force(spring_scene *s)
 {
     if (s->force_kept)
         return;
-    scene_find_forces(best_scene_kernels(), s, scene_quantity(s, SPRING_POSITION, 0), scene_quantity(s, SPRING_VELOCITY, 0),
-                      time_of(s));
+    scene_find_forces(best_scene_kernels(), s, scene_quantity(s, SPRING_POSITION, 0),
+                      scene_quantity(s, SPRING_VELOCITY, 0), time_of(s));
     s->force_kept = s->force == NULL;
 }
 

@@ -5,8 +5,8 @@
 
 #include "scene_block.h"
 
-/* One step, from a buffer whose forces are known to a buffer, which may be the same. Its times are no sums of steps, and
-   the end of one is the begin of the next, to the bit. */
+/* One step, from a buffer whose forces are known to a buffer, which may be the same. Its times are no sums of steps,
+   and the end of one is the begin of the next, to the bit. */
 typedef struct scene_step {
     const scene_kernels *kernels;
     const spring_scene *scene;
@@ -86,8 +86,8 @@ static inline scene_motion scene_motion_of(const scene_step *step)
 }
 
 /* The forces of links and callback at time t on positions x and velocities v, arrays of all axes. */
-static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, const scalar *x, const scalar *v,
-                                     double t)
+static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, const scalar *x,
+                                     const scalar *v, double t)
 {
     const scene_plan *p = &s->plan;
     const bool damped = s->damped_links > 0;

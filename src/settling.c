@@ -7,8 +7,8 @@
  *           points shrink by a fixed factor, so the last swing beyond x_tol is found by a logarithm; after it y enters
  *           the band for good, at a crossing found by bisection on the exact solution.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
- * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance within its rounding
- *           error of the state gives a time that means nothing
+ * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance
+ *           within its rounding error of the state gives a time that means nothing
  */
 #include <stddef.h>
 

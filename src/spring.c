@@ -10,7 +10,8 @@ static const one_method *const methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(ON
 
 #define ORDER_ROW(value, method) value,
 static const spring_method table_order[] = {SPRING_METHODS(ORDER_ROW)};
-_Static_assert(sizeof table_order / sizeof table_order[0] == SPRING_METHOD_COUNT, "each method has one row in methods.h");
+_Static_assert(sizeof table_order / sizeof table_order[0] == SPRING_METHOD_COUNT,
+               "each method has one row in methods.h");
 
 static const one_method *find_method(spring_method m)
 {
@@ -91,8 +92,7 @@ spring_params spring_params_half_life(double half_life, double damping_ratio)
 {
     const double ln2 = 0.6931471805599453;
     const double z = damping_ratio;
-    const double rate =
-        z <= 1 ? z : 1 / (z + sqrt(z - 1) * sqrt(z + 1)); /* of the envelope, in units of omega */
+    const double rate = z <= 1 ? z : 1 / (z + sqrt(z - 1) * sqrt(z + 1)); /* of the envelope, in units of omega */
     return params_of(half_life > 0 && isfinite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
 }
 

@@ -4,8 +4,8 @@
  *
  * Method    v1 = (v - ((h w) x - h a)) / (1 + q),   x1 = x + h v1,   q = h g
  *           Without damping two shears: they keep the phase-space area whatever the rounding, so the energy error stays
- *           bounded over any number of steps. It is leapfrog seen half a step late: x and v + h/2 (a - w x) are a leapfrog
- *           run.
+ *           bounded over any number of steps. It is leapfrog seen half a step late: x and v + h/2 (a - w x) are a
+ *           leapfrog run.
  * Order     1. Without damping it conserves v^2/2 + w x^2/2 - h w x v/2: the energy error is at most about z/2 of E,
  *           z = h sqrt(w), and the phase is leapfrog's.
  * Limit     trace 1 + (1 - h^2 w)/(1 + q), determinant 1/(1 + q): stable for h^2 w < 4 + 2 h g, that is
@@ -62,8 +62,13 @@ static double symplectic_euler_stable_step(const spring_roots *r)
 }
 
 static const one_method symplectic_euler_one = {
-    .info = {.name = "symplectic-euler", .order = 1, .forces_per_step = 1, .symplectic = true, .springs = true,
-             .scenes = true, .label = "symplectic Euler"},
+    .info = {.name = "symplectic-euler",
+             .order = 1,
+             .forces_per_step = 1,
+             .symplectic = true,
+             .springs = true,
+             .scenes = true,
+             .label = "symplectic Euler"},
     .kernel = spring_step_symplectic_euler,
     .loop = {{symplectic_euler_plain, symplectic_euler_loaded},
              {symplectic_euler_damped, symplectic_euler_damped_loaded}},

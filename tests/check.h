@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Checks that say what they saw, random numbers from a printed seed, and the frame that runs tests through CUnit as TAP. */
+/* Checks that say what they saw, random numbers from a printed seed, and the frame that runs tests through CUnit as
+   TAP. */
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -11,8 +12,7 @@
 #include <springstep/spring.h>
 
 /* True only for error <= bound, so NaN fails. On failure got, want, error, bound and the reason are printed. */
-#define CHECK_CLOSE(got, want, bound, why) \
-    check_close((got), (want), (bound), (why), #got, __FILE__, __LINE__)
+#define CHECK_CLOSE(got, want, bound, why) check_close((got), (want), (bound), (why), #got, __FILE__, __LINE__)
 /* The error itself, where it was formed in higher precision. */
 #define CHECK_BELOW(error, bound, why) check_close((error), 0, (bound), (why), #error, __FILE__, __LINE__)
 /* The same bits: -0.0 is not 0.0. */

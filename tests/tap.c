@@ -36,8 +36,8 @@ void check_close(double got, double want, double bound, const char *why, const c
     if (bound > 0)
         closest = fmax(closest, error / bound);
     if (report(error <= bound, what, file, line))
-        printf("# %s:%u: %s\n#   got %.17g, want %.17g, error %.3g, bound %.3g (%s)\n", file, line, what, got,
-               want, error, bound, why);
+        printf("# %s:%u: %s\n#   got %.17g, want %.17g, error %.3g, bound %.3g (%s)\n", file, line, what, got, want,
+               error, bound, why);
 }
 
 void skip(const char *why)
@@ -63,8 +63,8 @@ void check_state(spring_state got, spring_state want, const char *why, const cha
 {
     const bool same = bits_of(got.x) == bits_of(want.x) && bits_of(got.v) == bits_of(want.v);
     if (report(same, what, file, line))
-        printf("# %s:%u: %s\n#   got (%a, %a), want (%a, %a) (%s)\n", file, line, what, got.x, got.v, want.x,
-               want.v, why);
+        printf("# %s:%u: %s\n#   got (%a, %a), want (%a, %a) (%s)\n", file, line, what, got.x, got.v, want.x, want.v,
+               why);
 }
 
 uint64_t random_bits(void)

@@ -67,8 +67,7 @@ static void nothing_to_do(void)
     }
 }
 
-static void refuse(spring_state start, spring_params p, spring_method m, double dt, uint64_t n,
-                   const char *why)
+static void refuse(spring_state start, spring_params p, spring_method m, double dt, uint64_t n, const char *why)
 {
     spring_state s = start;
     CHECK(spring_advance(&s, &p, m, dt, n) == SPRING_EINVAL, why);
@@ -119,8 +118,7 @@ static void accepts_the_edges(void)
     s = (spring_state){5e-324, -5e-324};
     const spring_params p = {1e-300, 1e-300, 0, 0};
     CHECK(spring_advance(&s, &p, SPRING_RK4, 0.1, 100) == SPRING_OK, "denormal state, tiny mass");
-    CHECK(spring_advance(&s, &p, SPRING_EXACT, 1e-3, UINT64_MAX) == SPRING_OK,
-          "2^64 - 1 steps in closed form");
+    CHECK(spring_advance(&s, &p, SPRING_EXACT, 1e-3, UINT64_MAX) == SPRING_OK, "2^64 - 1 steps in closed form");
 }
 
 /* Overflow is reported, the state kept; 2^64 - 1 steps end soon because it is noticed. */
@@ -141,22 +139,19 @@ static void overflow(void)
     for (uint64_t n = 4090; n < 4100; n++) {
         const spring_state fast = {0, 1.7e308 / (double)n * 1.0625};
         spring_state s = fast;
-        CHECK(spring_advance(&s, &free_fall, SPRING_EULER, 1, n) == SPRING_ENONFINITE,
-              "x passes the largest double");
+        CHECK(spring_advance(&s, &free_fall, SPRING_EULER, 1, n) == SPRING_ENONFINITE, "x passes the largest double");
         CHECK_STATE(s, fast, "an overflow leaves the state as it was");
         CHECK(spring_advance(&s, &free_fall, SPRING_EULER, 1, n * 9 / 10) == SPRING_OK, "just before");
     }
     spring_state s = start;
     const spring_params growing = {1.3, 2.7, 1.0, 0};
-    CHECK(spring_advance(&s, &growing, SPRING_EXACT, -1e6, 1) == SPRING_ENONFINITE,
-          "backwards damping overflows");
-    CHECK(spring_advance(&s, &growing, SPRING_EXACT, 1e300, UINT64_MAX) == SPRING_ENONFINITE,
-          "n dt overflows");
+    CHECK(spring_advance(&s, &growing, SPRING_EXACT, -1e6, 1) == SPRING_ENONFINITE, "backwards damping overflows");
+    CHECK(spring_advance(&s, &growing, SPRING_EXACT, 1e300, UINT64_MAX) == SPRING_ENONFINITE, "n dt overflows");
     CHECK_STATE(s, start, "an overflow leaves the state as it was");
 }
 
-/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. Here some,
-   for every build of the tests; of every method in tests/headers/bits.txt. */
+/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. Here
+   some, for every build of the tests; of every method in tests/headers/bits.txt. */
 static void golden_bits(void)
 {
     static const struct {
@@ -200,10 +195,8 @@ static void one_is_not_special(void)
             spring_state a = start, b = start;
             spring_advance(&a, &at[i], *m, 0.013, 100);
             spring_advance(&b, &beside, *m, 0.013, 100);
-            CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON,
-                        "an ulp of the parameters, and rounding of 100 steps");
-            CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON,
-                        "an ulp of the parameters, and rounding of 100 steps");
+            CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
+            CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
         }
     }
 }
@@ -218,11 +211,9 @@ static void table_of_methods(void)
         CHECK(m >= 0 && m < no_method && !seen[m] && info != NULL, "a method, for the first time");
         seen[m] = true;
         CHECK(info->springs || info->scenes, "a method is for something");
-        CHECK(info->order >= 0 && (info->order > 0) == (info->forces_per_step > 0),
-              "who steps evaluates forces");
+        CHECK(info->order >= 0 && (info->order > 0) == (info->forces_per_step > 0), "who steps evaluates forces");
         CHECK((spring_method_kernel(m) != NULL) == info->springs, "a kernel for one spring");
-        CHECK(spring_method_name(m) == info->name && strlen(info->label) > 0,
-              "names for programs and for texts");
+        CHECK(spring_method_name(m) == info->name && strlen(info->label) > 0, "names for programs and for texts");
         CHECK(strspn(info->name, "abcdefghijklmnopqrstuvwxyz0123456789-") == strlen(info->name) &&
                   strlen(info->name) > 0,
               "a word of the command line");

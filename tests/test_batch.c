@@ -3,8 +3,8 @@
  * Batches against single springs, with one instruction set: v128, v256 or v512 on the command line. Built twice: once
  * with SPRING_FLOAT, for the twins in float.
  *
- * In double a spring is what spring_advance() makes of it. In float it is what the kernels without vectors make of it, and
- * that lies near what spring_advance() makes of it in double.
+ * In double a spring is what spring_advance() makes of it. In float it is what the kernels without vectors make of it,
+ * and that lies near what spring_advance() makes of it in double.
  */
 #include <math.h>
 #include <stdio.h>
@@ -24,7 +24,8 @@ static spring_status advance(const spring_batch *b, spring_method m, scalar dt, 
     return spring_batch_advance_with(kernels, b, m, dt, n);
 }
 
-/* ------------------------------------------------------------------------------------ what a spring's life should be */
+/* ------------------------------------------------------------------------------------ what a spring's life should
+   be */
 
 typedef struct spring {
     scalar x, v, w, g, a;
@@ -92,7 +93,8 @@ static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool share
 
 #endif
 
-/* -------------------------------------------------------------------------------- batches, and what lies around them */
+/* -------------------------------------------------------------------------------- batches, and what lies around
+   them */
 
 enum { most = 1000, edge = 64 / sizeof(scalar), room = most + 2 * edge, arrays = 5, feature_count = 18 };
 static const scalar outside = (scalar)NAN; /* to be neither read nor written */
@@ -145,8 +147,8 @@ static spring_batch lay_out(place *p, const spring *s, size_t count, features f)
         if (f.a == EACH || (f.a == SHARED && i == 0))
             at[4][i] = s[i].a;
     }
-    return (spring_batch){
-        count, at[0], at[1], at[2], f.g == NONE ? NULL : at[3], f.a == NONE ? NULL : at[4], shared_bits(f)};
+    return (spring_batch){count,         at[0], at[1], at[2], f.g == NONE ? NULL : at[3], f.a == NONE ? NULL : at[4],
+                          shared_bits(f)};
 }
 
 /* All arrays and what is around them, bit for bit. Says where they first differ. */
@@ -175,8 +177,8 @@ static void check_batch(const spring *s, size_t count, features f, spring_method
     const spring_batch b = lay_out(&got, s, count, f);
     spring_status status = SPRING_OK;
     char why[120];
-    snprintf(why, sizeof why, "%s, %zu springs, %d steps of %g s, sharing of w %d, g %d, a %d",
-             spring_method_name(m), count, (int)n, (double)dt, (int)f.w, (int)f.g, (int)f.a);
+    snprintf(why, sizeof why, "%s, %zu springs, %d steps of %g s, sharing of w %d, g %d, a %d", spring_method_name(m),
+             count, (int)n, (double)dt, (int)f.w, (int)f.g, (int)f.a);
     expected = got;
     for (size_t i = 0; i < count; i++) {
         expected.of[0][b.x - got.of[0] + (ptrdiff_t)i] = want[i].x;
@@ -256,7 +258,8 @@ static void spoil(spring *s, uint64_t way)
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- properties */
+/* --------------------------------------------------------------------------------------------------------
+   properties */
 
 static const scalar step = (scalar)0.05;
 static spring springs[most];
@@ -323,8 +326,7 @@ static void one_bad_spring(void)
         for (const spring_method *m = steppers(); *m != no_method; m++) {
             for (size_t j = 0; j < count; j++) {
                 lives[j] = life(springs[j], *m, step, 3, false);
-                CHECK((lives[j].status == SPRING_OK) == (j != i / 2) || i % ways_to_spoil > 6,
-                      "the others are well");
+                CHECK((lives[j].status == SPRING_OK) == (j != i / 2) || i % ways_to_spoil > 6, "the others are well");
             }
             check_batch(springs, count, f, *m, step, 3, lives);
         }
@@ -442,8 +444,8 @@ static void public_function(void)
         }
 }
 
-/* Once every spring of a batch has overflowed, no number of steps takes long: so many equal springs overflow in the first of
-   10^12 steps, and the call ends. */
+/* Once every spring of a batch has overflowed, no number of steps takes long: so many equal springs overflow in the
+   first of 10^12 steps, and the call ends. */
 static void check_ends(spring one, size_t count, features f, spring_method m)
 {
     static place got, want;
@@ -459,8 +461,7 @@ static void overflow_ends(void)
 {
     const scalar w = (scalar)2.7, g = (scalar)0.6, a = (scalar)0.4, half = (scalar)0.5;
     for (size_t k = 0; k < feature_count; k++)
-        for (size_t rest = 1; rest <= 1 + k;
-             rest += k + (k == 0)) { /* a single spring, too, is lost as a whole */
+        for (size_t rest = 1; rest <= 1 + k; rest += k + (k == 0)) { /* a single spring, too, is lost as a whole */
             const features f = features_of(k);
             for (const spring_method *m = steppers(); *m != no_method; m++) {
                 check_ends((spring){1, 0, w, g, a}, 128 + rest, f, *m);
@@ -480,10 +481,8 @@ static void exact_over_all_steps(void)
         for (size_t i = 0; i < 6; i++) {
             const features f = features_of(k);
             const uint64_t n = lengths[i % 3] == huge_number ? UINT64_MAX : 107;
-            springs[0] =
-                (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, i < 3 ? (scalar)0.6 : 7, (scalar)0.4};
-            lives[0] =
-                life(seen(springs, 0, f), SPRING_EXACT, lengths[i % 3], n, f.w == SHARED && f.g != EACH);
+            springs[0] = (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, i < 3 ? (scalar)0.6 : 7, (scalar)0.4};
+            lives[0] = life(seen(springs, 0, f), SPRING_EXACT, lengths[i % 3], n, f.w == SHARED && f.g != EACH);
             CHECK(i >= 3 || (lives[0].status == SPRING_OK) == isfinite((double)lengths[i % 3] * (double)n),
                   "n dt may overflow");
             for (size_t j = 1; j < 3; j++) {
@@ -512,7 +511,8 @@ static void nothing_to_do(void)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- bad batches */
+/* ------------------------------------------------------------------------------------------------------- bad
+   batches */
 
 static scalar memory[400];
 
@@ -534,8 +534,7 @@ static void refuse(const spring_batch *b, spring_method m, scalar dt, const char
         CHECK(isnan(spring_batch_stable_step(b, m)), why);
 }
 
-static const spring_batch good = {10, memory + 100, memory + 200, memory + 300, memory + 320, memory + 340,
-                                  0};
+static const spring_batch good = {10, memory + 100, memory + 200, memory + 300, memory + 320, memory + 340, 0};
 
 static void overlaps(void)
 {
@@ -628,7 +627,8 @@ static void bad_shared_parameters(void)
         }
 }
 
-/* ------------------------------------------------------------------------------------------------------- stable step */
+/* ------------------------------------------------------------------------------------------------------- stable
+   step */
 
 static void stable_step(void)
 {
@@ -648,11 +648,9 @@ static void stable_step(void)
                     least = fmin(least, spring_stable_step(&one, method));
                 }
                 const spring_batch b = lay_out(&p, springs, count, f);
-                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least,
-                           "the least of all");
+                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least, "the least of all");
                 b.x[0] = NAN;
-                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least,
-                           "whatever the state");
+                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least, "whatever the state");
             }
         }
         for (size_t i = 0; i < 30; i++) { /* one bad spring */
@@ -669,23 +667,21 @@ static void stable_step(void)
 
 #ifdef SPRING_FLOAT
 
-/* ------------------------------------------------------------------------------------------ how near to double it is */
+/* ------------------------------------------------------------------------------------------ how near to double it
+   is */
 
-/* Each step of a stepper rounds by 2 eps (1 + z^2)^2 of (x, v/omega) at most, as in double (tests/test_iterate.c). No step
-   of exp(hM) makes that longer, and what a stepper differs by is at most (hM)^2/2, 2 z^2 of the length. */
+/* Each step of a stepper rounds by 2 eps (1 + z^2)^2 of (x, v/omega) at most, as in double (tests/test_iterate.c). No
+   step of exp(hM) makes that longer, and what a stepper differs by is at most (hM)^2/2, 2 z^2 of the length. */
 static void near_double(void)
 {
     for (int i = 0; i < 1000; i++) {
         const features each = {EACH, EACH, EACH};
         const uint64_t n = 1 + random_bits() % 64;
-        const spring s = {(scalar)random_uniform(-1, 1), (scalar)random_uniform(-1, 1),
-                          (scalar)random_log(0.1, 10), (scalar)random_log(1e-4, 3),
-                          (scalar)random_uniform(-1, 1)};
-        const double omega = sqrt((double)s.w), z = fmax(omega, (double)s.g) * (double)step,
-                     steps = (double)n;
+        const spring s = {(scalar)random_uniform(-1, 1), (scalar)random_uniform(-1, 1), (scalar)random_log(0.1, 10),
+                          (scalar)random_log(1e-4, 3), (scalar)random_uniform(-1, 1)};
+        const double omega = sqrt((double)s.w), z = fmax(omega, (double)s.g) * (double)step, steps = (double)n;
         const double grown = exp(2 * z * z * steps);
-        const double size =
-            hypot((double)s.x, (double)s.v / omega) + steps * (double)step * fabs((double)s.a) / omega;
+        const double size = hypot((double)s.x, (double)s.v / omega) + steps * (double)step * fabs((double)s.a) / omega;
         const double bound = steps * 2 * (double)FLT_EPSILON * pow(1 + z * z, 2) * size * grown * grown;
         for (const spring_method *m = steppers(); *m != no_method; m++) {
             static place p;
@@ -718,18 +714,17 @@ static void exact_near_double(void)
               "good input");
         const double x = fabs((double)s.x), v = fabs((double)s.v), a = fabs((double)s.a);
         const double smallest = 1e-44; /* some roundings of denormal numbers */
-        CHECK_CLOSE((double)b.x[0], want.x,
-                    eps * (y.half * (fabs(y.F) * x + fabs(y.H) * v) + fabs(y.P) * a) + smallest,
+        CHECK_CLOSE((double)b.x[0], want.x, eps * (y.half * (fabs(y.F) * x + fabs(y.H) * v) + fabs(y.P) * a) + smallest,
                     "five roundings in float");
-        CHECK_CLOSE((double)b.v[0], want.v,
-                    eps * y.half * (fabs(y.G) * v + fabs(y.wH) * x + fabs(y.H) * a) + smallest,
+        CHECK_CLOSE((double)b.v[0], want.v, eps * y.half * (fabs(y.G) * v + fabs(y.wH) * x + fabs(y.H) * a) + smallest,
                     "five roundings in float");
     }
 }
 
 #endif
 
-/* --------------------------------------------------------------------------------------------------------------- main */
+/* ---------------------------------------------------------------------------------------------------------------
+   main */
 
 static const char *lacking;
 

@@ -27,14 +27,12 @@ static void dropped_time(void)
 {
     spring_clock clock = {0};
     double alpha = -1;
-    CHECK(spring_clock_tick(&clock, 2.0625, 0.125, 8, &alpha) == 8,
-          "sixteen steps and a half, eight allowed");
+    CHECK(spring_clock_tick(&clock, 2.0625, 0.125, 8, &alpha) == 8, "sixteen steps and a half, eight allowed");
     CHECK_BITS(clock.dropped, 1, "eight steps dropped");
     CHECK_BITS(alpha, 0.5, "the fraction is kept");
     CHECK(spring_clock_tick(&clock, 0.25, 0.125, 0, &alpha) == 0, "no steps allowed");
     CHECK_BITS(clock.dropped, 1.25, "dropped time adds up");
-    CHECK(spring_clock_tick(&clock, 0x1p64 - clock.pending, 1, UINT64_MAX, &alpha) == UINT64_MAX,
-          "2^64 steps");
+    CHECK(spring_clock_tick(&clock, 0x1p64 - clock.pending, 1, UINT64_MAX, &alpha) == UINT64_MAX, "2^64 steps");
     CHECK(spring_clock_tick(&clock, 1e300, 1e-300, UINT64_MAX, &alpha) == UINT64_MAX, "more than 2^64 steps");
     CHECK(isfinite(clock.dropped) && clock.pending < 1e-300, "a long frame and a short step stay finite");
 }
@@ -61,23 +59,21 @@ static void nothing_is_lost(void)
     const double per_frame = 0x1p-55, per_drop = clock.dropped * DBL_EPSILON;
     CHECK(clock.dropped > 0, "some frames were too long");
     CHECK_CLOSE((double)steps * dt + clock.pending + clock.dropped, frames,
-                count * per_frame + count / 100 * per_drop + frames * DBL_EPSILON,
-                "rounding of each addition");
+                count * per_frame + count / 100 * per_drop + frames * DBL_EPSILON, "rounding of each addition");
 }
 
 static void nothing_is_dropped_without_need(void)
 {
     spring_clock clock = {0};
     for (int i = 0; i < 10000; i++) {
-        const uint64_t needed =
-            (uint64_t)((clock.pending + 0.1) * 240); /* 24, or 25 with what was left over */
+        const uint64_t needed = (uint64_t)((clock.pending + 0.1) * 240); /* 24, or 25 with what was left over */
         CHECK(spring_clock_tick(&clock, 0.1, 1.0 / 240, needed, NULL) == needed, "as many as allowed");
         CHECK_BITS(clock.dropped, 0, "the rounding of so many steps is no dropped time");
     }
 }
 
-/* A goal jumps, and what is drawn between the last two states does not: x is the position, of which load = stiffness goal
-   changes nothing until time passes. */
+/* A goal jumps, and what is drawn between the last two states does not: x is the position, of which load = stiffness
+   goal changes nothing until time passes. */
 static void drawn_while_the_goal_jumps(void)
 {
     const double dt = 1.0 / 240, frame = 1.5 * dt, goal = 100;
@@ -98,8 +94,7 @@ static void drawn_while_the_goal_jumps(void)
             const double before = drawn;
             drawn = previous.x + alpha * (now.x - previous.x);
             CHECK(drawn >= before && drawn <= now.x, "between where it was and where it is");
-            CHECK(drawn <= p.stiffness / p.mass * goal * time * time,
-                  "twice what this acceleration can do so far");
+            CHECK(drawn <= p.stiffness / p.mass * goal * time * time, "twice what this acceleration can do so far");
         }
         CHECK(drawn > 0.01 * goal && drawn < 0.5 * goal, "under way");
     }

@@ -66,11 +66,9 @@ static void around_critical(void)
 static void backwards(void)
 {
     for (int i = 0; i < 2000; i++) {
-        const spring_params p = {random_log(0.1, 10), random_log(0.1, 10), i % 3 ? random_log(1e-3, 30) : 0,
-                                 0};
+        const spring_params p = {random_log(0.1, 10), random_log(0.1, 10), i % 3 ? random_log(1e-3, 30) : 0, 0};
         const double rate = sqrt(p.stiffness / p.mass) + p.damping / p.mass;
-        against_truth(p, (spring_state){random_uniform(-1, 1), random_uniform(-1, 1)},
-                      -random_log(1e-6, 100) / rate);
+        against_truth(p, (spring_state){random_uniform(-1, 1), random_uniform(-1, 1)}, -random_log(1e-6, 100) / rate);
     }
 }
 
@@ -101,8 +99,7 @@ static void loaded(void)
 static void stays_at_rest_under_load(void)
 {
     for (int i = 0; i < 1000; i++) {
-        const spring_params p = {random_log(0.1, 10), random_log(0.1, 10), random_uniform(0, 3),
-                                 random_uniform(-1, 1)};
+        const spring_params p = {random_log(0.1, 10), random_log(0.1, 10), random_uniform(0, 3), random_uniform(-1, 1)};
         const double rest = p.load / p.stiffness;
         spring_state s = {rest, 0};
         spring_step_exact(&s, &p, random_log(1e-3, 1e3));

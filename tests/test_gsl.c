@@ -46,8 +46,7 @@ static void along_gsl(double h, int steps, judge_fn *judge)
         spring_state ours = {y[0], y[1]};
         CHECK(stepper != NULL, "GSL is here");
         for (int n = 0; n < steps; n++) {
-            CHECK(gsl_odeiv2_step_apply(stepper, n * h, h, y, error, NULL, NULL, &system) == GSL_SUCCESS,
-                  "GSL steps");
+            CHECK(gsl_odeiv2_step_apply(stepper, n * h, h, y, error, NULL, NULL, &system) == GSL_SUCCESS, "GSL steps");
             judge(&ours, y, p, h);
         }
         CHECK(r.calls >= 10UL * (unsigned long)steps && r.calls <= 12UL * (unsigned long)steps,

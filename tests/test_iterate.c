@@ -86,13 +86,11 @@ static void energy_laws(void)
         spring_state s = start;
         spring_advance(&s, &p, SPRING_EULER, dt, n);
         const double euler = e0 * exp((double)n * log1p(z * z));
-        CHECK_CLOSE(spring_energy(&s, &p), euler, 10 * (double)n * DBL_EPSILON * euler,
-                    "Euler: E0 (1 + z^2)^n");
+        CHECK_CLOSE(spring_energy(&s, &p), euler, 10 * (double)n * DBL_EPSILON * euler, "Euler: E0 (1 + z^2)^n");
         s = start;
         spring_advance(&s, &p, SPRING_RK4, dt, n);
         const double rk4 = e0 * exp((double)n * log1p(pow(z, 8) / 576 - pow(z, 6) / 72));
-        CHECK_CLOSE(spring_energy(&s, &p), rk4, 10 * (double)n * DBL_EPSILON * e0,
-                    "RK4: E0 (1 - z^6/72 + z^8/576)^n");
+        CHECK_CLOSE(spring_energy(&s, &p), rk4, 10 * (double)n * DBL_EPSILON * e0, "RK4: E0 (1 - z^6/72 + z^8/576)^n");
         s = start;
         double worst = 0;
         const double shadow = start.v * start.v + omega * omega * (1 - z * z / 4) * start.x * start.x;
@@ -102,8 +100,7 @@ static void energy_laws(void)
             CHECK(fabs(spring_energy(&s, &p) - e0) <= e0 * z * z / 2,
                   "E/E0 is within 1 and 1 - z^2/4 of the invariant, at both ends");
         }
-        CHECK_BELOW(worst, 10 * (double)n * DBL_EPSILON * shadow,
-                    "leapfrog conserves v^2 + w (1 - z^2/4) x^2");
+        CHECK_BELOW(worst, 10 * (double)n * DBL_EPSILON * shadow, "leapfrog conserves v^2 + w (1 - z^2/4) x^2");
     }
 }
 
@@ -120,8 +117,7 @@ static void leapfrog_in_closed_form(void)
         spring_advance(&got, &p, SPRING_LEAPFROG, z / omega, n);
         /* 5 eps a step for both sides: 2 for the map's own angle, asin'(z/2) = 1/s, 3 for the steps */
         const double bound = 5 * (double)n * DBL_EPSILON / (s * s) * hypot(start.x, start.v / omega);
-        CHECK_CLOSE(got.x, cos(angle) * start.x + sin(angle) * start.v / (omega * s), bound,
-                    "rounding near the limit");
+        CHECK_CLOSE(got.x, cos(angle) * start.x + sin(angle) * start.v / (omega * s), bound, "rounding near the limit");
         CHECK_CLOSE(got.v, -omega * s * sin(angle) * start.x + cos(angle) * start.v, bound * omega,
                     "rounding near the limit");
     }
@@ -144,8 +140,7 @@ static void long_runs(void)
             spring_advance(&got, &p, *m, dt, n);
             /* unbiased: sqrt(n) eps, and the one rounding of a coefficient, eps/4 of the angle omega t or less */
             const double t = dt * (double)n, omega = sqrt(2.7 / 1.3);
-            CHECK_BELOW(reference_distance(&ref, got),
-                        (5 * sqrt((double)n) + omega * t / 4) * DBL_EPSILON * 1.2,
+            CHECK_BELOW(reference_distance(&ref, got), (5 * sqrt((double)n) + omega * t / 4) * DBL_EPSILON * 1.2,
                         "rounding grows like sqrt(n), not like n");
             reference_clear(&ref);
         }

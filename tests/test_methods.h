@@ -10,8 +10,7 @@ static const spring_method no_method = (spring_method)SPRING_METHOD_COUNT;
 
 typedef bool method_choice(const spring_method_info *m);
 
-static inline const spring_method *list_methods(spring_method list[SPRING_METHOD_COUNT + 1],
-                                                method_choice *chosen)
+static inline const spring_method *list_methods(spring_method list[SPRING_METHOD_COUNT + 1], method_choice *chosen)
 {
     int count = 0;
     for (int i = 0; i < SPRING_METHOD_COUNT; i++)

@@ -153,8 +153,8 @@ static void textbook_constants(void)
         double constant;
     } want[] = {{SPRING_EULER, cos(1) / 2}, {SPRING_LEAPFROG, sin(1) / 24}, {SPRING_RK4, sin(1) / 120}};
     for (size_t i = 0; i < sizeof want / sizeof want[0]; i++)
-        CHECK_CLOSE(fabs(error_constant(&original, want[i].method).x), want[i].constant,
-                    1e-8 * want[i].constant, "textbook value; the step of the reference is 2^-30 s");
+        CHECK_CLOSE(fabs(error_constant(&original, want[i].method).x), want[i].constant, 1e-8 * want[i].constant,
+                    "textbook value; the step of the reference is 2^-30 s");
 }
 
 /* The exact solution has no order: its error does not fall with the step because there is none. */
@@ -168,12 +168,12 @@ static void exact_composes(void)
         spring_state one = q->start;
         spring_step_exact(&one, &q->p, q->duration);
         CHECK_CLOSE(many.x, one.x, 1000 * 4 * DBL_EPSILON, "a thousand steps, each within its bound");
-        CHECK_CLOSE(many.v, one.v, 1000 * 4 * 2 * DBL_EPSILON,
-                    "a thousand steps, each within its bound; omega < 2/s");
+        CHECK_CLOSE(many.v, one.v, 1000 * 4 * 2 * DBL_EPSILON, "a thousand steps, each within its bound; omega < 2/s");
     }
 }
 
-/* A drive cos(2 t) sampled once a step: at the start of the step order 1, in the middle order 2, if the method has it. */
+/* A drive cos(2 t) sampled once a step: at the start of the step order 1, in the middle order 2, if the method has
+   it. */
 static void sampled_load(void)
 {
     const spring_params p = {.mass = 1.3, .stiffness = 2.7};

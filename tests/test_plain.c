@@ -7,7 +7,8 @@
 extern const batch_kernels plain_batch;
 extern const scene_kernels plain_scene;
 
-/* ------------------------------------------------------------------------------------------------------------ batches */
+/* ------------------------------------------------------------------------------------------------------------
+   batches */
 
 enum { springs = 70 }; /* groups of both kinds, and a rest */
 
@@ -35,8 +36,8 @@ static void draw(springs_at *s, uint64_t bad_of_8)
 /* Bit i of features: the array of w, g or a is shared; 8 and 16: no g, no a. */
 static spring_batch batch_of(springs_at *s, unsigned features)
 {
-    return (spring_batch){
-        springs, s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a, features & 7};
+    return (spring_batch){springs,     s->x, s->v, s->w, features & 8 ? NULL : s->g, features & 16 ? NULL : s->a,
+                          features & 7};
 }
 
 static void batches(void)
@@ -60,7 +61,8 @@ static void batches(void)
             }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- scenes */
+/* -------------------------------------------------------------------------------------------------------------
+   scenes */
 
 static void scenes(void)
 {
@@ -72,8 +74,7 @@ static void scenes(void)
             for (const spring_method *method = all.at; *method != no_method; method++) {
                 spring_scene *plain = scene_of(&m.def), *vectors = scene_of(&m.def);
                 CHECK(spring_scene_advance_with(&plain_scene, plain, *method, 0.004, 5) == SPRING_OK &&
-                          spring_scene_advance_with(&spring_scene_v128, vectors, *method, 0.004, 5) ==
-                              SPRING_OK,
+                          spring_scene_advance_with(&spring_scene_v128, vectors, *method, 0.004, 5) == SPRING_OK,
                       "stable");
                 CHECK(same_bits(plain, vectors, m.def.particles, axes), "lane by lane the same operations");
                 free(plain);
@@ -90,8 +91,7 @@ static void lost_scenes(void)
     const method_list all = methods_of(m.def);
     for (const spring_method *method = all.at; *method != no_method; method++) {
         spring_scene *s = scene_of(&m.def), *before = scene_of(&m.def);
-        CHECK(spring_scene_advance_with(&plain_scene, s, *method, huge, 9) == SPRING_ENONFINITE,
-              "overflow is noticed");
+        CHECK(spring_scene_advance_with(&plain_scene, s, *method, huge, 9) == SPRING_ENONFINITE, "overflow is noticed");
         CHECK(same_bits(s, before, m.def.particles, 2), "and rolled back");
         free(s);
         free(before);

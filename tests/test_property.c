@@ -110,8 +110,7 @@ static void reversal(void)
         const spring_state by_time = run(back, SPRING_LEAPFROG), by_velocity = run(turned, SPRING_LEAPFROG);
         CHECK_CLOSE(by_time.x, d.s.x, bound, "n steps back with -dt");
         CHECK_CLOSE(by_time.v, d.s.v, bound * omega, "n steps back with -dt");
-        CHECK_STATE(by_velocity, ((spring_state){by_time.x, -by_time.v}),
-                    "-dt and -v are the same motion, to the bit");
+        CHECK_STATE(by_velocity, ((spring_state){by_time.x, -by_time.v}), "-dt and -v are the same motion, to the bit");
 
         d.p.load = 0;
         const double z = omega * d.dt, e0 = spring_energy(&d.s, &d.p);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the tests of scenes share: scenes in memory of their own, models with every feature, and a plain loop over links. */
+/* What the tests of scenes share: scenes in memory of their own, models with every feature, and a plain loop over
+   links. */
 #ifndef TEST_SCENE_H
 #define TEST_SCENE_H
 
@@ -29,8 +30,7 @@ SPRING_INLINE const scene_kernels *kernels_of(int i)
     if (i == 1)
         return __builtin_cpu_supports("avx2") ? &spring_scene_v256 : NULL;
     if (i == 2)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512
-                                                                                       : NULL;
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512 : NULL;
 #endif
     return i == 0 ? &spring_scene_v128 : NULL;
 }
@@ -172,8 +172,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
         .mass_all = 1.7,
         .pinned = features & PINNED ? m->pinned : NULL,
         .link = m->link,
-        .gravity = {features & GRAVITY ? 1.1 : 0, features & GRAVITY ? -9.81 : 0,
-                    features & GRAVITY ? 0.4 : 0},
+        .gravity = {features & GRAVITY ? 1.1 : 0, features & GRAVITY ? -9.81 : 0, features & GRAVITY ? 0.4 : 0},
         .drag = features & DRAG ? 0.37 : 0,
     };
     use_all_methods(&m->def);
@@ -210,8 +209,7 @@ SPRING_INLINE void set_state(spring_scene *s, size_t particles, const state *y)
 }
 
 /* Positions and velocities of two scenes of equal size, to the bit. */
-SPRING_INLINE bool same_bits(const spring_scene *s, const spring_scene *other, size_t particles,
-                             uint32_t axes)
+SPRING_INLINE bool same_bits(const spring_scene *s, const spring_scene *other, size_t particles, uint32_t axes)
 {
     static state a, b;
     get_state(s, particles, &a);
@@ -230,7 +228,8 @@ SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t 
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- a plain loop */
+/* ----------------------------------------------------------------------------------------------------------- a plain
+   loop */
 
 /* What a link does, from its definition in scene.h. On one axis length and rate are those from a to b. */
 typedef struct drawn_link {
@@ -253,8 +252,8 @@ SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const
     return d;
 }
 
-/* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) + damping
-   |relative velocity|, what the rounding errors of its force are relative to. size may be NULL. */
+/* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) +
+   damping |relative velocity|, what the rounding errors of its force are relative to. size may be NULL. */
 SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, const double *x, const double *v,
                                 double *force, double *size)
 {

@@ -42,11 +42,9 @@ static void refused(void)
     spring_scene_def *d = &good.def;
     const char *field = "";
     size_t index = 7;
-    CHECK(spring_scene_check(d, &field, &index) == SPRING_OK && field == NULL && index == 0,
-          "nothing to name");
+    CHECK(spring_scene_check(d, &field, &index) == SPRING_OK && field == NULL && index == 0, "nothing to name");
     index = 7;
-    CHECK(spring_scene_check(NULL, &field, &index) == SPRING_EINVAL && strcmp(field, "def") == 0 &&
-              index == 0,
+    CHECK(spring_scene_check(NULL, &field, &index) == SPRING_EINVAL && strcmp(field, "def") == 0 && index == 0,
           "no definition");
     memset(good.pinned, 0, sizeof good.pinned);
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
@@ -58,8 +56,7 @@ static void refused(void)
     REFUSED(d->particles, 0, SPRING_EINVAL, "particles", 0);
     REFUSED(d->particles, UINT32_MAX, SPRING_ERANGE, "particles", 0);
     REFUSED(d->particles, SIZE_MAX, SPRING_ERANGE, "particles", 0);
-    REFUSED(d->particles, SIZE_MAX / 16 + 1, SPRING_ERANGE, "particles",
-            0); /* 16 bytes each overflow to 16 */
+    REFUSED(d->particles, SIZE_MAX / 16 + 1, SPRING_ERANGE, "particles", 0); /* 16 bytes each overflow to 16 */
     REFUSED(d->links, SIZE_MAX, SPRING_ERANGE, "links", 0);
     REFUSED(d->links, SIZE_MAX / sizeof(spring_link) + 1, SPRING_ERANGE, "links", 0);
     REFUSED(d->links, UINT32_MAX, SPRING_ERANGE, "links", 0);
@@ -138,20 +135,17 @@ static void bad_memory(void)
     build(&good, sheet, 3, OWN | DAMPED);
     size_t bytes = 0;
     spring_scene *s = NULL;
-    CHECK(spring_scene_bytes(&good.def, &bytes) == SPRING_OK && bytes % SPRING_SCENE_ALIGN == 0,
-          "a multiple");
+    CHECK(spring_scene_bytes(&good.def, &bytes) == SPRING_OK && bytes % SPRING_SCENE_ALIGN == 0, "a multiple");
     char *room = aligned_alloc(SPRING_SCENE_ALIGN, bytes + SPRING_SCENE_ALIGN);
     memset(room, 0x5a, bytes + SPRING_SCENE_ALIGN);
-    CHECK(spring_scene_init(room, bytes - 1, &good.def, &s) == SPRING_ENOMEM && s == NULL,
-          "a byte too small");
+    CHECK(spring_scene_init(room, bytes - 1, &good.def, &s) == SPRING_ENOMEM && s == NULL, "a byte too small");
     CHECK(spring_scene_init(room, 0, &good.def, &s) == SPRING_ENOMEM && s == NULL, "nothing");
     CHECK(spring_scene_init(room + 8, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
     CHECK(spring_scene_init(room + 32, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
     CHECK(spring_scene_init(NULL, bytes, &good.def, &s) == SPRING_EINVAL && s == NULL, "no memory");
     CHECK(spring_scene_init(room, bytes, NULL, &s) == SPRING_EINVAL && s == NULL, "no definition");
     CHECK(spring_scene_init(room, bytes, &good.def, NULL) == SPRING_EINVAL, "nowhere to say");
-    CHECK(spring_scene_bytes(&good.def, NULL) == SPRING_EINVAL &&
-              spring_scene_bytes(NULL, &bytes) == SPRING_EINVAL,
+    CHECK(spring_scene_bytes(&good.def, NULL) == SPRING_EINVAL && spring_scene_bytes(NULL, &bytes) == SPRING_EINVAL,
           "NULL");
     size_t touched = 0;
     for (size_t i = 0; i < bytes + SPRING_SCENE_ALIGN; i++)
@@ -229,7 +223,8 @@ static void bytes_of_a_particle(void)
 }
 
 /* What a method stores in a scene without damping whose forces do not depend on velocities, numbers for each axis of a
-   particle: nothing if it evaluates the force of a state alone; of a stage at least x and v. Methods share what both have. */
+   particle: nothing if it evaluates the force of a state alone; of a stage at least x and v. Methods share what both
+   have. */
 static void methods_store_what_they_use(void)
 {
     const spring_scene_def still = {.axes = 2, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY};
@@ -246,8 +241,7 @@ static void methods_store_what_they_use(void)
             const double of_other = particle_cost(def) / axis;
             def.methods |= 1u << *m;
             const double both = particle_cost(def) / axis;
-            CHECK(both >= fmax(alone, of_other) && both <= alone + of_other - 5,
-                  "what both need is stored once");
+            CHECK(both >= fmax(alone, of_other) && both <= alone + of_other - 5, "what both need is stored once");
         }
     }
 }
@@ -264,8 +258,7 @@ static void methods_of_a_scene(void)
             m.def.methods = 1u << spring_method_at(i);
             const spring_status status = spring_scene_check(&m.def, &field, NULL);
             CHECK(info->scenes || status == SPRING_EUNSUPPORTED, "not for scenes");
-            CHECK(!info->scenes || !(info->springs || features == 0) || status == SPRING_OK,
-                  "for this scene");
+            CHECK(!info->scenes || !(info->springs || features == 0) || status == SPRING_OK, "for this scene");
             CHECK(status == SPRING_OK || strcmp(field, "methods") == 0, "nothing else is wrong");
         }
     }
@@ -316,8 +309,7 @@ static void bytes_of_a_scene(void)
 {
     const double x[] = {0};
     const spring_scene_def def = {.axes = 1, .methods = 1u << SPRING_EULER, .particles = 1, .position = x};
-    CHECK(bytes_of(&def) <= 8192,
-          "a scene of one particle: the plan and 16 numbers before and after each array");
+    CHECK(bytes_of(&def) <= 8192, "a scene of one particle: the plan and 16 numbers before and after each array");
     const spring_scene_def usual = {.particles = 1, .position = (double[3]){0}, .pinned = (uint8_t[1]){0}};
     CHECK(bytes_of(&usual) <= (sizeof(scalar) == 4 ? 5000 : 8000), "README.md: about so many");
 }
@@ -384,12 +376,7 @@ static void definitions_at_the_limits(void)
 static const spring_grid grids[] = {
     {.count = {1}, .spacing = 0.3, .stiffness = 2},
     {.count = {14}, .axes = 1, .spacing = 0.3, .stretch = 1.25, .stiffness = 20, .damping = 0.5},
-    {.count = {9, 4},
-     .axes = 2,
-     .spacing = 0.3,
-     .families = 7,
-     .stiffness = 20,
-     .pinned = SPRING_GRID_FIRST_X},
+    {.count = {9, 4}, .axes = 2, .spacing = 0.3, .families = 7, .stiffness = 20, .pinned = SPRING_GRID_FIRST_X},
     {.count = {2, 3, 5},
      .spacing = 1.7,
      .families = 7,
@@ -400,12 +387,7 @@ static const spring_grid grids[] = {
      .families = 2,
      .stiffness = 20,
      .pinned = SPRING_GRID_LAST_Z | SPRING_GRID_LAST_X},
-    {.count = {6, 5, 4},
-     .spacing = 1.7,
-     .families = 4,
-     .stretch = 0.8,
-     .stiffness = 20,
-     .pinned = SPRING_GRID_FIRST_Y},
+    {.count = {6, 5, 4}, .spacing = 1.7, .families = 4, .stretch = 0.8, .stiffness = 20, .pinned = SPRING_GRID_FIRST_Y},
     {.count = {7, 6}, .height = true, .spacing = 1, .families = 5, .stiffness = 20, .pinned = 15},
 };
 
@@ -430,8 +412,7 @@ static void check_grid(const spring_grid *g)
     static uint8_t pinned[most];
     static spring_link link[most_links];
     size_t particles = 0, links = 0;
-    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles < most && links < most_links,
-          "fits");
+    CHECK(spring_grid_size(g, &particles, &links) == SPRING_OK && particles < most && links < most_links, "fits");
     for (size_t i = 0; i < 3 * most; i++)
         position[i] = -77;
     memset(pinned, 77, sizeof pinned);
@@ -442,10 +423,7 @@ static void check_grid(const spring_grid *g)
     for (int a = 0; a < 3; a++)
         count[a] = g->count[a] == 0 ? 1 : (int)g->count[a];
     CHECK((int)particles == count[0] * count[1] * count[2], "one at each place");
-    const uint32_t axes = g->height      ? 1
-                          : g->axes == 0 ? 3
-                                         : g->axes,
-                   families = g->families == 0 ? 1 : g->families;
+    const uint32_t axes = g->height ? 1 : g->axes == 0 ? 3 : g->axes, families = g->families == 0 ? 1 : g->families;
     CHECK(position[particles * axes] == -77 && pinned[particles] == 77 &&
               memcmp(&link[links], &untouched, sizeof untouched) == 0,
           "and no more");
@@ -541,8 +519,7 @@ static void grids_at_the_limits(void)
         CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles == UINT32_MAX &&
                   links == UINT64_C(65534) * 65537 + UINT64_C(65535) * 65536,
               "2^32 - 1 particles, in rows and columns");
-    const uint32_t too_many[][3] = {
-        {1u << 16, 1u << 15, 2}, {1u << 16, 1u << 15, 4}, {1u << 31, 1u << 31, 4}};
+    const uint32_t too_many[][3] = {{1u << 16, 1u << 15, 2}, {1u << 16, 1u << 15, 4}, {1u << 31, 1u << 31, 4}};
     for (size_t i = 0; i < sizeof too_many / sizeof too_many[0]; i++) {
         memcpy(g.count, too_many[i], sizeof g.count);
         CHECK(spring_grid_size(&g, &particles, &links) == SPRING_ERANGE, "2^32, 2^33 and 2^64 particles");

@@ -36,8 +36,7 @@ static void stranger(void)
                 const method_list all = use_all_methods(&def);
                 for (const spring_method *m = all.at; *m != no_method; m++) {
                     spring_scene *s = scene_of(&def);
-                    CHECK(spring_scene_advance_with(kernels_of(k), s, *m, 0.01, 5) == SPRING_OK,
-                          "nothing joins them");
+                    CHECK(spring_scene_advance_with(kernels_of(k), s, *m, 0.01, 5) == SPRING_OK, "nothing joins them");
                     double x[3];
                     spring_scene_get(s, SPRING_POSITION, x, 0, 8, 1);
                     CHECK(fabs(x[0] - position[axes * 8]) < 0.1, "its neighbours move as ever");
@@ -46,8 +45,8 @@ static void stranger(void)
             }
 }
 
-static void push_without_end(void *user, double t, size_t particles, const scalar *const x[3],
-                             const scalar *const v[3], scalar *const force[3])
+static void push_without_end(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                             scalar *const force[3])
 {
     (void)user, (void)t, (void)particles, (void)x, (void)v;
     force[0][0] = INFINITY;
@@ -58,11 +57,8 @@ static void infinite_force_on_a_pin(void)
 {
     const double position[] = {0.2, 0, 0, 1.1, 0, 0}, velocity[] = {0.3, 0, 0, 0, 0, 0};
     const uint8_t pinned[] = {1, 0};
-    spring_scene_def def = {.particles = 2,
-                            .position = position,
-                            .velocity = velocity,
-                            .pinned = pinned,
-                            .force = push_without_end};
+    spring_scene_def def = {
+        .particles = 2, .position = position, .velocity = velocity, .pinned = pinned, .force = push_without_end};
     const method_list all = use_all_methods(&def);
     for (const spring_method *m = all.at; *m != no_method; m++) {
         spring_scene *s = scene_of(&def);
@@ -83,21 +79,17 @@ static void time_stays_finite(void)
     const double dt = 1e38, tiny = 1e-50; /* is 0 as a float */
 #else
     const double dt = 1e308, tiny = 0;
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_ENONFINITE,
-          "the time would be infinite");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_ENONFINITE, "the time would be infinite");
     CHECK_BITS(spring_scene_time(s), 0, "nothing happened");
 #endif
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "one such step is possible");
     CHECK_BITS(spring_scene_time(s), dt, "dt");
 #ifndef SPRING_FLOAT
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_ENONFINITE,
-          "a second one of the same run is not");
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, -dt, 1) == SPRING_OK && spring_scene_time(s) == 0,
-          "back it may go");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_ENONFINITE, "a second one of the same run is not");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, -dt, 1) == SPRING_OK && spring_scene_time(s) == 0, "back it may go");
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "and forth");
 #endif
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK,
-          "a step that is no step in this precision");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, tiny, 3) == SPRING_OK, "a step that is no step in this precision");
     CHECK_BITS(spring_scene_time(s), dt, "takes no time");
     free(s);
 }
@@ -110,15 +102,13 @@ static void negative_zero_rest(void)
         double tension[2];
         for (int negative = 0; negative < 2; negative++) {
             const spring_link link = {turned ? 1 : 0, turned ? 0 : 1, negative ? -0.0 : 0.0, 2.7, 0};
-            const spring_scene_def def = {
-                .axes = 1, .particles = 2, .links = 1, .position = position, .link = &link};
+            const spring_scene_def def = {.axes = 1, .particles = 2, .links = 1, .position = position, .link = &link};
             spring_scene *s = scene_of(&def);
             tension[negative] = spring_scene_tension(s, 0);
             free(s);
         }
         CHECK_BITS(tension[1], tension[0], "one zero is as good as the other");
-        CHECK_CLOSE(tension[0], turned ? -2.7 * 1.1 : 2.7 * 1.1, 3 * 4 * EPS,
-                    "stiffness (x_b - x_a), four roundings");
+        CHECK_CLOSE(tension[0], turned ? -2.7 * 1.1 : 2.7 * 1.1, 3 * 4 * EPS, "stiffness (x_b - x_a), four roundings");
     }
 }
 
@@ -179,12 +169,8 @@ static void one_kilogram(void)
     const uint8_t pinned[] = {1, 0};
     const spring_link link = {0, 1, 0.5, 3, 0};
     for (int pins = 0; pins < 2; pins++) {
-        const spring_scene_def def = {.axes = 1,
-                                      .particles = 2,
-                                      .links = 1,
-                                      .position = x,
-                                      .pinned = pins ? pinned : NULL,
-                                      .link = &link};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 2, .links = 1, .position = x, .pinned = pins ? pinned : NULL, .link = &link};
         spring_scene *s = scene_of(&def);
         double v[2];
         spring_scene_advance(s, SPRING_EULER, h, 1);
@@ -303,21 +289,14 @@ static void limits_of_weak_links(void)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double damping = cases[i].damping, drag = cases[i].drag;
         const spring_link link = {0, 1, 0.6, k, damping};
-        const spring_scene_def def = {.axes = 1,
-                                      .particles = 2,
-                                      .links = 1,
-                                      .position = position,
-                                      .mass_all = m,
-                                      .link = &link,
-                                      .drag = drag};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = m, .link = &link, .drag = drag};
         spring_scene *s = scene_of(&def);
-        const double G = (drag + 2 * damping) / m, omega = sqrt(2 * k / m),
-                     euler = fmin(drag / (2 * k), 2 / G);
+        const double G = (drag + 2 * damping) / m, omega = sqrt(2 * k / m), euler = fmin(drag / (2 * k), 2 / G);
         const double leapfrog = damping > 0 ? fmin(2 / omega, 2 / G) : 2 / omega;
         CHECK(i == 0 || 2 / G < 1 / omega, "it is the damper, or drag, that could limit");
         CHECK(i < 2 || 2 / G < drag / (2 * k), "and here it limits Euler's step");
-        CHECK_CLOSE(spring_scene_stable_step(s, SPRING_EULER), euler, 8 * EPS * euler,
-                    "d/K or 2/G, a few roundings");
+        CHECK_CLOSE(spring_scene_stable_step(s, SPRING_EULER), euler, 8 * EPS * euler, "d/K or 2/G, a few roundings");
         CHECK_CLOSE(spring_scene_stable_step(s, SPRING_LEAPFROG), leapfrog, 8 * EPS * leapfrog,
                     "2/omega or 2/G, a few roundings");
         free(s);
@@ -347,8 +326,7 @@ static void limit_of_drag_alone(void)
     const double position[] = {0, 0, 0};
     const spring_scene_def def = {.particles = 1, .position = position, .mass_all = 1.3, .drag = 0.7};
     spring_scene *s = scene_of(&def);
-    CHECK_CLOSE(spring_scene_stable_step(s, SPRING_EULER), 2 * 1.3 / 0.7, 4 * 4 * EPS,
-                "2 m/d, four roundings");
+    CHECK_CLOSE(spring_scene_stable_step(s, SPRING_EULER), 2 * 1.3 / 0.7, 4 * 4 * EPS, "2 m/d, four roundings");
     free(s);
 }
 

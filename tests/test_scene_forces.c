@@ -2,7 +2,8 @@
 /* Forces of links: against a plain loop, in rows and lists, with every instruction set; tension, energies, rest. */
 #include "test_scene.h"
 
-/* ------------------------------------------------------------------------------------------------ against a plain loop */
+/* ------------------------------------------------------------------------------------------------ against a plain
+   loop */
 
 typedef struct seen {
     uint32_t axes;
@@ -214,8 +215,7 @@ static void zero_length(void)
                 CHECK(memcmp(before.v, after.v, m.def.particles * axes * sizeof after.v[0]) == 0,
                       "no direction, no force");
                 set_state(s, m.def.particles, &before);
-                CHECK(spring_scene_advance(s, *method, 0.004, 50) == SPRING_OK &&
-                          all_finite(s, m.def.particles, axes),
+                CHECK(spring_scene_advance(s, *method, 0.004, 50) == SPRING_OK && all_finite(s, m.def.particles, axes),
                       "and off they fly");
                 free(s);
             }
@@ -280,20 +280,16 @@ static void at_rest(void)
     CHECK(spring_scene_at_rest(s, 0, rounding), "it hangs still");
     const double moved[] = {0, -rest - drop - 0.01, 0}, a = k * 0.01 / mass;
     spring_scene_set(s, SPRING_POSITION, moved, 0, 1, 1);
-    CHECK(spring_scene_at_rest(s, 0, a * (1 + 1e-3)) && !spring_scene_at_rest(s, 1, a * (1 - 1e-3)),
-          "k 0.01 m / m");
+    CHECK(spring_scene_at_rest(s, 0, a * (1 + 1e-3)) && !spring_scene_at_rest(s, 1, a * (1 - 1e-3)), "k 0.01 m / m");
     spring_scene_set(s, SPRING_POSITION, hanging + 3, 0, 1, 1);
     const double v[] = {0.3, 0, -0.4};
     spring_scene_set(s, SPRING_VELOCITY, v, 0, 1, 1);
-    CHECK(spring_scene_at_rest(s, 0.5 * (1 + 4 * EPS), rounding) && !spring_scene_at_rest(s, 0.49, 1),
-          "0.5 m/s");
+    CHECK(spring_scene_at_rest(s, 0.5 * (1 + 4 * EPS), rounding) && !spring_scene_at_rest(s, 0.49, 1), "0.5 m/s");
     const double still[] = {0, 0, 0};
     spring_scene_set(s, SPRING_VELOCITY, still, 0, 1, 1);
     spring_scene_set(s, SPRING_VELOCITY, v, 0, 0, 1);
-    CHECK(!spring_scene_at_rest(s, 0.49, 1) && spring_scene_at_rest(s, 0.51, rounding),
-          "a pin that moves is no rest");
-    CHECK(!spring_scene_at_rest(NULL, 1, 1) && !spring_scene_at_rest(s, -1, 1) &&
-              !spring_scene_at_rest(s, 1, NAN),
+    CHECK(!spring_scene_at_rest(s, 0.49, 1) && spring_scene_at_rest(s, 0.51, rounding), "a pin that moves is no rest");
+    CHECK(!spring_scene_at_rest(NULL, 1, 1) && !spring_scene_at_rest(s, -1, 1) && !spring_scene_at_rest(s, 1, NAN),
           "bad input");
     free(s);
 }

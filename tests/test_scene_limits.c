@@ -56,10 +56,9 @@ static void formulas(void)
                 {SPRING_RK4, 2.61 / fmax(sqrt(all.L), all.G)},
             };
             for (size_t i = 0; i < sizeof want / sizeof want[0]; i++)
-                CHECK_CLOSE(spring_scene_stable_step(s, want[i].method), want[i].step,
-                            60 * EPS * want[i].step, "a sum of at most 50 links, and ten roundings");
-            CHECK(isnan(spring_scene_stable_step(s, SPRING_EXACT)) &&
-                      isnan(spring_scene_stable_step(s, no_method)) &&
+                CHECK_CLOSE(spring_scene_stable_step(s, want[i].method), want[i].step, 60 * EPS * want[i].step,
+                            "a sum of at most 50 links, and ten roundings");
+            CHECK(isnan(spring_scene_stable_step(s, SPRING_EXACT)) && isnan(spring_scene_stable_step(s, no_method)) &&
                       isnan(spring_scene_stable_step(NULL, SPRING_RK4)),
                   "bad input");
             free(s);
@@ -70,8 +69,7 @@ static void formulas(void)
 static void stiff_and_heavy(void)
 {
     const bool single = sizeof(scalar) == 4;
-    const double x[] = {0, 1}, huge = single ? 3e38 : 1.7e308, mass = single ? 1e30 : 1e300,
-                 rate = huge / mass;
+    const double x[] = {0, 1}, huge = single ? 3e38 : 1.7e308, mass = single ? 1e30 : 1e300, rate = huge / mass;
     for (int damped = 0; damped < 2; damped++) {
         const spring_link link = {0, 1, 0.7, huge, damped ? huge : 0};
         const spring_scene_def def = {
@@ -111,8 +109,7 @@ static const thing things[] = {
       .stretch = 1.1,
       .stiffness = 310,
       .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X}},
-    {"cloth",
-     {.count = {9, 9}, .spacing = 0.2, .stretch = 1.1, .families = 7, .stiffness = 310, .pinned = 15}},
+    {"cloth", {.count = {9, 9}, .spacing = 0.2, .stretch = 1.1, .families = 7, .stiffness = 310, .pinned = 15}},
     {"jelly",
      {.count = {4, 4, 4},
       .spacing = 0.2,
@@ -127,8 +124,7 @@ static const thing things[] = {
       .stretch = 1.1,
       .stiffness = 310,
       .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X}},
-    {"water",
-     {.count = {11, 11}, .height = true, .spacing = 1, .families = 7, .stiffness = 310, .pinned = 15}},
+    {"water", {.count = {11, 11}, .height = true, .spacing = 1, .families = 7, .stiffness = 310, .pinned = 15}},
 };
 enum { rope, cloth, jelly, chain, water, thing_count };
 
@@ -140,8 +136,7 @@ static void build_thing(model *m, const thing *what, unsigned how)
     const uint32_t axes = g.height ? 1 : g.axes == 0 ? 3 : g.axes;
     const double small = sizeof(scalar) == 4 ? 1e-2 : 1e-6; /* [m/s] */
     size_t particles = 0, links = 0;
-    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links,
-          "fits");
+    CHECK(spring_grid_size(&g, &particles, &links) == SPRING_OK && particles <= most && links <= most_links, "fits");
     spring_grid_fill(&g, m->position, m->pinned, m->link);
     for (size_t i = 0; i < particles; i++) {
         m->mass[i] = 0.7;
@@ -160,7 +155,8 @@ static void build_thing(model *m, const thing *what, unsigned how)
     use_all_methods(&m->def);
 }
 
-/* How much the small velocities, of all particles together, have grown after n steps of dt, from n/2 on; INFINITY: overflow. */
+/* How much the small velocities, of all particles together, have grown after n steps of dt, from n/2 on; INFINITY:
+   overflow. */
 static double growth(const model *m, spring_method method, double dt, uint64_t n)
 {
     static state y;
@@ -194,9 +190,8 @@ static void stable_below(void)
                 CHECK(step > 0 || (never_stable(*method) && !(how & WITH_DRAG)),
                       "only a method that is never stable without damping has none, and only without drag");
                 if (step > 0)
-                    CHECK_BELOW(
-                        growth(&m, *method, 0.95 * step, 4000), 1.2,
-                        "modes of constant amplitude, in step and out of step, seen for 2000 steps twice");
+                    CHECK_BELOW(growth(&m, *method, 0.95 * step, 4000), 1.2,
+                                "modes of constant amplitude, in step and out of step, seen for 2000 steps twice");
             }
         }
 }
@@ -273,11 +268,8 @@ static void not_much_too_small(void)
 /* A rope that hangs from its first particle. */
 static void build_rope(model *m, uint32_t n, double stiffness, double damping)
 {
-    const spring_grid g = {.count = {n},
-                           .spacing = 0.1,
-                           .stiffness = stiffness,
-                           .damping = damping,
-                           .pinned = SPRING_GRID_FIRST_X};
+    const spring_grid g = {
+        .count = {n}, .spacing = 0.1, .stiffness = stiffness, .damping = damping, .pinned = SPRING_GRID_FIRST_X};
     size_t particles, links;
     spring_grid_size(&g, &particles, &links);
     spring_grid_fill(&g, m->position, m->pinned, m->link);
@@ -348,15 +340,14 @@ static void inverted_and_collapsed(void)
         const double before = total_energy(s), dt = 0.3 * spring_scene_stable_step(s, SPRING_LEAPFROG);
         CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 4000) == SPRING_OK, "no NaN");
         CHECK(all_finite(s, m.def.particles, 3) && total_energy(s) < before, "friction takes energy");
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK &&
-                  spring_scene_at_rest(s, 1e-3, 1e-1),
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK && spring_scene_at_rest(s, 1e-3, 1e-1),
               "and ends at rest");
         free(s);
     }
 }
 
-static void poke_hard(void *user, double t, size_t particles, const scalar *const x[3],
-                      const scalar *const v[3], scalar *const force[3])
+static void poke_hard(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                      scalar *const force[3])
 {
     (void)t, (void)particles, (void)x, (void)v;
     force[2][40] += *(const scalar *)user;
@@ -377,8 +368,7 @@ static void poked(void)
     spring_scene_get(s, SPRING_VELOCITY, all, 0, 0, m.def.particles);
     for (size_t i = 0; i < m.def.particles; i++)
         momentum += 0.7 * all[3 * i + 2];
-    CHECK(momentum > 0.2 * dt * 1e6 && momentum < dt * 1e6,
-          "what drag and the pins leave of force times time");
+    CHECK(momentum > 0.2 * dt * 1e6 && momentum < dt * 1e6, "what drag and the pins leave of force times time");
     poke = 0;
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 30000) == SPRING_OK, "stable");
     spring_scene_get(s, SPRING_VELOCITY, v, 0, 40, 1);
@@ -397,8 +387,7 @@ static void late_frame(void)
         CHECK(spring_scene_advance(s, *method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
         CHECK(same_bits(s, twin, m.def.particles, 3), "and is as it was");
         const double dt = 0.5 * spring_scene_stable_step(s, *method);
-        CHECK(spring_scene_advance(s, *method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK,
-              "so do it in small steps");
+        CHECK(spring_scene_advance(s, *method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK, "so do it in small steps");
         free(s);
         free(twin);
     }
@@ -408,8 +397,8 @@ static void late_frame(void)
 
 enum { spins = 15 };
 
-/* Two equal masses, their link drawn out by a fifth, the i-th of several rates of rotation up to 1.2 times the rate of the
-   spring. The largest change of the energy in 5000 steps, as a fraction of the energy at the start. */
+/* Two equal masses, their link drawn out by a fifth, the i-th of several rates of rotation up to 1.2 times the rate of
+   the spring. The largest change of the energy in 5000 steps, as a fraction of the energy at the start. */
 static double energy_change(int i, double fraction_of_stable)
 {
     const double mass = 1.3, rest = 0.8, omega = sqrt(2 * 27.3 / mass), length = 1.2 * rest;
@@ -419,8 +408,7 @@ static double energy_change(int i, double fraction_of_stable)
     const spring_scene_def def = {
         .axes = 2, .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = mass, .link = &link};
     spring_scene *s = scene_of(&def);
-    const double dt = fraction_of_stable * spring_scene_stable_step(s, SPRING_LEAPFROG),
-                 before = total_energy(s);
+    const double dt = fraction_of_stable * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
     double worst = 0;
     for (int look = 0; look < 1000; look++) {
         CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 5) == SPRING_OK, "it does not overflow");
@@ -440,12 +428,12 @@ static double largest_change(double fraction_of_stable)
     return largest;
 }
 
-/* The steps come into resonance with the rotation and the swinging of the length. Measured in 10^5 steps at 200 spins up to
-   2 omega, drawn out by a fifth and by a half: at 0.5 and 0.55 of the stable step the energy changes by at most 0.56 of
-   itself; from 0.575 on it more than triples, there at 1.89 omega and above, at 0.65 from 0.77 omega. Between 2 and 6 omega,
-   in 4 10^4 steps, it doubled at one spin, at 0.45 of the stable step.
-   A spring that does not turn has an energy between 1 and 1/(1 - z^2/4) times its least, z = 1 at half the stable step: up to
-   a third more. A link that spins may have more than that, but shall not double what it has. */
+/* The steps come into resonance with the rotation and the swinging of the length. Measured in 10^5 steps at 200 spins
+   up to 2 omega, drawn out by a fifth and by a half: at 0.5 and 0.55 of the stable step the energy changes by at most
+   0.56 of itself; from 0.575 on it more than triples, there at 1.89 omega and above, at 0.65 from 0.77 omega. Between 2
+   and 6 omega, in 4 10^4 steps, it doubled at one spin, at 0.45 of the stable step.
+   A spring that does not turn has an energy between 1 and 1/(1 - z^2/4) times its least, z = 1 at half the stable step:
+   up to a third more. A link that spins may have more than that, but shall not double what it has. */
 static void spinning(void)
 {
     CHECK_BELOW(largest_change(0.5), 1, "at half the stable step the energy does not double, at any spin");
@@ -462,12 +450,10 @@ static void many_links(void)
     for (size_t i = 0; i < 3 * particles; i++)
         x[i] = random_uniform(0, 100);
     for (size_t i = 0; i < links; i++) {
-        const uint32_t a = (uint32_t)(random_bits() % particles),
-                       b = (uint32_t)(random_bits() % (particles - 1));
+        const uint32_t a = (uint32_t)(random_bits() % particles), b = (uint32_t)(random_bits() % (particles - 1));
         link[i] = (spring_link){a, b < a ? b : b + 1, random_uniform(0, 1), 1.5, 0};
     }
-    const spring_scene_def def = {
-        .particles = particles, .links = links, .position = x, .link = link, .mass_all = 3};
+    const spring_scene_def def = {.particles = particles, .links = links, .position = x, .link = link, .mass_all = 3};
     spring_scene *s = scene_of(&def);
     const double dt = 0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG);
     const double before = total_energy(s);

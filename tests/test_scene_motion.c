@@ -16,8 +16,8 @@ static double push(double t, size_t i, uint32_t axis, double x, double v)
     return 0.8 * sin(1.3 * t + (double)i + axis) - push_friction * v - push_spring * sin(x);
 }
 
-static void push_all(void *user, double t, size_t particles, const scalar *const x[3],
-                     const scalar *const v[3], scalar *const force[3])
+static void push_all(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                     scalar *const force[3])
 {
     const model *m = user;
     for (uint32_t a = 0; a < m->def.axes; a++)
@@ -35,8 +35,7 @@ static void acceleration(const void *data, double t, const double *x, const doub
     for (size_t j = 0; j < m->def.particles * axes; j++) {
         if (m->def.force != NULL)
             a[j] += push(t, j / axes, (uint32_t)(j % axes), x[j], v[j]);
-        a[j] =
-            pinned_in(&m->def, j / axes) ? 0 : a[j] / mass_in(&m->def, j / axes) + m->def.gravity[j % axes];
+        a[j] = pinned_in(&m->def, j / axes) ? 0 : a[j] / mass_in(&m->def, j / axes) + m->def.gravity[j % axes];
     }
 }
 
@@ -86,8 +85,7 @@ static rounding rounding_of(const model *m, spring_scene *s, double h)
     return (rounding){
         .lipschitz = 2 * rate,
         .omega = rate,
-        .velocity = (h * (20 + links) * (2 * largest + 20) + 8 * fast) *
-                    EPS, /* forces at most double; 20 m/s^2 else */
+        .velocity = (h * (20 + links) * (2 * largest + 20) + 8 * fast) * EPS, /* forces at most double; 20 m/s^2 else */
         .position = (4 * far + 4 * h * fast) * EPS,
     };
 }
@@ -127,7 +125,8 @@ static void against_definitions(void)
         }
 }
 
-/* ------------------------------------------------------------------------------------------------------- normal modes */
+/* ------------------------------------------------------------------------------------------------------- normal
+   modes */
 
 typedef struct mode {
     double omega2; /* [1/s^2] */
@@ -142,7 +141,8 @@ static void mode_acceleration(const void *data, double t, const double *x, const
     a[0] = -q->omega2 * x[0] - q->gamma * v[0];
 }
 
-/* n steps of one oscillator: as a plain scene, and where no velocity has to be predicted in multiple precision as well. */
+/* n steps of one oscillator: as a plain scene, and where no velocity has to be predicted in multiple precision as
+   well. */
 static spring_state mode_after(const mode *q, spring_method method, double h, int n, spring_state y)
 {
     double *room = malloc(iterate_room(1) * sizeof *room);
@@ -157,8 +157,7 @@ static spring_state mode_after(const mode *q, spring_method method, double h, in
     if (q->gamma == 0) {
         const spring_state exact = {mpfr_get_d(ref.x, MPFR_RNDN), mpfr_get_d(ref.v, MPFR_RNDN)};
         CHECK_CLOSE(exact.x, y.x, 4 * n * DBL_EPSILON, "some roundings of numbers below 1 in each step");
-        CHECK_CLOSE(exact.v, y.v, 4 * n * DBL_EPSILON * fmax(1, sqrt(q->omega2)),
-                    "some roundings in each step");
+        CHECK_CLOSE(exact.v, y.v, 4 * n * DBL_EPSILON * fmax(1, sqrt(q->omega2)), "some roundings in each step");
         y = exact;
     }
     reference_clear(&ref);
@@ -221,8 +220,7 @@ static void build_mode(mode_scene *s, uint32_t nx, uint32_t ny, int j, int k, un
     s->q = (mode){
         .omega2 = stiffness / mass * curvature,
         .drag = how & WITH_DRAG ? drag / mass : 0,
-        .gamma =
-            (how & LINK_DAMPING ? damping / mass * curvature : 0) + (how & RUBBING ? friction / mass : 0),
+        .gamma = (how & LINK_DAMPING ? damping / mass * curvature : 0) + (how & RUBBING ? friction / mass : 0),
     };
     s->fastest = sqrt(stiffness / mass * (rope ? 4 : 8));
     m->def = (spring_scene_def){.axes = 1,
@@ -259,8 +257,7 @@ static void check_mode(const mode_scene *m, spring_method method)
     for (size_t i = 0; i < particles; i++) {
         CHECK_CLOSE(y.x[i] - m->rest[i], want.x * m->shape[i], n * (in_x + in_v * n * dt) * grow,
                     "the roundings of each step");
-        CHECK_CLOSE(y.v[i], want.v * m->shape[i], n * (in_v + m->fastest * in_x) * grow,
-                    "the roundings of each step");
+        CHECK_CLOSE(y.v[i], want.v * m->shape[i], n * (in_v + m->fastest * in_x) * grow, "the roundings of each step");
     }
 }
 

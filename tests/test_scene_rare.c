@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: springs or dampers alone, what makes a row of links, what comes between two steps that share a force, bad numbers at the
-   end, a scene that is lost. */
+/* What is rare in scenes: springs or dampers alone, what makes a row of links, what comes between two steps that share
+   a force, bad numbers at the end, a scene that is lost. */
 #include "test_scene.h"
 
-static void count_calls(void *user, double t, size_t particles, const scalar *const x[3],
-                        const scalar *const v[3], scalar *const force[3])
+static void count_calls(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                        scalar *const force[3])
 {
     (void)t, (void)particles, (void)x, (void)v, (void)force;
     ++*(int *)user;
 }
 
-/* One Euler step of springs alone, or dampers alone, each with its own small number, in a row or a list, against a plain
-   loop. */
+/* One Euler step of springs alone, or dampers alone, each with its own small number, in a row or a list, against a
+   plain loop. */
 static void weak_links(void)
 {
     static model m;
@@ -35,9 +35,8 @@ static void weak_links(void)
             get_state(s, m.def.particles, &end);
             for (size_t i = 0; i < m.def.particles * axes; i++) {
                 const double pull = dt * size[i / axes] / m.def.mass_all;
-                CHECK_CLOSE(
-                    end.v[i], y.v[i] + dt * force[i] / m.def.mass_all, EPS * (2 * fabs(y.v[i]) + 24 * pull),
-                    "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
+                CHECK_CLOSE(end.v[i], y.v[i] + dt * force[i] / m.def.mass_all, EPS * (2 * fabs(y.v[i]) + 24 * pull),
+                            "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
                 CHECK_CLOSE(end.x[i], y.x[i] + dt * y.v[i], EPS * (fabs(y.x[i]) + 2 * dt * fabs(y.v[i])),
                             "a product and a sum");
             }
@@ -54,8 +53,7 @@ static uint32_t rows_of(uint32_t links, uint32_t offset, uint32_t first, uint32_
         const uint32_t lower = i + 1 < links ? first + i : last;
         link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0};
     }
-    const spring_scene_def def = {
-        .particles = last + offset + 1, .links = links, .position = position, .link = link};
+    const spring_scene_def def = {.particles = last + offset + 1, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
     const uint32_t rows = s->plan.bands;
     CHECK(s->plan.edges == (rows == 0 ? links : 0), "in a row, or in the list");
@@ -87,8 +85,7 @@ static void check_drift(const model *m, const spring_scene *end, const state *st
     for (size_t i = 0; i < m->def.particles * axes; i++) {
         const double half = start->v[i] + dt / 2 * (force[i] / mass + m->def.gravity[i % axes]);
         const double kick = dt / 2 * (size[i / axes] / mass + 10) * (40 + (double)m->def.links);
-        CHECK_CLOSE(y.x[i], start->x[i] + dt * half,
-                    EPS * (fabs(start->x[i]) + dt * (3 * fabs(start->v[i]) + kick)),
+        CHECK_CLOSE(y.x[i], start->x[i] + dt * half, EPS * (fabs(start->x[i]) + dt * (3 * fabs(start->v[i]) + kick)),
                     "a force to 40 eps and one for each link, velocity to 3, the start to 1");
     }
 }
@@ -106,8 +103,7 @@ static void rows_of_every_length(void)
                 build(&m, (uint32_t[]){first + links + offset + behind, 1, 1}, axes, GRAVITY);
                 m.def.links = links;
                 for (uint32_t i = 0; i < links; i++)
-                    m.link[i] =
-                        (spring_link){first + i, first + i + offset, 0.6, how / 3 ? 2.7 + 0.1 * i : 2.7, 0};
+                    m.link[i] = (spring_link){first + i, first + i + offset, 0.6, how / 3 ? 2.7 + 0.1 * i : 2.7, 0};
                 for (int k = 0; k < kernel_count; k++) {
                     if (kernels_of(k) == NULL)
                         continue;
@@ -245,8 +241,7 @@ static void question_after_edit(void)
             CHECK(spring_scene_set_link(s, 3, &link) == SPRING_OK, "an edit");
             spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
             if (s == asked)
-                CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) < before,
-                      "a question, and a stiffer link");
+                CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) < before, "a question, and a stiffer link");
             spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1);
         }
         CHECK(same_bits(asked, other, m.def.particles, axes), "asking changes nothing");
@@ -257,8 +252,8 @@ static void question_after_edit(void)
 
 enum { OWN_NUMBERS = 1, WITH_DAMPERS = 2, CUT = 4, LISTED = 8 };
 
-/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart; or what joined them, in a row
-   or a list, has been cut. */
+/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart; or what joined them, in a
+   row or a list, has been cut. */
 static void check_gap(uint32_t axes, unsigned how)
 {
     enum { particles = 13 };
@@ -278,8 +273,7 @@ static void check_gap(uint32_t axes, unsigned how)
         .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
     CHECK((s->plan.edges == 0) == !(how & LISTED), "where the links lie");
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK,
-          "their distance is nobody's business");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
     double x[3];
     spring_scene_get(s, SPRING_POSITION, x, 0, 5, 1);
     CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
@@ -332,8 +326,7 @@ static void bad_number_at_the_end(void)
         for (size_t i = 0; i < m.def.particles * axes; i++)
             y.x[i] = 7;
         y.x[m.def.particles * axes - 1] = NAN;
-        CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL,
-              "not a number");
+        CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 0, m.def.particles) == SPRING_EINVAL, "not a number");
         CHECK(same_bits(s, other, m.def.particles, axes), "nothing has been set");
         free(s);
         free(other);
@@ -365,8 +358,7 @@ static void lost(void)
                     for (size_t i = 0; i < particles * axes; i++)
                         CHECK(isnan(y[i]), "nothing is left");
                     for (size_t i = 0; i < particles; i++) {
-                        CHECK(spring_scene_advance(s, *k, 0.1, 1) == SPRING_ENONFINITE,
-                              "not all is set again");
+                        CHECK(spring_scene_advance(s, *k, 0.1, 1) == SPRING_ENONFINITE, "not all is set again");
                         spring_scene_set(s, q, q == SPRING_POSITION ? position + i * axes : still, 0, i, 1);
                     }
                 }
@@ -438,8 +430,8 @@ static void callback_is_left_alone(void)
     }
 }
 
-static void ask_finite(void *user, double t, size_t particles, const scalar *const x[3],
-                       const scalar *const v[3], scalar *const force[3])
+static void ask_finite(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                       scalar *const force[3])
 {
     (void)t;
     for (size_t i = 0; i < particles; i++) {
@@ -448,7 +440,8 @@ static void ask_finite(void *user, double t, size_t particles, const scalar *con
     }
 }
 
-/* A callback is not handed infinite numbers or NaN in the step in which a scene overflows, wherever in the step that is. */
+/* A callback is not handed infinite numbers or NaN in the step in which a scene overflows, wherever in the step that
+   is. */
 static void finite_for_callbacks(void)
 {
     const double position[] = {0, 1.5}, fastest = sizeof(scalar) == 4 ? 1e38 : 1e300;

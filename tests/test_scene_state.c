@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The life of a scene between calls: pieces of a run, time, callbacks, failures, snapshots, what is read and changed. */
+/* The life of a scene between calls: pieces of a run, time, callbacks, failures, snapshots, what is read and
+   changed. */
 #include "test_scene.h"
 
 static const uint32_t sheet[] = {7, 5, 1};
 
-/* --------------------------------------------------------------------------------------------------------- callbacks */
+/* ---------------------------------------------------------------------------------------------------------
+   callbacks */
 
 enum { most_calls = 100 };
 
@@ -26,8 +28,8 @@ static void blow(void *user, double t, size_t particles, const scalar *const x[3
                   (a < w->axes) == (force[a] != NULL);
     for (uint32_t a = 0; a < w->axes; a++)
         for (size_t i = 0; i < particles; i++)
-            force[a][i] += (scalar)(0.8 * sin(5000 * t + (double)i) - 0.2 * sin((double)x[a][i])) -
-                           (scalar)w->drag * v[a][i];
+            force[a][i] +=
+                (scalar)(0.8 * sin(5000 * t + (double)i) - 0.2 * sin((double)x[a][i])) - (scalar)w->drag * v[a][i];
     if (w->calls < most_calls)
         w->times[w->calls] = t;
     w->calls++;
@@ -49,8 +51,7 @@ static void check_calls(const spring_scene_def *def, wind *w, spring_method meth
     spring_scene *s = scene_of(def);
     CHECK(spring_scene_advance(s, method, dt, 1) == SPRING_OK, "stable");
     const size_t first = w->calls;
-    CHECK(first == a_step + (still && leapfrog),
-          "the first step of leapfrog has no force from the step before");
+    CHECK(first == a_step + (still && leapfrog), "the first step of leapfrog has no force from the step before");
     CHECK(spring_scene_advance(s, method, dt, 7) == SPRING_OK, "stable");
     CHECK(w->calls - first == 7 * a_step, "as often as scene.h says");
     CHECK(w->good, "an array for each axis, NULL beyond");
@@ -164,10 +165,8 @@ static void one_by_one(void)
                     get_state(set, m.def.particles, &y);
                     set_state(set, m.def.particles, &y);
                 }
-                CHECK(same_bits(single, at_once, m.def.particles, axes),
-                      "advance(30) is 30 times advance(1)");
-                CHECK(same_bits(set, at_once, m.def.particles, axes),
-                      "what is set unchanged changes nothing");
+                CHECK(same_bits(single, at_once, m.def.particles, axes), "advance(30) is 30 times advance(1)");
+                CHECK(same_bits(set, at_once, m.def.particles, axes), "what is set unchanged changes nothing");
                 CHECK_BITS(spring_scene_time(single), spring_scene_time(at_once), "nor is time accumulated");
                 free(at_once);
                 free(single);
@@ -245,7 +244,8 @@ static void snapshot(void)
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------------- time */
+/* ---------------------------------------------------------------------------------------------------------------
+   time */
 
 static void time_is_not_accumulated(void)
 {
@@ -258,8 +258,7 @@ static void time_is_not_accumulated(void)
         spring_scene_advance(s, i % 2 ? SPRING_LEAPFROG : SPRING_EULER, dt, 3);
     CHECK_BITS(spring_scene_time(s), 3000 * dt, "t0 + i dt");
     spring_scene_advance(s, SPRING_EULER, later, 7);
-    CHECK_BITS(spring_scene_time(s), 3000 * dt + 7 * later,
-               "with another dt a run starts where the one before ended");
+    CHECK_BITS(spring_scene_time(s), 3000 * dt + 7 * later, "with another dt a run starts where the one before ended");
     spring_scene_advance(s, SPRING_EULER, later, 0);
     spring_scene_advance(s, SPRING_EULER, 0, 5);
     spring_scene_advance(s, SPRING_EULER, later, 2);
@@ -281,7 +280,8 @@ static void nothing_to_do(void)
     free(before);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- failures */
+/* -----------------------------------------------------------------------------------------------------------
+   failures */
 
 /* Whatever fails, a scene goes on as one to which nothing happened. */
 static void failures(void)
@@ -295,8 +295,7 @@ static void failures(void)
             spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
             const spring_method method = *k;
             const size_t n = m.def.particles;
-            const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200, bad[] = {1, NAN, 1},
-                         infinite[] = {1, INFINITY, 0};
+            const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200, bad[] = {1, NAN, 1}, infinite[] = {1, INFINITY, 0};
             spring_scene_advance(s, method, 0.0137, 4);
             spring_scene_advance(twin, method, 0.0137, 4);
             get_state(s, n, &y);
@@ -311,8 +310,7 @@ static void failures(void)
             CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 1, n) == SPRING_ERANGE, "one too many");
             CHECK(spring_scene_set_gravity(s, bad) == SPRING_EINVAL, "NaN");
             const spring_link wrong = {m.link[0].a, m.link[0].b, 1, -1, 0};
-            CHECK(spring_scene_set_link(s, 0, &wrong) ==
-                      (lives[life] & EDITABLE ? SPRING_EINVAL : SPRING_EUNSUPPORTED),
+            CHECK(spring_scene_set_link(s, 0, &wrong) == (lives[life] & EDITABLE ? SPRING_EINVAL : SPRING_EUNSUPPORTED),
                   "negative, or not editable");
             CHECK(same_bits(s, twin, n, 3), "as it was");
             CHECK_BITS(spring_scene_time(s), spring_scene_time(twin), "as it was");
@@ -338,16 +336,10 @@ static void velocity_alone_overflows(void)
     const uint8_t pinned[] = {1, 0};
     for (unsigned damped = 0; damped < 2; damped++) {
         const spring_link link = {0, 1, 0.5, large, damped ? 1e-3 : 0};
-        const spring_scene_def def = {.axes = 1,
-                                      .particles = 2,
-                                      .links = 1,
-                                      .position = x,
-                                      .velocity = v,
-                                      .pinned = pinned,
-                                      .link = &link};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 2, .links = 1, .position = x, .velocity = v, .pinned = pinned, .link = &link};
         spring_scene *s = scene_of(&def), *twin = scene_of(&def);
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1, 1) == SPRING_ENONFINITE,
-              "noticed in the same step");
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1, 1) == SPRING_ENONFINITE, "noticed in the same step");
         CHECK(same_bits(s, twin, 2, 1), "as it was");
         free(s);
         free(twin);
@@ -371,8 +363,7 @@ static void steady_fall(void)
         spring_scene_get(s, SPRING_VELOCITY, now, 0, 0, n);
         for (size_t i = 0; i < n; i++)
             CHECK_BITS(now[i], -2, "-4 - 2 (-2) is 0, exactly");
-        CHECK(spring_scene_at_rest(s, 2, 0) && !spring_scene_at_rest(s, 1.9, 0),
-              "nothing accelerates at 2 m/s");
+        CHECK(spring_scene_at_rest(s, 2, 0) && !spring_scene_at_rest(s, 1.9, 0), "nothing accelerates at 2 m/s");
         free(s);
     }
 }
@@ -400,8 +391,7 @@ static void without_rollback(void)
                 const double fast[3] = {huge, huge, huge};
                 spring_scene_set(s, SPRING_VELOCITY, fast, 0, 0, 1);
                 CHECK(spring_scene_advance(s, *k, huge, 1) == SPRING_ENONFINITE, "overflow");
-                CHECK(spring_scene_advance(s, *k, 0.0137, 1) == SPRING_ENONFINITE,
-                      "unusable until set again");
+                CHECK(spring_scene_advance(s, *k, 0.0137, 1) == SPRING_ENONFINITE, "unusable until set again");
                 CHECK(!spring_scene_at_rest(s, INFINITY, INFINITY), "what is not finite is not at rest");
                 set_state(s, n, &y);
                 CHECK_BITS(spring_scene_time(s), time, "time did not pass");
@@ -413,7 +403,8 @@ static void without_rollback(void)
         }
 }
 
-/* ------------------------------------------------------------------------------------------------ reading and setting */
+/* ------------------------------------------------------------------------------------------------ reading and
+   setting */
 
 static void strides_and_ranges(void)
 {
@@ -436,15 +427,13 @@ static void strides_and_ranges(void)
             const size_t particle = first + i / stride, axis = i % stride - 1; /* wraps around: no axis */
             const bool inside = i / stride < count && axis < axes;
             const size_t at = inside ? particle * axes + axis : 0;
-            CHECK_BITS((double)vertex[i], (double)(inside ? (float)(scalar)m.velocity[at] : outside),
-                       "one rounding");
+            CHECK_BITS((double)vertex[i], (double)(inside ? (float)(scalar)m.velocity[at] : outside), "one rounding");
             CHECK_BITS(wide[i], inside ? (double)(scalar)m.position[at] : (double)outside, "no rounding");
             wide[i] += 0.5;
         }
         double back[3 * most], before[3 * most];
         spring_scene_get(s, SPRING_VELOCITY, before, 0, 0, n);
-        CHECK(spring_scene_set(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK,
-              "back from there");
+        CHECK(spring_scene_set(s, SPRING_POSITION, wide + 1, stride, first, count) == SPRING_OK, "back from there");
         spring_scene_get(s, SPRING_VELOCITY, back, 0, 0, n);
         CHECK(memcmp(back, before, n * axes * sizeof back[0]) == 0, "velocities are left alone");
         spring_scene_get(s, SPRING_POSITION, back, 0, 0, n);
@@ -487,8 +476,7 @@ static void bad_ranges(void)
         const size_t stride = cases[i].stride, first = cases[i].first, count = cases[i].count;
         double *d = cases[i].null ? NULL : out;
         CHECK(spring_scene_get(s, q, d, stride, first, count) == cases[i].want, "as scene.h says");
-        CHECK(spring_scene_getf(s, q, cases[i].null ? NULL : outf, stride, first, count) == cases[i].want,
-              "likewise");
+        CHECK(spring_scene_getf(s, q, cases[i].null ? NULL : outf, stride, first, count) == cases[i].want, "likewise");
         CHECK(spring_scene_set(s, q, d, stride, first, count) == cases[i].want, "likewise");
     }
     CHECK(spring_scene_get(NULL, SPRING_POSITION, out, 0, 0, 1) == SPRING_EINVAL &&
@@ -507,7 +495,8 @@ static void bad_ranges(void)
     free(s);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ changes */
+/* ------------------------------------------------------------------------------------------------------------
+   changes */
 
 /* A pin goes straight on, whatever pulls at it, until it is told otherwise. */
 static void moving_pins(void)
@@ -532,8 +521,7 @@ static void moving_pins(void)
                     continue;
                 pins++;
                 for (uint32_t a = 0; a < axes; a++)
-                    CHECK_BITS(y.v[i * axes + a], (double)(scalar)m.velocity[i * axes + a],
-                               "nothing changes it");
+                    CHECK_BITS(y.v[i * axes + a], (double)(scalar)m.velocity[i * axes + a], "nothing changes it");
                 spring_scene_set(s, SPRING_VELOCITY, turn, 0, i, 1);
             }
             CHECK(spring_scene_advance(s, *k, dt, 12) == SPRING_OK, "stable");
@@ -572,8 +560,7 @@ static void edited_links(void)
                 CHECK_BITS(spring_scene_stable_step(s, SPRING_LEAPFROG),
                            spring_scene_stable_step(as_defined, SPRING_LEAPFROG), "the stable step knows");
                 for (size_t i = 0; i < m.def.links; i++)
-                    CHECK_BITS(spring_scene_tension(s, i), spring_scene_tension(as_defined, i),
-                               "so does the tension");
+                    CHECK_BITS(spring_scene_tension(s, i), spring_scene_tension(as_defined, i), "so does the tension");
                 spring_scene_advance(s, *k, 0.009, 7);
                 spring_scene_advance(as_defined, *k, 0.009, 7);
                 CHECK(same_bits(s, as_defined, m.def.particles, axes), "as good as defined so");
@@ -676,9 +663,8 @@ static void bad_edits(void)
     const uint32_t a = m.link[0].a, b = m.link[0].b;
     const double too_stiff = sizeof(scalar) == 4 ? 3e38 : 1.7e308;
     const spring_link bad[] = {
-        {a, b + 1, 1, 1, 0},     {a + 1, b, 1, 1, 0}, {a, a, 1, 1, 0},   {a, b, -1, 1, 0},
-        {a, b, 1, -1, 0},        {a, b, 1, 1, -1},    {a, b, NAN, 1, 0}, {a, b, 1, INFINITY, 0},
-        {a, b, 1, too_stiff, 0}, {a, b, 1, 1, NAN},
+        {a, b + 1, 1, 1, 0}, {a + 1, b, 1, 1, 0}, {a, a, 1, 1, 0},        {a, b, -1, 1, 0},        {a, b, 1, -1, 0},
+        {a, b, 1, 1, -1},    {a, b, NAN, 1, 0},   {a, b, 1, INFINITY, 0}, {a, b, 1, too_stiff, 0}, {a, b, 1, 1, NAN},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         CHECK(spring_scene_set_link(s, 0, &bad[i]) == SPRING_EINVAL, "bad input");
@@ -698,12 +684,8 @@ static void turned_link(void)
     const double x[] = {0.2, 1.1};
     for (uint32_t a = 0; a < 2; a++) {
         const spring_link link = {a, 1 - a, 0.7, 5.3, 0}, turned = {1 - a, a, 0.4, 5.3, 0};
-        const spring_scene_def def = {.axes = 1,
-                                      .flags = SPRING_SCENE_EDITABLE,
-                                      .particles = 2,
-                                      .links = 1,
-                                      .position = x,
-                                      .link = &link};
+        const spring_scene_def def = {
+            .axes = 1, .flags = SPRING_SCENE_EDITABLE, .particles = 2, .links = 1, .position = x, .link = &link};
         spring_scene *s = scene_of(&def);
         const double extension = x[turned.b] - x[turned.a] - 0.4;
         if (spring_scene_set_link(s, 0, &turned) == SPRING_OK) {
@@ -726,8 +708,7 @@ static void changed_gravity_and_force(void)
         const double moon[] = {0.3, -1.62, 0.1};
         spring_scene *s = windy_scene(&m, &w, 3, DAMPED | DRAG | GRAVITY);
         CHECK(spring_scene_advance(s, *k, 0.0137, 6) == SPRING_OK && w.calls == 0, "no wind yet");
-        CHECK(spring_scene_set_gravity(s, moon) == SPRING_OK &&
-                  spring_scene_set_force(s, blow, &w) == SPRING_OK,
+        CHECK(spring_scene_set_gravity(s, moon) == SPRING_OK && spring_scene_set_force(s, blow, &w) == SPRING_OK,
               "from here on");
         get_state(s, m.def.particles, &y);
         memcpy(m.def.gravity, moon, sizeof moon);
@@ -748,10 +729,11 @@ static void changed_gravity_and_force(void)
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- zero is absent */
+/* ----------------------------------------------------------------------------------------------------- zero is
+   absent */
 
-static void add_nothing(void *user, double t, size_t particles, const scalar *const x[3],
-                        const scalar *const v[3], scalar *const force[3])
+static void add_nothing(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                        scalar *const force[3])
 {
     (void)user, (void)t, (void)particles, (void)x, (void)v, (void)force;
 }

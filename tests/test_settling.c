@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Rest: the time to get there against sampling the motion, the question whether it is there, and the two constructors. */
+/* Rest: the time to get there against sampling the motion, the question whether it is there, and the two
+   constructors. */
 #include <math.h>
 
 #include "check.h"
@@ -22,8 +23,7 @@ static void rest_time_by_sampling(void)
         if (i % 2)
             p.load = p.stiffness * random_uniform(-1, 1);
         const double rest = p.load / p.stiffness;
-        spring_state s = {rest + random_uniform(-1, 1),
-                          random_uniform(-1, 1) * omega * (i % 7 == 0 ? 20 : 1)};
+        spring_state s = {rest + random_uniform(-1, 1), random_uniform(-1, 1) * omega * (i % 7 == 0 ? 20 : 1)};
         if (i % 11 == 0)
             s.v = 0;
         const double tol = random_log(1e-6, 1);
@@ -67,14 +67,11 @@ static void rest_time_at_a_swing(void)
         const double off = (i % 7 - 3) * (i % 2 ? DBL_EPSILON : 1e-12);
         const double tol = distance_at(&p, start, 0, turn) * (1 + off);
         const double T = spring_settling_time(&start, &p, tol);
-        const double edge =
-            1e-5 * spacing; /* y is flat there: sqrt(2e-12) away in angle it has changed by 1e-12 */
+        const double edge = 1e-5 * spacing; /* y is flat there: sqrt(2e-12) away in angle it has changed by 1e-12 */
         if (off >= 1e-12)
-            CHECK(T > turn - spacing && T < turn + edge,
-                  "the swing before was beyond the tolerance, this is not");
+            CHECK(T > turn - spacing && T < turn + edge, "the swing before was beyond the tolerance, this is not");
         if (off <= -1e-12)
-            CHECK(T > turn - edge && T < turn + spacing,
-                  "this swing is beyond the tolerance, the next is not");
+            CHECK(T > turn - edge && T < turn + spacing, "this swing is beyond the tolerance, the next is not");
         CHECK(distance_at(&p, start, 0, T) <= tol, "inside");
         CHECK(distance_at(&p, start, 0, turn + spacing) <= tol, "the next swing is smaller");
         CHECK(T < turn + spacing, "and is not waited for");
@@ -91,12 +88,9 @@ static void rest_time_at_the_tolerance(void)
     CHECK_BITS(spring_settling_time(&(spring_state){0.5, 0}, &thick, 0.5), 0, "never beyond it");
     CHECK_BITS(spring_settling_time(&(spring_state){0.5, -1.25}, &thick, 0.5), 0, "never beyond it");
     CHECK_BITS(spring_settling_time(&(spring_state){0, 1}, &nothing, INFINITY), 0, "never beyond it");
-    CHECK_CLOSE(spring_settling_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
-                "4 m to go");
-    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30,
-                "4 m to go");
-    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15,
-                "along the fast root");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30, "4 m to go");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30, "4 m to go");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15, "along the fast root");
     CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
     CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
     CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
@@ -105,8 +99,7 @@ static void rest_time_at_the_tolerance(void)
     const spring_params p = {1, 169.0 / 64, 3, 0};
     for (int i = 0; i < 19 * 50; i++) {
         const spring_state start = {0.3 + 0.0137 * (i % 50), 0};
-        const double spacing = pi / 0.625, turn = (1 + i / 50) * spacing,
-                     tol = distance_at(&p, start, 0, turn);
+        const double spacing = pi / 0.625, turn = (1 + i / 50) * spacing, tol = distance_at(&p, start, 0, turn);
         const double at = spring_settling_time(&start, &p, tol),
                      below = spring_settling_time(&start, &p, nextafter(tol, 0));
         CHECK(at > turn - spacing && at < turn, "a swing as large as the tolerance is within it");
@@ -163,8 +156,7 @@ static void rest_time_special(void)
     CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1e200}, &drag, 1e-200), 4 * (log(4) + 400 * log(10)),
                 4000 * 4 * DBL_EPSILON, "a ratio of 4e400");
     const double far = spring_settling_time(&(spring_state){1e200, 0}, &damped, 1e-200);
-    CHECK_CLOSE(far, 400 * log(10) / (0.6 / 2.6), 2 * pi / sqrt(2.7 / 1.3),
-                "the envelope, in a ratio of 1e400");
+    CHECK_CLOSE(far, 400 * log(10) / (0.6 / 2.6), 2 * pi / sqrt(2.7 / 1.3), "the envelope, in a ratio of 1e400");
     const spring_params creeping = {1, 1e-300, 1, 0};
     CHECK(spring_settling_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
     CHECK_BITS(spring_settling_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
@@ -175,8 +167,7 @@ static void rest_time_special(void)
     CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &critical, 0.1), 3.577152063957297, 1e-14,
                 "t exp(-t) = 0.1, the later time");
     /* y = (4 exp(-2 t) - exp(-t/2))/3: through 0, but never below -0.1 */
-    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14,
-                "y = 0.5");
+    CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14, "y = 0.5");
 }
 
 /* Linear: from a start 2^k times as far, with 2^k times the tolerance, the same time to the bit. Squares of frequencies
@@ -218,8 +209,7 @@ static void at_rest(void)
     CHECK(!spring_at_rest(&(spring_state){1e9, 0.1}, &free_mass, 1, 0.05), "but not while moving");
     CHECK(!spring_at_rest(&(spring_state){1e9, -0.1}, &free_mass, 1, 0.05), "in either direction");
     CHECK(!spring_at_rest(&(spring_state){-0.5, 0}, &p, 0.6, 1), "too far on the other side");
-    CHECK(spring_at_rest(&(spring_state){0.25, 0}, &(spring_params){1.3, 2.5, 0.6, 0}, 0.25, 0),
-          "at both tolerances");
+    CHECK(spring_at_rest(&(spring_state){0.25, 0}, &(spring_params){1.3, 2.5, 0.6, 0}, 0.25, 0), "at both tolerances");
     CHECK(!spring_at_rest(&(spring_state){0, 0}, &pushed, 1, 1), "nowhere under a load");
     CHECK(!spring_at_rest(NULL, &p, 1, 1) && !spring_at_rest(&s, NULL, 1, 1), "NULL");
     CHECK(!spring_at_rest(&s, &bad, 1, 1), "bad parameters");
@@ -245,8 +235,7 @@ static void params_from_frequency(void)
         CHECK_CLOSE(sqrt(p.stiffness) / (2 * pi), hertz, 4 * DBL_EPSILON * hertz, "the undamped frequency");
         CHECK_CLOSE(p.damping / (2 * sqrt(p.stiffness)), zeta, 4 * DBL_EPSILON * zeta, "the damping ratio");
     }
-    CHECK_BITS(spring_params_hertz(0x1.45f306dc9c883p-514, 0.5).stiffness, DBL_MIN,
-               "the smallest with all its digits");
+    CHECK_BITS(spring_params_hertz(0x1.45f306dc9c883p-514, 0.5).stiffness, DBL_MIN, "the smallest with all its digits");
     const spring_params still = spring_params_hertz(0, 0.5);
     CHECK(still.mass == 1 && still.stiffness == 0 && still.damping == 0, "0 Hz is a free particle");
 }
@@ -266,8 +255,7 @@ static void params_from_half_life(void)
             spring_state s = {0.3, 0.8 * omega};
             const double before = hypot(s.x, (s.v + b * s.x) / omega_d);
             spring_step_exact(&s, &p, half_life);
-            CHECK_CLOSE(hypot(s.x, (s.v + b * s.x) / omega_d), before / 2, 1e-13 * before,
-                        "half of the envelope");
+            CHECK_CLOSE(hypot(s.x, (s.v + b * s.x) / omega_d), before / 2, 1e-13 * before, "half of the envelope");
         } else if (zeta > 1.1) {
             spring_state s = {1, 0};
             spring_step_exact(&s, &p, 40 * half_life); /* the fast root is gone: 2^-40 and faster */
@@ -276,8 +264,7 @@ static void params_from_half_life(void)
             CHECK_CLOSE(s.x, before / 2, 1e-6 * before, "half of the slow exponential");
         }
         const double slow = zeta <= 1 ? b : b - omega * sqrt(zeta * zeta - 1);
-        CHECK_CLOSE(slow * half_life, log(2), 8 * DBL_EPSILON * fmax(1, 4 * zeta * zeta),
-                    "b - sqrt(...) cancels");
+        CHECK_CLOSE(slow * half_life, log(2), 8 * DBL_EPSILON * fmax(1, 4 * zeta * zeta), "b - sqrt(...) cancels");
     }
 }
 
@@ -285,8 +272,7 @@ static void refused(spring_params p, const char *why)
 {
     spring_state s = {0, 1};
     CHECK(isnan(p.mass) && isnan(p.stiffness) && isnan(p.damping) && isnan(p.load), why);
-    CHECK(spring_advance(&s, &p, SPRING_LEAPFROG, 0.1, 1) == SPRING_EINVAL,
-          "and spring_advance() refuses it");
+    CHECK(spring_advance(&s, &p, SPRING_LEAPFROG, 0.1, 1) == SPRING_EINVAL, "and spring_advance() refuses it");
 }
 
 static void constructors_refuse(void)

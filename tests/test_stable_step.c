@@ -8,8 +8,7 @@
 
 static spring_params spring_of(double omega, double zeta, double mass)
 {
-    return (spring_params){
-        .mass = mass, .stiffness = mass * omega * omega, .damping = 2 * zeta * mass * omega};
+    return (spring_params){.mass = mass, .stiffness = mass * omega * omega, .damping = 2 * zeta * mass * omega};
 }
 
 static void against_definition(void)
@@ -28,17 +27,13 @@ static void against_definition(void)
 
 static void special_springs(void)
 {
-    const spring_params undamped = spring_of(1.7, 0, 1.3), dragged = {1.3, 0, 0.6, 0.2},
-                        free_mass = {1.3, 0, 0, 0.2};
+    const spring_params undamped = spring_of(1.7, 0, 1.3), dragged = {1.3, 0, 0.6, 0.2}, free_mass = {1.3, 0, 0, 0.2};
     const double omega = sqrt(undamped.stiffness / 1.3), g = 0.6 / 1.3;
     CHECK_BITS(spring_stable_step(&undamped, SPRING_EULER), 0, "Euler without damping: never");
-    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_LEAPFROG), 2 / omega, 4 * DBL_EPSILON / omega,
-                "2/omega");
-    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_RK4), sqrt(8) / omega, 8 * DBL_EPSILON / omega,
-                "2 sqrt 2/omega");
+    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_LEAPFROG), 2 / omega, 4 * DBL_EPSILON / omega, "2/omega");
+    CHECK_CLOSE(spring_stable_step(&undamped, SPRING_RK4), sqrt(8) / omega, 8 * DBL_EPSILON / omega, "2 sqrt 2/omega");
     CHECK_CLOSE(spring_stable_step(&dragged, SPRING_EULER), 2 / g, 4 * DBL_EPSILON * 2 / g, "2/g");
-    CHECK_CLOSE(spring_stable_step(&dragged, SPRING_RK4), 2.785293563405282 / g, 4 * DBL_EPSILON * 3 / g,
-                "2.785.../g");
+    CHECK_CLOSE(spring_stable_step(&dragged, SPRING_RK4), 2.785293563405282 / g, 4 * DBL_EPSILON * 3 / g, "2.785.../g");
     CHECK_BITS(spring_stable_step(&dragged, SPRING_LEAPFROG), INFINITY, "leapfrog without stiffness: always");
     for (const spring_method *m = spring_methods(); *m != no_method; m++)
         CHECK_BITS(spring_stable_step(&free_mass, *m), INFINITY, "no force at all: always");
@@ -50,10 +45,8 @@ static void special_springs(void)
     /* 5e-324/1.8625 rounds to 5e-324 again: what the steppers move, and nearly twice the quotient */
     const spring_params faint = {1.8625, 5e-324, 0, 0};
     const double faint_omega = sqrt(5e-324);
-    CHECK_CLOSE(spring_stable_step(&faint, SPRING_RK4) * faint_omega, sqrt(8), 8 * DBL_EPSILON,
-                "denormal stiffness");
-    CHECK_CLOSE(spring_stable_step(&faint, SPRING_LEAPFROG) * faint_omega, 2, 8 * DBL_EPSILON,
-                "denormal stiffness");
+    CHECK_CLOSE(spring_stable_step(&faint, SPRING_RK4) * faint_omega, sqrt(8), 8 * DBL_EPSILON, "denormal stiffness");
+    CHECK_CLOSE(spring_stable_step(&faint, SPRING_LEAPFROG) * faint_omega, 2, 8 * DBL_EPSILON, "denormal stiffness");
     const spring_params thick = {1, 1, 1e200, 0};
     CHECK_CLOSE(spring_stable_step(&thick, SPRING_EULER), 2e-200, 2e-215, "b^2 must not be formed");
 }
@@ -71,8 +64,7 @@ static void bad_input(void)
 static double spectral_radius(const spring_params *p, spring_method m, double dt)
 {
     spring_state e = {1, 0}, f = {0, 1};
-    CHECK(spring_advance(&e, p, m, dt, 1) == SPRING_OK && spring_advance(&f, p, m, dt, 1) == SPRING_OK,
-          "one step");
+    CHECK(spring_advance(&e, p, m, dt, 1) == SPRING_OK && spring_advance(&f, p, m, dt, 1) == SPRING_OK, "one step");
     const double half_trace = (e.x + f.v) / 2, det = e.x * f.v - e.v * f.x;
     const double discriminant = half_trace * half_trace - det;
     return discriminant < 0 ? sqrt(det) : fabs(half_trace) + sqrt(discriminant);
@@ -103,7 +95,8 @@ static void inside_and_outside(void)
     }
 }
 
-/* [m] the largest |(x, v/omega)| in the first steps, many times as many as a step near the limit takes to turn a state. */
+/* [m] the largest |(x, v/omega)| in the first steps, many times as many as a step near the limit takes to turn a
+   state. */
 static double largest_at_first(const spring_params *p, spring_method m, double dt, spring_state s)
 {
     const double omega = sqrt(p->stiffness / p->mass);

@@ -35,8 +35,8 @@ static int validate(const char *program, const char *options)
     row_count = 0;
     while (output != NULL && fgets(line, sizeof line, output) != NULL) {
         row *r = &rows[row_count];
-        if (sscanf(line, "%39[^\t]\t%19s\t%19s\t%*s\t%*s\t%lf\t%lf\t%9s\t%79[^\t]", r->of, r->method,
-                   r->witness, &r->error, &r->bound, r->verdict, r->reason) == 7 &&
+        if (sscanf(line, "%39[^\t]\t%19s\t%19s\t%*s\t%*s\t%lf\t%lf\t%9s\t%79[^\t]", r->of, r->method, r->witness,
+                   &r->error, &r->bound, r->verdict, r->reason) == 7 &&
             row_count + 1 < most_rows)
             row_count++;
     }
@@ -56,8 +56,8 @@ static unsigned count(const char *of, const char *method, const char *witness, c
     return found;
 }
 
-/* A scene is there with every method and every witness it asks for; how many rows that makes. Of runs against a solution
-   there are two, and a row for the extrapolated value. */
+/* A scene is there with every method and every witness it asks for; how many rows that makes. Of runs against a
+   solution there are two, and a row for the extrapolated value. */
 static unsigned whole_scene(const scene_case *c)
 {
     const struct {
@@ -134,9 +134,10 @@ static int order_of(const char *method)
     return spring_method_describe(method_named(method))->order;
 }
 
-/* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100. The
-   definition does much the same operations as the library, and rounds alike: there, within 1000. So it is with a method
-   that takes steps for its order which no undamped mode bears: bounds grow with modes that are not in the motion. */
+/* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100.
+   The definition does much the same operations as the library, and rounds alike: there, within 1000. So it is with a
+   method that takes steps for its order which no undamped mode bears: bounds grow with modes that are not in the
+   motion. */
 static void bounds_are_near(void)
 {
     for (const row *r = rows; r < rows + row_count; r++) {
@@ -150,13 +151,12 @@ static void bounds_are_near(void)
     }
 }
 
-/* What rounding may add to the bounds of a scene and method, as spring-validate has it: by the bound that its definition
-   has twice, of R = 2^order times the steps and extrapolated. */
+/* What rounding may add to the bounds of a scene and method, as spring-validate has it: by the bound that its
+   definition has twice, of R = 2^order times the steps and extrapolated. */
 static double rounding_of(const row *of, double R)
 {
     for (const row *r = rows; r < rows + row_count; r++)
-        if (strcmp(r->of, of->of) == 0 && strcmp(r->method, of->method) == 0 &&
-            strcmp(r->witness, "definition") == 0)
+        if (strcmp(r->of, of->of) == 0 && strcmp(r->method, of->method) == 0 && strcmp(r->witness, "definition") == 0)
             return 4 * r->bound * (R + 1) / (R - 1);
     return 0;
 }
@@ -169,8 +169,7 @@ static void bounds_fall(void)
         if (strcmp(r->reason, "truncation measured at 2h and h") != 0)
             continue;
         const double factor = ldexp(1, order_of(r->method));
-        CHECK(strncmp(r[1].reason, "truncation measured at 4h", 25) == 0,
-              "the next row is for half the step");
+        CHECK(strncmp(r[1].reason, "truncation measured at 4h", 25) == 0, "the next row is for half the step");
         const double rounded = rounding_of(r, factor);
         CHECK((r[1].bound - rounded) * factor <= 1.5 * (r->bound - rounded), r->of);
         pairs++;
@@ -204,8 +203,8 @@ static void right(void)
     bounds_fall();
 }
 
-/* A wrong library, with cases that have every witness between them: status 1, each witness fails some row, and all rows of
-   the one named (NULL: of all) fail. */
+/* A wrong library, with cases that have every witness between them: status 1, each witness fails some row, and all rows
+   of the one named (NULL: of all) fail. */
 static void wrong(const char *way, const char *const *wrong_cases, size_t wrong_case_count,
                   const char *witness_that_sees_all)
 {
@@ -214,8 +213,7 @@ static void wrong(const char *way, const char *const *wrong_cases, size_t wrong_
         CHECK(validate(wrong_program, wrong_cases[i]) == 1, way);
         CHECK(row_count > 0, way);
         for (const row *r = rows; r < rows + row_count; r++) {
-            const bool blunt =
-                strcmp(r->witness, "drive") == 0; /* its bound is what sampling the drive costs */
+            const bool blunt = strcmp(r->witness, "drive") == 0; /* its bound is what sampling the drive costs */
             CHECK(blunt || count(NULL, NULL, r->witness, "fail") > 0, r->witness);
             if (witness_that_sees_all == NULL || strcmp(r->witness, witness_that_sees_all) == 0)
                 CHECK(strcmp(r->verdict, "fail") == 0, r->witness);
@@ -231,8 +229,8 @@ static void wrong_spring(const char *way, const char *witness_that_sees_all)
 
 static void wrong_scene(const char *way, const char *witness_that_sees_all)
 {
-    static const char *const wrong_cases[] = {"--case double-pendulum", "--case resonant-drive",
-                                              "--case pair", "--case pair-damped", "--case chain-10"};
+    static const char *const wrong_cases[] = {"--case double-pendulum", "--case resonant-drive", "--case pair",
+                                              "--case pair-damped", "--case chain-10"};
     wrong(way, wrong_cases, sizeof wrong_cases / sizeof wrong_cases[0], witness_that_sees_all);
 }
 
@@ -253,14 +251,14 @@ static void slightly_wrong(void)
     wrong_scene("x off", "definition");
 }
 
-/* Every witness notices a method that is only one of a lower order, bounds taken from the runs themselves included. A witness may know positions alone, so not every one notices a wrong velocity. */
+/* Every witness notices a method that is only one of a lower order, bounds taken from the runs themselves included. A
+   witness may know positions alone, so not every one notices a wrong velocity. */
 static void wrong_order(void)
 {
     wrong_scene("lower order", "definition");
     setenv("WRONG", "v off", 1);
     CHECK(validate(wrong_program, "--case double-pendulum") == 1, "a wrong velocity");
-    CHECK(count(NULL, NULL, "definition", "fail") == count(NULL, NULL, "definition", NULL),
-          "a wrong velocity");
+    CHECK(count(NULL, NULL, "definition", "fail") == count(NULL, NULL, "definition", NULL), "a wrong velocity");
     CHECK(count(NULL, NULL, "cvode-adams", "fail") >= 2, "a wrong velocity");
 }
 

@@ -41,8 +41,7 @@ static void counts_of_a_scene(work *w)
         const spring_method_info *info = spring_method_describe(spring_method_at(i));
         const uint64_t forces = (uint64_t)info->forces_per_step * steps;
         if (info->scenes)
-            CHECK(work_count(w, spring_method_at(i), steps) - forces <= 1,
-                  "as the table says, and one at the start");
+            CHECK(work_count(w, spring_method_at(i), steps) - forces <= 1, "as the table says, and one at the start");
     }
 }
 
@@ -70,8 +69,8 @@ static void counted_is_timed(work *w)
     free(counted);
 }
 
-static void count_calls(void *user, double t, size_t particles, const double *const x[3],
-                        const double *const v[3], double *const force[3])
+static void count_calls(void *user, double t, size_t particles, const double *const x[3], const double *const v[3],
+                        double *const force[3])
 {
     (void)t, (void)particles, (void)x, (void)v, (void)force;
     ++*(uint64_t *)user;
@@ -130,7 +129,8 @@ static void counts_of_the_peers(void)
     }
 }
 
-/* Each component of dy/dt against the harness, from the sizes of what is added: eight links, sixteen roundings a link. */
+/* Each component of dy/dt against the harness, from the sizes of what is added: eight links, sixteen roundings a
+   link. */
 static void one_equation(work *w)
 {
     double *ours = scene_room(w->size, sizeof *ours), *theirs = scene_room(w->size, sizeof *theirs);
@@ -150,13 +150,13 @@ static void one_equation(work *w)
     free(theirs);
 }
 
-/* By a stepper of the library, which had no part in the truth: RK4 gets nearer as h^4, until the difference is small. */
+/* By a stepper of the library, which had no part in the truth: RK4 gets nearer as h^4, until the difference is
+   small. */
 static void truth_of_a_scene(work *w)
 {
     double *y = scene_room(w->size, sizeof *y);
     const work_solver *const rk4 = work_solver_of(SPRING_RK4);
-    const uint64_t n =
-        (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 64)) + 1;
+    const uint64_t n = (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 64)) + 1;
     CHECK_BELOW(w->uncertainty, 1e-12, "the truth is good for every error of the table");
     CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what the truth is known to");
     CHECK(work_run(w, rk4, (work_effort){.steps = n}, 1, y).failure == NULL, "it moves");

@@ -21,16 +21,14 @@ static double dt = 0.01, duration = 1e8;
 static bool half_step_velocity, jitter;
 
 static const cli_option options[] = {
-    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true,
-     .value = "M"},
+    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s] (default: 0.01)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
      .help = "a row for each power of ten from 1 s to H [s] (default: 1e8)"},
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
      .help = "leapfrog only: measure the kinetic energy with the velocity at\n"
              "t + dt/2, half a step ahead of the position"},
-    {"jitter", CLI_FLAG, .flag = &jitter,
-     .help = "draw every step from DT/2 to 3 DT/2, the same ones at every run"},
+    {"jitter", CLI_FLAG, .flag = &jitter, .help = "draw every step from DT/2 to 3 DT/2, the same ones at every run"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
      .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {.name = NULL},
@@ -39,17 +37,16 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-energy",
     .summary = "The error in the energy of an undamped spring after 1, 10, 100 ... seconds.",
-    .details =
-        "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
-        "1/2 J.\n\n"
-        "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity),\n"
-        "duration_s (steps times DT), steps (the whole number that comes nearest to the power of ten, at\n"
-        "least 1) and energy_error_J, the distance |E - 1/2 J|. An energy that overflows has the error\n"
-        "inf; that is a result, with status 0.\n\n"
-        "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
-        "terminal.\n"
-        "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
-        "With --jitter the time run is the duration only on average.",
+    .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
+               "1/2 J.\n\n"
+               "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity),\n"
+               "duration_s (steps times DT), steps (the whole number that comes nearest to the power of ten, at\n"
+               "least 1) and energy_error_J, the distance |E - 1/2 J|. An energy that overflows has the error\n"
+               "inf; that is a result, with status 0.\n\n"
+               "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
+               "terminal.\n"
+               "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
+               "With --jitter the time run is the duration only on average.",
     .options = options,
 };
 
@@ -96,13 +93,11 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     stepper_check(&chosen);
     if (half_step_velocity && chosen.method != SPRING_LEAPFROG)
-        cli_fail(CLI_USAGE, "--half-step-velocity: with --method %s; it should be leapfrog",
-                 stepper_name(&chosen));
+        cli_fail(CLI_USAGE, "--half-step-velocity: with --method %s; it should be leapfrog", stepper_name(&chosen));
     if (!(duration >= 1))
         cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at least 1 s", duration);
     if (!(duration / dt <= most_steps))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps, %g s", duration,
-                 dt * most_steps);
+        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps, %g s", duration, dt * most_steps);
 
     cli_table *table = cli_open_output();
     stepper_comment(&chosen, table);

@@ -23,8 +23,8 @@ int main(int argc, char **argv)
     cli_columns(table, "method label order forces_per_step symplectic springs scenes");
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const spring_method_info *m = spring_method_describe(spring_method_at(i));
-        cli_row(table, "%s\t%s\t%d\t%d\t%d\t%d\t%d", m->name, m->label, m->order, m->forces_per_step,
-                m->symplectic, m->springs, m->scenes);
+        cli_row(table, "%s\t%s\t%d\t%d\t%d\t%d\t%d", m->name, m->label, m->order, m->forces_per_step, m->symplectic,
+                m->springs, m->scenes);
     }
     cli_finish();
     return 0;

@@ -33,12 +33,11 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-rounding",
     .summary = "How the rounding errors of an undamped spring grow with the number of steps.",
-    .details =
-        "Columns: method, sum, start (0 to 7: phases spread evenly over a period), steps (two rows for each\n"
-        "power of ten from 1e4 to N), dt_s, state_error and energy_error: what differs from the same method\n"
-        "in 107-digit arithmetic, relative to the amplitude, in (x, v/omega), and to the energy; and\n"
-        "coefficient_error, by how much the rounding of dt stiffness/mass, which is the same in every step,\n"
-        "shifts the phase [rad]. 1e9 steps take about half a minute.",
+    .details = "Columns: method, sum, start (0 to 7: phases spread evenly over a period), steps (two rows for each\n"
+               "power of ten from 1e4 to N), dt_s, state_error and energy_error: what differs from the same method\n"
+               "in 107-digit arithmetic, relative to the amplitude, in (x, v/omega), and to the energy; and\n"
+               "coefficient_error, by how much the rounding of dt stiffness/mass, which is the same in every step,\n"
+               "shifts the phase [rad]. 1e9 steps take about half a minute.",
     .options = options,
 };
 
@@ -85,9 +84,8 @@ static void compare(cli_table *table, const compensated_state *from, const compe
         const spring_state start = {from->x[i], from->v[i]}, got = {s->x[i], s->v[i]};
         reference_start(&iterate, &spring, start);
         reference_iterate(&iterate, &spring, (spring_method)method, dt, n);
-        cli_row(table, "%s\t%s\t%d\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g",
-                spring_method_name((spring_method)method), sums[sum], i, n, dt,
-                reference_distance(&iterate, got), reference_energy_error(&iterate, got),
+        cli_row(table, "%s\t%s\t%d\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g", spring_method_name((spring_method)method),
+                sums[sum], i, n, dt, reference_distance(&iterate, got), reference_energy_error(&iterate, got),
                 coefficient_error(n));
     }
     reference_clear(&iterate);
@@ -98,8 +96,7 @@ int main(int argc, char **argv)
     const uint64_t leap = UINT64_C(1) << 22; /* steps between two looks at the clock */
     cli_parse(&program, argc, argv);
     if (sum == COMPENSATED && !compensated_knows((spring_method)method))
-        cli_fail(CLI_USAGE,
-                 "--sum: \"compensated\" is for leapfrog and rk4 only; with --method %s it should be plain",
+        cli_fail(CLI_USAGE, "--sum: \"compensated\" is for leapfrog and rk4 only; with --method %s it should be plain",
                  spring_method_name((spring_method)method));
     cli_table *table = cli_open_output();
     cli_columns(table, "method sum start steps dt_s state_error energy_error coefficient_error");

@@ -23,16 +23,14 @@ static spring_params spring = {.mass = 1, .stiffness = 1};
 static spring_state start = {.x = 1};
 
 static const cli_option options[] = {
-    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true,
-     .value = "M"},
+    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"duration", CLI_POSITIVE, .real = &duration, .required = true, .value = "H", .help = "time to run [s]"},
-    {"steps", CLI_COUNT, .count = &steps, .least = 1, .most = UINT64_C(1) << 53, .required = true,
-     .value = "N", .help = "number of steps; each is H/N long"},
+    {"steps", CLI_COUNT, .count = &steps, .least = 1, .most = UINT64_C(1) << 53, .required = true, .value = "N",
+     .help = "number of steps; each is H/N long"},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
      .help = "a row for every K-th step, the start included; without it only\n"
              "the final state"},
-    {"from", CLI_REAL, .real = &from, .value = "T",
-     .help = "no rows for times before T [s], but for the final state"},
+    {"from", CLI_REAL, .real = &from, .value = "T", .help = "no rows for times before T [s], but for the final state"},
     {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg] (default: 1)"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m] (default: 1)"},
     {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m] (default: 0)"},
@@ -53,16 +51,15 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-run",
     .summary = "Moves one spring through time and compares it with its exact solution.",
-    .details =
-        "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m\n"
-        "and error_m, the distance |x_m - exact_x_m|. Times are step H/N, and exact_x_m is computed\n"
-        "from the start in one evaluation. The last row is the final state. With --method exact one\n"
-        "evaluation covers the steps from row to row, 2^24 of them at most (with --envelope each step\n"
-        "has its own), and the error is what rounding adds up to.\n\n"
-        "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
-        "these with the sign of x_m - exact_x_m. Parts without a step have no row.\n\n"
-        "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
-        "is told, and the status is 1.",
+    .details = "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m\n"
+               "and error_m, the distance |x_m - exact_x_m|. Times are step H/N, and exact_x_m is computed\n"
+               "from the start in one evaluation. The last row is the final state. With --method exact one\n"
+               "evaluation covers the steps from row to row, 2^24 of them at most (with --envelope each step\n"
+               "has its own), and the error is what rounding adds up to.\n\n"
+               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
+               "these with the sign of x_m - exact_x_m. Parts without a step have no row.\n\n"
+               "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
+               "is told, and the status is 1.",
     .options = options,
 };
 
@@ -133,8 +130,7 @@ static uint64_t steps_at_once(uint64_t step)
 static bool take(spring_state *s, uint64_t n)
 {
     spring_state next = *s;
-    if (stepper_advance(&chosen, &next, &spring, dt, n) != SPRING_OK ||
-        !isfinite(spring_energy(&next, &spring)))
+    if (stepper_advance(&chosen, &next, &spring, dt, n) != SPRING_OK || !isfinite(spring_energy(&next, &spring)))
         return false;
     *s = next;
     return true;
@@ -177,11 +173,10 @@ static void check_options(void)
 {
     stepper_check(&chosen);
     if (!(dt > 0))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger",
-                 duration, steps);
+        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger", duration,
+                 steps);
     if (!spring_params_valid(&spring))
-        cli_fail(CLI_USAGE,
-                 "--mass: \"%g\" is too small: stiffness/mass, damping/mass, load/mass should be finite",
+        cli_fail(CLI_USAGE, "--mass: \"%g\" is too small: stiffness/mass, damping/mass, load/mass should be finite",
                  spring.mass);
 }
 

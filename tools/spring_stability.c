@@ -4,8 +4,8 @@
  *
  * A step is unstable if a generic start grows: ln(max |y| over steps N/2 ... N / max |y| over steps N/4 ... N/2) > 1e-3
  * with N = 10^6. Below a damping ratio of 0.1 growth near the limit is too slow for that (one part in 10^4 outside,
- * Euler at 0.01 grows by 2 % in 10^6 steps), so there the growth of the step's own map is measured instead: stepping two
- * basis states gives its matrix, and that its eigenvalues. The limit is then bisected.
+ * Euler at 0.01 grows by 2 % in 10^6 steps), so there the growth of the step's own map is measured instead: stepping
+ * two basis states gives its matrix, and that its eigenvalues. The limit is then bisected.
  *
  * With --map: how wrong each method is after ten periods, over the step and the damping ratio, stable or not.
  */
@@ -31,12 +31,11 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-stability",
     .summary = "Measure the stable step of each method over the damping ratio.",
-    .details =
-        "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
-        "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.\n\n"
-        "With --map: method, omega_dt, damping_ratio, error: the distance from the exact state in\n"
-        "(x, v/omega) over that of the start from rest, after the whole number of steps that comes\n"
-        "nearest to ten undamped periods; inf where the state overflows.",
+    .details = "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
+               "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.\n\n"
+               "With --map: method, omega_dt, damping_ratio, error: the distance from the exact state in\n"
+               "(x, v/omega) over that of the start from rest, after the whole number of steps that comes\n"
+               "nearest to ten undamped periods; inf where the state overflows.",
     .options = options,
 };
 
@@ -156,8 +155,7 @@ static void write_limit(cli_table *table, spring_method m, double damping_ratio)
     const double measured = measured_limit(damping_ratio, m);
     const double theory = spring_stable_step(&p, m) * omega;
     const double error = theory > 0 ? fabs(measured - theory) / theory : fabs(measured - theory);
-    cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g", spring_method_name(m), damping_ratio, measured, theory,
-            error);
+    cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g", spring_method_name(m), damping_ratio, measured, theory, error);
 }
 
 static void write_limits(cli_table *table, spring_method m, uint64_t i)

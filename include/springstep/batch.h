@@ -6,18 +6,18 @@
  *
  *     double x[1000], v[1000], omega2[1000];                         // yours; aligned as any array of double is
  *     const double gamma = 0.3;
- *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma, .shared = SPRING_SHARED_GAMMA};
- *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
+ *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma, .shared =
+ *     SPRING_SHARED_GAMMA}; spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
  * What holds for every function here, beside what spring.h says:
  *  - Bits. In double, advancing spring i is bitwise identical to advancing the single spring {1, omega2[i], gamma[i],
  *    accel[i]}, in every batch, at every index, with every instruction set. So a batch may be split by pointer, to use
  *    threads. A float spring does the same arithmetic in float; its bits do not depend on its index either.
- *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one element.
- *    README.md says what each feature costs.
+ *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one
+ *    element. README.md says what each feature costs.
  *  - Each call reads and writes the state once, however many steps it takes.
- *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor has is used; elsewhere what the compiler makes of
- *    16-byte vectors, or of plain loops.
+ *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor has is used; elsewhere what the compiler makes
+ *    of 16-byte vectors, or of plain loops.
  */
 #ifndef SPRINGSTEP_BATCH_H
 #define SPRINGSTEP_BATCH_H
@@ -58,14 +58,14 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  * Advance every spring of a batch by n steps.
  *
  * Each spring for itself: one that would become non-finite keeps its state, and all others advance. So does one that
- * spring_advance() would refuse, because its state or one of its own parameters is not finite or a parameter is negative.
- * What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0 change nothing,
- * and the springs are not looked at.
+ * spring_advance() would refuse, because its state or one of its own parameters is not finite or a parameter is
+ * negative. What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0
+ * change nothing, and the springs are not looked at.
  *
  * SPRING_EXACT is one evaluation over n dt. With omega2 shared and gamma shared or NULL its coefficients are computed
  * once, and a spring costs six multiplications and two additions; otherwise each spring costs a spring_step_exact().
- * In float, shared coefficients are computed in double and rounded once, and a spring with parameters of its own is moved
- * in double and rounded at the end: here, and only here, sharing changes the last bit.
+ * In float, shared coefficients are computed in double and rounded once, and a spring with parameters of its own is
+ * moved in double and rounded at the end: here, and only here, sharing changes the last bit.
  *
  * Far below 1e-308 (1e-38 in float) numbers become denormal, as a damped spring's do when it has settled, and on many
  * processors slow. Nothing is cut off here, since that would change bits: leave settled springs out, or let the
@@ -76,11 +76,11 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  * @param[in]     dt  finite step [s]; negative runs backwards
  * @param[in]     n   number of steps
  * @return SPRING_OK: all springs advanced.
- *         SPRING_EINVAL, nothing changed: b, x, v or omega2 NULL; x or v overlapping another array; an unknown method or
- *         bit in shared; dt or a shared parameter not finite, or negative where it must not be.
+ *         SPRING_EINVAL, nothing changed: b, x, v or omega2 NULL; x or v overlapping another array; an unknown method
+ *         or bit in shared; dt or a shared parameter not finite, or negative where it must not be.
  *         SPRING_EINVAL, all others advanced: a spring's own state or parameters are not valid.
- *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that have
- *         all overflowed is given up within SPRING_CHECK_INTERVAL steps.
+ *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that
+ *         have all overflowed is given up within SPRING_CHECK_INTERVAL steps.
  * @par Threads   re-entrant; allocates nothing, keeps nothing; distinct ranges of one batch may be advanced at once
  */
 SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);

@@ -15,12 +15,12 @@
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
  * What holds for every function here, beside what spring.h says:
- *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory; README.md says what
- *    each feature takes in bytes and time.
+ *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory;
+ *    README.md says what each feature takes in bytes and time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
- *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another place
- *    with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a memcpy(),
- *    and rolling back another. The callback and its user pointer are copied as they are.
+ *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another
+ *    place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a
+ *    memcpy(), and rolling back another. The callback and its user pointer are copied as they are.
  *  - Distinct scenes may be used by distinct threads at once; one scene by one at a time, functions on a const scene
  *    included, since they may compute and keep forces.
  *  - The same bits with every compiler, instruction set and vector length, as far as the callback does its part.
@@ -54,12 +54,12 @@ typedef struct spring_link {
 } spring_link;
 
 /* Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
-   [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL, and all numbers are finite. It must
-   depend on nothing but its arguments and *user, or advance(10) is not 10 times advance(1), and must not call a function
-   on its own scene. After a change of what *user holds call spring_scene_set_force() again: a force may have been kept
-   (SPRING_SCENE_FORCE_IGNORES_VELOCITY). */
+   [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL, and all numbers are finite. It
+   must depend on nothing but its arguments and *user, or advance(10) is not 10 times advance(1), and must not call a
+   function on its own scene. After a change of what *user holds call spring_scene_set_force() again: a force may have
+   been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY). */
 typedef void spring_scene_force_fn(void *user, double t, size_t particles, const double *const position[3],
-                             const double *const velocity[3], double *const force[3]);
+                                   const double *const velocity[3], double *const force[3]);
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
@@ -68,32 +68,32 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /* spring_scene_set_link() is allowed. Each link has numbers of its own, equal to others or not. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/* No second copy of the state. An advance that fails loses it: positions and velocities are NaN then, and no step succeeds
-   until spring_scene_set() has set all of them. */
+/* No second copy of the state. An advance that fails loses it: positions and velocities are NaN then, and no step
+   succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/* No callback uses velocities, or there is none and none is going to be set. Leapfrog need not predict velocities then: no
-   time for that, and no memory either where no link is damped or can be changed. It keeps the force at the end of a step for
-   the next. */
+/* No callback uses velocities, or there is none and none is going to be set. Leapfrog need not predict velocities then:
+   no time for that, and no memory either where no link is damped or can be changed. It keeps the force at the end of a
+   step for the next. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /* Zero-initialise what is not modelled. Every array is copied. */
 typedef struct spring_scene_def {
-    uint32_t axes;           /* 1, 2 or 3; 0 means 3 */
-    uint32_t flags;          /* SPRING_SCENE_... */
-    uint32_t methods;        /* 1u << SPRING_EULER | ...: which will be used; 0: Euler and leapfrog */
-    size_t particles;        /* from 1 to nearly 2^32 */
-    size_t links;            /* less than 2^29 */
-    const double *position;  /* [particles*axes] x0 y0 z0 x1 ... [m] */
-    const double *velocity;  /* [particles*axes] [m/s]; NULL: at rest */
-    const double *mass;      /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
-    double mass_all;         /* [kg]; 0 means 1 */
-    const uint8_t *pinned;   /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
-    const spring_link *link; /* [links]; best in the order of their particles, see README.md */
-    double gravity[3];       /* [m/s^2]; elements beyond the axes are ignored */
-    double drag;             /* [N s/m] >= 0, on every particle */
-    spring_scene_force_fn *force;  /* NULL: none */
-    void *user;              /* handed to force */
+    uint32_t axes;                /* 1, 2 or 3; 0 means 3 */
+    uint32_t flags;               /* SPRING_SCENE_... */
+    uint32_t methods;             /* 1u << SPRING_EULER | ...: which will be used; 0: all but RK4 */
+    size_t particles;             /* from 1 to nearly 2^32 */
+    size_t links;                 /* less than 2^29 */
+    const double *position;       /* [particles*axes] x0 y0 z0 x1 ... [m] */
+    const double *velocity;       /* [particles*axes] [m/s]; NULL: at rest */
+    const double *mass;           /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
+    double mass_all;              /* [kg]; 0 means 1 */
+    const uint8_t *pinned;        /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
+    const spring_link *link;      /* [links]; best in the order of their particles, see README.md */
+    double gravity[3];            /* [m/s^2]; elements beyond the axes are ignored */
+    double drag;                  /* [N s/m] >= 0, on every particle */
+    spring_scene_force_fn *force; /* NULL: none */
+    void *user;                   /* handed to force */
 } spring_scene_def;
 
 typedef struct spring_scene spring_scene;
@@ -103,8 +103,8 @@ typedef struct spring_scene spring_scene;
  *
  * @param[out] field  name of the first field that is not, such as "mass" or "link.a"; NULL if all are. May be NULL
  * @param[out] index  of the particle or link, of gravity the axis, else 0. May be NULL
- * @return SPRING_OK; SPRING_EINVAL: also where a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or drag/mass is
- *         not finite in the precision of the scene; SPRING_ERANGE: an index of a particle is too large, or a count;
+ * @return SPRING_OK; SPRING_EINVAL: also where a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or drag/mass
+ *         is not finite in the precision of the scene; SPRING_ERANGE: an index of a particle is too large, or a count;
  *         SPRING_EUNSUPPORTED: the exact solution among the methods
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
@@ -130,41 +130,45 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
 /**
  * Advance a scene by n steps.
  *
- *     Euler     x1 = x + dt v;   v1 = v + dt a(t, x, v)
- *     leapfrog  v' = v + dt/2 a(t, x, v);   x1 = x + dt v';   v1 = v' + dt/2 a(t + dt, x1, v1)
- *     RK4       the four stages
+ *     Euler             x1 = x + dt v;   v1 = v + dt a(t, x, v)
+ *     symplectic Euler  v1 = v + dt a(t, x, v);   x1 = x + dt v1
+ *     leapfrog          v' = v + dt/2 a(t, x, v);   x1 = x + dt v';   v1 = v' + dt/2 a(t + dt, x1, v1)
+ *     RK4               the four stages
  *
- * Drag is solved for in the last half kick of leapfrog. Velocities that enter link damping and callbacks there are
- * predicted: v* = v' + dt/2 a(x1, v'), v1 = v' + dt/2 a(x1, v*): still of second order, at three force evaluations a step
- * instead of one. (Of Euler: one, RK4: four. A callback that uses no velocities is not predicted for, see
- * SPRING_SCENE_FORCE_IGNORES_VELOCITY.) With drag alone leapfrog evaluates once; its force at the end of a step is that at the
- * start of the next, and is kept.
+ * Drag is solved for in the kick of symplectic Euler and in the last half kick of leapfrog. Velocities that enter link
+ * damping and callbacks in that half kick are predicted: v* = v' + dt/2 a(x1, v'), v1 = v' + dt/2 a(x1, v*): still of
+ * second order, at three force evaluations a step instead of one. (Of both Eulers: one, RK4: four. A callback that uses
+ * no velocities is not predicted for, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.) With drag alone leapfrog evaluates
+ * once; its force at the end of a step is that at the start of the next, and is kept.
  *
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
  * @param[in] m   one of the methods of the definition
- * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag; 0, or
- *                in float what rounds to 0, does nothing
- * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the exact solution, or a method that the definition does not have;
- *         SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it does
+ * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag; 0,
+ *                or in float what rounds to 0, does nothing
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the exact solution, or a method that the definition does not
+ *         have; SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it
+ *         does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
  *                Solving Ordinary Differential Equations I (1993), section II.1
  */
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * A stable step, from the stiffness of the links: below it the method makes no motion about rest grow, as long as no link
- * is compressed below half its rest length.
+ * A stable step, from the stiffness of the links: below it the method makes no motion about rest grow, as long as no
+ * link is compressed below half its rest length.
  *
  * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
  * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
- * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness.
- * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on cloth,
- * twice on jelly; with heavy damping it may be several times larger. Links that spin or swing far can gain energy from the
- * step by resonance closer to it: take half, and less where a link turns faster than it would swing. The callback is not
- * looked at.
+ * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness;
+ * symplectic Euler 4/(p + sqrt(p^2 + 4 L)), p the part of G that comes from links less drag over the largest mass.
+ * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on
+ * cloth, twice on jelly; with heavy damping it may be several times larger. Links that spin or swing far can gain
+ * energy from the step by resonance closer to it: take half, and less where a link turns faster than it would swing.
+ * The callback is not looked at.
  *
- * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the exact solution
+ * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the
+ *         exact solution
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
  */
 SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
@@ -188,22 +192,23 @@ typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantit
 /**
  * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
  *
- * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin, set
- * its velocity, (target - position)/(n dt) before n steps: where its position is set it jumps, and link damping sees none
- * of it.
+ * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin,
+ * set its velocity, (target - position)/(n dt) before n steps: where its position is set it jumps, and link damping
+ * sees none of it.
  *
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
  * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number to be set that is not finite;
  *         SPRING_ERANGE: there are not so many particles
  */
-SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out,
-                                          size_t stride, size_t first, size_t count);
-SPRING_API spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float *out,
-                                           size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out, size_t stride,
+                                          size_t first, size_t count);
+SPRING_API spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float *out, size_t stride,
+                                           size_t first, size_t count);
 SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double *in, size_t stride,
                                           size_t first, size_t count);
 
-/** Change gravity [m/s^2]; elements beyond the axes are ignored. SPRING_EINVAL for NULL or numbers that are not finite. */
+/** Change gravity [m/s^2]; elements beyond the axes are ignored. SPRING_EINVAL for NULL or numbers that are not
+   finite. */
 SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
 
 /** Change the callback; NULL: none. */
@@ -217,8 +222,8 @@ SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_fo
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
 
-/** The force along a link [N], > 0 pulls; its damping included. At length 0, where no force acts, that of its stiffness.
-    NaN for bad input. */
+/** The force along a link [N], > 0 pulls; its damping included. At length 0, where no force acts, that of its
+    stiffness. NaN for bad input. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /* ------------------------------------------------------------------------------------------------- the float twin */
@@ -254,12 +259,12 @@ SPRING_API double spring_scenef_stable_step(spring_scenef *s, spring_method m);
 SPRING_API double spring_scenef_time(const spring_scenef *s);
 SPRING_API spring_scenef_energies spring_scenef_energy(const spring_scenef *s);
 SPRING_API bool spring_scenef_at_rest(spring_scenef *s, double v_tol, double a_tol);
-SPRING_API spring_status spring_scenef_get(const spring_scenef *s, spring_quantity q, double *out,
-                                           size_t stride, size_t first, size_t count);
-SPRING_API spring_status spring_scenef_getf(const spring_scenef *s, spring_quantity q, float *out,
-                                            size_t stride, size_t first, size_t count);
-SPRING_API spring_status spring_scenef_set(spring_scenef *s, spring_quantity q, const double *in,
-                                           size_t stride, size_t first, size_t count);
+SPRING_API spring_status spring_scenef_get(const spring_scenef *s, spring_quantity q, double *out, size_t stride,
+                                           size_t first, size_t count);
+SPRING_API spring_status spring_scenef_getf(const spring_scenef *s, spring_quantity q, float *out, size_t stride,
+                                            size_t first, size_t count);
+SPRING_API spring_status spring_scenef_set(spring_scenef *s, spring_quantity q, const double *in, size_t stride,
+                                           size_t first, size_t count);
 SPRING_API spring_status spring_scenef_set_gravity(spring_scenef *s, const double gravity[3]);
 SPRING_API spring_status spring_scenef_set_force(spring_scenef *s, spring_scenef_force_fn *force, void *user);
 SPRING_API spring_status spring_scenef_set_link(spring_scenef *s, size_t index, const spring_link *link);
@@ -280,8 +285,8 @@ SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 #define SPRING_GRID_FIRST_Z UINT32_C(16)
 #define SPRING_GRID_LAST_Z  UINT32_C(32)
 
-/* Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly. Particle
-   (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
+/* Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly.
+   Particle (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
 typedef struct spring_grid {
     uint32_t count[3]; /* particles along x, y, z; 0 means 1 */
     uint32_t axes;     /* of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
@@ -309,8 +314,7 @@ SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particle
  * @param[out] link      [links]; may be NULL
  * @return as spring_grid_size(); nothing is written after an error
  */
-SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned,
-                                          spring_link *link);
+SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link);
 
 #ifdef __cplusplus
 }

@@ -39,8 +39,8 @@ typedef struct spring_state {
 } spring_state;
 
 /* What stays. Zero-initialise what is not modelled. Many states may share one. A load that changes with time: set it
-   before each step to its value at t + dt/2 for second order; its value at t gives first order. No method gives more than
-   second order from a load that is sampled once a step. */
+   before each step to its value at t + dt/2 for second order; its value at t gives first order. No method gives more
+   than second order from a load that is sampled once a step. */
 typedef struct spring_params {
     double mass;      /* [kg]    > 0 */
     double stiffness; /* [N/m]   >= 0; 0 is a free particle */
@@ -50,10 +50,10 @@ typedef struct spring_params {
 
 /* Values are only ever appended; tables show methods in the order of spring_method_at(). */
 typedef enum spring_method {
-    SPRING_EULER,    /* order 1; for comparison: an undamped spring gains energy at every step size */
-    SPRING_LEAPFROG, /* order 2; one force a step, bounded energy error: the default for games and long runs */
-    SPRING_RK4,      /* order 4; the smallest error for short runs; slowly loses energy */
-    SPRING_EXACT,    /* the exact solution; for one linear spring no stepper beats it */
+    SPRING_EULER,           /* order 1; for comparison: an undamped spring gains energy at every step size */
+    SPRING_LEAPFROG,        /* order 2; one force a step, bounded energy error: the default for games and long runs */
+    SPRING_RK4,             /* order 4; the smallest error for short runs; slowly loses energy */
+    SPRING_EXACT,           /* the exact solution; for one linear spring no stepper beats it */
     SPRING_SYMPLECTIC_EULER /* order 1, bounded energy error: what many game engines run; leapfrog costs the same */
 } spring_method;
 
@@ -63,10 +63,10 @@ enum { SPRING_METHOD_COUNT = 5 }; /* of its own, so that a switch over methods n
 enum { SPRING_CHECK_INTERVAL = 4096 };
 
 typedef enum spring_status {
-    SPRING_OK,     /* done */
-    SPRING_EINVAL, /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
+    SPRING_OK,          /* done */
+    SPRING_EINVAL,      /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
                            quotient stiffness/mass, damping/mass, load/mass that is not finite */
-    SPRING_ENONFINITE, /* the state would have become infinite or NaN: the step is not stable, or the numbers too large */
+    SPRING_ENONFINITE,  /* the state would have become infinite or NaN: unstable step, or numbers too large */
     SPRING_ENOMEM,      /* the memory given is too small */
     SPRING_EALIGN,      /* the memory given is not aligned */
     SPRING_ERANGE,      /* an index or a count is out of range */
@@ -99,8 +99,8 @@ SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, doubl
  *     v1 = (v + dt (a - w x)) / (1 + g dt);   x1 = x + dt v1
  *
  * What many game engines run. First order; symplectic without damping, where it is leapfrog seen half a step late: the
- * energy error stays bounded, about dt sqrt(w)/2 of the energy. Stable for 0 < dt < (g + sqrt(g^2 + 4 w))/w. For negative dt
- * the solved kick has a pole at g |dt| = 1.
+ * energy error stays bounded, about dt sqrt(w)/2 of the energy. Stable for 0 < dt < (g + sqrt(g^2 + 4 w))/w. For
+ * negative dt the solved kick has a pole at g |dt| = 1.
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters, unchecked here
@@ -136,8 +136,8 @@ SPRING_API void spring_step_leapfrog(spring_state *s, const spring_params *p, do
  *     y1 = (1 + z + z^2/2 + z^3/6 + z^4/24) y,  z = dt times the matrix of the spring, plus the same for the load
  *
  * For a linear spring the four stages collapse exactly to this polynomial, and it is computed as Euler's step plus a
- * small correction, without evaluating a force. Fourth order. An undamped spring loses about (w dt^2)^3/72 of its energy per step. Stable for
- * dt sqrt(w) < 2 sqrt(2) without damping; see spring_stable_step() for the rest.
+ * small correction, without evaluating a force. Fourth order. An undamped spring loses about (w dt^2)^3/72 of its
+ * energy per step. Stable for dt sqrt(w) < 2 sqrt(2) without damping; see spring_stable_step() for the rest.
  *
  * @param[in,out] s   state
  * @param[in]     p   parameters, unchecked here
@@ -187,14 +187,15 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
 
 /* ------------------------------------------------------------------------------------------ questions to ask */
 
-/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the exact solution when damping is 0. Unchecked, like the kernels. */
+/** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the exact solution when damping is 0. Unchecked, like the
+   kernels. */
 SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 
 /**
  * The stable step of a method: for 0 < dt < this, no solution of the unloaded spring grows faster than the exact one.
  *
- * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the exact solution; no force at
- *         all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
+ * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the exact solution; no force
+ *         at all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
  * @par Source    the stability functions in src/euler.c, src/leapfrog.c, src/rk4.c
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The version of springstep, written here and nowhere else (meson.build reads it), and the mark of a public function. */
+/* The version of springstep, written here and nowhere else (meson.build reads it), and the mark of a public
+   function. */
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the formulas compute with: `real`, one number for a single spring or a vector of them, one a spring, for a batch.
+ * What the formulas compute with: `real`, one number for a single spring or a vector of them, one a spring, for a
+ * batch.
  *
  * The file that includes this decides: SPRING_FLOAT for float instead of double, SPRING_VECTOR for vectors of so many
  * bytes. Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector.
@@ -18,12 +19,12 @@
 #include <string.h>
 
 #if defined(__GNUC__)
-#define SPRING_INLINE static inline __attribute__((always_inline)) /* constant flags must vanish at -O1 too */
-#define SPRING_NOINLINE static __attribute__((noinline))           /* kept out of the code that runs */
+#define SPRING_INLINE              static inline __attribute__((always_inline)) /* constant flags vanish at -O1 too */
+#define SPRING_NOINLINE            static __attribute__((noinline))             /* kept out of the code that runs */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #else
-#define SPRING_INLINE static inline
-#define SPRING_NOINLINE static
+#define SPRING_INLINE              static inline
+#define SPRING_NOINLINE            static
 #define SPRING_UNLIKELY(condition) (condition)
 #endif
 

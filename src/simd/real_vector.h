@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* `real` as a vector of SPRING_VECTOR bytes; see real.h. */
 typedef scalar real __attribute__((vector_size(SPRING_VECTOR)));
-typedef scalar_bits mask
-    __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
+typedef scalar_bits mask __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
 
 SPRING_INLINE real splat(scalar s)
 {

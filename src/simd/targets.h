@@ -31,12 +31,12 @@
 #define SPRING_PRAGMA(text) _Pragma(#text)
 #if defined(__clang__)
 #define SPRING_TARGET_PRAGMA(set) SPRING_PRAGMA(clang attribute push(__attribute__((target(set))), apply_to = function))
-#define SPRING_TARGET_BEGIN SPRING_TARGET_PRAGMA(SPRING_TARGET)
-#define SPRING_TARGET_END _Pragma("clang attribute pop")
+#define SPRING_TARGET_BEGIN       SPRING_TARGET_PRAGMA(SPRING_TARGET)
+#define SPRING_TARGET_END         _Pragma("clang attribute pop")
 #else
 #define SPRING_TARGET_PRAGMA(set) _Pragma("GCC push_options") SPRING_PRAGMA(GCC target(set))
-#define SPRING_TARGET_BEGIN SPRING_TARGET_PRAGMA(SPRING_TARGET)
-#define SPRING_TARGET_END _Pragma("GCC pop_options")
+#define SPRING_TARGET_BEGIN       SPRING_TARGET_PRAGMA(SPRING_TARGET)
+#define SPRING_TARGET_END         _Pragma("GCC pop_options")
 #endif
 #endif
 

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Any bytes as a call of the library: it must come back, and keep its promises. With libFuzzer's driver or with replay.c.
+ * Any bytes as a call of the library: it must come back, and keep its promises. With libFuzzer's driver or with
+ * replay.c.
  *
- * The bytes are read as doubles, so the fuzzer reaches NaN, denormals and every sign; an input is at most sizeof(input) bytes.
+ * The bytes are read as doubles, so the fuzzer reaches NaN, denormals and every sign; an input is at most sizeof(input)
+ * bytes.
  */
 #include <float.h>
 #include <math.h>
@@ -70,19 +72,15 @@ static void check_advance(const input *in, spring_method m)
 static void check_questions(const input *in, spring_method m)
 {
     spring_state s = in->s;
-    const bool good =
-        spring_advance(&s, &in->p, SPRING_EXACT, 0, 0) == SPRING_OK; /* finite state, valid parameters */
-    const double limit = spring_stable_step(&in->p, m),
-                 settling = spring_settling_time(&in->s, &in->p, in->x_tol);
+    const bool good = spring_advance(&s, &in->p, SPRING_EXACT, 0, 0) == SPRING_OK; /* finite state, valid parameters */
+    const double limit = spring_stable_step(&in->p, m), settling = spring_settling_time(&in->s, &in->p, in->x_tol);
     const spring_method_info *info = spring_method_describe(m);
     const bool known = good && info != NULL && info->springs;
-    must(known ? limit >= 0 : isnan(limit) || !good,
-         "a stable step is a time, 0 or infinite; NaN for no method");
+    must(known ? limit >= 0 : isnan(limit) || !good, "a stable step is a time, 0 or infinite; NaN for no method");
     must(good || isnan(settling), "no settling time from bad input");
     must(!good || !(in->x_tol >= 0) || settling >= 0, "a settling time is a time, 0 or infinite");
     must(good || !spring_at_rest(&in->s, &in->p, in->x_tol, in->v_tol), "nothing is at rest from bad input");
-    const spring_params made[] = {spring_params_hertz(in->s.x, in->s.v),
-                                  spring_params_half_life(in->s.x, in->s.v)};
+    const spring_params made[] = {spring_params_hertz(in->s.x, in->s.v), spring_params_half_life(in->s.x, in->s.v)};
     for (int i = 0; i < 2; i++) {
         const bool refused = isnan(made[i].mass);
         s = (spring_state){0, 0};
@@ -102,8 +100,7 @@ static void check_clock(const input *in)
         isfinite(in->dt))
         must(clock.pending < in->dt, "less than a step waits");
     else
-        must(steps == 0 && memcmp(&clock, &in->clock, sizeof clock) == 0,
-             "bad input leaves the clock as it was");
+        must(steps == 0 && memcmp(&clock, &in->clock, sizeof clock) == 0, "bad input leaves the clock as it was");
 }
 
 enum { most_springs = 200, arrays = 5 };
@@ -127,8 +124,8 @@ static void check_batch(const input *in, spring_method m)
     const bool damped = in->features & 1, loaded = in->features & 2;
     fill(start, in);
     memcpy(now, start, sizeof now);
-    const spring_batch b = {
-        count, now[0], now[1], now[2], damped ? now[3] : NULL, loaded ? now[4] : NULL, in->shared % 16};
+    const spring_batch b = {count,          now[0], now[1], now[2], damped ? now[3] : NULL, loaded ? now[4] : NULL,
+                            in->shared % 16};
     const spring_status status = spring_batch_advance(&b, m, in->dt, n);
     bool refused = false, lost = false, same_state = memcmp(now, start, sizeof now) == 0;
     for (size_t i = 0; i < count; i++) {
@@ -163,14 +160,13 @@ static void check_float_batch(const input *in, spring_method m)
         }
     const float dt = fabs(in->dt) <= (double)FLT_MAX ? (float)in->dt : (float)NAN;
     const spring_batchf b = {count, whole[0], whole[1], whole[2], whole[3], whole[4], 0};
-    const spring_batchf left = {first, parts[0], parts[1], parts[2], parts[3], parts[4], 0},
-                        right = {count - first,
-                                 parts[0] + first,
-                                 parts[1] + first,
-                                 parts[2] + first,
-                                 parts[3] + first,
-                                 parts[4] + first,
-                                 0};
+    const spring_batchf left = {first, parts[0], parts[1], parts[2], parts[3], parts[4], 0}, right = {count - first,
+                                                                                                      parts[0] + first,
+                                                                                                      parts[1] + first,
+                                                                                                      parts[2] + first,
+                                                                                                      parts[3] + first,
+                                                                                                      parts[4] + first,
+                                                                                                      0};
     const spring_status status = spring_batchf_advance(&b, m, dt, n),
                         status_left = spring_batchf_advance(&left, m, dt, n),
                         status_right = spring_batchf_advance(&right, m, dt, n);
@@ -185,8 +181,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input in = {.p = {.mass = 1}};
     memcpy(&in, data, size < sizeof in ? size : sizeof in);
-    const spring_method m =
-        (spring_method)(in.method % (SPRING_METHOD_COUNT + 1)); /* negative ones as well */
+    const spring_method m = (spring_method)(in.method % (SPRING_METHOD_COUNT + 1)); /* negative ones as well */
     check_advance(&in, m);
     check_questions(&in, m);
     check_clock(&in);

@@ -68,8 +68,7 @@ static void check_real(const char *word)
     double value = NAN;
     char *end;
     const double other = strtod(word, &end);
-    const bool finite =
-        end != word && *end == '\0' && isfinite(other) && strchr(" \t\n\v\f\r", word[0]) == NULL;
+    const bool finite = end != word && *end == '\0' && isfinite(other) && strchr(" \t\n\v\f\r", word[0]) == NULL;
     if (parse_real(word, &value)) {
         must(finite, "more than a number", word);
         must(value == other, "the value is another one", word);
@@ -98,8 +97,7 @@ static void check_reals(const char *word)
     if (good && parts == 3)
         must(memcmp(values, numbers, sizeof values) == 0, "the values are others", word);
     else
-        must(values[0] == 1 && values[1] == 2 && values[2] == 3, "a list that is refused changes nothing",
-             word);
+        must(values[0] == 1 && values[1] == 2 && values[2] == 3, "a list that is refused changes nothing", word);
 }
 
 static void check_options(const char *word)
@@ -107,19 +105,17 @@ static void check_options(const char *word)
     for (const cli_option *o = options; o->name != NULL; o++) {
         if (o->kind == CLI_FLAG || !store(o, word))
             continue;
-        must(o->kind != CLI_COUNT || (whole >= o->least && whole <= o->most), "a count beyond its limits",
-             word);
+        must(o->kind != CLI_COUNT || (whole >= o->least && whole <= o->most), "a count beyond its limits", word);
         must(o->kind != CLI_NOT_NEGATIVE || number >= 0, "a negative number", word);
         must(o->kind != CLI_POSITIVE || number > 0, "not a positive number", word);
-        must(o->kind != CLI_METHOD || strcmp(word, spring_method_name((spring_method)choice)) == 0,
-             "another method", word);
+        must(o->kind != CLI_METHOD || strcmp(word, spring_method_name((spring_method)choice)) == 0, "another method",
+             word);
         must((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
     }
     const char *value;
     const cli_option *o = option_of(word, &value);
     must(o != NULL || word[0] != '-' || word[1] != 'o', "-o is always an option", word);
-    must(value == NULL || (value > word && value <= word + strlen(word)), "the value is part of the word",
-         word);
+    must(value == NULL || (value > word && value <= word + strlen(word)), "the value is part of the word", word);
     if (o != NULL && word[1] == '-')
         must(strncmp(word + 2, o->name, strlen(o->name)) == 0, "names are not abbreviated", word);
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Any bytes as a small scene and what is done to it, in double or (FUZZ_FLOAT) in float: a definition, good or bad, then
- * steps, changes and questions. Two scenes of the same definition, in memory that held different things, live the same
- * life, one in calls of n steps, one in n calls; guards lie around their blocks.
+ * Any bytes as a small scene and what is done to it, in double or (FUZZ_FLOAT) in float: a definition, good or bad,
+ * then steps, changes and questions. Two scenes of the same definition, in memory that held different things, live the
+ * same life, one in calls of n steps, one in n calls; guards lie around their blocks.
  *
- * Every choice is a byte, and so are most numbers, in sixteenths; in wild inputs some are extreme, and some any eight bytes.
+ * Every choice is a byte, and so are most numbers, in sixteenths; in wild inputs some are extreme, and some any eight
+ * bytes.
  */
 #include <float.h>
 #include <math.h>
@@ -53,9 +54,9 @@ static uint32_t choose(uint32_t count)
 
 static double number(void)
 {
-    static const double extreme[] = {
-        0.0,   -0.0,   INFINITY, -INFINITY, NAN,   DBL_MAX, -DBL_MAX, DBL_MIN, 5e-324, 1e300, 1e-300,
-        1e154, 1e-154, 1e38,     -1e38,     1e-38, FLT_MAX, -FLT_MAX, FLT_MIN, 1e-45,  1e19,  1e-19};
+    static const double extreme[] = {0.0,     -0.0,     INFINITY, -INFINITY, NAN,    DBL_MAX, -DBL_MAX, DBL_MIN,
+                                     5e-324,  1e300,    1e-300,   1e154,     1e-154, 1e38,    -1e38,    1e-38,
+                                     FLT_MAX, -FLT_MAX, FLT_MIN,  1e-45,     1e19,   1e-19};
     const uint32_t extremes = sizeof extreme / sizeof extreme[0], harmless = 228;
     const uint32_t byte = take();
     if (byte < harmless || !wild)
@@ -259,8 +260,7 @@ static place place_for(size_t bytes, uint8_t fill)
 static void check_guards(const place *p)
 {
     for (size_t i = 0; i < guard; i++)
-        must(p->all[i] == p->fill && p->all[guard + p->bytes + i] == p->fill,
-             "nothing outside the block changes");
+        must(p->all[i] == p->fill && p->all[guard + p->bytes + i] == p->fill, "nothing outside the block changes");
 }
 
 typedef struct state {
@@ -331,8 +331,7 @@ static void advance(life *l)
     look(l->one.s, l->d, &before);
     const spring_status status = spring_scene_advance(l->one.s, m, dt, n);
     look(l->one.s, l->d, &after);
-    must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED ||
-             status == SPRING_ENONFINITE,
+    must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED || status == SPRING_ENONFINITE,
          "no other status is documented");
     l->broken = l->broken && !finite(&before); /* what was set may be all that was lost */
     if (l->broken)
@@ -404,8 +403,7 @@ static void get(const life *l)
     static state whole;
     double out[4 * most_particles + 1];
     float outf[4 * most_particles + 1];
-    const size_t first = choose(90), count = choose(90), stride = choose(5),
-                 apart = stride == 0 ? l->axes : stride;
+    const size_t first = choose(90), count = choose(90), stride = choose(5), apart = stride == 0 ? l->axes : stride;
     const spring_quantity q = (spring_quantity)choose(3);
     for (size_t i = 0; i < sizeof out / sizeof out[0]; i++) {
         out[i] = 77;
@@ -423,8 +421,7 @@ static void get(const life *l)
         const bool written = status == SPRING_OK && i < count * apart && i % apart < l->axes;
         must(written || (out[i] == 77 && outf[i] == 77), "between the particles nothing is written");
         const double *all = q == SPRING_POSITION ? whole.x : whole.v;
-        must(!written || same_numbers(&out[i], &all[3 * (first + i / apart) + i % apart], 1),
-             "that very particle");
+        must(!written || same_numbers(&out[i], &all[3 * (first + i / apart) + i % apart], 1), "that very particle");
         if (written && fabs(out[i]) <= (double)FLT_MAX)
             must(outf[i] == (float)out[i], "in float the same");
     }
@@ -482,8 +479,7 @@ static void check_tensions(const life *l)
         }
         rate = length != 0 ? rate / length : l->axes == 1 ? y.v[3 * link->b] - y.v[3 * link->a] : 0;
         const double size = link->stiffness * reach + link->damping * speed;
-        const bool tiny =
-            l->axes > 1 && fabs(length) < 1e-6 * reach; /* then the direction of the rate is rounding */
+        const bool tiny = l->axes > 1 && fabs(length) < 1e-6 * reach; /* then the direction of the rate is rounding */
         const double want = link->stiffness * (length - link->rest) + link->damping * rate;
         must(!(size < most && size > least && reach * reach < most && !tiny) ||
                  fabs(y.tension[i] - want) <= part * size,
@@ -518,8 +514,7 @@ static void goes_on_alike(life *l, const place *p)
     look(l->other.s, l->d, &old);
     look(p->s, l->d, &made);
     must(status != SPRING_OK || l->d->def.force != NULL ||
-             (same_numbers(made.x, old.x, 3 * most_particles) &&
-              same_numbers(made.v, old.v, 3 * most_particles)),
+             (same_numbers(made.x, old.x, 3 * most_particles) && same_numbers(made.v, old.v, 3 * most_particles)),
          "and move alike");
     copy_over(l);
 }
@@ -598,10 +593,8 @@ static bool check_definition(const definition *d, size_t *bytes)
         must(*bytes > 0 && *bytes % SPRING_SCENE_ALIGN == 0, "a multiple of the alignment");
         return true;
     }
-    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
-         "no other status");
-    must(spring_scene_init(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL,
-         "no scene of a bad definition");
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED, "no other status");
+    must(spring_scene_init(tiny, SIZE_MAX, &d->def, &s) != SPRING_OK && s == NULL, "no scene of a bad definition");
     return false;
 }
 
@@ -616,11 +609,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
         return 0;
     life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
     l.axes = d.def.axes == 0 ? 3 : d.def.axes;
-    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM &&
-             l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
          "too small");
-    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN &&
-             l.one.s == NULL,
+    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
          "not aligned");
     check_guards(&l.one);
     must(spring_scene_init(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&

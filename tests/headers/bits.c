@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The bits of many springs after many steps, in hexadecimal (of batches a digest): the same from every compiler, flag and processor.
+ * The bits of many springs after many steps, in hexadecimal (of batches a digest): the same from every compiler, flag
+ * and processor.
  *
  * Only what the library computes with + - * / sqrt and fma is here; the exact solution is as reproducible as the C
  * library's exp, sin and cos. The expected output is bits.txt; it changes only with a "Results" line in CHANGELOG.md.
@@ -54,8 +55,7 @@ static const float to_denormalf = 0x1p-131f;
 
 enum { count = 141 }; /* springs: no multiple of any group, and more than the largest */
 
-static void print_batches(const char *name, spring_method m, bool damped, bool loaded, uint32_t shared,
-                          bool denormal)
+static void print_batches(const char *name, spring_method m, bool damped, bool loaded, uint32_t shared, bool denormal)
 {
     static double x[count], v[count], w[count], g[count], a[count];
     static float xf[count], vf[count], wf[count], gf[count], af[count];
@@ -63,9 +63,7 @@ static void print_batches(const char *name, spring_method m, bool damped, bool l
         xf[i] = (float)(x[i] = (i - 70) / 83.0);
         vf[i] = (float)(v[i] = (30 - i) / 59.0);
         wf[i] = (float)(w[i] = (i % 7 + 3) / 1.3);
-        gf[i] = (float)(g[i] = i % 5 == 0   ? 0
-                               : i % 5 == 1 ? 250
-                                            : (i % 11 + 1) / 19.0); /* some beyond the limits */
+        gf[i] = (float)(g[i] = i % 5 == 0 ? 0 : i % 5 == 1 ? 250 : (i % 11 + 1) / 19.0); /* some beyond the limits */
         af[i] = (float)(a[i] = (i % 13 - 6) / 1.7);
         if (denormal) {
             x[i] *= to_denormal, v[i] *= to_denormal, a[i] *= to_denormal;
@@ -126,34 +124,32 @@ static sheet make_sheet(uint32_t axes, bool jumbled)
     return s;
 }
 
-#define SCENE_BITS(type)                                                                  \
-    static uint64_t type##_bits(const sheet *given, spring_method m, double scale)        \
-    {                                                                                     \
-        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 16];                \
-        double position[3 * particles], out[2][3 * particles] = {{0}};                    \
-        for (size_t i = 0; i < 3 * particles; i++)                                        \
-            position[i] = given->position[i] * scale;                                     \
-        type##_def def = {.axes = given->axes,                                            \
-                          .methods = 1u << m,                                             \
-                          .particles = particles,                                         \
-                          .links = given->links,                                          \
-                          .position = position,                                           \
-                          .mass_all = 0.3,                                                \
-                          .pinned = given->pinned,                                        \
-                          .link = given->link,                                            \
-                          .drag = 0.07};                                                  \
-        for (int i = 0; i < 3; i++)                                                       \
-            def.gravity[i] = given->gravity[i] * scale;                                   \
-        type *s;                                                                          \
-        if (type##_init(memory, sizeof memory, &def, &s) != SPRING_OK ||                  \
-            type##_advance(s, m, 1e-3, 300) != SPRING_OK)                                 \
-            return 0;                                                                     \
-        type##_get(s, SPRING_POSITION, out[0], 0, 0, particles);                          \
-        type##_get(s, SPRING_VELOCITY, out[1], 0, 0, particles);                          \
-        const spring_scene_energies e = type##_energy(s);                                 \
-        const double more[] = {e.kinetic, e.elastic, e.gravity, type##_stable_step(s, m), \
-                               type##_tension(s, 5)};                                     \
-        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                 \
+#define SCENE_BITS(type)                                                                                               \
+    static uint64_t type##_bits(const sheet *given, spring_method m, double scale)                                     \
+    {                                                                                                                  \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 16];                                             \
+        double position[3 * particles], out[2][3 * particles] = {{0}};                                                 \
+        for (size_t i = 0; i < 3 * particles; i++)                                                                     \
+            position[i] = given->position[i] * scale;                                                                  \
+        type##_def def = {.axes = given->axes,                                                                         \
+                          .methods = 1u << m,                                                                          \
+                          .particles = particles,                                                                      \
+                          .links = given->links,                                                                       \
+                          .position = position,                                                                        \
+                          .mass_all = 0.3,                                                                             \
+                          .pinned = given->pinned,                                                                     \
+                          .link = given->link,                                                                         \
+                          .drag = 0.07};                                                                               \
+        for (int i = 0; i < 3; i++)                                                                                    \
+            def.gravity[i] = given->gravity[i] * scale;                                                                \
+        type *s;                                                                                                       \
+        if (type##_init(memory, sizeof memory, &def, &s) != SPRING_OK || type##_advance(s, m, 1e-3, 300) != SPRING_OK) \
+            return 0;                                                                                                  \
+        type##_get(s, SPRING_POSITION, out[0], 0, 0, particles);                                                       \
+        type##_get(s, SPRING_VELOCITY, out[1], 0, 0, particles);                                                       \
+        const spring_scene_energies e = type##_energy(s);                                                              \
+        const double more[] = {e.kinetic, e.elastic, e.gravity, type##_stable_step(s, m), type##_tension(s, 5)};       \
+        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                              \
     }
 
 SCENE_BITS(spring_scene)
@@ -161,8 +157,8 @@ SCENE_BITS(spring_scenef)
 
 static void print_scene(const char *name, const sheet *s, spring_method m, double scale, double scalef)
 {
-    printf("scene-%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", name, s->axes,
-           spring_method_name(m), spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
+    printf("scene-%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", name, s->axes, spring_method_name(m),
+           spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
 }
 
 static void print_scenes(spring_method m)
@@ -172,8 +168,7 @@ static void print_scenes(spring_method m)
             const sheet s = make_sheet(axes, jumbled);
             print_scene(jumbled ? "list" : "rows", &s, m, 1, 1);
         }
-    const sheet height_field =
-        make_sheet(1, false); /* is linear, so its motion is the same, but for rounding */
+    const sheet height_field = make_sheet(1, false); /* is linear, so its motion is the same, but for rounding */
     print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
 }
 

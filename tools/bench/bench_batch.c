@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, batches: every method over 10^3 to 10^7 springs, and what each feature costs, beside what the memory and
- * the arithmetic alone would take (bench_limits.h).
+ * spring-bench, batches: every method over 10^3 to 10^7 springs, and what each feature costs, beside what the memory
+ * and the arithmetic alone would take (bench_limits.h).
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,8 +38,7 @@ typedef struct subject {
 
 /* ------------------------------------------------------------------------------------------------------- the memory */
 
-static const double dt =
-    1e-4; /* [s]: over the minutes that a row lasts for a spring nothing overflows or dies out */
+static const double dt = 1e-4; /* [s]: over the minutes that a row lasts for a spring nothing overflows or dies out */
 
 /* Of an array, what it holds for the first springs; then it repeats. */
 enum { period = 1000 };
@@ -74,8 +73,7 @@ static void fill(const array *a, const subject *s, double scale)
     char *memory = a->memory;
     for (size_t i = 0; i < period; i++)
         set(memory, s->single, i, a->sharing == ZERO ? 0 : scale * a->mean * (1 + 0.1 * (double)(i % 7) / 7));
-    for (size_t i = period; i < s->count + alignment;
-         i += period) /* vectors may reach beyond the last spring */
+    for (size_t i = period; i < s->count + alignment; i += period) /* vectors may reach beyond the last spring */
         memcpy(memory + i * element, memory, period * element);
 }
 
@@ -162,8 +160,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
     const subject *s = row->subject;
     const bench_limits *limits = bench_limits_of(s->single);
     const double springs = (double)s->count * (double)s->steps / (double)limits->springs * (double)calls;
-    const uint64_t steps =
-        (uint64_t)springs + 1; /* of the arithmetic, for as many springs as the calls advance */
+    const uint64_t steps = (uint64_t)springs + 1; /* of the arithmetic, for as many springs as the calls advance */
     const bool as_it_is = which == 0;
     prepare(s, as_it_is && s->settled);
     const double begin = timing_busy();
@@ -204,8 +201,7 @@ static void add(const char *feature, subject s, double goal_ns)
                    limited ? "arithmetic" : NULL},
         .time = run,
     };
-    snprintf(row.kernel, sizeof row.kernel, "%s_batch_%d%s", spring_method_name(s.method), (int)s.steps,
-             feature);
+    snprintf(row.kernel, sizeof row.kernel, "%s_batch_%d%s", spring_method_name(s.method), (int)s.steps, feature);
     bench_add(&row, &s, sizeof s);
 }
 
@@ -214,8 +210,7 @@ static void add_counts(spring_method m, uint64_t steps, double goal_ns)
     const bool exact = m == SPRING_EXACT; /* of own stiffnesses: add_special() */
     for (int single = 0; single < 2; single++)
         for (size_t count = in_cache; count <= from_memory; count *= 10)
-            add(exact ? "_shared_omega2" : "",
-                (subject){m, count, steps, exact ? SHARED : OWN, .single = single},
+            add(exact ? "_shared_omega2" : "", (subject){m, count, steps, exact ? SHARED : OWN, .single = single},
                 goal_ns * (single ? 0.6 : 1));
 }
 
@@ -280,8 +275,7 @@ static void add_special(void)
         if (is_accurate(s.method))
             add("_settled", s, INFINITY);
     }
-    const subject settled = {SPRING_LEAPFROG,    in_cache,       16, OWN, .single = true,
-                             .beside = ORDINARY, .settled = true};
+    const subject settled = {SPRING_LEAPFROG, in_cache, 16, OWN, .single = true, .beside = ORDINARY, .settled = true};
     add("_settled", settled, INFINITY);
     const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .beside = ORDINARY, .unaligned = true};
     add("_unaligned", unaligned, INFINITY);

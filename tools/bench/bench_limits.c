@@ -26,8 +26,7 @@
 #endif
 
 /* Coefficients of a step and the state it starts from: of the size of real ones, and not known to the compiler. */
-static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.9999, -1.3e-5},
-                             start[] = {0.83, -0.59};
+static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.9999, -1.3e-5}, start[] = {0.83, -0.59};
 
 #define PASTE(name, precision, bytes)  name##_##precision##_##bytes
 #define PASTED(name, precision, bytes) PASTE(name, precision, bytes)

@@ -6,11 +6,12 @@
  * streams     reads x, v and the parameters that are there, one by one, and writes x and v as they were.
  * read        reads memory.
  * arithmetic  does the multiplications and additions of a step and nothing else: states and coefficients stay in
- *             registers, on as many independent vectors as run best. A method that has none here gets that of one kick and
- *             one drift, less than which no step does.
+ *             registers, on as many independent vectors as run best. A method that has none here gets that of one kick
+ *             and one drift, less than which no step does.
  * links       does what the force of a link takes: differences, length, quotient, both ends' sums; all in registers.
  *
- * Like the library's they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the processor has is used.
+ * Like the library's they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the processor has is
+ * used.
  */
 #ifndef SPRINGSTEP_BENCH_LIMITS_H
 #define SPRINGSTEP_BENCH_LIMITS_H
@@ -32,9 +33,9 @@ typedef struct bench_arithmetic {
 } bench_arithmetic;
 
 typedef struct bench_limits {
-    size_t springs; /* that the arithmetic is done for, at once */
+    size_t springs;                                                   /* that the arithmetic is done for, at once */
     void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by: there is w, g, a */
-    bench_arithmetic arithmetic[SPRING_METHOD_COUNT]; /* by method; NULL: as little as there can be */
+    bench_arithmetic arithmetic[SPRING_METHOD_COUNT];                 /* by method; NULL: as little as there can be */
     bench_arithmetic least;
     void (*read)(const void *memory, size_t bytes, uint64_t times); /* up to the next whole vector */
     size_t together;                                                /* links that are computed at once */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits in one vector and precision; see bench_limits.h. Included by bench_limits.c with SCALAR and BYTES set, and ROOT
-   where there is an instruction for it. */
+/* The limits in one vector and precision; see bench_limits.h. Included by bench_limits.c with SCALAR and BYTES set, and
+   ROOT where there is an instruction for it. */
 
 typedef SCALAR NAME(real) __attribute__((vector_size(BYTES)));
 typedef SCALAR NAME(unaligned) __attribute__((vector_size(BYTES), aligned(sizeof(SCALAR)), may_alias));
@@ -224,8 +224,7 @@ static const bench_limits NAME(limits) = {
     .springs = NAME(together) * BYTES / sizeof(SCALAR),
     .streams = {{{NAME(stream_000), NAME(stream_001)}, {NAME(stream_010), NAME(stream_011)}},
                 {{NAME(stream_100), NAME(stream_101)}, {NAME(stream_110), NAME(stream_111)}}},
-    .arithmetic =
-        {[SPRING_LEAPFROG] = RUNS(leapfrog), [SPRING_RK4] = RUNS(rk4), [SPRING_EXACT] = RUNS(exact)},
+    .arithmetic = {[SPRING_LEAPFROG] = RUNS(leapfrog), [SPRING_RK4] = RUNS(rk4), [SPRING_EXACT] = RUNS(exact)},
     .least = RUNS(kick_drift),
     .read = NAME(read),
     .together = BYTES / sizeof(SCALAR),

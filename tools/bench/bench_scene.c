@@ -3,7 +3,8 @@
  * spring-bench, scenes: sheets, blocks of jelly and water, in natural order and shuffled, beside the plain loop over a
  * list of links that anybody would write, and beside what memory and arithmetic alone would take (bench_limits.h).
  *
- * All of them have gravity and a pinned edge. The work of a scene is proportional to its links, so those are what counts.
+ * All of them have gravity and a pinned edge. The work of a scene is proportional to its links, so those are what
+ * counts.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,7 +40,8 @@ typedef struct subject {
     bool init;   /* is what is timed */
 } subject;
 
-/* ---------------------------------------------------------------------------------------------------- the definition */
+/* ---------------------------------------------------------------------------------------------------- the
+   definition */
 
 static struct {
     size_t particles, links;
@@ -259,7 +261,8 @@ static void blow(void *user, double t, size_t particles, const double *const pos
         z[i] += 0.02;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the plain loop */
+/* ---------------------------------------------------------------------------------------------------- the plain
+   loop */
 
 typedef struct particle {
     double x[3], v[3], force[3], inverse_mass;
@@ -320,15 +323,15 @@ static void advance_plain(uint64_t steps)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- the samples */
+/* ------------------------------------------------------------------------------------------------------- the
+   samples */
 
 /* Positions and velocities are read and written, forces read, and of each link what a scene keeps: of equal links in
    rows a byte, of listed ones two indices and two numbers. The memory is that of the definition, as far as it goes. */
 static void move_memory(const subject *s, uint64_t passes)
 {
     const bench_limits *limits = bench_limits_of(s->single);
-    const size_t scalar = s->single ? sizeof(float) : sizeof(double),
-                 values = axes_of(s->shape) * all.particles;
+    const size_t scalar = s->single ? sizeof(float) : sizeof(double), values = axes_of(s->shape) * all.particles;
     const size_t link_bytes = s->order == NATURAL ? 1 : 2 * sizeof(uint32_t) + 2 * scalar;
     static char *state;
     static size_t allocated;
@@ -386,7 +389,8 @@ static double run(const bench_row *row, int which, uint64_t calls)
     const subject *s = row->subject;
     const bench_limits *limits = bench_limits_of(s->single);
     prepare(row);
-    /* a step of the plain loop, or of a limit, takes as long as any other: in large scenes one stands for those of a call */
+    /* a step of the plain loop, or of a limit, takes as long as any other: in large scenes one stands for those of a
+       call */
     const uint64_t share = all.links > 300000 ? s->steps : 1, steps = s->steps / share * calls;
     const char *limit = which == 0 || which == bench_baseline ? "" : row->limits[which - 1];
     const spring_scene_def def = definition(&s->feature, s->shape);
@@ -441,8 +445,8 @@ static void add(const char *name, subject s, const char *beside, double goal_rat
     if (s.init)
         snprintf(row.kernel, sizeof row.kernel, "init_%s%s", shapes[s.shape], orders[s.order]);
     else
-        snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s.feature.method),
-                 shapes[s.shape], (int)s.steps, orders[s.order], name);
+        snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s.feature.method), shapes[s.shape],
+                 (int)s.steps, orders[s.order], name);
     bench_add(&row, &s, sizeof s);
 }
 
@@ -477,8 +481,7 @@ static void add_shapes(void)
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i++) {
         subject s = {scenes[i].shape, scenes[i].side, scenes[i].order, plainly, .steps = 1};
         add("", s, NULL, INFINITY, scenes[i].goal_ns);
-        if (s.order != NATURAL &&
-            s.side > 128) /* slow, and nothing of it stays in a cache from step to step */
+        if (s.order != NATURAL && s.side > 128) /* slow, and nothing of it stays in a cache from step to step */
             continue;
         s.steps = 16;
         add("", s, NULL, INFINITY, scenes[i].goal_ns);
@@ -505,8 +508,7 @@ static void add_features(void)
         {"_damping", {.method = SPRING_LEAPFROG, .damping = 0.05}},
         {"_masses", {.method = SPRING_LEAPFROG, .masses = true}},
         {"_callback", {.method = SPRING_LEAPFROG, .force = blow}},
-        {"_callback_still",
-         {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
+        {"_callback_still", {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
     };
@@ -518,8 +520,8 @@ static void add_features(void)
                     m == SPRING_RK4 ? most_rk4 : INFINITY, INFINITY);
         }
         for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
-            add(features[i].name, (subject){SHEET, side, NATURAL, features[i].feature, .steps = 16},
-                "leapfrog", INFINITY, INFINITY);
+            add(features[i].name, (subject){SHEET, side, NATURAL, features[i].feature, .steps = 16}, "leapfrog",
+                INFINITY, INFINITY);
     }
 }
 
@@ -527,8 +529,7 @@ static void add_init(void)
 {
     for (scene_order o = NATURAL; o <= SHUFFLED; o += SHUFFLED)
         for (uint32_t side = 35; side <= 1000; side += side == 35 ? 365 : 600)
-            add("", (subject){SHEET, side, o, plainly, .steps = 1, .init = true}, "definition", INFINITY,
-                most_init);
+            add("", (subject){SHEET, side, o, plainly, .steps = 1, .init = true}, "definition", INFINITY, most_init);
 }
 
 void bench_add_scenes(void)

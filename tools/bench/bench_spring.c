@@ -109,18 +109,14 @@ spring_state bench_textbook(spring_state s, double w, double g, double a, double
 
 static const char *limit_of(spring_method m)
 {
-    static const char *const names[SPRING_METHOD_COUNT] = {[SPRING_EULER] = "loop",
-                                                           [SPRING_LEAPFROG] = "loop",
-                                                           [SPRING_RK4] = "loop",
-                                                           [SPRING_EXACT] = "textbook"};
+    static const char *const names[SPRING_METHOD_COUNT] = {
+        [SPRING_EULER] = "loop", [SPRING_LEAPFROG] = "loop", [SPRING_RK4] = "loop", [SPRING_EXACT] = "textbook"};
     return names[m] != NULL ? names[m] : "kicks";
 }
 
-static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h,
-                              uint64_t n)
+static spring_state run_plain(spring_method method, spring_state s, const spring_params *p, double h, uint64_t n)
 {
-    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0,
-                     p->load != 0};
+    const model m = {p->stiffness / p->mass, p->damping / p->mass, p->load / p->mass, p->damping != 0, p->load != 0};
     const uint64_t forces = (uint64_t)spring_method_describe(method)->forces_per_step;
     switch (method) {
     case SPRING_EULER:
@@ -143,8 +139,8 @@ static spring_state run_plain(spring_method method, spring_state s, const spring
 
 typedef enum form { ADVANCE, CALL, ADVANCE_1 } form;
 
-static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p,
-                                double h, uint64_t n)
+static spring_state run_library(spring_method method, form f, spring_state s, const spring_params *p, double h,
+                                uint64_t n)
 {
     spring_step_fn *const step = spring_method_kernel(method);
     switch (f) {
@@ -202,8 +198,8 @@ static void add(const subject *r, const char *ending)
         .limits = {r->size != 1 ? "ordinary" : limit_of(r->method)},
         .time = run,
     };
-    snprintf(row.kernel, sizeof row.kernel, "%s%s%s%s%s", name, r->damped ? "_damped" : "",
-             r->loaded ? "_loaded" : "", r->size != 1 ? "_denormal" : "", ending);
+    snprintf(row.kernel, sizeof row.kernel, "%s%s%s%s%s", name, r->damped ? "_damped" : "", r->loaded ? "_loaded" : "",
+             r->size != 1 ? "_denormal" : "", ending);
     bench_add(&row, r, sizeof *r);
 }
 

@@ -19,13 +19,12 @@ struct bench_row {
     const char *part;
     char kernel[64];
     const char *precision;
-    uint64_t count, steps;      /* springs, or links; steps a call */
-    double goal_ratio, goal_ns; /* [1], [ns]; INFINITY: none */
-    double goal_speedup;        /* [1]; 0: none */
-    const char
-        *limits[bench_most_limits]; /* their names, NULL where there are fewer; the slowest one counts */
-    const char *baseline;           /* its name; NULL: none */
-    bool long_only;                 /* not with --quick */
+    uint64_t count, steps;                 /* springs, or links; steps a call */
+    double goal_ratio, goal_ns;            /* [1], [ns]; INFINITY: none */
+    double goal_speedup;                   /* [1]; 0: none */
+    const char *limits[bench_most_limits]; /* their names, NULL where there are fewer; the slowest one counts */
+    const char *baseline;                  /* its name; NULL: none */
+    bool long_only;                        /* not with --quick */
 
     /* Makes so many calls of the kernel (which = 0), of limit number which or of the baseline (bench_baseline), and
        returns the time they take [ns]. */

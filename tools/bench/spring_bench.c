@@ -2,10 +2,10 @@
 /*
  * spring-bench: what a step of a spring costs, beside a limit that is measured in the same run.
  *
- * Method    A sample is the time of a fixed number of calls. Samples of the library and of its limits alternate, so that
- *           what slows the machine down for a while slows all of them; each figure is the median of its samples. Of two
- *           limits the slower one counts: nothing can be faster than either. Processor time is what is measured: other
- *           processes take part of the caches and of the memory's time, but not of the clock's.
+ * Method    A sample is the time of a fixed number of calls. Samples of the library and of its limits alternate, so
+ *           that what slows the machine down for a while slows all of them; each figure is the median of its samples.
+ *           Of two limits the slower one counts: nothing can be faster than either. Processor time is what is measured:
+ *           other processes take part of the caches and of the memory's time, but not of the clock's.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,8 +16,7 @@
 #include "parts.h"
 #include "rows.h"
 
-static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double",
-                                                                                              "float", NULL};
+static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double", "float", NULL};
 static int only_part = -1, only_kernel = -1, only_precision = -1;
 static uint64_t only_count, calls;
 static bool quick;
@@ -29,8 +28,7 @@ static const cli_option options[] = {
      .help = "only the rows of this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
-    {"count", CLI_COUNT, .count = &only_count, .value = "N",
-     .help = "only rows of so many springs, or links"},
+    {"count", CLI_COUNT, .count = &only_count, .value = "N", .help = "only rows of so many springs, or links"},
     {"calls", CLI_COUNT, .count = &calls, .value = "N",
      .help = "only make so many calls, for tools that count instructions"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
@@ -42,42 +40,41 @@ static const double noisy_spread = 0.05; /* --help says it, too */
 static const cli_program program = {
     .name = "spring-bench",
     .summary = "What a step of a spring costs, beside a limit measured in the same run.",
-    .details =
-        "Columns: kernel, precision, count (springs; links of a scene), ns_per_spring_step, limit_ns,\n"
-        "ratio (of the two), spread, verdict, goal_ratio and goal_ns (what the library promises;\n"
-        "inf: nothing), limit (its name), baseline_ns (the plain loop of a scene; nan: none), speedup\n"
-        "(how much faster the library is), goal_speedup.\n\n"
-        "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
-        "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
-        "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
-        "Euler; kick, drift, kick; the four stages of rk4. \"kicks\", of other methods: one kick and\n"
-        "one drift for each force evaluation. \"textbook\": the formula of an underdamped spring, exp,\n"
-        "cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
-        "\"ordinary\", is leapfrog from an ordinary start.\n\n"
-        "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
-        "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
-        "1e-310 m (float: 1e-41); _unaligned: arrays that begin 8 bytes after a multiple of 64.\n"
-        "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
-        "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
-        "does the multiplications and additions of a step in registers, with coefficients that are\n"
-        "there: those of leapfrog, rk4 and the exact solution; of other methods those of one kick and\n"
-        "one drift, which no step can do without.\n"
-        "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
-        "parameters of the exact solution it is the textbook's formula; for settled and unaligned,\n"
-        "the same kernel without that.\n\n"
-        "Part scene: METHOD_SHAPE_N is spring_scene_advance() by N steps a call: a sheet or a block of\n"
-        "jelly with structural, shear and bend links, or water, a height field; with gravity and\n"
-        "pinned edges. _links_shuffled: links in random order; _shuffled: particles numbered at random,\n"
-        "too. Limits: \"streams\" reads and writes the state and reads forces and links; \"arithmetic\"\n"
-        "does that of the links, each once, in registers. Baseline: a loop over an array of links and\n"
-        "one of particles. float's limit is the same scene in double; that of a feature (_drag,\n"
-        "_damping, ...) or of another method is \"leapfrog\" without it. init_SHAPE is\n"
-        "spring_scene_init(), beside reading the links of its definition.\n\n"
-        "Figures are medians of samples, in processor time, that alternate with those of the\n"
-        "limit. spread is the distance between the quartiles over the median, the larger one of\n"
-        "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the row\n"
-        "proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
-        "judge.",
+    .details = "Columns: kernel, precision, count (springs; links of a scene), ns_per_spring_step, limit_ns,\n"
+               "ratio (of the two), spread, verdict, goal_ratio and goal_ns (what the library promises;\n"
+               "inf: nothing), limit (its name), baseline_ns (the plain loop of a scene; nan: none), speedup\n"
+               "(how much faster the library is), goal_speedup.\n\n"
+               "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
+               "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
+               "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
+               "Euler; kick, drift, kick; the four stages of rk4. \"kicks\", of other methods: one kick and\n"
+               "one drift for each force evaluation. \"textbook\": the formula of an underdamped spring, exp,\n"
+               "cos and sin. leapfrog_denormal starts from 1e-310 m; its limit,\n"
+               "\"ordinary\", is leapfrog from an ordinary start.\n\n"
+               "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
+               "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
+               "1e-310 m (float: 1e-41); _unaligned: arrays that begin 8 bytes after a multiple of 64.\n"
+               "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
+               "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
+               "does the multiplications and additions of a step in registers, with coefficients that are\n"
+               "there: those of leapfrog, rk4 and the exact solution; of other methods those of one kick and\n"
+               "one drift, which no step can do without.\n"
+               "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
+               "parameters of the exact solution it is the textbook's formula; for settled and unaligned,\n"
+               "the same kernel without that.\n\n"
+               "Part scene: METHOD_SHAPE_N is spring_scene_advance() by N steps a call: a sheet or a block of\n"
+               "jelly with structural, shear and bend links, or water, a height field; with gravity and\n"
+               "pinned edges. _links_shuffled: links in random order; _shuffled: particles numbered at random,\n"
+               "too. Limits: \"streams\" reads and writes the state and reads forces and links; \"arithmetic\"\n"
+               "does that of the links, each once, in registers. Baseline: a loop over an array of links and\n"
+               "one of particles. float's limit is the same scene in double; that of a feature (_drag,\n"
+               "_damping, ...) or of another method is \"leapfrog\" without it. init_SHAPE is\n"
+               "spring_scene_init(), beside reading the links of its definition.\n\n"
+               "Figures are medians of samples, in processor time, that alternate with those of the\n"
+               "limit. spread is the distance between the quartiles over the median, the larger one of\n"
+               "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the row\n"
+               "proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
+               "judge.",
     .options = options,
 };
 
@@ -125,8 +122,7 @@ static void measure(cli_table *table, const bench_row *r)
         n[k] = is_used[k] ? calls_for(r, k, sample_ns) : 0;
     size_t count = 0;
     const double begin = timing_now();
-    for (double spent = 0;
-         count < few || (count < least && spent < 5 * row_ns) || (count < most && spent < row_ns);
+    for (double spent = 0; count < few || (count < least && spent < 5 * row_ns) || (count < most && spent < row_ns);
          spent = timing_now() - begin) {
         for (int k = 0; k < timed; k++)
             if (is_used[k])
@@ -145,8 +141,8 @@ static void measure(cli_table *table, const bench_row *r)
     const double spread = fmax(fmax(ours.spread, limit.spread), baseline.spread);
     const bool noisy = !(spread <= noisy_spread);
     const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns && !(speedup < r->goal_speedup);
-    cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%.4g",
-            r->kernel, r->precision, r->count, ours.median, limit.median, ratio, spread,
+    cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%.4g", r->kernel,
+            r->precision, r->count, ours.median, limit.median, ratio, spread,
             noisy   ? "noisy"
             : holds ? "ok"
                     : "above_goal",
@@ -158,8 +154,7 @@ static void measure(cli_table *table, const bench_row *r)
 static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
-           (only_kernel < 0 || strcmp(bench_kernels[only_kernel], r->kernel) == 0) &&
-           !(quick && r->long_only) &&
+           (only_kernel < 0 || strcmp(bench_kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
            (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
@@ -172,10 +167,9 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_columns(
-        table,
-        "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
-        "baseline_ns speedup goal_speedup");
+    cli_columns(table,
+                "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
+                "baseline_ns speedup goal_speedup");
     size_t count;
     const bench_row *rows = bench_rows(&count);
     for (const bench_row *r = rows; r < rows + count; r++) {

@@ -134,8 +134,7 @@ static _Noreturn void fail_to_write(const cli_table *table)
 
 static _Noreturn void fail_as_taken(const cli_table *table)
 {
-    cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", table->option,
-             table->name);
+    cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", table->option, table->name);
 }
 
 static void close_stream(const cli_table *table)
@@ -150,8 +149,7 @@ static void open_temporary(cli_table *table)
 {
     char name[PATH_MAX];
     errno = ENAMETOOLONG;
-    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)started, (long)getpid()) <
-        PATH_MAX)
+    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)started, (long)getpid()) < PATH_MAX)
         table->stream = fopen(name, "wx");
     if (table->stream != NULL)
         strcpy(table->temporary, name);
@@ -383,8 +381,7 @@ void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_metho
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const spring_method_info *info = spring_method_describe(spring_method_at(i));
         if (offers(info) && length < size)
-            length +=
-                (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "", info->name);
+            length += (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "", info->name);
     }
 }
 
@@ -462,8 +459,7 @@ static bool store(const cli_option *o, const char *value)
     case CLI_FLAG:
         break;
     case CLI_COUNT:
-        return parse_count(value, o->count) && *o->count >= o->least &&
-               (o->most == 0 || *o->count <= o->most);
+        return parse_count(value, o->count) && *o->count >= o->least && (o->most == 0 || *o->count <= o->most);
     case CLI_REAL:
         return parse_real(value, o->real);
     case CLI_NOT_NEGATIVE:
@@ -499,8 +495,7 @@ static void print_options(const cli_option *options)
 {
     enum { column = 26 };
     for (const cli_option *o = options; o->name != NULL; o++) {
-        int width =
-            printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+        int width = printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
         if (o->kind == CLI_METHOD) {
             printf("%*s", column - width, "");
             print_methods(stdout, o);
@@ -524,14 +519,13 @@ static void print_usage(void)
     printf(" [OPTION]...\n%s\n\n", program->summary);
     print_options(program->options);
     print_options(common_options);
-    printf(
-        "\n%s\n\n"
-        "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an\n"
-        "option given several times the last one counts. The output is tab-separated values: lines that\n"
-        "start with \"#\" say how they were made, then come the names of the columns, then the rows.\n\n"
-        "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot read\n"
-        "or write.\n",
-        program->details);
+    printf("\n%s\n\n"
+           "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an\n"
+           "option given several times the last one counts. The output is tab-separated values: lines that\n"
+           "start with \"#\" say how they were made, then come the names of the columns, then the rows.\n\n"
+           "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot read\n"
+           "or write.\n",
+           program->details);
 }
 
 static const cli_option *option_of(const char *word, const char **value)
@@ -593,8 +587,7 @@ void cli_parse(const cli_program *p, int argc, char **argv)
             cli_fail(CLI_USAGE, "\"%s\" is not an option; see %s --help", argv[i], program->name);
         if (o->kind == CLI_FLAG) {
             if (value != NULL)
-                cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name,
-                         value);
+                cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name, value);
             *o->flag = true;
             print_and_exit_if_wanted();
         } else {

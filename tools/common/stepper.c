@@ -43,8 +43,7 @@ static spring_status advance_by_stages(spring_state *s, const spring_params *p, 
     return SPRING_OK;
 }
 
-spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt,
-                              uint64_t n)
+spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt, uint64_t n)
 {
     if (m->arithmetic == STAGES)
         return advance_by_stages(s, p, dt, n);

@@ -27,7 +27,6 @@ void stepper_check(const stepper *m);
 void stepper_comment(const stepper *m, cli_table *table);
 
 /** spring_advance() in the chosen arithmetic. */
-spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt,
-                              uint64_t n);
+spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt, uint64_t n);
 
 #endif

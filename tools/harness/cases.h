@@ -24,18 +24,18 @@ struct validation_case {
     const char *name;
     const char *purpose; /* what it is there to break */
 
-    /* the spring, by undamped frequency and damping ratio; omega 0: no stiffness, damping_ratio is damping/mass [1/s] */
+    /* the spring, by undamped frequency and damping ratio; omega 0: no stiffness, damping_ratio is damping/mass
+       [1/s] */
     double mass, omega, damping_ratio; /* [kg], [1/s], [] */
-    double rest;   /* [m] where the load would hold it; without stiffness: load/mass [m/s^2] */
-    double x0, v0; /* [m], [m/s]; v0 in units of omega where omega > 0 */
+    double rest;                       /* [m] where the load would hold it; without stiffness: load/mass [m/s^2] */
+    double x0, v0;                     /* [m], [m/s]; v0 in units of omega where omega > 0 */
 
     /* the step: of fixed length, or a fraction of each method's own stable step (0.01/omega where that is 0) */
     double dt;              /* [s] */
     double stable_fraction; /* [] */
     uint64_t n;
 
-    bool
-        stable_only; /* not with methods that are not stable at this step; of a fraction: that have no stable step */
+    bool stable_only; /* not with methods that are not stable at this step; of a fraction: that have no stable step */
     bool external;    /* compare with GSL and SUNDIALS as well */
     double tolerance; /* of their adaptive solvers, relative to the start; 0: the finest to be trusted */
     bool slow;        /* more than a second: not in the quick catalogue */

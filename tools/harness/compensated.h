@@ -24,7 +24,6 @@ typedef struct compensated_state {
 bool compensated_knows(spring_method m);
 
 /** n steps of all springs, with the library's formulas for SPRING_LEAPFROG or SPRING_RK4; no damping, no load. */
-void compensated_advance(compensated_state *s, const spring_params *p, spring_method m, double dt,
-                         uint64_t n);
+void compensated_advance(compensated_state *s, const spring_params *p, spring_method m, double dt, uint64_t n);
 
 #endif

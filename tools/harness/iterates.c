@@ -2,8 +2,8 @@
 /*
  * The methods a second time; see iterates.h.
  *
- * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler, RK4);
- *           Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
+ * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler,
+ *           RK4); Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  *           (symplectic Euler, leapfrog)
  */
 #include "harness/iterates.h"
@@ -102,7 +102,8 @@ static void last_kick(const iterate_scene *s, double h, const double *a, const d
         v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * s->drag[i]);
 }
 
-/* Forces that depend on velocities see one that is predicted by a first last kick; to the others it makes no difference. */
+/* Forces that depend on velocities see one that is predicted by a first last kick; to the others it makes no
+   difference. */
 static void leapfrog_scene(const iterate_scene *s, double t, double h, double *x, double *v)
 {
     double *a = s->room, *predicted = s->room + s->count;

@@ -22,8 +22,7 @@ typedef struct iterate_rates {
 /* A scene in doubles: `count` coordinates with x'' = acceleration(t, x, v) - drag v. */
 typedef struct iterate_scene {
     size_t count;
-    void (*acceleration)(const void *data, double t, const double *x, const double *v,
-                         double *a); /* 0 where pinned */
+    void (*acceleration)(const void *data, double t, const double *x, const double *v, double *a); /* 0 where pinned */
     const void *data;
     const double *drag; /* [count] drag/mass [1/s], 0 where pinned */
     double *room;       /* [iterate_room(count)] for what a step has to keep */
@@ -33,8 +32,8 @@ typedef struct iterate {
     /* One step of h. Temporaries have the precision of x. */
     void (*spring)(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h);
 
-    /* One step from t to t + h. What is pinned moves on with its velocity. The acceleration that is evaluated last is at
-       the end of the step, or at the last stage. */
+    /* One step from t to t + h. What is pinned moves on with its velocity. The acceleration that is evaluated last is
+       at the end of the step, or at the last stage. */
     void (*scene)(const iterate_scene *s, double t, double h, double *x, double *v);
     size_t vectors; /* [count] each, of room */
 } iterate;

@@ -2,7 +2,8 @@
 /*
  * External solvers behind one small interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE.
  *
- * Each takes the state y at t = 0 to its end in place. NULL means done; anything else is a message, and y is unspecified.
+ * Each takes the state y at t = 0 to its end in place. NULL means done; anything else is a message, and y is
+ * unspecified.
  */
 #ifndef HARNESS_ODE_H
 #define HARNESS_ODE_H
@@ -54,7 +55,8 @@ const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance);
 /* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
 
-/* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of steps. */
+/* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of
+   steps. */
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);
 
 /* The same as ERKStep, before SUNDIALS 6.7.0 only, for the test that knows its error: it treats the table as

@@ -49,8 +49,7 @@ const char *ode_gsl_rk8pd_fixed(ode *o, double *y, double h, uint64_t n)
     return fixed_steps(gsl_odeiv2_step_rk8pd, o, y, h, n);
 }
 
-static const char *adaptive(const gsl_odeiv2_step_type *type, ode *o, double *y, double duration,
-                            double tolerance)
+static const char *adaptive(const gsl_odeiv2_step_type *type, ode *o, double *y, double duration, double tolerance)
 {
     gsl_odeiv2_system system = {gsl_derivative, NULL, o->size, o};
     double t = 0;

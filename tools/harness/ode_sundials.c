@@ -197,8 +197,7 @@ const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tole
         if (s.memory == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
             ARKodeSetOrder(s.memory, 4) != ARK_SUCCESS ||
             ARKodeSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
-            ARKodeSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS ||
-            ARKodeSetStopTime(s.memory, duration) != ARK_SUCCESS)
+            ARKodeSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS || ARKodeSetStopTime(s.memory, duration) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
     ode_start_clock(o);
@@ -223,8 +222,7 @@ const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
     if (message == NULL) {
         s.memory = ERKStepCreate(derivative, 0, s.y, s.context);
         if (s.memory == NULL || ERKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ERKStepSetTable(s.memory, table) != ARK_SUCCESS ||
-            ERKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
+            ERKStepSetTable(s.memory, table) != ARK_SUCCESS || ERKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ERKStep: cannot start";
     }
     for (uint64_t i = 0; i < n && message == NULL; i++)

@@ -16,8 +16,7 @@ static const mpfr_rnd_t nearest = MPFR_RNDN;
 
 void reference_init(reference *r)
 {
-    mpfr_set_emin(
-        mpfr_get_emin_min()); /* exp(b t) of a heavily damped spring after a long time is beyond 2^(2^30) */
+    mpfr_set_emin(mpfr_get_emin_min()); /* exp(b t) of a heavily damped spring after a long time is beyond 2^(2^30) */
     mpfr_set_emax(mpfr_get_emax_max());
     mpfr_inits2(precision, r->x, r->v, r->omega, r->size, (mpfr_ptr)NULL);
 }
@@ -133,8 +132,8 @@ void reference_start(reference *ref, const spring_params *p, spring_state start)
 
 /* ------------------------------------------------------------------------------------------- the exact solution */
 
-/* The solution over t as a map: eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for the
-   cancellation that the library avoids. */
+/* The solution over t as a map: eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for
+   the cancellation that the library avoids. */
 static void solution_map(affine *f, const spring_params *p, double t)
 {
     mpfr_t w, b, r, C, S, E, H, P, a;
@@ -493,8 +492,7 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     }
     for (uint64_t j = 0; j < n; j++) {
         const spring_state miss = plane_apply(&defect, b->exact);
-        b->steps[b->step_count++] =
-            (added){local * (hypot(b->y.x, b->y.v) + loaded) + smallest, hypot(miss.x, miss.v)};
+        b->steps[b->step_count++] = (added){local * (hypot(b->y.x, b->y.v) + loaded) + smallest, hypot(miss.x, miss.v)};
         b->y = plane_apply(&M, b->y);
         b->exact = plane_apply(&exact, b->exact);
     }
@@ -552,8 +550,7 @@ double reference_stable_step(const spring_params *p, spring_method m)
     mpfr_inits2(precision, low, high, middle, (mpfr_ptr)NULL);
     set_omega(high, p);
     mpfr_ui_div(high, 1, high, nearest);
-    mpfr_mul_2si(high, high, -120,
-                 nearest); /* a step so small that only a method that is never stable fails */
+    mpfr_mul_2si(high, high, -120, nearest); /* a step so small that only a method that is never stable fails */
     mpfr_set_zero(low, 1);
     while (stable(p, m, high)) {
         mpfr_set(low, high, nearest);

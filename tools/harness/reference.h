@@ -29,9 +29,9 @@ void reference_start(reference *r, const spring_params *p, spring_state start);
 /* The exact solution, t later. */
 void reference_exact(reference *r, const spring_params *p, double t);
 
-/* n steps of a method in exact arithmetic, from w = k/m, g = c/m, a = f/m each rounded to a double, as the library works
-   from those. The step of iterates.h is applied to a basis, and the resulting affine map is raised to the power n by
-   repeated squaring. */
+/* n steps of a method in exact arithmetic, from w = k/m, g = c/m, a = f/m each rounded to a double, as the library
+   works from those. The step of iterates.h is applied to a basis, and the resulting affine map is raised to the power n
+   by repeated squaring. */
 void reference_iterate(reference *r, const spring_params *p, spring_method m, double dt, uint64_t n);
 
 /* n steps of x'' = -omega^2 x, likewise. */
@@ -68,14 +68,13 @@ double reference_energy_error(const reference *r, spring_state got);
  *     truncation  between reference_iterate() and reference_exact(). A step adds |one step of the method - the exact
  *                 solution| from the exact y, the difference formed in multiple precision
  *
- * What a step adds, the steps that follow carry on: at most by the norm of the product of their matrices. The bounds are
- * the sums over all steps (Lady Windermere's fan), walked through in double precision. More than 10^6 equal steps are
- * not walked, and must be all there is, without damping and load: then by reference_turn_norm(). */
+ * What a step adds, the steps that follow carry on: at most by the norm of the product of their matrices. The bounds
+ * are the sums over all steps (Lady Windermere's fan), walked through in double precision. More than 10^6 equal steps
+ * are not walked, and must be all there is, without damping and load: then by reference_turn_norm(). */
 typedef struct reference_bounds reference_bounds;
 
 reference_bounds *reference_bounds_new(const spring_params *p, spring_state start); /* exits without memory */
-void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_method m, double dt,
-                          uint64_t n);
+void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_method m, double dt, uint64_t n);
 void reference_bounds_end(reference_bounds *b, double *rounding, double *truncation); /* and frees b */
 
 /* The stable step of a method from its definition, by bisection on the eigenvalues of one step's matrix formed from the

@@ -77,8 +77,7 @@ static void build_pendulum(const scene_case *c, scene_problem *p) /* x'' = -sin 
     p->def.force = gravity_on_a_circle;
 }
 
-static void cubic_driven(void *user, double t, size_t particles, state_arrays x, state_arrays v,
-                         force_arrays force)
+static void cubic_driven(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     cubic(user, t, particles, x, v, force);
     force[0][0] += mass * 7.5 * cos(t);
@@ -93,8 +92,7 @@ static void build_chaotic(const scene_case *c, scene_problem *p) /* x'' = -0.05 
     p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
-static void van_der_pol(void *user, double t, size_t particles, state_arrays x, state_arrays v,
-                        force_arrays force)
+static void van_der_pol(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     const double *mu = user;
     (void)t, (void)particles;
@@ -109,8 +107,7 @@ static void build_van_der_pol(const scene_case *c, scene_problem *p) /* x'' = mu
     p->def.user = &mu[c->count > 1];
 }
 
-static void resonant(void *user, double t, size_t particles, state_arrays x, state_arrays v,
-                     force_arrays force)
+static void resonant(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)particles, (void)x, (void)v;
     force[0][0] += mass * 0.7 * cos(t);
@@ -132,9 +129,9 @@ static void solve_resonance(const scene_case *c, const scene_problem *p, double 
     y[1] = 0.35 * (sin(t) + t * cos(t));
 }
 
-/* Two angles from the vertical, unit rods, equal masses: the mass matrix depends on the angles, the forces on velocities. */
-static void double_pendulum(void *user, double t, size_t particles, state_arrays x, state_arrays v,
-                            force_arrays force)
+/* Two angles from the vertical, unit rods, equal masses: the mass matrix depends on the angles, the forces on
+   velocities. */
+static void double_pendulum(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)particles;
     const double g = 9.81, one = x[0][0], two = x[0][1], w1 = v[0][0] * v[0][0], w2 = v[0][1] * v[0][1];
@@ -153,8 +150,7 @@ static void build_double_pendulum(const scene_case *c, scene_problem *p)
 
 /* The potential (q_2i+1 - q_2i)^4 between pairs and to the walls: Fermi, Pasta, Ulam as in Hairer, Lubich, Wanner,
    Geometric Numerical Integration (2006), section I.5.1. */
-static void soft_quartic(void *user, double t, size_t particles, state_arrays x, state_arrays v,
-                         force_arrays force)
+static void soft_quartic(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)v;
     for (size_t i = 0; i <= particles; i += 2) {
@@ -232,8 +228,8 @@ static void build_stiffness_ratio(const scene_case *c, scene_problem *p)
         p->link[i].stiffness = i % 2 == 0 ? 2.7e6 : 2.7;
 }
 
-/* Five rows of links (equal ones, some of them turned round; with a gap; of different rest length, stiffness, damping) and
-   two links that lie in no row; in the plane it falls freely. */
+/* Five rows of links (equal ones, some of them turned round; with a gap; of different rest length, stiffness, damping)
+   and two links that lie in no row; in the plane it falls freely. */
 static void build_patchwork(const scene_case *c, scene_problem *p)
 {
     const uint32_t axes = (uint32_t)c->count, particles = 14, gap = 6;
@@ -301,8 +297,8 @@ static void build_water(const scene_case *c, scene_problem *p)
                            .spacing = 0.2,
                            .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
                            .stiffness = 25,
-                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
-                                     SPRING_GRID_LAST_Y};
+                           .pinned =
+                               SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
     (void)c;
     make_grid(p, &g);
     for (size_t i = 0; i < p->def.particles; i++)
@@ -315,8 +311,8 @@ static void build_water(const scene_case *c, scene_problem *p)
 
 /* A sheet of 4 m in one of its modes, at rest, N particles along an edge; the name says which: ...-mode-P-Q-KIND-N.
    Water has structural links alone, or links of all families, or those mirrored at the edges, or it is a sheet in space
-   under tension. All families as spring_grid_fill() makes them have no simple modes: a particle next to the edge lacks the
-   bend link to its mirror image, which has the opposite height. A link twice as stiff to the edge does the same. */
+   under tension. All families as spring_grid_fill() makes them have no simple modes: a particle next to the edge lacks
+   the bend link to its mirror image, which has the opposite height. A link twice as stiff to the edge does the same. */
 static void build_mode(const scene_case *c, scene_problem *p)
 {
     unsigned P = 0, Q = 0, N = 0;
@@ -325,16 +321,15 @@ static void build_mode(const scene_case *c, scene_problem *p)
         exit(EXIT_FAILURE);
     const bool tension = strcmp(kind, "tension") == 0, mirrored = strcmp(kind, "mirrored") == 0,
                all = mirrored || strcmp(kind, "all") == 0;
-    const spring_grid g = {.count = {N, N},
-                           .axes = tension ? 3 : 1,
-                           .height = !tension,
-                           .spacing = 4.0 / (N - 1),
-                           .stretch = tension ? 1.25 : 0,
-                           .families = all ? SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND
-                                           : SPRING_GRID_STRUCTURAL,
-                           .stiffness = 25000,
-                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
-                                     SPRING_GRID_LAST_Y};
+    const spring_grid g = {
+        .count = {N, N},
+        .axes = tension ? 3 : 1,
+        .height = !tension,
+        .spacing = 4.0 / (N - 1),
+        .stretch = tension ? 1.25 : 0,
+        .families = all ? SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND : SPRING_GRID_STRUCTURAL,
+        .stiffness = 25000,
+        .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
     size_t particles, links;
     if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
         exit(EXIT_FAILURE);
@@ -342,8 +337,7 @@ static void build_mode(const scene_case *c, scene_problem *p)
     spring_grid_fill(&g, p->position, p->pinned, p->link);
     for (uint32_t i = 1; mirrored && i + 1 < N; i++) {
         const uint32_t row = i * N, last = N * N - N,
-                       twice[][2] = {
-                           {row, row + 1}, {row + N - 2, row + N - 1}, {i, N + i}, {last - N + i, last + i}};
+                       twice[][2] = {{row, row + 1}, {row + N - 2, row + N - 1}, {i, N + i}, {last - N + i, last + i}};
         for (int side = 0; side < 4; side++)
             p->link[links++] = (spring_link){twice[side][0], twice[side][1], 0, 2 * g.stiffness, 0};
     }
@@ -376,8 +370,8 @@ static void build_chain(const scene_case *c, scene_problem *p)
 }
 
 /* omega_j = 2 sqrt(k/m) sin(j pi/(2 (n + 1))), shape sin(i j pi/(n + 1)). */
-static void chain_modes(const scene_case *c, const scene_problem *p, spring_method m, double h,
-                        uint64_t steps, double *y)
+static void chain_modes(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t steps,
+                        double *y)
 {
     const size_t n = c->count, period = 2 * (n + 1);
     const long double quarter = 2 * atanl(1), highest = 2 * sqrtl((long double)chain_stiffness / mass);
@@ -432,8 +426,8 @@ static void build_damped_pair(const scene_case *c, scene_problem *p)
 }
 
 /* Both from the extension of the link and its rate, and the centre of mass. */
-static void place_pair(const scene_case *c, const scene_problem *p, long double t, long double x,
-                       long double v, double *y)
+static void place_pair(const scene_case *c, const scene_problem *p, long double t, long double x, long double v,
+                       double *y)
 {
     const size_t axes = c->count;
     const long double share = pair_mass[1] / ((long double)pair_mass[0] + pair_mass[1]);
@@ -449,8 +443,7 @@ static void place_pair(const scene_case *c, const scene_problem *p, long double 
     }
 }
 
-static void iterate_pair(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
-                         double *y)
+static void iterate_pair(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n, double *y)
 {
     const long double inverse = 1 / (long double)pair_mass[0] + 1 / (long double)pair_mass[1];
     long double x = (long double)pair_length - pair_rest, v = pair_rate;
@@ -460,8 +453,7 @@ static void iterate_pair(const scene_case *c, const scene_problem *p, spring_met
 
 static void solve_damped_pair(const scene_case *c, const scene_problem *p, double *y)
 {
-    const spring_params reduced = {1 / (1 / pair_mass[0] + 1 / pair_mass[1]), pair_stiffness,
-                                   p->link[0].damping, 0};
+    const spring_params reduced = {1 / (1 / pair_mass[0] + 1 / pair_mass[1]), pair_stiffness, p->link[0].damping, 0};
     reference exact;
     reference_init(&exact);
     reference_start(&exact, &reduced, (spring_state){pair_length - pair_rest, pair_rate});
@@ -473,39 +465,38 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 /* ------------------------------------------------------------------------------------------------ the catalogue */
 
 #define STEPS(first, second, fourth) .steps = {first, second, fourth} /* order */
-#define CHAIN(n, first, last)                                                           \
-    .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .formula = "modes", \
-    .iterate = chain_modes, .slowest = first, .fastest = last
+#define CHAIN(n, first, last)                                                                                   \
+    .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .formula = "modes", .iterate = chain_modes, \
+    .slowest = first, .fastest = last
 #define PAIR(axes)                                                                             \
     .build = build_pair, .count = axes, .omega = 2.97, .length = 1, .formula = "reduced-mass", \
     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972
 #define LONG  .duration = 16, STEPS(1024, 512, 512)
 #define BRIEF .duration = 0.125, STEPS(4, 4, 4)
-/* A mode for some eighths of a second, by methods of order 2 or more. RK4 takes about half its stable step, 2.61/sqrt(8 k/m) with structural links, with all
-   families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step alone makes the frequency of mode (3, 1) at
-   15 x 15 wrong by z^2/24, more than half a percent. .length and .omega follow from the mode. */
-#define MODE(name, purpose, eighths, second, fourth, takes_long)                         \
-    {                                                                                    \
-        name, purpose, build_mode, .duration = (eighths) / 8.0,                          \
-                                   STEPS(0, (eighths) * (second), (eighths) * (fourth)), \
-                                   .formula = "dispersion", .slow = (takes_long)         \
+/* A mode for some eighths of a second, by methods of order 2 or more. RK4 takes about half its stable step, 2.61/sqrt(8
+   k/m) with structural links, with all families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step
+   alone makes the frequency of mode (3, 1) at 15 x 15 wrong by z^2/24, more than half a percent. .length and .omega
+   follow from the mode. */
+#define MODE(name, purpose, eighths, second, fourth, takes_long)                                                      \
+    {                                                                                                                 \
+        name, purpose, build_mode, .duration = (eighths) / 8.0, STEPS(0, (eighths) * (second), (eighths) * (fourth)), \
+                                   .formula = "dispersion", .slow = (takes_long)                                      \
     }
-#define WAVE(mode, N, eighths, takes_long)                                                                 \
-    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, \
-         takes_long),                                                                                      \
-        MODE("water-mode-" mode "-mirrored-" N,                                                            \
-             "the same with all families of links, mirrored at the edges", (eighths) / 2, 121, 75,         \
-             takes_long),                                                                                  \
-        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges",        \
-             (eighths) / 2, 121, 75, takes_long)
+#define WAVE(mode, N, eighths, takes_long)                                                                         \
+    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43,         \
+         takes_long),                                                                                              \
+        MODE("water-mode-" mode "-mirrored-" N, "the same with all families of links, mirrored at the edges",      \
+             (eighths) / 2, 121, 75, takes_long),                                                                  \
+        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges", (eighths) / 2, \
+             121, 75, takes_long)
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
-    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32), .omega = 1,
-     .length = 1, .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .external = true},
+    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32), .omega = 1, .length = 1,
+     .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .external = true},
     {"duffing-period", "the same for one period, back to the start", build_duffing,
-     .duration = 4.768022029102460806304518, STEPS(4096, 512, 128), .omega = 1, .length = 1, .callback = 1,
-     .known = 2, .digits = {1, 0}},
+     .duration = 4.768022029102460806304518, STEPS(4096, 512, 128), .omega = 1, .length = 1, .callback = 1, .known = 2,
+     .digits = {1, 0}},
     {"pendulum", "a pendulum that starts next to its highest point", build_pendulum, .duration = 10,
      STEPS(10240, 1280, 160), .omega = 1, .length = 3, .callback = 1, .known = 1,
      .digits = {-2.650674563598209613232602}, .external = true},
@@ -513,23 +504,23 @@ const scene_case scene_cases[] = {
      .duration = 16.15553937239337476376028, STEPS(16384, 2048, 256), .omega = 1, .length = 3, .callback = 1,
      .known = 2, .digits = {3, 0}},
     {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280),
-     .omega = 1, .length = 4, .callback = 100, .known = 2,
-     .digits = {-0.92175345784461174225, 5.2692478469465402339}, .external = true},
-    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200), .omega = 1,
-     .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
-     .external = true, .slow = true},
+     .omega = 1, .length = 4, .callback = 100, .known = 2, .digits = {-0.92175345784461174225, 5.2692478469465402339},
+     .external = true},
+    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200), .omega = 1, .length = 4,
+     .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797}, .external = true,
+     .slow = true},
     {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
      .duration = 20, STEPS(81920, 10240, 1280), .omega = 1, .length = 2, .callback = 17, .known = 2,
      .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
-    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
-     STEPS(327680, 40960, 2560), .omega = 1, .length = 2, .callback = 205, .known = 2,
-     .digits = {-1.6012968795428539088, 0.19832667633866208454}, .external = true, .slow = true},
+    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20, STEPS(327680, 40960, 2560),
+     .omega = 1, .length = 2, .callback = 205, .known = 2, .digits = {-1.6012968795428539088, 0.19832667633866208454},
+     .external = true, .slow = true},
     {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
      STEPS(16384, 2048, 512), .omega = 50, .length = 1, .callback = 12, .known = 2,
      .digits = {0.51767820806882268094, 0.53980860868328140544}, .external = true},
-    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 81920, 2560),
-     .omega = 50, .length = 1, .callback = 12, .known = 2,
-     .digits = {0.75633242161029198993, 0.71735962155453710255}, .external = true, .slow = true},
+    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 81920, 2560), .omega = 50,
+     .length = 1, .callback = 12, .known = 2, .digits = {0.75633242161029198993, 0.71735962155453710255},
+     .external = true, .slow = true},
     {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
      STEPS(81920, 10240, 640), .omega = 3, .length = 1, .callback = 256, .known = 2,
      .digits = {-0.62718670506653073014, -1.3013155502098116779}, .external = true},
@@ -537,35 +528,35 @@ const scene_case scene_cases[] = {
      STEPS(20480, 2560, 640), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
      .solution = solve_resonance, .external = true},
     /* links */
-    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8,
-     STEPS(65536, 4096, 1024), .omega = 6, .length = 1, .external = true},
-    {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
-     STEPS(0, 4096, 1024), .omega = 6325, .length = 0.1, .external = true, .slow = true},
-    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
-     STEPS(0, 4096, 1024), .omega = 2038, .length = 0.5, .external = true, .slow = true},
+    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024),
+     .omega = 6, .length = 1, .external = true},
+    {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32, STEPS(0, 4096, 1024),
+     .omega = 6325, .length = 0.1, .external = true, .slow = true},
+    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16, STEPS(0, 4096, 1024),
+     .omega = 2038, .length = 0.5, .external = true, .slow = true},
     {"patchwork", "rows of links of which none is like the next, on a line", build_patchwork, .count = 1,
      .duration = 0.5, STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
     {"patchwork-2d", "the same in the plane, falling", build_patchwork, .count = 2, .duration = 0.5,
      STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
-    {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128),
-     .omega = 100, .length = 0.2, .external = true, .slow = true},
-    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21,
-     .length = 0.1, .external = true, .slow = true},
+    {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128), .omega = 100,
+     .length = 0.2, .external = true, .slow = true},
+    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21, .length = 0.1,
+     .external = true, .slow = true},
     /* linear chains, with fixed ends */
     {"chain-1", "one mass between walls", CHAIN(1, 2.038, 2.039), LONG},
     {"chain-2", "two", CHAIN(2, 1.441, 2.497), LONG},
     {"chain-2-briefly", "steps so few that rounding errors cannot cancel", CHAIN(2, 1.441, 2.497), BRIEF},
     {"chain-10", "ten", CHAIN(10, 0.410, 2.853), LONG},
     {"chain-100", "a hundred", CHAIN(100, 0.0448, 2.883), LONG},
-    {"chain-1000", "a thousand: waves as long as the chain and as short as a link",
-     CHAIN(1000, 0.00452, 2.883), LONG, .slow = true},
+    {"chain-1000", "a thousand: waves as long as the chain and as short as a link", CHAIN(1000, 0.00452, 2.883), LONG,
+     .slow = true},
     /* two particles */
     {"pair", "two masses on a line and their link: one spring of the reduced mass", PAIR(1), LONG},
     {"pair-3d", "the same in space, adrift", PAIR(3), LONG},
     {"pair-briefly", "the same, so few steps that rounding errors cannot cancel", PAIR(3), BRIEF},
     {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
-     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .formula = "reduced-mass",
-     .solution = solve_damped_pair, .external = true},
+     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .formula = "reduced-mass", .solution = solve_damped_pair,
+     .external = true},
     /* standing waves */
     WAVE("1-1", "15", 4, false),
     WAVE("2-1", "15", 4, false),

@@ -83,8 +83,7 @@ void scene_start(const scene_problem *p, double *y)
     }
 }
 
-double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b,
-                      size_t known)
+double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b, size_t known)
 {
     double sum = 0;
     for (size_t i = 0; i < (known > 0 ? known : 2 * p->moving); i++) {
@@ -213,16 +212,15 @@ static roundings count_roundings(const scene_case *c, const scene_problem *p)
 }
 
 /* By a step that ends in y, right after the forces there were computed: their sizes are in p->room. */
-static double added(const scene_case *c, const scene_problem *p, const roundings *r, double h,
-                    const double *y)
+static double added(const scene_case *c, const scene_problem *p, const roundings *r, double h, const double *y)
 {
     const size_t axes = p->def.axes;
     double state = 0, speed = 0, force = 0;
     for (size_t i = 0; i < p->moving; i++) {
         const size_t at = p->coordinate[i];
         const double v = y[p->moving + i];
-        const double F = axis_of(p, SIZE, at % axes)[at / axes] / p->mass[at / axes] +
-                         fabs(p->def.gravity[at % axes]) + c->callback + p->drag[i] * fabs(v);
+        const double F = axis_of(p, SIZE, at % axes)[at / axes] / p->mass[at / axes] + fabs(p->def.gravity[at % axes]) +
+                         c->callback + p->drag[i] * fabs(v);
         state += y[i] * y[i] + v * v / (c->omega * c->omega);
         speed += v * v;
         force += F * F;
@@ -232,9 +230,9 @@ static double added(const scene_case *c, const scene_problem *p, const roundings
            (r->state * sqrt(state) + 4 * h * sqrt(speed) + (15 + r->links) * h * sqrt(force) / c->omega);
 }
 
-/* What many steps of a linear scene do to an error: n steps of a mode have the norm of reference_turn_norm() in (x, v/rate),
-   at most that of the fastest mode. In (x, v/omega) that is larger by the ratio of the rates, but a slow mode cannot do
-   more than drift for as long. */
+/* What many steps of a linear scene do to an error: n steps of a mode have the norm of reference_turn_norm() in (x,
+   v/rate), at most that of the fastest mode. In (x, v/omega) that is larger by the ratio of the rates, but a slow mode
+   cannot do more than drift for as long. */
 typedef struct carrier {
     reference_turn turn; /* of the fastest mode in a step */
     bool turns;
@@ -327,15 +325,14 @@ static double walked_back(const scene_case *c, const scene_problem *p, spring_me
     return sum;
 }
 
-double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
-                      double *end)
+double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n, double *end)
 {
     const size_t size = 2 * p->moving;
     const bool linear = c->fastest > 0;
     const roundings r = count_roundings(c, p);
     const carrier linearly = linear ? carrier_of(c, m, h) : (carrier){.turns = false};
-    double *states = numbers(linear ? 0 : n * size), *local = numbers(n),
-           *room = numbers(iterate_room(p->moving)), sum = 0;
+    double *states = numbers(linear ? 0 : n * size), *local = numbers(n), *room = numbers(iterate_room(p->moving)),
+           sum = 0;
     scene_start(p, end);
     for (uint64_t i = 0; i < n; i++) {
         if (!linear)

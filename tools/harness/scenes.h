@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The catalogue of corner cases of scenes, and the equation of a scene written down a second time, for reference: forces
- * link by link, the steps of iterates.h, and what rounding can do to them.
+ * The catalogue of corner cases of scenes, and the equation of a scene written down a second time, for reference:
+ * forces link by link, the steps of iterates.h, and what rounding can do to them.
  *
- * A scene is a vector y here: the positions of all coordinates that are not pinned, then their velocities. Distances are
- * Euclidean in (x, v/omega), omega a rate that the case names.
+ * A scene is a vector y here: the positions of all coordinates that are not pinned, then their velocities. Distances
+ * are Euclidean in (x, v/omega), omega a rate that the case names.
  */
 #ifndef HARNESS_SCENES_H
 #define HARNESS_SCENES_H
@@ -75,15 +75,14 @@ void scene_derivative(double t, const double *y, double *dy, const void *data);
  *
  *     u (1 + z^2)^2 (D |y| + 4 h |v| + (15 + L) h |F|/omega),   D = 2, with drag 4
  *
- * (x is rounded once and v twice with leapfrog, where drag divides v by what is itself rounded; h v once, after v; a link
- * at most eight times, mass and gravity once each, their sum L times, RK4's sum of stages five times; within a step that
- * is carried on by at most 1 + z^2 twice). The steps that follow carry it on by at most the norm of the product of their
- * matrices, which are formed by differences. Of a linear scene that norm is known: see carrier_of() in scenes.c. */
-double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
-                      double *end);
+ * (x is rounded once and v twice with leapfrog, where drag divides v by what is itself rounded; h v once, after v; a
+ * link at most eight times, mass and gravity once each, their sum L times, RK4's sum of stages five times; within a
+ * step that is carried on by at most 1 + z^2 twice). The steps that follow carry it on by at most the norm of the
+ * product of their matrices, which are formed by differences. Of a linear scene that norm is known: see carrier_of() in
+ * scenes.c. */
+double scene_rounding(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n, double *end);
 
 /* |a - b| over the leading `known` components of y; 0: over all */
-double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b,
-                      size_t known);
+double scene_distance(const scene_case *c, const scene_problem *p, const double *a, const double *b, size_t known);
 
 #endif

@@ -47,8 +47,7 @@ void stages_advance(spring_state *s, const spring_params *p, double h, uint64_t 
     spring_state y = *s;
     for (; n > 0; n--) {
         const stages k = evaluate(y, r, h);
-        const spring_state sum = {k.k1.x + 2 * k.k2.x + 2 * k.k3.x + k.k4.x,
-                                  k.k1.v + 2 * k.k2.v + 2 * k.k3.v + k.k4.v};
+        const spring_state sum = {k.k1.x + 2 * k.k2.x + 2 * k.k3.x + k.k4.x, k.k1.v + 2 * k.k2.v + 2 * k.k3.v + k.k4.v};
         y = add(y, h / 6, sum);
     }
     *s = y;

@@ -7,16 +7,16 @@
  *     x_n = A (cos(H + d) + a sin(H + d)),   A = exp(n log_growth), d = n ahead, a = x_to_x
  *
  * Hence |x_n - cos H| <= |A - 1| + |d| + A |a|. All three fall as n grows while z <= 1: log_growth/z, ahead/z and a are
- * power series in z of which the first term outweighs the others there; that the bound falls is looked at, too. So where it
- * comes down to E, found by bisection, everything above is settled.
- * Below, x_n itself is looked at. Since A, d and a are monotone, x_n at one end of a range of n differs from all others in
- * it by no more than
+ * power series in z of which the first term outweighs the others there; that the bound falls is looked at, too. So
+ * where it comes down to E, found by bisection, everything above is settled.
+ * Below, x_n itself is looked at. Since A, d and a are monotone, x_n at one end of a range of n differs from all others
+ * in it by no more than
  *
  *     |difference of A| (1 + |a|) + A (1 + |a|) |difference of d| + A |difference of a|        (the largest A and |a|)
  *
  * and is no larger than A sqrt(1 + a^2): a whole range is passed at once where that settles it.
- * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps a step (harness/reference.h), which the bound includes; it grows with n
- * and would in the end exceed any E, so "never" is meant up to that.
+ * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps a step (harness/reference.h), which the bound includes; it grows
+ * with n and would in the end exceed any E, so "never" is meant up to that.
  */
 #include "equal_error.h"
 
@@ -58,8 +58,8 @@ static double error_bound(spring_method m, double duration, uint64_t n)
 
 static _Noreturn void fail_for_rounding(spring_method m, double error)
 {
-    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m: rounding is of that size",
-             spring_method_name(m), error);
+    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m: rounding is of that size", spring_method_name(m),
+             error);
 }
 
 /* Longer steps than 1 s, where the turn may be none: by the n-th power of the step, one n after the other. */
@@ -118,9 +118,9 @@ uint64_t equal_error_steps(spring_method m, double duration, double error)
         some = some < n - least ? some : n - least;
         const iterate_end first = end_of(m, duration, n - some);
         const double largest = fmax(first.A, last.A) * hypot(1, fmax(fabs(first.a), fabs(last.a)));
-        const bool within = some == 1 ? first.error <= error
-                                      : first.error + spread(&first, &last) <= error ||
-                                            largest + fabs(cos(duration)) <= error;
+        const bool within =
+            some == 1 ? first.error <= error
+                      : first.error + spread(&first, &last) <= error || largest + fabs(cos(duration)) <= error;
         if (!within && some == 1)
             break;
         if (!within) {
@@ -163,8 +163,7 @@ uint64_t equal_error_first_steps(spring_method m, double duration, double error)
 double error_coefficient(spring_method m, double duration)
 {
     const int order = spring_method_describe(m)->order;
-    const int bits =
-        order * 60 <= 240 ? 60 : 240 / order; /* n^-order leaves a hundred bits of the references */
+    const int bits = order * 60 <= 240 ? 60 : 240 / order; /* n^-order leaves a hundred bits of the references */
     reference r;
     mpfr_t error;
     reference_init(&r);

@@ -25,8 +25,7 @@ static bool fit;
 static double match_error;
 
 static const cli_option options[] = {
-    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true,
-     .value = "M"},
+    {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
      .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
@@ -49,17 +48,16 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-order",
     .summary = "The error in position of a spring after a fixed time, against the number of steps.",
-    .details =
-        "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m; the error is\n"
-        "|x - cos H|.\n\n"
-        "Columns: method, n (steps), dt_s (step), error_m, force_evaluations (in the whole run).\n"
-        "With --fit: method, coefficient_m and exponent (error = coefficient n^exponent), r_squared,\n"
-        "points, and theory_coefficient_m, the same to leading order, of the method without rounding.\n"
-        "With --match-error: the columns of a single run, then match_error_m (E), previous_error_m (at\n"
-        "n - 1, more than E) and first_n, the smallest n whose error happens not to exceed E; it may do\n"
-        "so again beyond. Where H is more than 10^5 s no steps of more than 1 s are looked at, and first_n "
-        "is 0.\n"
-        "The rounding of --arithmetic shows in the last digits of rk4's fit: its errors end at 1e-14.",
+    .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m; the error is\n"
+               "|x - cos H|.\n\n"
+               "Columns: method, n (steps), dt_s (step), error_m, force_evaluations (in the whole run).\n"
+               "With --fit: method, coefficient_m and exponent (error = coefficient n^exponent), r_squared,\n"
+               "points, and theory_coefficient_m, the same to leading order, of the method without rounding.\n"
+               "With --match-error: the columns of a single run, then match_error_m (E), previous_error_m (at\n"
+               "n - 1, more than E) and first_n, the smallest n whose error happens not to exceed E; it may do\n"
+               "so again beyond. Where H is more than 10^5 s no steps of more than 1 s are looked at, and first_n "
+               "is 0.\n"
+               "The rounding of --arithmetic shows in the last digits of rk4's fit: its errors end at 1e-14.",
     .options = options,
 };
 
@@ -88,8 +86,8 @@ static void write_errors(cli_table *table)
 {
     cli_columns(table, "method n dt_s error_m force_evaluations");
     for (uint64_t n = n_min; n <= n_max; n += n_step) {
-        cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64, stepper_name(&chosen), n,
-                duration / (double)n, measured_error(n), force_evaluations(n));
+        cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64, stepper_name(&chosen), n, duration / (double)n,
+                measured_error(n), force_evaluations(n));
         cli_progress((double)n / (double)n_max);
     }
 }
@@ -118,9 +116,8 @@ static void write_fit(cli_table *table)
     }
     const double exponent = xy / xx;
     cli_columns(table, "method coefficient_m exponent r_squared points theory_coefficient_m");
-    cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", stepper_name(&chosen),
-            exp(mean_y - exponent * mean_x), exponent, xy * xy / (xx * yy), points,
-            error_coefficient((spring_method)chosen.method, duration));
+    cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", stepper_name(&chosen), exp(mean_y - exponent * mean_x),
+            exponent, xy * xy / (xx * yy), points, error_coefficient((spring_method)chosen.method, duration));
 }
 
 static void write_match(cli_table *table)
@@ -129,13 +126,12 @@ static void write_match(cli_table *table)
     const double error = measured_error(n), previous = n > 1 ? measured_error(n - 1) : INFINITY;
     const bool longest = (double)n - 1 < duration; /* steps of more than 1 s may not have been looked at */
     if (!(error <= match_error && (previous > match_error || longest)))
-        cli_fail(CLI_FAILED,
-                 "theory says %" PRIu64 " steps, but with them the error is %.17g m, with one less %.17g m",
+        cli_fail(CLI_FAILED, "theory says %" PRIu64 " steps, but with them the error is %.17g m, with one less %.17g m",
                  n, error, previous);
     cli_columns(table, "method n dt_s error_m force_evaluations match_error_m previous_error_m first_n");
-    cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64,
-            stepper_name(&chosen), n, duration / (double)n, error, force_evaluations(n), match_error,
-            previous, equal_error_first_steps((spring_method)chosen.method, duration, match_error));
+    cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64, stepper_name(&chosen), n,
+            duration / (double)n, error, force_evaluations(n), match_error, previous,
+            equal_error_first_steps((spring_method)chosen.method, duration, match_error));
 }
 
 /* --------------------------------------------------------------------------------------------------------------- */
@@ -152,8 +148,7 @@ static void settle_options(void)
     if (n_step == 0)
         n_step = accurate ? 5 : 10;
     if (n_max < n_min)
-        cli_fail(CLI_USAGE, "--n-max: \"%" PRIu64 "\" is not a number of at least --n-min, %" PRIu64, n_max,
-                 n_min);
+        cli_fail(CLI_USAGE, "--n-max: \"%" PRIu64 "\" is not a number of at least --n-min, %" PRIu64, n_max, n_min);
     if (fit && n_max - n_min < n_step)
         cli_fail(CLI_USAGE, "--fit: takes two points or more; --n-max should be at least --n-min + --n-step");
     if (fit && match_error > 0)

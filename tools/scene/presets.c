@@ -13,7 +13,8 @@ const char *const preset_names[] = {"rope", "cloth", "jelly", "chain", "water", 
 enum { all_families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND };
 
 static const preset_settings defaults[] = {
-    /* size, axes, families, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity, stretch */
+    /* size, axes, families, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity,
+       stretch */
     [PRESET_ROPE] = {PRESET_ROPE, 20, 2, SPRING_GRID_STRUCTURAL, 2, 0.05, 0.05, 2000, 0, 0.01, 9.81, 1},
     [PRESET_CLOTH] = {PRESET_CLOTH, 25, 3, all_families, 2, 0.01, NAN, 500, 0, 0.01, 9.81, 1},
     [PRESET_JELLY] = {PRESET_JELLY, 8, 3, all_families, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
@@ -37,8 +38,7 @@ static void *room(size_t count, size_t size)
 static spring_grid grid_of(const preset_settings *s)
 {
     const uint32_t n = (uint32_t)s->size;
-    const uint32_t all_edges =
-        SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y;
+    const uint32_t all_edges = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y;
     spring_grid g = {.axes = (uint32_t)s->axes,
                      .stiffness = s->stiffness,
                      .damping = s->damping,
@@ -104,8 +104,7 @@ void preset_init(preset *r, const preset_settings *s)
     const spring_grid g = grid_of(s);
     size_t particles, links;
     if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
-        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have",
-                 s->size);
+        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have", s->size);
     *r = (preset){.count = {g.count[0], g.count[1] > 0 ? g.count[1] : 1, g.count[2] > 0 ? g.count[2] : 1}};
     r->start = room(3 * particles, sizeof *r->start);
     r->position = room(3 * particles, sizeof *r->position);
@@ -114,16 +113,15 @@ void preset_init(preset *r, const preset_settings *s)
     r->link = room(links, sizeof *r->link);
     spring_grid_fill(&g, r->position, r->pinned, r->link);
     fill_start(r, g.spacing);
-    r->def = (spring_scene_def){
-        .axes = (uint32_t)s->axes,
-        .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* disturbances look at the time alone */
-        .particles = particles,
-        .links = links,
-        .position = r->position,
-        .mass_all = s->mass,
-        .pinned = r->pinned,
-        .link = r->link,
-        .drag = s->drag};
+    r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
+                                .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* disturbances look at the time alone */
+                                .particles = particles,
+                                .links = links,
+                                .position = r->position,
+                                .mass_all = s->mass,
+                                .pinned = r->pinned,
+                                .link = r->link,
+                                .drag = s->drag};
     if (!isnan(s->gravity))
         r->def.gravity[s->axes - 1] = -s->gravity;
     if (s->kind == PRESET_CLOTH)
@@ -155,11 +153,10 @@ spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes)
     spring_scene *scene;
     const spring_status status = spring_scene_check(&def, &field, &index);
     if (status != SPRING_OK)
-        cli_fail(
-            CLI_USAGE,
-            "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
-            "drag/mass should be finite",
-            field, index);
+        cli_fail(CLI_USAGE,
+                 "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
+                 "drag/mass should be finite",
+                 field, index);
     spring_scene_bytes(&def, bytes);
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
     if (memory == NULL || spring_scene_init(memory, *bytes, &def, &scene) != SPRING_OK)

@@ -41,8 +41,7 @@ typedef struct preset_settings {
     double damping;    /* [N s/m] of a link */
     double drag;       /* [N s/m] of a particle */
     double gravity;    /* [m/s^2] downwards */
-    double
-        stretch; /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
+    double stretch;    /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
                          as stiff across as they are along; else > 1: their stiffness across is 1 - 1/stretch of that */
 } preset_settings;
 
@@ -52,9 +51,8 @@ preset_settings preset_defaults(preset_kind kind);
 /* A definition, and the arrays that it needs. */
 typedef struct preset {
     spring_scene_def def;
-    uint32_t
-        count[3];  /* particles along x, y, z; particle (i, j, k) has index i + count[0] (j + count[1] k) */
-    double *start; /* [particles*3] x y z [m], z up, whatever axes the scene has */
+    uint32_t count[3]; /* particles along x, y, z; particle (i, j, k) has index i + count[0] (j + count[1] k) */
+    double *start;     /* [particles*3] x y z [m], z up, whatever axes the scene has */
     double *position;  /* [particles*axes] */
     uint8_t *pinned;   /* [particles] */
     double *mass;      /* [particles] */
@@ -65,8 +63,8 @@ typedef struct preset {
 void preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);
 
-/** The scene, for one method and for leapfrog, whose stable step is a measure for all; in memory of its own of so many bytes:
-    release it with free(). Exits with a message if it is not valid. */
+/** The scene, for one method and for leapfrog, whose stable step is a measure for all; in memory of its own of so many
+    bytes: release it with free(). Exits with a message if it is not valid. */
 spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes);
 
 /** Positions [particles*3] x y z [m] as in `start`. */

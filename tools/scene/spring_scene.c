@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-scene: a rope, a cloth, a block of jelly, a chain or a water surface, moved by any method in steps of any length,
- * for as long as it holds.
+ * spring-scene: a rope, a cloth, a block of jelly, a chain or a water surface, moved by any method in steps of any
+ * length, for as long as it holds.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -32,11 +32,10 @@ static const char *frames, *positions;
 /* Physical parameters of the same name as in preset_settings. */
 enum { LENGTH, MASS, END_MASS, STIFFNESS, DAMPING, DRAG, GRAVITY, STRETCH, parameters };
 static double given[parameters] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-static const size_t setting[parameters] = {
-    offsetof(preset_settings, length),   offsetof(preset_settings, mass),
-    offsetof(preset_settings, end_mass), offsetof(preset_settings, stiffness),
-    offsetof(preset_settings, damping),  offsetof(preset_settings, drag),
-    offsetof(preset_settings, gravity),  offsetof(preset_settings, stretch)};
+static const size_t setting[parameters] = {offsetof(preset_settings, length),   offsetof(preset_settings, mass),
+                                           offsetof(preset_settings, end_mass), offsetof(preset_settings, stiffness),
+                                           offsetof(preset_settings, damping),  offsetof(preset_settings, drag),
+                                           offsetof(preset_settings, gravity),  offsetof(preset_settings, stretch)};
 
 static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S",
@@ -64,8 +63,7 @@ static const cli_option options[] = {
     {"stiffness", CLI_NOT_NEGATIVE, .real = &given[STIFFNESS], .value = "K",
      .help = "of a link [N/m] (default: rope 2000, cloth 500, jelly 40, chain 100,\n"
              "water 25000)"},
-    {"damping", CLI_NOT_NEGATIVE, .real = &given[DAMPING], .value = "C",
-     .help = "of a link [N s/m] (default: 0)"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &given[DAMPING], .value = "C", .help = "of a link [N s/m] (default: 0)"},
     {"drag", CLI_NOT_NEGATIVE, .real = &given[DRAG], .value = "D",
      .help = "of a particle [N s/m] (default: rope 0.01, cloth 0.01, jelly 0.005,\n"
              "chain 0, water 0.5)"},
@@ -90,31 +88,29 @@ static const cli_option options[] = {
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on.\n"
              "DIR is created; older frames in it of the same numbers are replaced"},
-    {"positions", CLI_FILE, .file = &positions, .value = "FILE",
-     .help = "write the positions of all frames to FILE"},
+    {"positions", CLI_FILE, .file = &positions, .value = "FILE", .help = "write the positions of all frames to FILE"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-scene",
     .summary = "A rope, a cloth, a block of jelly, a chain or a water surface through time.",
-    .details =
-        "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
-        "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
-        "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
-        "Of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.\n\n"
-        "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
-        "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
-        "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
-        "A disturbance that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain "
-        "it is\n"
-        "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
-        "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
-        "one particle at 10 m/s; drops come at random times to random points.\n\n"
-        "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
-        "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows "
-        "end,\n"
-        "the time is told, and the status is 1.",
+    .details = "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
+               "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
+               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
+               "Of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.\n\n"
+               "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
+               "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
+               "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
+               "A disturbance that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain "
+               "it is\n"
+               "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
+               "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
+               "one particle at 10 m/s; drops come at random times to random points.\n\n"
+               "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
+               "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows "
+               "end,\n"
+               "the time is told, and the status is 1.",
     .options = options,
 };
 
@@ -125,8 +121,8 @@ static preset_settings chosen_settings(void)
         s.size = size;
     if (axes > 0 && s.kind != PRESET_WATER && axes != s.axes)
         cli_fail(CLI_USAGE,
-                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given",
-                 axes, preset_names[kind], s.axes);
+                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given", axes,
+                 preset_names[kind], s.axes);
     if (axes == 2 && s.kind == PRESET_WATER)
         cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
     if (axes == 3 && s.kind == PRESET_WATER) {
@@ -142,8 +138,8 @@ static preset_settings chosen_settings(void)
         if (isnan(given[i]))
             continue;
         if (isnan(*value))
-            cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none",
-                     i == GRAVITY ? "gravity" : "end-mass", given[i], preset_names[kind]);
+            cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none", i == GRAVITY ? "gravity" : "end-mass",
+                     given[i], preset_names[kind]);
         *value = given[i];
     }
     if (s.kind == PRESET_WATER && s.axes == 1 && !isnan(given[STRETCH]) && !(s.stretch > 1))
@@ -165,10 +161,9 @@ static void check_poke(const preset *r)
     if (!(poke[4] > 0))
         cli_fail(CLI_USAGE, "--poke: \"%g\" is not an AREA greater than 0 m^2", poke[4]);
     if (!(poke[1] >= 0 && poke[1] <= far[0] && poke[2] >= 0 && poke[2] <= far[1]))
-        cli_fail(
-            CLI_USAGE,
-            "--poke: \"%g,%g\" is not a point X,Y of the scene; X should be from 0 to %g, Y from 0 to %g m",
-            poke[1], poke[2], far[0], far[1]);
+        cli_fail(CLI_USAGE,
+                 "--poke: \"%g,%g\" is not a point X,Y of the scene; X should be from 0 to %g, Y from 0 to %g m",
+                 poke[1], poke[2], far[0], far[1]);
 }
 
 static void check_box(void)
@@ -215,21 +210,16 @@ static disturbances *chosen_disturbances(const preset *r, const preset_settings 
     size_t count = rain > 0 ? fall(r, s, list) : 0;
     if (!isnan(poke[0])) {
         check_poke(r);
-        list[count++] =
-            (disturbance){poke[0], disturbance_time, poke[1], poke[2], poke[3], poke[4], DISTURBANCE_ROUND};
+        list[count++] = (disturbance){poke[0], disturbance_time, poke[1], poke[2], poke[3], poke[4], DISTURBANCE_ROUND};
     }
     if (water_alone)
         list[count++] = disturbances_poke(r, s, disturbance_time);
     if (!isnan(box[0])) {
         check_box();
         const double momentum = box[1] * sqrt(2 * 9.81 * box_height);
-        list[count++] = (disturbance){box[0],
-                                      disturbance_time,
-                                      far[0] / 2,
-                                      far[1] / 2,
-                                      momentum / (mean_of_profile * disturbance_time),
-                                      area,
-                                      DISTURBANCE_SQUARE};
+        list[count++] = (disturbance){
+            box[0], disturbance_time,  far[0] / 2, far[1] / 2, momentum / (mean_of_profile * disturbance_time),
+            area,   DISTURBANCE_SQUARE};
     }
     disturbances *p = count > 0 ? disturbances_new(r, list, count) : NULL;
     free(list);
@@ -261,8 +251,7 @@ static void prepare_frames(uint64_t count)
     uint64_t number;
     for (const struct dirent *entry; (entry = readdir(folder)) != NULL;)
         if (sscanf(entry->d_name, "frame-%6" SCNu64 ".tsv", &number) == 1 && number >= count)
-            cli_fail(CLI_IO,
-                     "--frames: \"%s/%s\" is of a longer run; the folder should be empty or of the same",
+            cli_fail(CLI_IO, "--frames: \"%s/%s\" is of a longer run; the folder should be empty or of the same",
                      frames, entry->d_name);
     closedir(folder);
     for (uint64_t frame = 0; frame < count; frame++) {
@@ -407,10 +396,8 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     v.xyz = malloc(3 * r->def.particles * sizeof *v.xyz);
     if (v.saved == NULL || v.xyz == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu particles", r->def.particles);
-    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles,
-                r->def.links);
-    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s",
-                spring_method_name((spring_method)method), dt,
+    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
+    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method), dt,
                 spring_scene_stable_step(scene, (spring_method)method));
     cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
     if (v.positions != NULL)
@@ -420,14 +407,13 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
 
 static void check_amounts(void)
 {
-    const double most_frames = 1e6,
-                 most_steps = 9007199254740992; /* six digits; 2^53: up to there times are exact */
+    const double most_frames = 1e6, most_steps = 9007199254740992; /* six digits; 2^53: up to there times are exact */
     if (!(duration * fps < most_frames))
-        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps,
-                 most_frames, duration, most_frames / duration);
+        cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps, most_frames,
+                 duration, most_frames / duration);
     if (!(duration / dt <= most_steps))
-        cli_fail(CLI_USAGE, "--dt: \"%g\" makes more than 2^53 steps in %g s; it should be at least %g", dt,
-                 duration, duration / most_steps);
+        cli_fail(CLI_USAGE, "--dt: \"%g\" makes more than 2^53 steps in %g s; it should be at least %g", dt, duration,
+                 duration / most_steps);
 }
 
 int main(int argc, char **argv)

@@ -23,10 +23,8 @@ static int only_scene = -1, only_method = -1;
 static bool quick, timed;
 
 static const cli_option options[] = {
-    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S",
-     .help = "only this scene"},
-    {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M",
-     .help = "only this method"},
+    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S", .help = "only this scene"},
+    {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M", .help = "only this method"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
     {"time", CLI_FLAG, .flag = &timed,
      .help = "instead of the map: the fewest steps a frame from which on all are fine\n"
@@ -38,17 +36,16 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-scene-map",
     .summary = "What becomes of each preset with each method and number of steps a frame.",
-    .details =
-        "Columns: scene, method, particles, links, substeps (steps in a frame of 1/60 s), dt_s, "
-        "stable_step_s\n"
-        "(what the library says), energy_error (the largest difference of the energy at a frame from that\n"
-        "of a run in very short steps, in parts of the largest kinetic energy there) and verdict: fine, up\n"
-        "to 0.05; exploded, where the kinetic energy is more than tenfold the largest, or the state\n"
-        "overflows; else lossy or gaining, by the sign of the difference. The scenes are those that\n"
-        "spring-scene makes by default, for four seconds.\n\n"
-        "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms (the time\n"
-        "that a frame of the scene takes, grown until that is about a millisecond: the shortest of five)\n"
-        "and particles_per_ms. A method of which 64 steps a frame are not fine has no row.",
+    .details = "Columns: scene, method, particles, links, substeps (steps in a frame of 1/60 s), dt_s, "
+               "stable_step_s\n"
+               "(what the library says), energy_error (the largest difference of the energy at a frame from that\n"
+               "of a run in very short steps, in parts of the largest kinetic energy there) and verdict: fine, up\n"
+               "to 0.05; exploded, where the kinetic energy is more than tenfold the largest, or the state\n"
+               "overflows; else lossy or gaining, by the sign of the difference. The scenes are those that\n"
+               "spring-scene makes by default, for four seconds.\n\n"
+               "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms (the time\n"
+               "that a frame of the scene takes, grown until that is about a millisecond: the shortest of five)\n"
+               "and particles_per_ms. A method of which 64 steps a frame are not fine has no row.",
     .options = options,
 };
 
@@ -63,8 +60,7 @@ typedef struct subject {
 } subject;
 
 typedef struct outcome {
-    double
-        error; /* in parts of the largest kinetic energy, with its sign; infinite where the state overflows */
+    double error; /* in parts of the largest kinetic energy, with its sign; infinite where the state overflows */
     bool exploded;
 } outcome;
 
@@ -85,8 +81,7 @@ static void run_reference(subject *s)
     const double finest = spring_scene_stable_step(scene, SPRING_LEAPFROG) / 16;
     const uint64_t substeps = (uint64_t)ceil(frame_time / finest);
     for (uint64_t i = 0; i < s->frames; i++) {
-        if (spring_scene_advance(scene, SPRING_LEAPFROG, frame_time / (double)substeps, substeps) !=
-            SPRING_OK)
+        if (spring_scene_advance(scene, SPRING_LEAPFROG, frame_time / (double)substeps, substeps) != SPRING_OK)
             cli_fail(CLI_FAILED, "the run in very short steps overflows");
         const spring_scene_energies e = spring_scene_energy(scene);
         s->energy[i] = total(&e);
@@ -159,8 +154,8 @@ static double stable_step(const subject *s, spring_method m)
     return step;
 }
 
-/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine and below the
-   stable step, or 0: not every scene that is grown from this one would survive longer ones. */
+/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine and
+   below the stable step, or 0: not every scene that is grown from this one would survive longer ones. */
 static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
@@ -175,8 +170,8 @@ static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind,
             fewest = n;
         if (table != NULL)
             cli_row(table, "%s\t%s\t%zu\t%zu\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%s", preset_names[kind],
-                    spring_method_name(m), s->preset.def.particles, s->preset.def.links, n,
-                    frame_time / (double)n, stable, fabs(o.error), verdict);
+                    spring_method_name(m), s->preset.def.particles, s->preset.def.links, n, frame_time / (double)n,
+                    stable, fabs(o.error), verdict);
     }
     return fewest;
 }
@@ -227,8 +222,7 @@ static void time_method(cli_table *table, preset_kind kind, spring_method m, uin
         if (round == rounds - 1)
             cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", preset_names[kind],
                     spring_method_name(m), substeps, frame_time / (double)substeps, stable_step(&s, m),
-                    s.preset.def.particles, s.preset.def.links, frame,
-                    (double)s.preset.def.particles / frame);
+                    s.preset.def.particles, s.preset.def.links, frame, (double)s.preset.def.particles / frame);
         end(&s);
     }
 }
@@ -256,9 +250,8 @@ int main(int argc, char **argv)
     cli_table *table = cli_open_output();
     if (timed)
         timing_stamp(table);
-    cli_columns(table,
-                timed ? "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms"
-                      : "scene method particles links substeps dt_s stable_step_s energy_error verdict");
+    cli_columns(table, timed ? "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms"
+                             : "scene method particles links substeps dt_s stable_step_s energy_error verdict");
     for (int kind = 0; kind < preset_kinds; kind++) {
         if (only_scene < 0 || kind == only_scene)
             work_on(table, (preset_kind)kind);

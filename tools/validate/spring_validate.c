@@ -34,26 +34,25 @@ static cli_option options[] = {
 static const cli_program program = {
     .name = "spring-validate",
     .summary = "Check every method on a catalogue of corner cases against independent references.",
-    .details =
-        "Columns: case, method, witness (the reference solution), dt_s, steps, error and bound (both [m],\n"
-        "distances in (x, v/omega)), verdict (pass, fail, skip), reason (what the bound is made of),\n"
-        "uncertainty (of the reference [m]: the difference to a ten times coarser run of its own; 0 for "
-        "exact\n"
-        "solutions in multiple precision), force_evaluations (of the reference; 0 where it has none) and "
-        "shape\n"
-        "(spring or scene). References of springs: iterate, the same method in 107-digit arithmetic; "
-        "solution,\n"
-        "the exact solution in 107 digits; drive, the motion under the drive that the loads are samples of;\n"
-        "gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Of scenes: definition, the same method from "
-        "a\n"
-        "second program; modes and reduced-mass, exact expressions for linear scenes; dispersion, the "
-        "frequency\n"
-        "of standing waves on sheets, which run 1 m in (x, v/omega), so that errors are those of the "
-        "frequency,\n"
-        "relative; digits and formula, the exact solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams.\n"
-        "Against an exact solution (the first solver, where there is none) each scene has a row for a step, "
-        "one\n"
-        "for half of it and one for the value extrapolated from both. Status 1 if any check fails.",
+    .details = "Columns: case, method, witness (the reference solution), dt_s, steps, error and bound (both [m],\n"
+               "distances in (x, v/omega)), verdict (pass, fail, skip), reason (what the bound is made of),\n"
+               "uncertainty (of the reference [m]: the difference to a ten times coarser run of its own; 0 for "
+               "exact\n"
+               "solutions in multiple precision), force_evaluations (of the reference; 0 where it has none) and "
+               "shape\n"
+               "(spring or scene). References of springs: iterate, the same method in 107-digit arithmetic; "
+               "solution,\n"
+               "the exact solution in 107 digits; drive, the motion under the drive that the loads are samples of;\n"
+               "gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Of scenes: definition, the same method from "
+               "a\n"
+               "second program; modes and reduced-mass, exact expressions for linear scenes; dispersion, the "
+               "frequency\n"
+               "of standing waves on sheets, which run 1 m in (x, v/omega), so that errors are those of the "
+               "frequency,\n"
+               "relative; digits and formula, the exact solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams.\n"
+               "Against an exact solution (the first solver, where there is none) each scene has a row for a step, "
+               "one\n"
+               "for half of it and one for the value extrapolated from both. Status 1 if any check fails.",
     .options = options,
 };
 
@@ -124,8 +123,7 @@ static void against_references(const validation_case *c, spring_method m)
         f.reference = "drive";
         f.error = hypot(got.x - drive.x, (got.v - drive.v) / omega);
         f.bound += sampling;
-        f.reason = m == SPRING_EXACT ? "load sampled once a step"
-                                     : "load sampled once a step + truncation + rounding";
+        f.reason = m == SPRING_EXACT ? "load sampled once a step" : "load sampled once a step + truncation + rounding";
         validate_check(&f);
     }
     reference_clear(&iterate);
@@ -148,11 +146,8 @@ static void against_rk4(const validation_case *c, const char *reference_name,
     reference_bounds *bounds = reference_bounds_new(&s.p, start);
     reference_bounds_add(bounds, &s.p, SPRING_RK4, s.dt, n * our_steps_a_step);
     reference_bounds_end(bounds, &rounding, &truncation);
-    validate_row f = {.of = c->name,
-                      .method = "rk4",
-                      .reference = reference_name,
-                      .dt = s.dt,
-                      .steps = n * our_steps_a_step};
+    validate_row f = {
+        .of = c->name, .method = "rk4", .reference = reference_name, .dt = s.dt, .steps = n * our_steps_a_step};
     const char *message = solve(&o, y, s.dt * our_steps_a_step, n);
     if (message != NULL)
         cli_fail(CLI_FAILED, "%s: %s: %s", c->name, reference_name, message);
@@ -167,8 +162,8 @@ static void against_rk4(const validation_case *c, const char *reference_name,
 
 typedef const char *adaptive_solver(ode *o, double *y, double duration, double tolerance);
 
-/* The exact solution against a solver that knows nothing of springs. Its error is not known, only estimated, by a run with
-   ten times its tolerance: if the error of this one is at most two thirds of that one's, it is at most twice the
+/* The exact solution against a solver that knows nothing of springs. Its error is not known, only estimated, by a run
+   with ten times its tolerance: if the error of this one is at most two thirds of that one's, it is at most twice the
    difference. The last step may be off by the local tolerance whatever the difference. */
 static void against_adaptive(const validation_case *c, const char *reference_name, adaptive_solver *solve)
 {
@@ -194,8 +189,7 @@ static void against_adaptive(const validation_case *c, const char *reference_nam
     reference_exact(&exact, &s.p, duration);
     spring_state got = start;
     spring_advance(&got, &s.p, SPRING_EXACT, s.dt, s.n);
-    validate_row f = {
-        .of = c->name, .method = "exact", .reference = reference_name, .dt = s.dt, .steps = s.n};
+    validate_row f = {.of = c->name, .method = "exact", .reference = reference_name, .dt = s.dt, .steps = s.n};
     f.error = hypot(got.x - y[1][0], (got.v - y[1][1]) / omega);
     f.uncertainty = hypot(y[0][0] - y[1][0], (y[0][1] - y[1][1]) / omega);
     f.bound = 2 * f.uncertainty + tolerance * size + exact_bound(&exact, &s, duration);

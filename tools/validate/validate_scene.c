@@ -2,9 +2,9 @@
 /*
  * The part of spring-validate for scenes.
  *
- * Every method takes n, 2n and 4n steps, h = duration/n. Let R = 2^p, p its order, and its error C h^p + D h^(p+1) + ...
- * Extrapolated values, y_2n + (y_2n - y_n)/(R - 1) and the same from 4n and 2n, are wrong by multiples of D h^(p+1) and
- * differ by
+ * Every method takes n, 2n and 4n steps, h = duration/n. Let R = 2^p, p its order, and its error C h^p + D h^(p+1) +
+ * ... Extrapolated values, y_2n + (y_2n - y_n)/(R - 1) and the same from 4n and 2n, are wrong by multiples of D h^(p+1)
+ * and differ by
  *
  *     b = |D| h^(p+1) (2R - 1)/(4R (R - 1))
  *
@@ -14,9 +14,9 @@
  *     y_4n            |y_2n - y_n|/(R - 1)/R      + 2 b (3R - 1)/(R (2R - 1))
  *     extrapolated                                  2 b/(2R - 1)
  *
- * and rounding. No reference enters them. The second holds only if the error really falls by R, and the third says how far
- * from R: a method of order p - 1 would miss it by factors of 3.5 (leapfrog) and 2.2 (RK4). Steps are small enough, and
- * not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
+ * and rounding. No reference enters them. The second holds only if the error really falls by R, and the third says how
+ * far from R: a method of order p - 1 would miss it by factors of 3.5 (leapfrog) and 2.2 (RK4). Steps are small enough,
+ * and not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
  */
 #include <math.h>
 #include <stdio.h>
@@ -106,7 +106,8 @@ static void against_same(const trial *t, const char *by, const double *y, int si
     validate_check(&f);
 }
 
-/* The exact solution, as far as the reference knows it: y_2n and y_4n if runs, and in any case the extrapolated value. */
+/* The exact solution, as far as the reference knows it: y_2n and y_4n if runs, and in any case the extrapolated
+   value. */
 static void against_solution(const trial *t, const char *by, const double *y, size_t known, bool runs,
                              double uncertainty, double reference_bound, uint64_t evaluations)
 {
@@ -158,8 +159,8 @@ static double *scale_of(const scene_case *c, const scene_problem *p)
     return scale;
 }
 
-static void against_rk4(const trial *t, const char *by,
-                        const char *(*solve)(ode *, double *, double, uint64_t), unsigned our_steps_a_step)
+static void against_rk4(const trial *t, const char *by, const char *(*solve)(ode *, double *, double, uint64_t),
+                        unsigned our_steps_a_step)
 {
     double *y = vectors(t->p, 1), *scale = scale_of(t->c, t->p);
     ode o = {.size = 2 * t->p->moving, .derivative = scene_derivative, .data = t->p, .scale = scale};
@@ -206,16 +207,16 @@ static void solve_adaptive(adaptive *a, const scene_case *c, const scene_problem
 
 /*
  * A mode is followed step by step through the phase of its amplitude q, the projection of the motion on its shape: the
- * angle of (q, -p/(omega s)), p the projection of the velocity, s the ratio of axes that the method gives the ellipse. It
- * starts with an amplitude of 1 m over the whole phase, so that its path in (x, v/omega) is 1 m long: distances along it
- * [m] are relative errors of the frequency, too.
+ * angle of (q, -p/(omega s)), p the projection of the velocity, s the ratio of axes that the method gives the ellipse.
+ * It starts with an amplitude of 1 m over the whole phase, so that its path in (x, v/omega) is 1 m long: distances
+ * along it [m] are relative errors of the frequency, too.
  *
  * With a = P pi/(N - 1), b = Q pi/(N - 1) the frequency on an infinite lattice is
  *
  *     omega^2 = k/m sum over d of (2 - 2 cos d)
  *
- * with d = a, b of structural links, d = a + b, a - b of shear, d = 2a, 2b of bend links. That of long waves has d^2 for
- * 2 - 2 cos d, which is too much by at most d^4/12.
+ * with d = a, b of structural links, d = a + b, a - b of shear, d = 2a, 2b of bend links. That of long waves has d^2
+ * for 2 - 2 cos d, which is too much by at most d^4/12.
  */
 typedef struct sheet_mode {
     unsigned P, Q, N;
@@ -255,8 +256,7 @@ static void pull_sheet(unsigned N, const double *u, double *force)
     for (int y = 1; y < n - 1; y++)
         for (int x = 1; x < n - 1; x++)
             for (int i = 0; i < 12; i++) {
-                const int sign = i < 6 ? 1 : -1, ox = x + sign * offset[i % 6][0],
-                          oy = y + sign * offset[i % 6][1];
+                const int sign = i < 6 ? 1 : -1, ox = x + sign * offset[i % 6][0], oy = y + sign * offset[i % 6][1];
                 if (ox >= 0 && ox < n && oy >= 0 && oy < n)
                     force[y * n + x] += u[y * n + x] - u[oy * n + ox];
             }
@@ -300,9 +300,9 @@ static void solve_sheet(unsigned N, const double *right, double *u, double *work
     }
 }
 
-/* Keeps the part of u with the symmetry of sin(Pa x) sin(Qa y) - sin(Qa x) sin(Pa y), or the first alone if P = Q: turned
-   by half a turn, with x and y swapped, and if P and Q are both even or odd with x mirrored. Rounding would let slower
-   modes in. */
+/* Keeps the part of u with the symmetry of sin(Pa x) sin(Qa y) - sin(Qa x) sin(Pa y), or the first alone if P = Q:
+   turned by half a turn, with x and y swapped, and if P and Q are both even or odd with x mirrored. Rounding would let
+   slower modes in. */
 static void keep_symmetry(const sheet_mode *s, double *u, double *work)
 {
     const size_t N = s->N, last = N - 1;
@@ -446,8 +446,8 @@ static followed follow(const trial *t, const sheet_mode *s, const reference_turn
 
 static const double requirement = 0.005; /* of a frequency, relative */
 
-/* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how far
-   the frequency is from a simpler theory. */
+/* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how
+   far the frequency is from a simpler theory. */
 static void check_mode(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
     const double h = step_of(t, 0), n = (double)t->steps, whole = s->omega * t->c->duration;
@@ -462,8 +462,8 @@ static void check_mode(const trial *t, const sheet_mode *s, const reference_turn
     const double C = cos(n * step->angle), S = sin(n * step->angle);
     row_of.error = hypot(f.q - size * (C + step->x_to_x * S), f.p - size * step->x_to_v * S);
     row_of.bound = t->rounding + s->uncertainty + s->nonlinear / (whole * whole);
-    row_of.reason = s->nonlinear > 0 ? "motion with this step: rounding, and the amplitude"
-                                     : "motion with this step: rounding";
+    row_of.reason =
+        s->nonlinear > 0 ? "motion with this step: rounding, and the amplitude" : "motion with this step: rounding";
     validate_check(&row_of);
     row_of.error = fabs(f.phase / t->c->duration / s->compared - 1);
     row_of.bound = s->comparison_bound + error_of_step;

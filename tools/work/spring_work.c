@@ -2,10 +2,10 @@
 /*
  * spring-work: time against error, for every stepper of the library and for GSL and SUNDIALS on the same problems.
  *
- * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five times,
- *           or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers are called
- *           as their manuals recommend, do no output while they are timed, and all external ones evaluate the same
- *           right-hand side. What sets a solver or a scene up is not timed.
+ * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five
+ *           times, or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers
+ *           are called as their manuals recommend, do no output while they are timed, and all external ones evaluate
+ *           the same right-hand side. What sets a solver or a scene up is not timed.
  * Error     |(x, v/omega) - exact| at the end, relative to the size of the motion; see work_problems.c.
  */
 #include <math.h>
@@ -38,26 +38,25 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-work",
     .summary = "Time against error of every stepper, beside GSL and SUNDIALS, in one run.",
-    .details =
-        "Columns: problem, solver, steps, force_evaluations (of one spring with the library by\n"
-        "definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
-        "in them), error (|(x, v/omega) - exact| relative to the size of the motion), error_x (|x - exact\n"
-        "x| [m], nan: a scene), effort: sweep (of steps or tolerances), seed (the number of steps of\n"
-        "the original study), equal (the smallest number of steps from which on the error in x never\n"
-        "exceeds Euler's at 10^7 steps) or crossing (the last number of evaluations with which leapfrog\n"
-        "is ahead of RK4, and the next one), tolerance (0 for fixed steps), energy_error (relative to\n"
-        "the energy at the start, nan: a scene) and uncertainty (of the exact end of a scene: an error\n"
-        "of five times that is an upper bound, and not resolved).\n"
-        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
-        "2.7 N/m.\n"
-        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula\n"
-        "whatever the duration, which evaluates no forces; gsl-rk4 doubles its step, and that is counted. A "
-        "run that explodes, or\n"
-        "is off by more than three times the size of the motion, has no row.\n"
-        "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
-        "finer one if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
-        "(peer,\n"
-        "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
+    .details = "Columns: problem, solver, steps, force_evaluations (of one spring with the library by\n"
+               "definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
+               "in them), error (|(x, v/omega) - exact| relative to the size of the motion), error_x (|x - exact\n"
+               "x| [m], nan: a scene), effort: sweep (of steps or tolerances), seed (the number of steps of\n"
+               "the original study), equal (the smallest number of steps from which on the error in x never\n"
+               "exceeds Euler's at 10^7 steps) or crossing (the last number of evaluations with which leapfrog\n"
+               "is ahead of RK4, and the next one), tolerance (0 for fixed steps), energy_error (relative to\n"
+               "the energy at the start, nan: a scene) and uncertainty (of the exact end of a scene: an error\n"
+               "of five times that is an upper bound, and not resolved).\n"
+               "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
+               "2.7 N/m.\n"
+               "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula\n"
+               "whatever the duration, which evaluates no forces; gsl-rk4 doubles its step, and that is counted. A "
+               "run that explodes, or\n"
+               "is off by more than three times the size of the motion, has no row.\n"
+               "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
+               "finer one if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
+               "(peer,\n"
+               "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
     .options = options,
 };
 
@@ -79,8 +78,8 @@ static void remember(const work_solver *s, uint64_t steps, double time, double e
     rows[row_count++] = (work_row){s, steps, time, error};
 }
 
-/* Seconds that a run takes: the shortest of some loops. A long one will be interrupted by other processes: by a clock that
-   stops then, which is too slow for short ones. */
+/* Seconds that a run takes: the shortest of some loops. A long one will be interrupted by other processes: by a clock
+   that stops then, which is too slow for short ones. */
 static double time_of(work *w, const work_solver *s, work_effort e, double first, double *y)
 {
     const double long_enough = 2e-4, long_run = 0.01, interrupted = 1e-3; /* [s] */
@@ -113,9 +112,8 @@ static double measure(cli_table *table, work *w, const work_solver *s, work_effo
             scene && s->side == WORK_STEPPER ? work_count(w, s->method, e.steps) : r.evaluations;
         const double error_x = scene ? NAN : fabs(y[0] - w->exact[0]), energy_error = work_energy_error(w, y);
         const double time = time_of(w, s, e, r.spent, y);
-        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g",
-                w->problem->name, s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance,
-                energy_error, w->uncertainty);
+        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g", w->problem->name,
+                s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance, energy_error, w->uncertainty);
         remember(s, r.steps, time, error);
     }
     free(y);
@@ -180,12 +178,10 @@ static void crossing(cli_table *table, work *w)
 {
     const uint64_t least = 24 * w->problem->periods, most = 80 * w->problem->periods;
     uint64_t found = most + 4;
-    while (found > least + 4 &&
-           error_after(w, SPRING_RK4, found / 4 - 1) < error_after(w, SPRING_LEAPFROG, found - 4))
+    while (found > least + 4 && error_after(w, SPRING_RK4, found / 4 - 1) < error_after(w, SPRING_LEAPFROG, found - 4))
         found -= 4;
     if (found > most)
-        cli_fail(CLI_FAILED, "%s: RK4 is not ahead with %" PRIu64 " evaluations; it should be",
-                 w->problem->name, most);
+        cli_fail(CLI_FAILED, "%s: RK4 is not ahead with %" PRIu64 " evaluations; it should be", w->problem->name, most);
     for (uint64_t evaluations = found - 4; evaluations <= found; evaluations += 4) {
         measure(table, w, work_solver_of(SPRING_LEAPFROG), (work_effort){.steps = evaluations}, "crossing");
         measure(table, w, work_solver_of(SPRING_RK4), (work_effort){.steps = evaluations / 4}, "crossing");
@@ -205,8 +201,7 @@ static const work_row *cheapest(work_side side, double error)
 {
     const work_row *best = NULL;
     for (size_t i = 0; i < row_count; i++)
-        if (rows[i].solver->side == side && is_enough(i, error) &&
-            (best == NULL || rows[i].time < best->time))
+        if (rows[i].solver->side == side && is_enough(i, error) && (best == NULL || rows[i].time < best->time))
             best = &rows[i];
     return best;
 }
@@ -222,12 +217,10 @@ static void write_levels(cli_table *table, const work *w)
         const double error = pow(10, -power);
         const work_row *ours = cheapest(WORK_STEPPER, error), *external = cheapest(WORK_EXTERNAL, error),
                        *exact = cheapest(WORK_EXACT, error);
-        cli_row(table, "%s\t1e-%d\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%" PRIu64 "\t%.4g", w->problem->name,
-                power, ours != NULL ? ours->solver->name : "none",
-                ours != NULL ? w->duration / (double)ours->steps : NAN, time_or_nan(ours),
-                external != NULL ? external->solver->name : "none", time_or_nan(external),
-                time_or_nan(external) / time_or_nan(ours), ours != NULL ? ours->steps : 0,
-                time_or_nan(exact));
+        cli_row(table, "%s\t1e-%d\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%" PRIu64 "\t%.4g", w->problem->name, power,
+                ours != NULL ? ours->solver->name : "none", ours != NULL ? w->duration / (double)ours->steps : NAN,
+                time_or_nan(ours), external != NULL ? external->solver->name : "none", time_or_nan(external),
+                time_or_nan(external) / time_or_nan(ours), ours != NULL ? ours->steps : 0, time_or_nan(exact));
     }
 }
 

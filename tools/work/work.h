@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What spring-work compares: problems, which are opened one at a time, and solvers, which are run on the one that is open.
+ * What spring-work compares: problems, which are opened one at a time, and solvers, which are run on the one that is
+ * open.
  *
- * The state of a problem is a vector y, positions before velocities. Distances are Euclidean in (x, v/omega), and errors
- * are distances to the exact end relative to the size of the motion.
+ * The state of a problem is a vector y, positions before velocities. Distances are Euclidean in (x, v/omega), and
+ * errors are distances to the exact end relative to the size of the motion.
  */
 #ifndef SPRINGSTEP_WORK_H
 #define SPRINGSTEP_WORK_H
@@ -108,7 +109,7 @@ struct work_solver {
     const char *name;
     work_side side;
     spring_method method; /* of a stepper and the exact solution */
-    uint64_t a_step; /* force evaluations that a step of one spring stands for: there is nothing to count */
+    uint64_t a_step;      /* force evaluations that a step of one spring stands for: there is nothing to count */
     /* of an external solver, one of them */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);

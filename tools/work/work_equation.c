@@ -8,8 +8,8 @@
 
 #include "common/cli.h"
 
-static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving,
-                uint32_t held, const uint32_t *number)
+static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving, uint32_t held,
+                const uint32_t *number)
 {
     work_tie *t = &e->tie[e->ties++];
     *t = (work_tie){.a = number[moving], .stiffness = l->stiffness, .rest = l->rest};
@@ -55,20 +55,21 @@ void work_equation_clear(work_equation *e)
     free(e->per_mass);
 }
 
-/* A link pulls a towards b. What there is of each axis stands written out, for compilers do not unroll such short loops. */
+/* A link pulls a towards b. What there is of each axis stands written out, for compilers do not unroll such short
+   loops. */
 typedef void puller(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
                     double *restrict force_b);
 
-static inline void pull_1(const double *a, const double *b, double stiffness, double rest,
-                          double *restrict force_a, double *restrict force_b)
+static inline void pull_1(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
+                          double *restrict force_b)
 {
     const double force = stiffness * (b[0] - a[0] - rest);
     force_a[0] += force;
     force_b[0] -= force;
 }
 
-static inline void pull_2(const double *a, const double *b, double stiffness, double rest,
-                          double *restrict force_a, double *restrict force_b)
+static inline void pull_2(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
+                          double *restrict force_b)
 {
     const double x = b[0] - a[0], y = b[1] - a[1];
     const double length = sqrt(x * x + y * y), scale = stiffness * (length - rest) / length;
@@ -78,8 +79,8 @@ static inline void pull_2(const double *a, const double *b, double stiffness, do
     force_b[1] -= scale * y;
 }
 
-static inline void pull_3(const double *a, const double *b, double stiffness, double rest,
-                          double *restrict force_a, double *restrict force_b)
+static inline void pull_3(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
+                          double *restrict force_b)
 {
     const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
     const double length = sqrt(x * x + y * y + z * z), scale = stiffness * (length - rest) / length;
@@ -92,8 +93,8 @@ static inline void pull_3(const double *a, const double *b, double stiffness, do
 }
 
 /* With constants for axes and pull wherever it is called: three loops. */
-static inline void add_forces(size_t axes, puller *pull, const work_equation *e, const double *x,
-                              const double *v, double *sum)
+static inline void add_forces(size_t axes, puller *pull, const work_equation *e, const double *x, const double *v,
+                              double *sum)
 {
     double unused[3] = {0};
     for (const work_link *l = e->link; l < e->link + e->links; l++)

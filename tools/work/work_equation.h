@@ -2,8 +2,8 @@
 /*
  * The right-hand side that GSL and SUNDIALS integrate for a scene: a plain loop over the links.
  *
- * The state holds what moves and nothing else: particles without pins, one after the other, so that no number is copied.
- * Links to pinned particles have a list of their own, those between two pinned ones none.
+ * The state holds what moves and nothing else: particles without pins, one after the other, so that no number is
+ * copied. Links to pinned particles have a list of their own, those between two pinned ones none.
  */
 #ifndef SPRINGSTEP_WORK_EQUATION_H
 #define SPRINGSTEP_WORK_EQUATION_H

@@ -2,8 +2,9 @@
 /*
  * The problems of spring-work; see work.h.
  *
- * The exact end   Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once more
- *                 with half as many: the difference, and the distance to the digits that the harness knows, is its uncertainty.
+ * The exact end   Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once
+ *                 more with half as many: the difference, and the distance to the digits that the harness knows, is its
+ *                 uncertainty.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -56,8 +57,8 @@ static void build_water(const scene_case *c, scene_problem *p)
                            .spacing = spacing,
                            .families = ALL_FAMILIES,
                            .stiffness = 25000,
-                           .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y |
-                                     SPRING_GRID_LAST_Y};
+                           .pinned =
+                               SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
     make_sheet(p, &g, 1);
     p->def.drag = 0.5;
     for (size_t i = 0; i < p->def.particles; i++)
@@ -67,10 +68,8 @@ static void build_water(const scene_case *c, scene_problem *p)
         }
 }
 
-static const scene_case cloth = {
-    .name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
-static const scene_case water = {
-    .name = "water", .build = build_water, .duration = 0.25, .omega = 77, .length = 0.1};
+static const scene_case cloth = {.name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
+static const scene_case water = {.name = "water", .build = build_water, .duration = 0.25, .omega = 77, .length = 0.1};
 
 /* ------------------------------------------------------------------------------------------------- the problems */
 
@@ -82,8 +81,7 @@ const work_problem work_problems[] = {
     {"ideal-1", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(1), .finest = 1e-5, .periods = 1},
     {"ideal-10", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(10), .finest = 5e-5, .periods = 10},
     {"ideal-100", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(100), .finest = 2e-4},
-    {"ideal-10000", WORK_SPRING, PERIODS(10000), 0.08, .p = {1.3, 2.7, 0, 0}, .start = {0.8, -0.9},
-     .finest = 2e-3},
+    {"ideal-10000", WORK_SPRING, PERIODS(10000), 0.08, .p = {1.3, 2.7, 0, 0}, .start = {0.8, -0.9}, .finest = 2e-3},
     {"damped", SPRING, .p = {1.3, 2.7, 0.4, 0}, .duration = PERIODS(5), .finest = 2e-5},
     {"loaded", SPRING, .p = {1.3, 2.7, 0.1, 0.9}, .duration = PERIODS(10), .finest = 5e-5},
     {"stiff", SPRING, .p = {1.3, 2.7, 370, 0}, .duration = 100, .finest = 1e-4},
@@ -117,7 +115,8 @@ static void open_spring(work *w)
     reference_exact(&w->reference, p, w->duration);
     w->exact[0] = mpfr_get_d(w->reference.x, MPFR_RNDN);
     w->exact[1] = mpfr_get_d(w->reference.v, MPFR_RNDN);
-    /* more than any solver's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega, without damping */
+    /* more than any solver's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega, without
+       damping */
     w->coarsest = 6 / w->omega;
     w->finest = w->problem->finest;
     w->derivative = ode_spring_derivative;

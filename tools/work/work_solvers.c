@@ -89,8 +89,7 @@ static work_result run_scene(const work *w, const work_solver *s, uint64_t steps
     for (uint64_t i = 0; i < runs && r.failure == NULL; i++) {
         memcpy(w->moved, w->fresh, w->bytes);
         const double begin = w->clock();
-        const spring_status status =
-            spring_scene_advance(w->moved, s->method, w->duration / (double)steps, steps);
+        const spring_status status = spring_scene_advance(w->moved, s->method, w->duration / (double)steps, steps);
         r.spent += 1e-9 * (w->clock() - begin);
         if (status != SPRING_OK)
             r.failure = spring_status_string(status);
@@ -102,8 +101,7 @@ static work_result run_scene(const work *w, const work_solver *s, uint64_t steps
 
 static work_result run_external(const work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
-    ode o = {
-        .size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale, .clock = w->clock};
+    ode o = {.size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale, .clock = w->clock};
     const char *failure = NULL;
     for (uint64_t i = 0; i < runs && failure == NULL; i++) {
         memcpy(y, w->start, w->size * sizeof *y);
@@ -113,14 +111,12 @@ static work_result run_external(const work *w, const work_solver *s, work_effort
         else
             failure = s->adaptive(&o, y, w->duration, e.tolerance);
     }
-    return (work_result){
-        .failure = failure, .spent = 1e-9 * o.spent, .steps = o.steps, .evaluations = o.evaluations};
+    return (work_result){.failure = failure, .spent = 1e-9 * o.spent, .steps = o.steps, .evaluations = o.evaluations};
 }
 
 work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
     if (s->side == WORK_EXTERNAL)
         return run_external(w, s, e, runs, y);
-    return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y)
-                                          : run_spring(w, s, e.steps, runs, y);
+    return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y) : run_spring(w, s, e.steps, runs, y);
 }
