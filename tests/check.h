@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Checks that say what they saw, random numbers from a printed seed, and the frame that runs tests through CUnit as
-   TAP. */
+/* Checks that say what they saw, random numbers from a printed seed, and what runs tests through CUnit as TAP. */
 #ifndef CHECK_H
 #define CHECK_H
 

@@ -118,7 +118,7 @@ static void accepts_the_edges(void)
     s = (spring_state){5e-324, -5e-324};
     const spring_params p = {1e-300, 1e-300, 0, 0};
     CHECK(spring_advance(&s, &p, SPRING_RK4, 0.1, 100) == SPRING_OK, "denormal state, tiny mass");
-    CHECK(spring_advance(&s, &p, SPRING_EXACT, 1e-3, UINT64_MAX) == SPRING_OK, "2^64 - 1 steps in closed form");
+    CHECK(spring_advance(&s, &p, SPRING_EXACT, 1e-3, UINT64_MAX) == SPRING_OK, "2^64 - 1 steps, evaluated once");
 }
 
 /* Overflow is reported, the state kept; 2^64 - 1 steps end soon because it is noticed. */
@@ -256,7 +256,7 @@ int main(void)
 {
     static const test tests[] = {
         {"n steps are n kernel calls, bit for bit", equals_kernel_calls},
-        {"the closed form is one evaluation", exact_is_one_evaluation},
+        {"the exact solution is one evaluation", exact_is_one_evaluation},
         {"no steps, no change", nothing_to_do},
         {"bad input is refused", refuses_bad_input},
         {"zeros, denormals and 2^64 - 1 steps", accepts_the_edges},

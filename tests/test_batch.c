@@ -24,8 +24,8 @@ static spring_status advance(const spring_batch *b, spring_method m, scalar dt, 
     return spring_batch_advance_with(kernels, b, m, dt, n);
 }
 
-/* ------------------------------------------------------------------------------------ what a spring's life should
-   be */
+/* ------------------------------------------------------------------------------------ what should become of a
+   spring */
 
 typedef struct spring {
     scalar x, v, w, g, a;
@@ -41,7 +41,7 @@ static spring_params params_of(spring s)
     return (spring_params){.mass = 1, .stiffness = (double)s.w, .damping = (double)s.g, .load = (double)s.a};
 }
 
-static spring_status life_in_double(spring_state *state, spring s, spring_method m, scalar dt, uint64_t n)
+static spring_status advance_in_double(spring_state *state, spring s, spring_method m, scalar dt, uint64_t n)
 {
     const spring_params p = params_of(s);
     *state = (spring_state){(double)s.x, (double)s.v};
@@ -53,7 +53,7 @@ static spring_status life_in_double(spring_state *state, spring s, spring_method
 extern const batch_kernels plain_batch;
 
 /* By the kernels that know no vectors, as the only spring of a batch. */
-static outcome alone(spring s, spring_method m, scalar dt, uint64_t n, uint32_t shared)
+static outcome plain_spring(spring s, spring_method m, scalar dt, uint64_t n, uint32_t shared)
 {
     outcome end = {s.x, s.v, SPRING_OK};
     const spring_batch one = {1, &end.x, &end.v, &s.w, &s.g, s.a != 0 ? &s.a : NULL, shared};
@@ -61,18 +61,18 @@ static outcome alone(spring s, spring_method m, scalar dt, uint64_t n, uint32_t 
     return end;
 }
 
-static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
+static outcome advance_alone(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
 {
     outcome end = {s.x, s.v, SPRING_OK};
     spring_state state;
-    if (life_in_double(&state, s, m, 1, 0) != SPRING_OK) {
+    if (advance_in_double(&state, s, m, 1, 0) != SPRING_OK) {
         end.status = SPRING_EINVAL;
     } else if (m != SPRING_EXACT || shared_coefficients) {
-        end = alone(s, m, dt, n, shared_coefficients ? SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA : 0);
+        end = plain_spring(s, m, dt, n, shared_coefficients ? SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA : 0);
         CHECK(end.status == SPRING_OK || (end.status == SPRING_ENONFINITE && end.x == s.x && end.v == s.v),
               "valid; it advances or keeps its state");
     } else { /* with coefficients of its own: in double, rounded once */
-        end.status = life_in_double(&state, s, m, dt, n);
+        end.status = advance_in_double(&state, s, m, dt, n);
         end.x = (float)state.x;
         end.v = (float)state.v;
         if (end.status != SPRING_OK || !isfinite(end.x) || !isfinite(end.v))
@@ -83,11 +83,11 @@ static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool share
 
 #else
 
-static outcome life(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
+static outcome advance_alone(spring s, spring_method m, scalar dt, uint64_t n, bool shared_coefficients)
 {
     (void)shared_coefficients;
     spring_state state;
-    const spring_status status = life_in_double(&state, s, m, dt, n);
+    const spring_status status = advance_in_double(&state, s, m, dt, n);
     return (outcome){state.x, state.v, status};
 }
 
@@ -263,7 +263,7 @@ static void spoil(spring *s, uint64_t way)
 
 static const scalar step = (scalar)0.05;
 static spring springs[most];
-static outcome lives[most];
+static outcome ends[most];
 
 static void draw(uint64_t bad_of_8)
 {
@@ -286,9 +286,9 @@ static void sweep(scalar dt, uint64_t bad_of_8)
             const size_t largest = n == 4097 ? 129 : most;
             draw(bad_of_8);
             for (size_t i = 0; i < largest; i++)
-                lives[i] = life(seen(springs, i, f), *m, dt, n, f.w == SHARED && f.g != EACH);
+                ends[i] = advance_alone(seen(springs, i, f), *m, dt, n, f.w == SHARED && f.g != EACH);
             for (size_t i = 0; i < sizeof counts / sizeof counts[0] && counts[i] <= largest; i++)
-                check_batch(springs, counts[i], f, *m, dt, n, lives);
+                check_batch(springs, counts[i], f, *m, dt, n, ends);
         }
 }
 
@@ -325,10 +325,10 @@ static void one_bad_spring(void)
         spoil(&springs[i / 2], i);
         for (const spring_method *m = steppers(); *m != no_method; m++) {
             for (size_t j = 0; j < count; j++) {
-                lives[j] = life(springs[j], *m, step, 3, false);
-                CHECK((lives[j].status == SPRING_OK) == (j != i / 2) || i % ways_to_spoil > 6, "the others are well");
+                ends[j] = advance_alone(springs[j], *m, step, 3, false);
+                CHECK((ends[j].status == SPRING_OK) == (j != i / 2) || i % ways_to_spoil > 6, "the others are well");
             }
-            check_batch(springs, count, f, *m, step, 3, lives);
+            check_batch(springs, count, f, *m, step, 3, ends);
         }
     }
 }
@@ -347,8 +347,8 @@ static void absent_is_zero(void)
             const features f = features_of(k), none = {SHARED, NONE, NONE};
             const bool one = f.w == SHARED && f.g != EACH;
             for (size_t i = 0; i < 129; i++)
-                lives[i] = life(seen(springs, i, none), *m, step, 5, one);
-            check_batch(springs, 129, f, *m, step, 5, lives);
+                ends[i] = advance_alone(seen(springs, i, none), *m, step, 5, one);
+            check_batch(springs, 129, f, *m, step, 5, ends);
         }
     }
 }
@@ -373,7 +373,7 @@ static void shared_but_absent(void)
 }
 
 /* Arrays of exactly the right size, for tools that watch memory; a million springs; and split by pointer. */
-static void in_pieces(size_t count, features f, spring_method m, size_t pieces)
+static void in_several_calls(size_t count, features f, spring_method m, size_t pieces)
 {
     const size_t bytes = count * sizeof(scalar);
     scalar *x = malloc(bytes), *v = malloc(bytes), *w = malloc(bytes), *g = malloc(bytes), *a = malloc(bytes);
@@ -401,10 +401,10 @@ static void in_pieces(size_t count, features f, spring_method m, size_t pieces)
         CHECK(advance(&b, m, step, 3) == SPRING_OK, "good input");
     }
     for (size_t i = 0; i < most; i++)
-        lives[i] = life(seen(springs, i, f), m, step, 3, f.w == SHARED && f.g != EACH);
+        ends[i] = advance_alone(seen(springs, i, f), m, step, 3, f.w == SHARED && f.g != EACH);
     size_t wrong = 0;
     for (size_t i = 0; i < count; i++) {
-        const outcome *want = &lives[i % most];
+        const outcome *want = &ends[i % most];
         wrong += memcmp(&x[i], &want->x, sizeof x[i]) != 0 || memcmp(&v[i], &want->v, sizeof v[i]) != 0;
     }
     CHECK_CLOSE((double)wrong, 0, 0, "a spring's bits do not depend on its batch or its place in it");
@@ -421,10 +421,10 @@ static void pieces(void)
     for (const spring_method *m = spring_methods(); *m != no_method; m++)
         for (size_t k = 0; k < feature_count; k++)
             for (size_t count = 1; count < 300; count += 64)
-                in_pieces(count, features_of(k), *m, 1 + k % 7);
-    in_pieces(1000003, (features){EACH, EACH, EACH}, SPRING_LEAPFROG, 1);
-    in_pieces(1000003, (features){SHARED, SHARED, SHARED}, SPRING_RK4, 3);
-    in_pieces(1000003, (features){SHARED, NONE, NONE}, SPRING_EXACT, 1);
+                in_several_calls(count, features_of(k), *m, 1 + k % 7);
+    in_several_calls(1000003, (features){EACH, EACH, EACH}, SPRING_LEAPFROG, 1);
+    in_several_calls(1000003, (features){SHARED, SHARED, SHARED}, SPRING_RK4, 3);
+    in_several_calls(1000003, (features){SHARED, NONE, NONE}, SPRING_EXACT, 1);
 }
 
 /* The public function, with the instruction set it chooses. */
@@ -482,14 +482,14 @@ static void exact_over_all_steps(void)
             const features f = features_of(k);
             const uint64_t n = lengths[i % 3] == huge_number ? UINT64_MAX : 107;
             springs[0] = (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, i < 3 ? (scalar)0.6 : 7, (scalar)0.4};
-            lives[0] = life(seen(springs, 0, f), SPRING_EXACT, lengths[i % 3], n, f.w == SHARED && f.g != EACH);
-            CHECK(i >= 3 || (lives[0].status == SPRING_OK) == isfinite((double)lengths[i % 3] * (double)n),
+            ends[0] = advance_alone(seen(springs, 0, f), SPRING_EXACT, lengths[i % 3], n, f.w == SHARED && f.g != EACH);
+            CHECK(i >= 3 || (ends[0].status == SPRING_OK) == isfinite((double)lengths[i % 3] * (double)n),
                   "n dt may overflow");
             for (size_t j = 1; j < 3; j++) {
                 springs[j] = springs[0];
-                lives[j] = lives[0];
+                ends[j] = ends[0];
             }
-            check_batch(springs, 3, f, SPRING_EXACT, lengths[i % 3], n, lives);
+            check_batch(springs, 3, f, SPRING_EXACT, lengths[i % 3], n, ends);
         }
 }
 
@@ -687,7 +687,7 @@ static void near_double(void)
             static place p;
             const spring_batch b = lay_out(&p, &s, 1, each);
             spring_state want;
-            CHECK(advance(&b, *m, step, n) == SPRING_OK && life_in_double(&want, s, *m, step, n) == SPRING_OK,
+            CHECK(advance(&b, *m, step, n) == SPRING_OK && advance_in_double(&want, s, *m, step, n) == SPRING_OK,
                   "good input");
             CHECK_CLOSE((double)b.x[0], want.x, bound, "n steps, each rounded by 2 eps (1 + z^2)^2");
             CHECK_CLOSE((double)b.v[0], want.v, bound * omega, "n steps, each rounded by 2 eps (1 + z^2)^2");
@@ -710,7 +710,7 @@ static void exact_near_double(void)
         const spring_propagator y = spring_propagator_of(&one, (double)step * (double)n, true);
         spring_state want;
         CHECK(advance(&b, SPRING_EXACT, step, n) == SPRING_OK &&
-                  life_in_double(&want, s, SPRING_EXACT, step, n) == SPRING_OK,
+                  advance_in_double(&want, s, SPRING_EXACT, step, n) == SPRING_OK,
               "good input");
         const double x = fabs((double)s.x), v = fabs((double)s.v), a = fabs((double)s.a);
         const double smallest = 1e-44; /* some roundings of denormal numbers */
@@ -755,17 +755,17 @@ int main(int argc, char **argv)
 {
     static const test none[] = {{"instruction set", lacks_instructions}};
     static const test tests[] = {
-        {"every spring has the bits of its own life", every_batch},
+        {"every spring is bitwise identical to one advanced alone", every_batch},
         {"backwards", backwards},
         {"bad springs keep their state, all others advance", bad_neighbours},
         {"most springs bad, backwards", mostly_bad},
         {"one bad spring at every place", one_bad_spring},
         {"zero is absent", absent_is_zero},
         {"shared and absent", shared_but_absent},
-        {"a million springs, and batches in pieces", pieces},
+        {"a million springs, and batches in several calls", pieces},
         {"the public function", public_function},
         {"overflow ends a batch", overflow_ends},
-        {"the closed form is one evaluation", exact_over_all_steps},
+        {"the exact solution is one evaluation", exact_over_all_steps},
         {"nothing to do", nothing_to_do},
         {"overlapping arrays", overlaps},
         {"bad batches", bad_batches},
@@ -773,7 +773,7 @@ int main(int argc, char **argv)
         {"stable step", stable_step},
 #ifdef SPRING_FLOAT
         {"near double", near_double},
-        {"closed form near double", exact_near_double},
+        {"exact solution near double", exact_near_double},
 #endif
     };
     if (argc != 2)

@@ -21,7 +21,7 @@ typedef struct scenario {
 static const scenario *current;
 static const char reason[] = "because";
 
-static void truth(void)
+static void conditions(void)
 {
     CHECK(current->got > 0, reason);
 }
@@ -81,8 +81,8 @@ static void first_number_again(void)
 }
 
 static const scenario scenarios[] = {
-    {"true", truth, true, .got = 1},
-    {"false", truth, false, .got = 0},
+    {"true", conditions, true, .got = 1},
+    {"false", conditions, false, .got = 0},
     {"at the bound", closeness, true, 1.5, 1, 0.5},
     {"a hair beyond the bound", closeness, false, 1.5, 1, 0.5 - DBL_EPSILON},
     {"beyond the bound", closeness, false, 1.5, 1, 0.49},

@@ -120,7 +120,7 @@ static void bad_input(void)
     refuse(start, 0.1, -0.1, "step negative");
     refuse(start, 0.1, INFINITY, "step infinite");
     refuse((spring_clock){1.7e308, 0}, 1.7e308, 0.1, "the sum overflows");
-    refuse((spring_clock){-1, 0}, 0.1, 0.1, "a clock nobody started");
+    refuse((spring_clock){-1, 0}, 0.1, 0.1, "a clock that was never started");
     double alpha = -1;
     CHECK(spring_clock_tick(NULL, 0.1, 0.1, 10, &alpha) == 0, "no clock");
     CHECK_BITS(alpha, 0, "alpha is always safe to draw with");

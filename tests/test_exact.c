@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The closed form against 107 digits, to the bound that spring.h states. */
+/* The exact solution against multiple precision, to the bound that spring.h states. */
 #include <math.h>
 
 #include "check.h"
@@ -18,7 +18,7 @@ static double stated_bound(const spring_params *p, double t)
     return mpfr_get_d(ref.size, MPFR_RNDU) + DBL_MIN;
 }
 
-static void against_truth(spring_params p, spring_state start, double t)
+static void against_reference(spring_params p, spring_state start, double t)
 {
     spring_state got = start;
     spring_step_exact(&got, &p, t);
@@ -39,7 +39,7 @@ static void at_damping_ratio(double zeta, int draws)
             start.v = -omega * (zeta + sqrt(zeta * zeta - 1)) * start.x;
         const double size = i % 4 == 2 ? random_log(1e-290, 1e290) : 1;
         start = (spring_state){start.x * size, start.v * size};
-        against_truth(p, start, 2 * pi / omega * random_log(1e-9, 1e3));
+        against_reference(p, start, 2 * pi / omega * random_log(1e-9, 1e3));
     }
 }
 
@@ -68,7 +68,8 @@ static void backwards(void)
     for (int i = 0; i < 2000; i++) {
         const spring_params p = {random_log(0.1, 10), random_log(0.1, 10), i % 3 ? random_log(1e-3, 30) : 0, 0};
         const double rate = sqrt(p.stiffness / p.mass) + p.damping / p.mass;
-        against_truth(p, (spring_state){random_uniform(-1, 1), random_uniform(-1, 1)}, -random_log(1e-6, 100) / rate);
+        against_reference(p, (spring_state){random_uniform(-1, 1), random_uniform(-1, 1)},
+                          -random_log(1e-6, 100) / rate);
     }
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * GSL's rk4 as a witness. One apply(h) of GSL 2.7 is two RK4 steps of h/2 (it doubles its step to estimate the error
- * and keeps the finer result).
+ * GSL's rk4 as an external solver. One apply(h) of GSL 2.7 is two RK4 steps of h/2 (it doubles its step to estimate the
+ * error and keeps the finer result).
  */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -32,10 +32,10 @@ static const spring_params springs[] = {
     {2.9, 0.31, 3.3, 0.2},
 };
 
-/* Calls judge(before, after one GSL step, context) for each of the steps. */
-typedef void judge_fn(spring_state *ours, const double theirs[2], const spring_params *p, double h);
+/* Calls compare(before, after one GSL step, context) for each of the steps. */
+typedef void compare_fn(spring_state *ours, const double theirs[2], const spring_params *p, double h);
 
-static void along_gsl(double h, int steps, judge_fn *judge)
+static void along_gsl(double h, int steps, compare_fn *compare)
 {
     for (size_t i = 0; i < sizeof springs / sizeof springs[0]; i++) {
         const spring_params *p = &springs[i];
@@ -47,7 +47,7 @@ static void along_gsl(double h, int steps, judge_fn *judge)
         CHECK(stepper != NULL, "GSL is here");
         for (int n = 0; n < steps; n++) {
             CHECK(gsl_odeiv2_step_apply(stepper, n * h, h, y, error, NULL, NULL, &system) == GSL_SUCCESS, "GSL steps");
-            judge(&ours, y, p, h);
+            compare(&ours, y, p, h);
         }
         CHECK(r.calls >= 10UL * (unsigned long)steps && r.calls <= 12UL * (unsigned long)steps,
               "three RK4 steps an apply(), the derivative at the start shared or not");
@@ -67,7 +67,7 @@ static void stages_bit_for_bit(void)
     along_gsl(0.37, 1000, stages_agree);
 }
 
-/* The library starts each step where GSL stands, so every step is judged alone. */
+/* The library starts each step where GSL stands, so every step is compared by itself. */
 static void library_agrees(spring_state *ours, const double theirs[2], const spring_params *p, double h)
 {
     const double omega = sqrt(p->stiffness / p->mass);

@@ -74,7 +74,7 @@ static void backwards(void)
     random_springs(true, true, -1);
 }
 
-/* The closed forms of the numerical solutions, in u = x + i v/omega. */
+/* The energies of the numerical solutions, in u = x + i v/omega. */
 static void energy_laws(void)
 {
     const spring_params p = {.mass = 1.3, .stiffness = 2.7};
@@ -105,7 +105,7 @@ static void energy_laws(void)
 }
 
 /* x_n = cos(n theta) x0 + sin(n theta) v0/(omega s), v_n = -omega s sin(n theta) x0 + cos(n theta) v0. */
-static void leapfrog_in_closed_form(void)
+static void leapfrog_by_formula(void)
 {
     for (int i = 0; i < 200; i++) {
         const spring_params p = {.mass = random_log(0.1, 10), .stiffness = random_log(0.1, 10)};
@@ -155,7 +155,7 @@ int main(void)
         {"damped and loaded springs", damped_and_loaded},
         {"backwards", backwards},
         {"energy laws of Euler, leapfrog and RK4", energy_laws},
-        {"leapfrog in closed form", leapfrog_in_closed_form},
+        {"the formula of n leapfrog steps", leapfrog_by_formula},
         {"a million steps round without bias", long_runs},
     };
     return RUN_TESTS("iterate", tests);

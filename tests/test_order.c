@@ -78,7 +78,7 @@ static matrix local_error(spring_method m, double w, double g)
     return L;
 }
 
-/* Phi(t) as a matrix, from the closed form of two unloaded basis states. */
+/* Phi(t) as a matrix, from the exact solution of two unloaded basis states. */
 static matrix propagator(const spring_params *p, double t)
 {
     const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};

@@ -392,11 +392,11 @@ static const spring_grid grids[] = {
 };
 
 /* The family of a link between places that lie so far apart; 0: there is none. */
-static uint32_t family_of(const int way[3])
+static uint32_t family_of(const int delta[3])
 {
     int largest = 0, nonzero = 0;
     for (int a = 0; a < 3; a++) {
-        const int length = abs(way[a]);
+        const int length = abs(delta[a]);
         largest = length > largest ? length : largest;
         nonzero += length > 0;
     }
@@ -442,8 +442,8 @@ static void check_grid(const spring_grid *g)
     size_t want = 0;
     for (size_t i = 0; i < particles; i++)
         for (size_t j = i + 1; j < particles; j++) {
-            const int way[] = {at[j][0] - at[i][0], at[j][1] - at[i][1], at[j][2] - at[i][2]};
-            want += (family_of(way) & families) != 0;
+            const int delta[] = {at[j][0] - at[i][0], at[j][1] - at[i][1], at[j][2] - at[i][2]};
+            want += (family_of(delta) & families) != 0;
         }
     CHECK(links == want, "all pairs of the families");
     static bool seen[most][most];
@@ -453,9 +453,9 @@ static void check_grid(const spring_grid *g)
         CHECK(a < b && b < particles, "from the lower to the upper");
         CHECK(!seen[a][b], "once each");
         seen[a][b] = true;
-        const int way[] = {at[b][0] - at[a][0], at[b][1] - at[a][1], at[b][2] - at[a][2]};
-        CHECK((family_of(way) & families) != 0, "of the families");
-        const double length = g->spacing * sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+        const int delta[] = {at[b][0] - at[a][0], at[b][1] - at[a][1], at[b][2] - at[a][2]};
+        CHECK((family_of(delta) & families) != 0, "of the families");
+        const double length = g->spacing * sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
         const double stretch = g->stretch == 0 ? 1 : g->stretch;
         CHECK_CLOSE(link[i].rest * stretch, g->height ? 0 : length, 2 * DBL_EPSILON * length,
                     "length over rest length");

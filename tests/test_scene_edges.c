@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes where numbers are very large, or nothing is there: what lies next to the rows, pins, time, questions. */
+/* Scenes where numbers are very large, or nothing is there: what lies next to the bands, pins, time, questions. */
 #include "test_scene.h"
 
 enum { count = 16 };
 
-/* Eight particles in a damped row, and one that is joined to nothing, so far and fast that its distance to the others
-   squared is infinite. Vectors read it, and nobody may notice, whatever their length. */
+/* Eight particles in a damped band, and one that is joined to nothing, so far and fast that its distance to the others
+   squared is infinite. Vectors read it, and that must change nothing, whatever their length. */
 static void stranger(void)
 {
 #ifdef SPRING_FLOAT
@@ -330,7 +330,7 @@ static void limit_of_drag_alone(void)
     free(s);
 }
 
-/* What lies behind the numbers to be set is nobody's business. */
+/* What lies behind the numbers to be set is not looked at. */
 static void set_reads_no_further(void)
 {
     const double position[] = {0, 0, 0, 1, 1, 1}, in[] = {0.3, 0.4, 0.5, NAN, NAN, NAN};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Forces of links: against a plain loop, in rows and lists, with every instruction set; tension, energies, rest. */
+/* Forces of links: against a plain loop, in bands and edge lists, with every instruction set; tension, energies,
+   rest. */
 #include "test_scene.h"
 
 /* ------------------------------------------------------------------------------------------------ against a plain
@@ -56,21 +57,21 @@ static const size_t grid_count = sizeof grids / sizeof grids[0];
 static void against_a_plain_loop(void)
 {
     static model m;
-    size_t with_rows = 0, with_list = 0, with_both = 0;
+    size_t with_bands = 0, with_edges = 0, with_both = 0;
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t g = 0; g < grid_count; g++)
             for (unsigned features = 0; features < MASSES; features++) {
                 build(&m, grids[g], axes, features);
                 spring_scene *s = scene_of(&m.def);
-                with_rows += s->plan.bands > 0 && s->plan.edges == 0;
-                with_list += s->plan.bands == 0;
+                with_bands += s->plan.bands > 0 && s->plan.edges == 0;
+                with_edges += s->plan.bands == 0;
                 with_both += s->plan.bands > 0 && s->plan.edges > 0;
                 free(s);
                 for (int k = 0; k < kernel_count; k++)
                     if (kernels_of(k) != NULL)
                         check_forces(&m, kernels_of(k));
             }
-    CHECK(with_rows > 0 && with_list > 0 && with_both > 0, "rows, lists, and both together have been tried");
+    CHECK(with_bands > 0 && with_edges > 0 && with_both > 0, "bands, edge lists, and both together have been tried");
 }
 
 /* The vectors at the ends of the arrays. */
@@ -114,7 +115,7 @@ static void one_odd_link(void)
 static void one_axis_direction(void)
 {
     for (unsigned reversed = 0; reversed < 2; reversed++)
-        for (size_t links = 1; links <= 9; links += 8) { /* in a list, in a row */
+        for (size_t links = 1; links <= 9; links += 8) { /* in the edge list, in a band */
             spring_link link[9];
             double x[10];
             for (uint32_t i = 0; i < 10; i++)
@@ -313,7 +314,7 @@ int main(void)
     static const test tests[] = {
         {"forces against a plain loop", against_a_plain_loop},
         {"1 to 40 particles", few_particles},
-        {"one odd link in a row", one_odd_link},
+        {"one odd link in a band", one_odd_link},
         {"one axis has a direction", one_axis_direction},
         {"the same bits with every instruction set", same_bits_everywhere},
         {"editable scenes have the same bits", edit_and_public_function},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The stable step: its formula, that it is stable, and not much too small. Hard scenes. */
+/* The stable step: its formula, that it is stable, and not much too small. Corner cases. */
 #include <stdio.h>
 
 #include "test_scene.h"
@@ -263,7 +263,7 @@ static void not_much_too_small(void)
 
 #endif
 
-/* ----------------------------------------------------------------------------------------------------- hard scenes */
+/* ----------------------------------------------------------------------------------------------------- corner cases */
 
 /* A rope that hangs from its first particle. */
 static void build_rope(model *m, uint32_t n, double stiffness, double damping)

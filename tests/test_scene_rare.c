@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: springs or dampers alone, what makes a row of links, what comes between two steps that share
+/* What is rare in scenes: springs or dampers alone, what makes a band of links, what comes between two steps that share
    a force, bad numbers at the end, a scene that is lost. */
 #include "test_scene.h"
 
@@ -10,8 +10,8 @@ static void count_calls(void *user, double t, size_t particles, const scalar *co
     ++*(int *)user;
 }
 
-/* One Euler step of springs alone, or dampers alone, each with its own small number, in a row or a list, against a
-   plain loop. */
+/* One Euler step of springs alone, or dampers alone, each with its own small number, in a band or an edge list, against
+   a plain loop. */
 static void weak_links(void)
 {
     static model m;
@@ -27,7 +27,7 @@ static void weak_links(void)
                 m.link[i].damping = dampers ? number : 0;
             }
             spring_scene *s = scene_of(&m.def);
-            CHECK((s->plan.bands == 0) == (how / 2 != 0), "without order there are no rows");
+            CHECK((s->plan.bands == 0) == (how / 2 != 0), "without order there are no bands");
             get_state(s, m.def.particles, &y);
             double force[3 * most] = {0}, size[most] = {0};
             plain_forces(&m.def, axes, y.x, y.v, force, size);
@@ -36,7 +36,7 @@ static void weak_links(void)
             for (size_t i = 0; i < m.def.particles * axes; i++) {
                 const double pull = dt * size[i / axes] / m.def.mass_all;
                 CHECK_CLOSE(end.v[i], y.v[i] + dt * force[i] / m.def.mass_all, EPS * (2 * fabs(y.v[i]) + 24 * pull),
-                            "way and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
+                            "delta and relative velocity to 1 eps, 16 roundings of products, quotients and sums");
                 CHECK_CLOSE(end.x[i], y.x[i] + dt * y.v[i], EPS * (fabs(y.x[i]) + 2 * dt * fabs(y.v[i])),
                             "a product and a sum");
             }
@@ -44,8 +44,9 @@ static void weak_links(void)
         }
 }
 
-/* So many links of an offset, from particle `first` on, the last of them moved up to particle `last`: rows, or none. */
-static uint32_t rows_of(uint32_t links, uint32_t offset, uint32_t first, uint32_t last)
+/* So many links of an offset, from particle `first` on, the last of them moved up to particle `last`: bands, or
+   none. */
+static uint32_t bands_of(uint32_t links, uint32_t offset, uint32_t first, uint32_t last)
 {
     static const double position[3 * 1200];
     spring_link link[64];
@@ -55,21 +56,21 @@ static uint32_t rows_of(uint32_t links, uint32_t offset, uint32_t first, uint32_
     }
     const spring_scene_def def = {.particles = last + offset + 1, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    const uint32_t rows = s->plan.bands;
-    CHECK(s->plan.edges == (rows == 0 ? links : 0), "in a row, or in the list");
+    const uint32_t bands = s->plan.bands;
+    CHECK(s->plan.edges == (bands == 0 ? links : 0), "in a band, or in the edge list");
     free(s);
-    return rows;
+    return bands;
 }
 
-/* Eight links make a row if they take a quarter of its places. */
-static void what_makes_a_row(void)
+/* Eight links make a band if they take a quarter of its places. */
+static void what_makes_a_band(void)
 {
     for (uint32_t first = 0; first < 500; first += 499)
         for (uint32_t offset = 1; offset <= 256; offset += 255) {
-            CHECK(rows_of(8, offset, first, first + 7) == 1, "eight links");
-            CHECK(rows_of(7, offset, first, first + 6) == 0, "seven links are too few");
-            CHECK(rows_of(10, offset, first, first + 42) == 1, "10 of 43 places, a quarter rounded down");
-            CHECK(rows_of(10, offset, first, first + 43) == 0, "10 of 44 places are less than a quarter");
+            CHECK(bands_of(8, offset, first, first + 7) == 1, "eight links");
+            CHECK(bands_of(7, offset, first, first + 6) == 0, "seven links are too few");
+            CHECK(bands_of(10, offset, first, first + 42) == 1, "10 of 43 places, a quarter rounded down");
+            CHECK(bands_of(10, offset, first, first + 43) == 0, "10 of 44 places are less than a quarter");
         }
 }
 
@@ -90,8 +91,8 @@ static void check_drift(const model *m, const spring_scene *end, const state *st
     }
 }
 
-/* Rows that begin and end anywhere, between particles that no link joins, in vectors of every length. */
-static void rows_of_every_length(void)
+/* Bands that begin and end anywhere, between particles that no link joins, in vectors of every length. */
+static void bands_of_every_length(void)
 {
     static const uint32_t offsets[] = {1, 5, 40};
     static model m;
@@ -108,7 +109,7 @@ static void rows_of_every_length(void)
                     if (kernels_of(k) == NULL)
                         continue;
                     spring_scene *s = scene_of(&m.def);
-                    CHECK(s->plan.bands == 1 && s->plan.band[0].equal == (how / 3 == 0), "a row");
+                    CHECK(s->plan.bands == 1 && s->plan.band[0].equal == (how / 3 == 0), "a band");
                     get_state(s, m.def.particles, &start);
                     CHECK(spring_scene_advance_with(kernels_of(k), s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK,
                           "a step");
@@ -118,7 +119,7 @@ static void rows_of_every_length(void)
             }
 }
 
-/* More offsets than there is room for rows. */
+/* More offsets than there is room for bands. */
 static void many_offsets(void)
 {
     enum { offsets = most_bands + 8, lowers = 10 };
@@ -133,7 +134,7 @@ static void many_offsets(void)
                     m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
             spring_scene *s = scene_of(&m.def);
             CHECK(s->plan.bands == most_bands && s->plan.edges == (offsets - most_bands) * (lowers - shorter),
-                  "the longest have rows, what has none is in the list");
+                  "the longest have bands, what has none is in the edge list");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
@@ -141,7 +142,7 @@ static void many_offsets(void)
         }
 }
 
-/* As many rows as there can be, in the small table in which their offsets are counted: sheets of many widths. */
+/* As many bands as there can be, in the small table in which their offsets are counted: sheets of many widths. */
 static void offsets_that_meet(void)
 {
     static const uint32_t widths[] = {1, 3, 16, 35, 100, 255, 256, 257, 512, 1000, 1024};
@@ -157,12 +158,12 @@ static void offsets_that_meet(void)
                                       .position = position,
                                       .link = link};
         spring_scene *s = scene_of(&def);
-        CHECK(s->plan.bands == most_bands && s->plan.edges == 0, "each has its row");
+        CHECK(s->plan.bands == most_bands && s->plan.edges == 0, "each has its band");
         free(s);
     }
 }
 
-/* Links that break the order of a row: one again, one late, one below the first. They alone lie in the list. */
+/* Links that break the order of a band: one again, one late, one below the first. They alone lie in the edge list. */
 static void stray_links(void)
 {
     static model m;
@@ -187,7 +188,7 @@ static void stray_links(void)
             m.def.link = link;
             m.def.links = links;
             spring_scene *s = scene_of(&m.def);
-            CHECK(s->plan.bands == 1 && s->plan.edges == 3, "a row, and three beside it");
+            CHECK(s->plan.bands == 1 && s->plan.edges == 3, "a band, and three beside it");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
@@ -195,7 +196,7 @@ static void stray_links(void)
         }
 }
 
-/* One link of every offset: far too few for rows. */
+/* One link of every offset: far too few for bands. */
 static void every_offset(void)
 {
     enum { links = 5000 };
@@ -208,7 +209,7 @@ static void every_offset(void)
     const spring_scene_def def = {
         .axes = 1, .particles = links + 1, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    CHECK(s->plan.bands == 0, "one link makes no row");
+    CHECK(s->plan.bands == 0, "one link makes no band");
     for (uint32_t i = 0; i < links; i++)
         CHECK_BITS(spring_scene_tension(s, i), 2 * (i + 0.5), "2 N/m of (i + 1) m - 0.5 m, exactly");
     free(s);
@@ -216,13 +217,13 @@ static void every_offset(void)
     free(link);
 }
 
-/* A block with diagonals and bending links has sixteen offsets, and each its row. */
-static void rows_of_a_block(void)
+/* A block with diagonals and bending links has sixteen offsets, and each its band. */
+static void bands_of_a_block(void)
 {
     static model m;
     build(&m, (uint32_t[]){5, 6, 7}, 3, 0);
     spring_scene *s = scene_of(&m.def);
-    CHECK(s->plan.bands == 16 && s->plan.edges == 0, "no link is left for the list");
+    CHECK(s->plan.bands == 16 && s->plan.edges == 0, "no link is left for the edge list");
     free(s);
 }
 
@@ -250,10 +251,10 @@ static void question_after_edit(void)
     }
 }
 
-enum { OWN_NUMBERS = 1, WITH_DAMPERS = 2, CUT = 4, LISTED = 8 };
+enum { OWN_NUMBERS = 1, WITH_DAMPERS = 2, CUT = 4, IN_EDGE_LIST = 8 };
 
-/* Two particles that are joined to nothing lie in a gap of a row, and infinitely far apart; or what joined them, in a
-   row or a list, has been cut. */
+/* Two particles that are joined to nothing lie in a gap of a band, and infinitely far apart; or what joined them, in a
+   band or the edge list, has been cut. */
 static void check_gap(uint32_t axes, unsigned how)
 {
     enum { particles = 13 };
@@ -262,7 +263,7 @@ static void check_gap(uint32_t axes, unsigned how)
     spring_link link[particles];
     size_t links = 0;
     for (uint32_t k = 0; k < particles; k++) {
-        const uint32_t i = how & LISTED ? particles - 1 - k : k; /* in descending order they make no row */
+        const uint32_t i = how & IN_EDGE_LIST ? particles - 1 - k : k; /* in descending order they make no band */
         const bool apart = i == 4 || i == 5 || i == 6;
         position[axes * i] = i == 5 ? far : i == 6 ? -far : 0.7 * i;
         if ((!apart || how & CUT) && i + 1 < particles)
@@ -272,8 +273,8 @@ static void check_gap(uint32_t axes, unsigned how)
     const spring_scene_def def = {
         .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    CHECK((s->plan.edges == 0) == !(how & LISTED), "where the links lie");
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance is nobody's business");
+    CHECK((s->plan.edges == 0) == !(how & IN_EDGE_LIST), "where the links lie");
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance does not matter");
     double x[3];
     spring_scene_get(s, SPRING_POSITION, x, 0, 5, 1);
     CHECK_BITS(x[0], (double)(scalar)far, "nothing pulls");
@@ -333,7 +334,7 @@ static void bad_number_at_the_end(void)
     }
 }
 
-/* Without undo all is lost, whichever particle overflows and on whichever axis, and all has to be set again. */
+/* Without rollback all is lost, whichever particle overflows and on whichever axis, and all has to be set again. */
 static void lost(void)
 {
     enum { particles = 2 };
@@ -493,13 +494,13 @@ int main(void)
 {
     static const test tests[] = {
         {"weak springs, weak dampers", weak_links},
-        {"what makes a row", what_makes_a_row},
-        {"rows of every length", rows_of_every_length},
+        {"what makes a band", what_makes_a_band},
+        {"bands of every length", bands_of_every_length},
         {"many offsets", many_offsets},
         {"offsets that meet", offsets_that_meet},
         {"stray links", stray_links},
         {"every offset", every_offset},
-        {"rows of a block", rows_of_a_block},
+        {"bands of a block", bands_of_a_block},
         {"a question after an edit", question_after_edit},
         {"a gap", gap},
         {"a callback between steps", callback_between_steps},

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The life of a scene between calls: pieces of a run, time, callbacks, failures, snapshots, what is read and
-   changed. */
+/* A scene from call to call: runs in several calls, time, callbacks, failures, snapshots, what is read and changed. */
 #include "test_scene.h"
 
 static const uint32_t sheet[] = {7, 5, 1};
@@ -112,7 +111,8 @@ static void still_force(void)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- pieces of a run */
+/* ------------------------------------------------------------------------------------------------- runs in several
+   calls */
 
 enum { WIND = feature_masks, STILL_WIND = 2 * feature_masks };
 
@@ -134,7 +134,7 @@ static spring_scene *windy_scene(model *m, wind *w, uint32_t axes, unsigned feat
     return scene_of(&m->def);
 }
 
-static const unsigned lives[] = {
+static const unsigned runs[] = {
     0,
     DRAG | GRAVITY,
     DAMPED | MASSES,
@@ -144,7 +144,7 @@ static const unsigned lives[] = {
     WIND | DAMPED | DRAG | PINNED | OWN | STRAY | MASSES | GRAVITY,
     STILL_WIND | DRAG | SHUFFLED | PINNED,
 };
-static const size_t life_count = sizeof lives / sizeof lives[0];
+static const size_t run_count = sizeof runs / sizeof runs[0];
 
 /* 30 steps at once, one by one, and with the state read and written back between. */
 static void one_by_one(void)
@@ -152,9 +152,9 @@ static void one_by_one(void)
     static model m;
     static state y;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (size_t life = 0; life < life_count; life++) {
+        for (size_t run = 0; run < run_count; run++) {
             wind w;
-            const method_list all = windy_model(&m, &w, axes, lives[life]);
+            const method_list all = windy_model(&m, &w, axes, runs[run]);
             for (const spring_method *k = all.at; *k != no_method; k++) {
                 spring_scene *at_once = scene_of(&m.def), *single = scene_of(&m.def), *set = scene_of(&m.def);
                 const double dt = 0.0137;
@@ -178,9 +178,9 @@ static void one_by_one(void)
 static void mixed_methods_and_questions(void)
 {
     static model m;
-    for (size_t life = 0; life < life_count; life++) {
+    for (size_t run = 0; run < run_count; run++) {
         wind w;
-        const method_list all = windy_model(&m, &w, 2, lives[life]);
+        const method_list all = windy_model(&m, &w, 2, runs[run]);
         spring_scene *s = scene_of(&m.def), *asked = scene_of(&m.def);
         for (int i = 0; i < 4; i++)
             for (const spring_method *k = all.at; *k != no_method; k++) {
@@ -221,11 +221,11 @@ static void two_scenes(void)
 static void snapshot(void)
 {
     static model m;
-    for (size_t life = 0; life < life_count; life++) {
+    for (size_t run = 0; run < run_count; run++) {
         wind w;
-        const method_list all = windy_model(&m, &w, 3, lives[life]);
+        const method_list all = windy_model(&m, &w, 3, runs[run]);
         for (const spring_method *k = all.at; *k != no_method; k++) {
-            spring_scene *s = windy_scene(&m, &w, 3, lives[life]);
+            spring_scene *s = windy_scene(&m, &w, 3, runs[run]);
             size_t bytes;
             spring_scene_bytes(&m.def, &bytes);
             spring_scene_advance(s, *k, 0.0137, 5);
@@ -288,9 +288,9 @@ static void failures(void)
 {
     static model m;
     static state y;
-    for (size_t life = 0; life < life_count; life++) {
+    for (size_t run = 0; run < run_count; run++) {
         wind w;
-        const method_list all = windy_model(&m, &w, 3, lives[life]);
+        const method_list all = windy_model(&m, &w, 3, runs[run]);
         for (const spring_method *k = all.at; *k != no_method; k++) {
             spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
             const spring_method method = *k;
@@ -304,13 +304,13 @@ static void failures(void)
             CHECK(spring_scene_advance(s, method, NAN, 1) == SPRING_EINVAL, "NaN");
             CHECK(spring_scene_advance(s, method, -INFINITY, 1) == SPRING_EINVAL, "infinite");
             CHECK(spring_scene_advance(s, no_method, 0.01, 1) == SPRING_EINVAL, "no method");
-            CHECK(spring_scene_advance(s, SPRING_EXACT, 0.01, 1) == SPRING_EUNSUPPORTED, "no closed form");
+            CHECK(spring_scene_advance(s, SPRING_EXACT, 0.01, 1) == SPRING_EUNSUPPORTED, "not for scenes");
             CHECK(spring_scene_set(s, SPRING_POSITION, bad, 0, 3, 1) == SPRING_EINVAL, "NaN");
             CHECK(spring_scene_set(s, SPRING_VELOCITY, infinite, 0, 3, 1) == SPRING_EINVAL, "infinite");
             CHECK(spring_scene_set(s, SPRING_POSITION, y.x, 0, 1, n) == SPRING_ERANGE, "one too many");
             CHECK(spring_scene_set_gravity(s, bad) == SPRING_EINVAL, "NaN");
             const spring_link wrong = {m.link[0].a, m.link[0].b, 1, -1, 0};
-            CHECK(spring_scene_set_link(s, 0, &wrong) == (lives[life] & EDITABLE ? SPRING_EINVAL : SPRING_EUNSUPPORTED),
+            CHECK(spring_scene_set_link(s, 0, &wrong) == (runs[run] & EDITABLE ? SPRING_EINVAL : SPRING_EUNSUPPORTED),
                   "negative, or not editable");
             CHECK(same_bits(s, twin, n, 3), "as it was");
             CHECK_BITS(spring_scene_time(s), spring_scene_time(twin), "as it was");
@@ -328,7 +328,7 @@ static void failures(void)
     }
 }
 
-/* The last kick of leapfrog overflows where all before it was finite: stiffness times the way of a step. */
+/* The last kick of leapfrog overflows where all before it was finite: stiffness times the distance of a step. */
 static void velocity_alone_overflows(void)
 {
     const double large = sizeof(scalar) == 4 ? 1e20 : 1e160; /* its square is infinite */

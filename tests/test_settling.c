@@ -14,7 +14,7 @@ static double distance_at(const spring_params *p, spring_state s, double rest, d
 }
 
 /* After T no sample is outside the band; right before T the spring is. */
-static void rest_time_by_sampling(void)
+static void settling_time_by_sampling(void)
 {
     for (int i = 0; i < 4000; i++) {
         spring_params p = {.mass = random_log(1e-2, 1e2), .stiffness = random_log(1e-2, 1e2)};
@@ -45,7 +45,7 @@ static void rest_time_by_sampling(void)
 }
 
 /* exp(-b t) cos: the last turning point beyond the tolerance is known. A long, lightly damped run. */
-static void rest_time_lightly_damped(void)
+static void settling_time_lightly_damped(void)
 {
     const spring_params p = {1.3, 2.7, 1e-9, 0};
     const spring_state s = {0.8, 0};
@@ -56,7 +56,7 @@ static void rest_time_lightly_damped(void)
 
 /* Tolerances just beside a swing: it counts if it is larger, and not otherwise. A few ulp beside it rounding decides,
    and the spring must stay inside all the same. */
-static void rest_time_at_a_swing(void)
+static void settling_time_at_a_swing(void)
 {
     for (int i = 0; i < 4000; i++) {
         const double mass = random_log(0.1, 10), k = random_log(0.1, 10), zeta = random_log(1e-3, 0.2);
@@ -79,7 +79,7 @@ static void rest_time_at_a_swing(void)
 }
 
 /* Distances that are exactly the tolerance are within it, and numbers that the code compares with are not special. */
-static void rest_time_at_the_tolerance(void)
+static void settling_time_at_the_tolerance(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0}, thick = {1, 1, 2.5, 0};
     const spring_params drag = {2, 0, 0.5, 0}, nothing = {2, 0, 0, 0}, b_is_1 = {1, 4, 2, 0};
@@ -108,7 +108,7 @@ static void rest_time_at_the_tolerance(void)
 }
 
 /* Mirrored, the motion takes the same time, to the bit; however large one of x and v is beside the other. */
-static void rest_time_mirrored(void)
+static void settling_time_mirrored(void)
 {
     static const double sizes[] = {1e-300, 1e-5, 1, 1e5, 1e300};
     const spring_params springs[] = {{1.3, 2.7, 0.6, 0}, {1.3, 2.7, 6, 0}};
@@ -121,7 +121,7 @@ static void rest_time_mirrored(void)
 }
 
 /* T is the first double from which on the spring is inside, as far as doubles can tell. */
-static void rest_time_is_the_first(void)
+static void settling_time_is_the_first(void)
 {
     const spring_params p = {1.3, 2.7, 0.6, 0}, thick = {1.3, 2.7, 6, 0};
     const spring_state start = {0.8, 0.9};
@@ -134,7 +134,7 @@ static void rest_time_is_the_first(void)
     }
 }
 
-static void rest_time_special(void)
+static void settling_time_special(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0.54}, drag = {2, 0, 0.5, 0};
     const spring_params pushed = {2, 0, 0.5, 0.1}, nothing = {2, 0, 0, 0};
@@ -172,7 +172,7 @@ static void rest_time_special(void)
 
 /* Linear: from a start 2^k times as far, with 2^k times the tolerance, the same time to the bit. Squares of frequencies
    times the largest states are beyond the range of a double. */
-static void rest_time_of_any_size(void)
+static void settling_time_of_any_size(void)
 {
     const spring_params stiff = {1, 1e10, 1e4, 0}, thick = {1, 1e18, 1e10, 0};
     const spring_params *const springs[] = {&stiff, &thick};
@@ -184,7 +184,7 @@ static void rest_time_of_any_size(void)
     }
 }
 
-static void rest_time_bad_input(void)
+static void settling_time_bad_input(void)
 {
     const spring_params p = {1.3, 2.7, 0.6, 0.4}, bad = {1.3, -2.7, 0.6, 0.4};
     const spring_state s = {0.5, 0.3}, lost = {NAN, 0.3}, far = {0.5, INFINITY};
@@ -298,19 +298,19 @@ static void constructors_refuse(void)
 int main(void)
 {
     static const test tests[] = {
-        {"rest time against sampling", rest_time_by_sampling},
-        {"rest time, lightly damped", rest_time_lightly_damped},
-        {"rest time, tolerance at a swing", rest_time_at_a_swing},
-        {"rest time, distances equal to the tolerance", rest_time_at_the_tolerance},
-        {"rest time, mirrored", rest_time_mirrored},
-        {"rest time to the last bit", rest_time_is_the_first},
-        {"rest time, special springs", rest_time_special},
-        {"rest time of states of any size", rest_time_of_any_size},
-        {"rest time, bad input", rest_time_bad_input},
+        {"settling time against sampling", settling_time_by_sampling},
+        {"settling time, lightly damped", settling_time_lightly_damped},
+        {"settling time, tolerance at a swing", settling_time_at_a_swing},
+        {"settling time, distances equal to the tolerance", settling_time_at_the_tolerance},
+        {"settling time, mirrored", settling_time_mirrored},
+        {"settling time to the last bit", settling_time_is_the_first},
+        {"settling time, special springs", settling_time_special},
+        {"settling time of states of any size", settling_time_of_any_size},
+        {"settling time, bad input", settling_time_bad_input},
         {"at rest", at_rest},
         {"parameters from a frequency", params_from_frequency},
         {"parameters from a half-life", params_from_half_life},
         {"constructors refuse bad input", constructors_refuse},
     };
-    return RUN_TESTS("rest", tests);
+    return RUN_TESTS("settling", tests);
 }

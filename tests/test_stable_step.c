@@ -37,7 +37,7 @@ static void special_springs(void)
     CHECK_BITS(spring_stable_step(&dragged, SPRING_LEAPFROG), INFINITY, "leapfrog without stiffness: always");
     for (const spring_method *m = spring_methods(); *m != no_method; m++)
         CHECK_BITS(spring_stable_step(&free_mass, *m), INFINITY, "no force at all: always");
-    CHECK_BITS(spring_stable_step(&undamped, SPRING_EXACT), INFINITY, "the closed form: always");
+    CHECK_BITS(spring_stable_step(&undamped, SPRING_EXACT), INFINITY, "the exact solution: always");
     const spring_params negative_zeros = {1.3, -0.0, -0.0, -0.0}, one_zero = {1.3, 2.7, -0.0, 0};
     for (const spring_method *m = spring_methods(); *m != no_method; m++)
         CHECK_BITS(spring_stable_step(&negative_zeros, *m), INFINITY, "-0 is 0");

@@ -56,7 +56,7 @@ static unsigned count(const char *of, const char *method, const char *witness, c
     return found;
 }
 
-/* A scene is there with every method and every witness it asks for; how many rows that makes. Of runs against a
+/* A scene is there with every method and every reference it asks for; how many rows that makes. Of runs against a
    solution there are two, and a row for the extrapolated value. */
 static unsigned whole_scene(const scene_case *c)
 {
@@ -64,7 +64,7 @@ static unsigned whole_scene(const scene_case *c)
         const char *witness;
         unsigned rows;
         bool only_rk4;
-    } witnesses[] = {
+    } references[] = {
         {"definition", 1, false},
         {c->formula, c->iterate != NULL ? 1 : 3, false},
         {c->known > 0 ? "digits" : NULL, 3, false},
@@ -75,18 +75,18 @@ static unsigned whole_scene(const scene_case *c)
     };
     unsigned expected = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        for (size_t i = 0; i < sizeof witnesses / sizeof witnesses[0]; i++) {
-            if (scene_case_steps(c, (spring_method)m) == 0 || witnesses[i].witness == NULL ||
-                (witnesses[i].only_rk4 && m != SPRING_RK4))
+        for (size_t i = 0; i < sizeof references / sizeof references[0]; i++) {
+            if (scene_case_steps(c, (spring_method)m) == 0 || references[i].witness == NULL ||
+                (references[i].only_rk4 && m != SPRING_RK4))
                 continue;
             const char *method = spring_method_name((spring_method)m);
-            CHECK(count(c->name, method, witnesses[i].witness, NULL) == witnesses[i].rows, c->name);
-            expected += witnesses[i].rows;
+            CHECK(count(c->name, method, references[i].witness, NULL) == references[i].rows, c->name);
+            expected += references[i].rows;
         }
     return expected;
 }
 
-/* Nothing is left out: every case that is not slow, with every method and every witness it asks for. */
+/* Nothing is left out: every case that is not slow, with every method and every reference it asks for. */
 static void whole_catalogue(void)
 {
     CHECK(count(NULL, NULL, NULL, "pass") == row_count, "no fail, no skip");
@@ -107,13 +107,13 @@ static void whole_catalogue(void)
             CHECK(count(c->name, method, "drive", NULL) == (c->exact != NULL), c->name);
             expected += 1u + (m != SPRING_EXACT) + (c->exact != NULL);
         }
-        static const char *const peers[][2] = {{"gsl-rk4", "rk4"},
-                                               {"arkode-rk4", "rk4"},
-                                               {"gsl-rk8pd", "exact"},
-                                               {"cvode-adams", "exact"},
-                                               {"cvode-bdf", "exact"}};
+        static const char *const external[][2] = {{"gsl-rk4", "rk4"},
+                                                  {"arkode-rk4", "rk4"},
+                                                  {"gsl-rk8pd", "exact"},
+                                                  {"cvode-adams", "exact"},
+                                                  {"cvode-bdf", "exact"}};
         for (int i = 0; i < 5 && c->external; i++) {
-            CHECK(count(c->name, peers[i][1], peers[i][0], NULL) == 1, c->name);
+            CHECK(count(c->name, external[i][1], external[i][0], NULL) == 1, c->name);
             expected++;
         }
     }
@@ -134,7 +134,7 @@ static int order_of(const char *method)
     return spring_method_describe(method_named(method))->order;
 }
 
-/* A bound that no error comes near proves nothing: for each method and witness some error is within a factor of 100.
+/* A bound that no error comes near proves nothing: for each method and reference some error is within a factor of 100.
    The definition does much the same operations as the library, and rounds alike: there, within 1000. So it is with a
    method that takes steps for its order which no undamped mode bears: bounds grow with modes that are not in the
    motion. */
@@ -203,10 +203,10 @@ static void right(void)
     bounds_fall();
 }
 
-/* A wrong library, with cases that have every witness between them: status 1, each witness fails some row, and all rows
-   of the one named (NULL: of all) fail. */
+/* A wrong library, with cases that have every reference between them: status 1, each reference fails some row, and all
+   rows of the one named (NULL: of all) fail. */
 static void wrong(const char *way, const char *const *wrong_cases, size_t wrong_case_count,
-                  const char *witness_that_sees_all)
+                  const char *reference_that_sees_all)
 {
     setenv("WRONG", way, 1);
     for (size_t i = 0; i < wrong_case_count; i++) {
@@ -215,23 +215,23 @@ static void wrong(const char *way, const char *const *wrong_cases, size_t wrong_
         for (const row *r = rows; r < rows + row_count; r++) {
             const bool blunt = strcmp(r->witness, "drive") == 0; /* its bound is what sampling the drive costs */
             CHECK(blunt || count(NULL, NULL, r->witness, "fail") > 0, r->witness);
-            if (witness_that_sees_all == NULL || strcmp(r->witness, witness_that_sees_all) == 0)
+            if (reference_that_sees_all == NULL || strcmp(r->witness, reference_that_sees_all) == 0)
                 CHECK(strcmp(r->verdict, "fail") == 0, r->witness);
         }
     }
 }
 
-static void wrong_spring(const char *way, const char *witness_that_sees_all)
+static void wrong_spring(const char *way, const char *reference_that_sees_all)
 {
     static const char *const wrong_cases[] = {"--case brisk-60", "--case beating-middle"};
-    wrong(way, wrong_cases, 2, witness_that_sees_all);
+    wrong(way, wrong_cases, 2, reference_that_sees_all);
 }
 
-static void wrong_scene(const char *way, const char *witness_that_sees_all)
+static void wrong_scene(const char *way, const char *reference_that_sees_all)
 {
     static const char *const wrong_cases[] = {"--case double-pendulum", "--case resonant-drive", "--case pair",
                                               "--case pair-damped", "--case chain-10"};
-    wrong(way, wrong_cases, sizeof wrong_cases / sizeof wrong_cases[0], witness_that_sees_all);
+    wrong(way, wrong_cases, sizeof wrong_cases / sizeof wrong_cases[0], reference_that_sees_all);
 }
 
 static void wrong_in_every_row(void)
@@ -251,8 +251,8 @@ static void slightly_wrong(void)
     wrong_scene("x off", "definition");
 }
 
-/* Every witness notices a method that is only one of a lower order, bounds taken from the runs themselves included. A
-   witness may know positions alone, so not every one notices a wrong velocity. */
+/* Every reference notices a method that is only one of a lower order, bounds taken from the runs themselves included. A
+   reference may know positions alone, so not every one notices a wrong velocity. */
 static void wrong_order(void)
 {
     wrong_scene("lower order", "definition");
@@ -268,7 +268,7 @@ int main(int argc, char **argv)
         {"the whole catalogue, with bounds that can be missed", right},
         {"the extremes of the catalogue", extremes},
         {"a library that does not work fails in every row", wrong_in_every_row},
-        {"a library that is slightly wrong is noticed by every witness", slightly_wrong},
+        {"a library that is slightly wrong is noticed by every reference", slightly_wrong},
         {"so are scenes by a method of lower order, and wrong velocities", wrong_order},
     };
     if (argc != 3)

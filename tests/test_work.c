@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What spring-work stands on: work that is counted, one equation for all, and a truth that is as good as it says. */
+/* What spring-work stands on: work that is counted, one equation for all, and an exact solution that is as good as it
+   says. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,7 +109,7 @@ static void counted_derivative(double t, const double *y, double *dy, const void
     ode_spring_derivative(t, y, dy, data);
 }
 
-static void counts_of_the_peers(void)
+static void counts_of_external_solvers(void)
 {
     const spring_params p = {1.3, 2.7, 0.2, 0.4};
     const double scale[] = {1, 1};
@@ -150,26 +151,25 @@ static void one_equation(work *w)
     free(theirs);
 }
 
-/* By a stepper of the library, which had no part in the truth: RK4 gets nearer as h^4, until the difference is
-   small. */
-static void truth_of_a_scene(work *w)
+/* By a stepper of the library, which had no part in it: RK4 gets nearer as h^4, until the difference is small. */
+static void exact_end_of_a_scene(work *w)
 {
     double *y = scene_room(w->size, sizeof *y);
     const work_solver *const rk4 = work_solver_of(SPRING_RK4);
     const uint64_t n = (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 64)) + 1;
-    CHECK_BELOW(w->uncertainty, 1e-12, "the truth is good for every error of the table");
-    CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what the truth is known to");
+    CHECK_BELOW(w->uncertainty, 1e-12, "it is good for every error of the table");
+    CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what it is known to");
     CHECK(work_run(w, rk4, (work_effort){.steps = n}, 1, y).failure == NULL, "it moves");
     const double coarse = work_error(w, y);
     work_run(w, rk4, (work_effort){.steps = 2 * n}, 1, y);
     CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, 0.1,
-                "fourth order, toward the truth: terms of the next one are h times smaller");
+                "fourth order, toward it: terms of the next one are h times smaller");
     y[0] = NAN;
     CHECK(!(work_error(w, y) <= 1), "NaN is no small error");
     free(y);
 }
 
-static void truth_of_a_spring(work *w)
+static void exact_end_of_a_spring(work *w)
 {
     spring_state s = w->problem->start;
     const spring_params *p = &w->problem->p;
@@ -177,7 +177,7 @@ static void truth_of_a_spring(work *w)
     const double bound = 4 * DBL_EPSILON * (1 + w->omega * w->duration * fmax(1, zeta));
     spring_step_exact(&s, p, w->duration);
     const double y[] = {s.x, s.v};
-    CHECK_BELOW(work_error(w, y), bound, "the bound of the closed form");
+    CHECK_BELOW(work_error(w, y), bound, "the bound of the exact solution");
     CHECK_BELOW(work_energy_error(w, y), 2 * bound, "energy is the square of that");
 }
 
@@ -196,14 +196,14 @@ static void scenes_equation(void)
     on_each(WORK_SCENE, one_equation);
 }
 
-static void scenes_truth(void)
+static void scenes_exact(void)
 {
-    on_each(WORK_SCENE, truth_of_a_scene);
+    on_each(WORK_SCENE, exact_end_of_a_scene);
 }
 
-static void springs_truth(void)
+static void springs_exact(void)
 {
-    on_each(WORK_SPRING, truth_of_a_spring);
+    on_each(WORK_SPRING, exact_end_of_a_spring);
 }
 
 int main(void)
@@ -212,10 +212,10 @@ int main(void)
         {"force evaluations of scenes, by a callback", scenes_count},
         {"a scene that counts moves like one that does not", scenes_counted},
         {"leapfrog with a callback that may use velocities", predicted_velocity},
-        {"force evaluations of GSL and SUNDIALS", counts_of_the_peers},
+        {"force evaluations of GSL and SUNDIALS", counts_of_external_solvers},
         {"one equation of a scene", scenes_equation},
-        {"the true end of a scene", scenes_truth},
-        {"the true end of a spring", springs_truth},
+        {"the exact end of a scene", scenes_exact},
+        {"the exact end of a spring", springs_exact},
     };
     return RUN_TESTS("work", tests);
 }

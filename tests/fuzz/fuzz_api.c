@@ -137,7 +137,7 @@ static void check_batch(const input *in, spring_method m)
         refused = refused || alone == SPRING_EINVAL;
         lost = lost || alone == SPRING_ENONFINITE;
         must(status == SPRING_EINVAL && same_state ? true : same(s, (spring_state){now[0][i], now[1][i]}),
-             "each spring has its own life, to the bit");
+             "each spring is as if advanced alone, to the bit");
     }
     must(status == SPRING_EINVAL || (!refused || in->dt == 0), "a bad spring is told");
     must(status != SPRING_OK || in->dt == 0 || !lost, "a spring that overflows is told");
