@@ -1,36 +1,40 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Generates the mutants of the library: every operator, comparison and constant of src/ changed in turn.
+"""The mutants that a generator makes of C: every operator, comparison, constant and statement of a file, in turn.
 
-usage: generate.py SRC     lists them, one a line: name, tab, the line of source it changes
-
-A mutant is named file:function:change:ordinal, the ordinal counting the same change within the function, so a name
-outlives edits elsewhere. Comments, strings, preprocessor lines, declarations of pointers and sizes of arrays are left
-alone.
+A mutant is named definition:change:ordinal, the definition being a function, a table, an enumeration or a macro, and
+the ordinal counting the same change within it: a name outlives edits elsewhere, other comments and another layout.
+Left alone are comments, strings, preprocessor lines but macros with parameters, declarations of pointers and sizes of
+arrays. A macro that is called between two definitions belongs to the second.
 """
 
-import pathlib
+import hashlib
 import re
-import sys
 from typing import NamedTuple
 
 TOKEN = re.compile(
-    r"""(?P<skip>/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|^[ \t]*\#(?:\\\n|[^\n])*|\s+)
+    r"""(?P<space>/\*.*?\*/|//[^\n]*|\\\n|\s+)
+      | (?P<directive>^[ \t]*\#(?:/\*.*?\*/|\\\n|[^\n])*)
+      | (?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')
       | (?P<number>(?:0[xX][0-9a-fA-F.]+(?:[pP][+-]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[uUlLfF]*)
       | (?P<word>[A-Za-z_]\w*)
-      | (?P<operator>->|\+\+|--|<<|>>|[-+*/<>=!]=|&&|\|\||.)""",
+      | (?P<operator>->|\+\+|--|<<|>>|[-+*/<>=!&|]=|&&|\|\||.)""",
     re.VERBOSE | re.MULTILINE | re.DOTALL,
 )
+MACRO = re.compile(r"[ \t]*#[ \t]*define[ \t]+(\w+)\([^)]*\)")
 
 CHANGES = {
     "+": ["-"],
     "-": ["+"],
     "*": ["/"],
     "/": ["*"],
+    "&": ["|"],
+    "|": ["&"],
     "+=": ["-="],
     "-=": ["+="],
     "*=": ["/="],
     "/=": ["*="],
+    "&=": ["|="],
+    "|=": ["&="],
     "++": ["--"],
     "--": ["++"],
     "<": ["<=", ">="],
@@ -48,12 +52,37 @@ CHANGES = {
     "false": ["true"],
     "fabs": [""],
 }
-NO_TYPES = {"return", "else", "case", "goto", "sizeof"}
+NO_TYPES = {"return", "else", "case", "goto", "sizeof", "break", "continue", "default"}
 
 
-class Mutant(NamedTuple):
+class Token(NamedTuple):
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+class Definition(NamedTuple):
     name: str
-    file: str
+    tokens: list
+
+    def body(self):
+        """Where the body of a function begins and ends, braces included; None if this is none."""
+        for before, token in zip(self.tokens, self.tokens[1:]):
+            if token.text == "{":
+                return (token.start, self.tokens[-1].end) if before.text == ")" else None
+        return None
+
+    def declares_only(self):
+        return not any(token.text in ("{", "=") for token in self.tokens)
+
+    def code(self):
+        """Changes with the definition, and not with its comments or layout."""
+        return hashlib.sha256(" ".join(token.text for token in self.tokens).encode()).hexdigest()[:12]
+
+
+class Change(NamedTuple):
+    name: str
     start: int
     end: int
     new: str
@@ -61,10 +90,52 @@ class Mutant(NamedTuple):
     def apply(self, text):
         return text[: self.start] + self.new + text[self.end :]
 
-    def line(self, text):
-        """The line it changes, to be read by people and to notice that a name has moved to another place."""
-        begin = text.rfind("\n", 0, self.start) + 1
-        return " ".join(text[begin : text.find("\n", self.start)].split())
+
+def scan(text, start, end):
+    matches = (match for match in TOKEN.finditer(text, start, end) if match.lastgroup != "space")
+    return [Token(match.lastgroup, match.group(), match.start(), match.end()) for match in matches]
+
+
+def opening(tokens, i):
+    """The index of the parenthesis that this one closes."""
+    depth = 1
+    while depth > 0 and i > 0:
+        i -= 1
+        depth += (tokens[i].text == ")") - (tokens[i].text == "(")
+    return i
+
+
+def name_of(tokens):
+    """The name that a definition gives, from all its tokens."""
+    words = [token.text for token in tokens]
+    head = words[: words.index("{")] if "{" in words else words[:-1]
+    if "enum" in head[-2:]:
+        return words[len(head) + 1]  # the first of its constants: most have no other name
+    if "=" in head:
+        head = head[: head.index("=")]
+        return head[head.index("[") - 1] if "[" in head else head[-1]
+    if head[-1:] != [")"]:
+        return head[-1] if head else ""
+    at = opening(tokens, len(head) - 1)  # of the parameters
+    return head[at - 2] if head[at - 1] == ")" else head[at - 1]  # SCENE(advance)(...) is named by a macro
+
+
+def definitions(text):
+    """All that a file defines, and what else ends in a semicolon or a brace."""
+    depth, tokens = 0, []
+    for token in scan(text, 0, len(text)):
+        if token.kind == "directive":
+            macro = MACRO.match(token.text)
+            if macro:
+                yield Definition(macro.group(1), scan(text, token.start + macro.end(), token.end))
+            continue
+        tokens.append(token)
+        depth += (token.text == "{") - (token.text == "}")
+        if depth == 0 and token.text in (";", "}"):
+            yield Definition(name_of(tokens), tokens)
+            tokens = []
+    if depth != 0:
+        raise ValueError("braces do not match")
 
 
 def other_number(text):
@@ -81,94 +152,92 @@ def other_number(text):
 
 def binary(tokens, i):
     """Is this operator one of two operands? clang-format puts a space behind such, and none behind others."""
-    return tokens[i][3] < tokens[i + 1][2]
+    return i + 1 < len(tokens) and tokens[i].end < tokens[i + 1].start
 
 
 def declares(tokens, name):
     """Is this name one that is being declared?"""
     before = tokens[name - 1]
-    if before[0] == "word":
-        return before[1] not in NO_TYPES
-    if before[1] == "*":
+    if before.kind == "word":
+        return before.text not in NO_TYPES
+    if before.text == "*":
         return not binary(tokens, name - 1)
-    if before[1] != ",":
+    if before.text != ",":
         return False
     depth, first = 0, name - 1  # one more of a declaration of several, or of the operands of an expression?
-    while depth > 0 or tokens[first - 1][1] not in (";", "{", "}", "("):
+    while first > 0 and (depth > 0 or tokens[first - 1].text not in (";", "{", "}", "(")):
         first -= 1
-        depth += (tokens[first][1] in (")", "}", "]")) - (tokens[first][1] in ("(", "{", "["))
+        depth += (tokens[first].text in (")", "}", "]")) - (tokens[first].text in ("(", "{", "["))
     second = first + 1
-    while tokens[second][1] == "*" and not binary(tokens, second):
+    while tokens[second].text == "*" and not binary(tokens, second):
         second += 1
-    return tokens[first][0] == tokens[second][0] == "word" and tokens[first][1] not in NO_TYPES
+    return tokens[first].kind == tokens[second].kind == "word" and tokens[first].text not in NO_TYPES
 
 
 def size_of_array(tokens, i):
     """Is this number between the brackets of a declaration?"""
-    if tokens[i - 1][1] != "[" or tokens[i + 1][1] != "]":
+    if [token.text for token in tokens[i - 1 : i + 2 : 2]] != ["[", "]"]:
         return False
-    if [t[1] for t in tokens[i + 2 : i + 4]] == ["=", "{"]:
+    if [token.text for token in tokens[i + 2 : i + 4]] == ["=", "{"]:
         return True
     first = i - 1
-    while tokens[first - 1][1] == "]":
+    while tokens[first - 1].text == "]":
         first -= 3
     return declares(tokens, first - 1)
+
+
+def starts_statement(tokens, i):
+    before = tokens[i - 1].text
+    if before == ")":  # of a condition, not of a cast
+        return tokens[opening(tokens, i - 1) - 1].text in ("if", "for", "while")
+    return before in (";", "{", "}", "else")
+
+
+def statement(tokens, i):
+    """The offset behind the assignment, the call or the if (...) return ...; that begins at a token, or None."""
+    if not starts_statement(tokens, i) or not (tokens[i].kind == "word" or tokens[i].text == "*"):
+        return None
+    name = i + 1 + (tokens[i + 1].text == "*")
+    if tokens[i].text in NO_TYPES or tokens[i].kind == tokens[name].kind == "word" and declares(tokens, name):
+        return None
+    if tokens[i].text in ("if", "for", "while"):
+        inner = next(j for j in range(i + 2, len(tokens)) if tokens[j].text == ")" and opening(tokens, j) == i + 1) + 1
+        if tokens[i].text != "if" or tokens[inner].text not in ("return", "break", "continue"):
+            return None
+    for token in tokens[i:]:
+        if token.text in ("{", "}", ";"):
+            return token.end if token.text == ";" else None
+    return None
 
 
 def changes(tokens, i):
     kind, text = tokens[i][:2]
     if kind == "number":
         return [] if size_of_array(tokens, i) else [other_number(text)]
-    if text in ("+", "-", "*", "/") and not binary(tokens, i):
+    if text in ("+", "-", "*", "/", "&") and not binary(tokens, i):
         return [""] if text == "-" else []
     return CHANGES.get(text, [])
 
 
-def owner_of(head):
-    """The name that a definition at the top level of a file gives, from the tokens it starts with."""
-    words = [token[1] for token in head]
-    if "enum" in words[:1]:
-        return "enum"
-    for i, word in enumerate(words):
-        if word in ("(", "=", "[") and i > 0 and head[i - 1][0] == "word":
-            made = words[i - 1] in ("BATCH", "METHOD", "SCENE") and i + 1 < len(words)  # a name made by a macro
-            return words[i + 1] if made else words[i - 1]
-    return words[-1] if words else ""
+def generate(text):
+    """All mutants of a file: for each its definition and what is changed."""
+    count = {}
 
+    def change(definition, what, start, end, new):
+        name = f"{definition.name}:{what}"
+        count[name] = count.get(name, 0) + 1
+        return definition, Change(f"{name}:{count[name]}", start, end, new)
 
-def mutants_of(name, text):
-    tokens = [(m.lastgroup, m.group(), m.start(), m.end()) for m in TOKEN.finditer(text)]
-    tokens = [token for token in tokens if token[0] != "skip"]
-    found, count = [], {}
-    depth, head = 0, []
-    for i, (_, old, start, end) in enumerate(tokens):
-        if depth == 0:
-            if old in (";", "}"):
-                head = []
-            else:
-                head.append(tokens[i])
-        for new in changes(tokens, i):
-            key = f"{name}:{owner_of(head)}:{old} to {new or 'nothing'}"
-            count[key] = count.get(key, 0) + 1
-            found.append(Mutant(f"{key}:{count[key]}", f"src/{name}", start, end, new))
-        depth += (old == "{") - (old == "}")
-        if depth == 0 and old == "}":
-            head = []
-    return found
-
-
-def generate(src):
-    """All mutants of the files of a folder."""
-    return [
-        mutant
-        for path in sorted(path for path in pathlib.Path(src).iterdir() if path.suffix in (".c", ".h"))
-        for mutant in mutants_of(path.name, path.read_text(encoding="utf-8"))
-    ]
-
-
-if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    for each in generate(sys.argv[1]):
-        source = (pathlib.Path(sys.argv[1]) / pathlib.Path(each.file).name).read_text(encoding="utf-8")
-        print(f"{each.name}\t{each.line(source)}")
+    for definition in definitions(text):
+        if definition.name == "_Static_assert":  # of no effect but to compile or not
+            continue
+        tokens = definition.tokens
+        function = definition.body() is not None
+        parentheses = 0
+        for i, token in enumerate(tokens):
+            parentheses += (token.text == "(") - (token.text == ")")
+            for new in changes(tokens, i):
+                yield change(definition, f"{token.text} to {new or 'nothing'}", token.start, token.end, new)
+            end = statement(tokens, i) if function and parentheses == 0 and i > 0 else None
+            if end:
+                yield change(definition, "statement to nothing", token.start, end, ";")

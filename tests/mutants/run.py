@@ -1,38 +1,41 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Applies mutants one at a time to a copy of the tree and runs the quick suite until a program fails.
+"""Does the suite notice a wrong library? Applies mutants, one at a time, to a copy of the tree, and runs the C tests.
 
-usage: run.py [--sample] [--new TABLE] [-o FILE] [PATTERN]...
-       run.py --merge TABLE... [-o FILE]
+usage: run.py [--list | --sample] [-o FILE] [PATTERN]...
 
-  --sample      of the mutants in mutants.tsv a fixed 14th of those written by hand, a fixed 90th of the generated
-  --new TABLE   only mutants that have no row in TABLE
-  -o FILE       write the table to FILE instead of standard output
-  PATTERN       only mutants whose names contain one of these
-  --merge       run nothing: of each mutant that there is, the last row among the TABLEs, judged as after a run
+  PATTERN   only mutants whose names contain one of these
+  --list    run nothing: names, and where they are
+  --sample  a fixed small part of them
+  -o FILE   the table, instead of standard output. A FILE that is there is continued: a mutant is not run again while
+            the code of its function is what it was, unless it had survived.
 
-The mutants are those of generate.py and of by_hand.toml. mutants.tsv beside this file is the table which the report
-shows; it is merged of several runs. Columns: mutant, by (generator or hand), killed_by (program and test point), verdict
-(killed, equivalent, survived), reason (why it is equivalent, or what was meant to break), caught_by_validate (does
-spring-validate --quick see it? yes or no for mutants that change a trajectory, "-" for others), line (of source), date
-(of the run). The comment "present" says how many mutants there are. Those known to be equivalent, and why, are in
-equivalent.tsv.
+The mutants are those that generate.py makes of every file of src/, file:function:change:ordinal, and those of
+by_hand.toml. The table has one row a mutant: mutant, by (generator or hand), verdict, killed_by (program and test
+point), reason (why it is equivalent, or what was meant to break), code (a hash of the function as it is changed,
+without comments and layout). Verdicts:
 
-Status 1 if a mutant survives, if one that is listed as equivalent is killed, if spring-validate misses a trajectory
-mutant written by hand, or if a list names a mutant or a line that there is not. The last line on standard error is
-"N passed, N failed, N skipped".
+  killed      a test fails
+  same code   the compiler makes of it what it makes of the library as it is
+  equivalent  no test fails, and equivalent.tsv says why none can
+  survived    none of these
+
+Status 1 if a mutant survives, if one of equivalent.tsv is killed or is not there any more, or if one of by_hand.toml
+cannot be applied or compiled. The last line on standard error is "N passed, N failed, N skipped".
 """
 
 import argparse
 import concurrent.futures
 import csv
 import datetime
+import hashlib
 import json
 import os
 import pathlib
 import queue
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -46,40 +49,26 @@ import generate
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-VALIDATE = "validate"
+COLUMNS = ("mutant", "by", "verdict", "killed_by", "reason", "code")
+SAMPLED = {"hand": 5, "generator": 90}  # one in so many
 TIME_LIMIT = "time limit"
-SAMPLE_BY_HAND, SAMPLE_GENERATED = 14, 90
-COLUMNS = ("mutant", "by", "killed_by", "verdict", "reason", "caught_by_validate", "line", "date")
+BROKEN = "does not compile"
 
-# Where a generated mutant changes a trajectory: the steps, and not the limits of stability.
-STEPPERS = ("euler.h", "leapfrog.h", "rk4.h", "exact.h", "exact.c", "loops.h")
-NOT_STEPS = ("exact_stable_step",)
-
-# Mutants are tried where only vectors of 16 bytes are compiled: a fourth of the work. What survives there, and may concern
-# the others, is tried with all of them, by the tests that look at vectors, in a build that is made when it is needed.
-NARROW, WIDE = "build", "build-wide"
-ONLY_NARROW = "-Dc_args=-DSPRING_X86_64=0"
-OF_VECTORS = re.compile("batch|scene")
-WIDE_PROGRAMS = {}  # by tree
-WITH_VECTORS = re.compile("src/(real_vector|processor|batch_kernels|batch_loop|scene_kernels)")
-
-# Which programs a file concerns; no other calls what is in it. A file that is not here concerns all.
-CONCERNS = {
-    "src/batch": re.compile("batch|plain|fuzz-api|validate$"),
-    "src/scene": re.compile("scene|plain|fuzz-scene|validate$"),
-    "src/grid": re.compile("scene|fuzz-scene|validate$"),
-    "src/real_vector": re.compile("batch|scene|plain|fuzz|validate$"),
-}
+# The library is linked into every program: one that does not contain what is changed stays as it is, and need not run.
+# Vectors of 16 bytes are compiled four times as fast as all of them, so these are tried first.
+OPTIONS = ["-Dtests=enabled", "-Dreport=disabled", "-Ddefault_library=static", "-Ddebug=false", "-Doptimization=1"]
+BUILDS = {"build-narrow": ["-Dc_args=-DSPRING_X86_64=0"], "build": []}
 
 
 class Mutant(NamedTuple):
     name: str
     file: str
+    line: int
     text: str  # of the whole file
-    line: str
+    code: str
+    by: str
     reason: str
-    trajectory: bool
-    by_hand: bool
+    only: str  # the one program that has to notice it, or ""
 
 
 class Program(NamedTuple):
@@ -88,28 +77,48 @@ class Program(NamedTuple):
     targets: list  # to build first
     tap: bool
     limit: float  # [s]
+    digest: str  # of the targets as they should be
+
+
+class Build(NamedTuple):
+    path: pathlib.Path
+    programs: list  # fastest first
+    objects: dict  # path and digest, as they should be
+
+
+def mutant_of(name, path, text, definition, change, by="generator", reason="", only=""):
+    after = change.apply(text)
+    within = definition.tokens[0].start, definition.tokens[-1].end + len(after) - len(text)
+    code = generate.Definition("", generate.scan(after, *within)).code()
+    line = text.count("\n", 0, change.start) + 1
+    return Mutant(name, path.relative_to(ROOT).as_posix(), line, after, code, by, reason, only)
 
 
 def generated():
-    for mutant in generate.generate(ROOT / "src"):
-        text = (ROOT / mutant.file).read_text(encoding="utf-8")
-        name, owner = mutant.name.split(":")[:2]
-        yield Mutant(
-            mutant.name, mutant.file, mutant.apply(text), mutant.line(text), "",
-            name in STEPPERS and owner not in NOT_STEPS, False,
-        )
+    for path in sorted((ROOT / "src").rglob("*.[ch]")):
+        text = path.read_text(encoding="utf-8")
+        for definition, change in generate.generate(text):
+            name = f"{path.relative_to(ROOT / 'src').as_posix()}:{change.name}"
+            yield mutant_of(name, path, text, definition, change)
 
 
 def written_by_hand():
+    """by_hand.toml says what is replaced: a token of a function, or its whole body."""
     for entry in tomllib.loads((HERE / "by_hand.toml").read_text(encoding="utf-8"))["mutant"]:
-        text = (ROOT / entry["file"]).read_text(encoding="utf-8")
-        if text.count(entry["old"]) != 1:
-            sys.exit(f"by_hand.toml: {entry['name']}: the text to replace occurs {text.count(entry['old'])} times "
-                     f"in {entry['file']}; it should occur once")
-        yield Mutant(
-            entry["name"], entry["file"], text.replace(entry["old"], entry["new"]),
-            " ".join(entry["old"].split()), entry["purpose"], entry.get("trajectory", False), True,
-        )
+        path = ROOT / entry["file"]
+        text = path.read_text(encoding="utf-8")
+        found = [d for d in generate.definitions(text) if d.name == entry["function"] and not d.declares_only()]
+        if len(found) != 1:
+            sys.exit(f"by_hand.toml: {entry['name']}: {entry['file']} defines {len(found)} times {entry['function']}")
+        if "body" in entry:
+            start, end = found[0].body()
+        else:
+            tokens = [token for token in found[0].tokens if token.text == entry["token"]]
+            if len(tokens) < entry["ordinal"]:
+                sys.exit(f"by_hand.toml: {entry['name']}: {entry['token']} occurs {len(tokens)} times")
+            start, end = tokens[entry["ordinal"] - 1][2:]
+        change = generate.Change("", start, end, entry.get("body", entry.get("new")))
+        yield mutant_of(entry["name"], path, text, found[0], change, "hand", entry["purpose"], entry.get("only", ""))
 
 
 def rows_of(path):
@@ -119,32 +128,32 @@ def rows_of(path):
 
 
 def known_equivalents(mutants):
-    """From equivalent.tsv: name, line of source, reason. A name that no longer means that line is an error."""
-    lines = {mutant.name: mutant.line for mutant in mutants}
-    reasons = {}
-    for row in rows_of(HERE / "equivalent.tsv"):
-        if lines.get(row["mutant"]) != row["line"]:
-            sys.exit(f"equivalent.tsv: there is no {row['mutant']} in the line: {row['line']}")
-        reasons[row["mutant"]] = row["reason"]
+    reasons = {row["mutant"]: row["reason"] for row in rows_of(HERE / "equivalent.tsv")}
+    unknown = [name for name in reasons if name not in mutants]
+    if unknown:
+        sys.exit("equivalent.tsv: no such mutant: " + ", ".join(unknown))
     return reasons
+
+
+# --------------------------------------------------------------------------------------------- programs and builds
 
 
 def execute(program, build):
     """What failed in a program, or "" if all is well."""
     def stop():
         stopped.append(True)
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)
 
     stopped = []
     points, plan = 0, None
     with subprocess.Popen(program.command, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True) as process:
         timer = threading.Timer(program.limit, stop)
         timer.start()
         for line in process.stdout:
             if program.tap and line.startswith("not ok"):
-                process.kill()
                 timer.cancel()
+                os.killpg(process.pid, signal.SIGKILL)
                 return line.strip().partition(" - ")[2]
             points += line.startswith("ok ")
             if line.startswith("1.."):
@@ -158,208 +167,218 @@ def execute(program, build):
     return "broke off" if program.tap and points != plan else ""
 
 
-def make(build, targets, jobs=1):
-    return subprocess.run(["ninja", f"-j{jobs}", *targets], cwd=build, stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, check=False)
+def ninja(build, *arguments):
+    return subprocess.run(["ninja", *arguments], cwd=build, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          check=False)
 
 
-def stamps(build, targets):
-    return [(build / target).stat().st_mtime_ns for target in targets]
+def digest(paths):
+    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()
 
 
-def programs_of(build, names=re.compile("")):
-    """The quick suite, built: every test of these names whose program is built here, fastest first. All must pass on the
-    tree as it is."""
-    tests = json.loads(subprocess.run(["meson", "introspect", "--tests", str(build)], check=True,
-                                      capture_output=True, text=True).stdout)
-    outputs = {output for target in json.loads(
-        subprocess.run(["meson", "introspect", "--targets", str(build)], check=True, capture_output=True,
-                       text=True).stdout) for output in target["filename"]}
-    programs = []
-    for test in tests:
-        if test["cmd"][0] not in outputs or "springstep:mutants" in test["suite"] or not names.match(test["name"]):
-            continue
-        def inside(word):
-            path = pathlib.Path(word)
-            return f"./{path.relative_to(build)}" if build in path.parents else word
-        program = Program(test["name"], [inside(word) for word in test["cmd"]],
-                          [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in outputs],
-                          test["protocol"] == "tap", 600)
-        programs.append(program)
-    built = make(build, sorted({target for program in programs for target in program.targets}), os.cpu_count())
+def introspect(build, what):
+    return json.loads(subprocess.run(["meson", "introspect", f"--{what}", str(build)], check=True, capture_output=True,
+                                     text=True).stdout)
+
+
+def programs_of(build):
+    """Every test whose program is built here, fastest first. All must pass on the tree as it is."""
+    outputs = {output for target in introspect(build, "targets") for output in target["filename"]}
+
+    def inside(word):
+        path = pathlib.Path(word)
+        return f"./{path.relative_to(build)}" if build in path.parents else word
+
+    programs = [
+        Program(test["name"], [inside(word) for word in test["cmd"]],
+                [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in outputs],
+                test["protocol"] == "tap", 600, "")
+        for test in introspect(build, "tests") if test["cmd"][0] in outputs
+    ]
+    built = ninja(build, *sorted({target for program in programs for target in program.targets}))
     if built.returncode != 0:
         sys.exit(built.stdout + built.stderr)
-    timed = []
-    for program in programs:
+
+    def timed(program):
         start = time.monotonic()
         failure = execute(program, build)
         if failure:
             sys.exit(f"{program.name} fails without any mutant: {failure}")
         duration = time.monotonic() - start
-        timed.append((round(4 * duration), program._replace(limit=max(5, 10 * duration))))
-    return [program for _, program in sorted(timed, key=lambda pair: (pair[1].name == VALIDATE, pair[0], pair[1].name))]
+        whole = digest([build / target for target in program.targets])
+        return round(4 * duration), program._replace(limit=max(5, 10 * duration), digest=whole)
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        costs = list(pool.map(timed, programs))
+    return [program for _, program in sorted(costs, key=lambda pair: (pair[0], pair[1].name))]
 
 
-def set_up(tree, name, flags):
-    build = tree / name
-    done = subprocess.run(["meson", "setup", str(build), str(tree), "-Dtests=enabled", "-Dreport=disabled", "-Ddebug=false",
-                           "-Doptimization=1", *flags],
-                          capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
-    if done.returncode != 0:
-        sys.exit(done.stdout + done.stderr)
-    return build
+def set_up(tree):
+    """The builds of a tree, in the order in which they are tried."""
+    builds = []
+    for name, options in BUILDS.items():
+        path = tree / name
+        done = subprocess.run(["meson", "setup", str(path), str(tree), *OPTIONS, *options], stdin=subprocess.DEVNULL,
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            sys.exit(done.stdout + done.stderr)
+        programs = programs_of(path)
+        objects = {str(file.relative_to(path)): digest([file]) for file in path.rglob("*.o")}
+        builds.append(Build(path, programs, objects))
+    return builds
 
 
-def concerns(mutant, program):
-    return all(pattern.match(program.name) for start, pattern in CONCERNS.items() if mutant.file.startswith(start))
+# ----------------------------------------------------------------------------------------------------- one mutant
 
 
-def wide_programs(tree):
-    if not (tree / WIDE).exists():
-        WIDE_PROGRAMS[tree] = programs_of(set_up(tree, WIDE, []), OF_VECTORS)
-    return WIDE_PROGRAMS[tree]
-
-
-def try_program(mutant, build, program):
+def try_program(build, program):
     """What failed, or "" if nothing did."""
-    before = stamps(build, program.targets)
-    built = make(build, program.targets)
-    if built.returncode != 0:
-        return "does not compile"
-    # The library is shared: a mutant of src/ changes no program. Any other that leaves a program as it was cannot change
-    # what it does.
-    if not mutant.file.startswith("src/") and stamps(build, program.targets) == before:
+    if ninja(build.path, "-j1", *program.targets).returncode != 0:
+        return BROKEN
+    if digest([build.path / target for target in program.targets]) == program.digest:
         return ""
-    failure = execute(program, build)
-    if failure == TIME_LIMIT: # a program that hangs, or a machine that was busy?
-        failure = execute(program._replace(limit=4 * program.limit), build)
+    failure = execute(program, build.path)
+    if failure == TIME_LIMIT:  # a program that hangs, or a machine that was busy?
+        failure = execute(program._replace(limit=4 * program.limit), build.path)
     return failure
 
 
-def try_mutant(mutant, tree, programs):
-    """(killed by, caught by validate) of one mutant in a private tree."""
-    path = tree / mutant.file
-    original = path.read_text(encoding="utf-8")
-    killed_by, caught = "", "-"
-    try:
-        path.write_text(mutant.text, encoding="utf-8")
-        for program in programs:
-            wanted = mutant.trajectory and program.name == VALIDATE
-            if killed_by and not wanted or not concerns(mutant, program):
-                continue
-            failure = try_program(mutant, tree / NARROW, program)
-            if failure and not killed_by:
-                killed_by = f"{program.name}: {failure}"
-            if wanted:
-                caught = "yes" if failure else "no"
-        if not killed_by and WITH_VECTORS.match(mutant.file):
-            path.write_text(original, encoding="utf-8")
-            wide = wide_programs(tree)
-            path.write_text(mutant.text, encoding="utf-8")
-            for program in wide:
-                failure = try_program(mutant, tree / WIDE, program)
-                if failure:
-                    return f"{program.name}: {failure}", caught
-    finally:
-        path.write_text(original, encoding="utf-8")
-    return killed_by, caught
+def try_mutant(mutant, builds, last_killer):
+    """(verdict, killed_by) of a mutant that is in the tree; not yet whether it is equivalent."""
+    compiled, same = set(), True
+    for build in builds:
+        # Once is enough, if what is compiled is the same in all builds.
+        if compiled and all(each.objects.get(name) == builds[0].objects[name] for name in compiled for each in builds):
+            break
+        programs = [program for program in build.programs if mutant.only in ("", program.name)]
+        targets = {target for program in programs for target in program.targets}
+        compiled |= set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+        where = mutant.name.rsplit(":", 2)[0]
+        for program in sorted(programs, key=lambda program: program.name != last_killer.get(where)):
+            failure = try_program(build, program)
+            if failure:
+                last_killer[where] = program.name
+                return "killed", f"{program.name}: {failure}"
+        same = same and all(digest([build.path / name]) == build.objects[name] for name in compiled)
+    return "same code" if compiled and same else "survived", "-"
 
 
-def run(mutants, equivalent, table):
+def run(mutants):
+    """Yields each with its verdict and what killed it."""
+    if not mutants:
+        return
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         first = pathlib.Path(scratch).resolve() / "0"
         shutil.copytree(ROOT, first, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
-        programs = programs_of(set_up(first, NARROW, [ONLY_NARROW]))
+        builds = set_up(first)
         trees = queue.SimpleQueue()
         trees.put(first)
         for i in range(1, os.cpu_count()):
             trees.put(pathlib.Path(shutil.copytree(first, first.with_name(str(i)), symlinks=True)))
+        last_killer = {}
 
         def work(mutant):
             tree = trees.get()
+            path = tree / mutant.file
+            original = path.read_text(encoding="utf-8")
             try:
-                return mutant, *try_mutant(mutant, tree, programs)
+                path.write_text(mutant.text, encoding="utf-8")
+                here = [build._replace(path=tree / build.path.name) for build in builds]
+                return mutant, *try_mutant(mutant, here, last_killer)
             finally:
+                path.write_text(original, encoding="utf-8")
                 trees.put(tree)
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            rows = (row_of(mutant, killed_by or "-", caught, datetime.date.today(), equivalent)
-                    for mutant, killed_by, caught in pool.map(work, mutants))
-            return write(rows, equivalent, table)
+            by_file = sorted(mutants, key=lambda mutant: mutant.file)  # a file is restored, and compiled again, once
+            yield from pool.map(work, by_file)
 
 
-def write(rows, equivalent, table):
-    """Writes rows as they come; the status."""
-    counts = {"killed": 0, "equivalent": 0, "survived": 0}
-    failures = []
-    for row in rows:
-        print(*row.values(), sep="\t", file=table, flush=True)
-        counts[row["verdict"]] += 1
-        if row["verdict"] == "survived":
-            failures.append(f"{row['mutant']} survived: {row['line']}")
-        elif row["verdict"] == "killed" and row["mutant"] in equivalent:
-            failures.append(f"{row['mutant']} is listed as equivalent, and killed by {row['killed_by']}")
-        elif row["by"] == "hand" and row["caught_by_validate"] == "no":
-            failures.append(f"{row['mutant']}: spring-validate misses it")
-    for failure in failures:
-        print("FAILED:", failure, file=sys.stderr)
-    print("{killed} killed, {equivalent} equivalent, {survived} survived".format(**counts), file=sys.stderr)
-    print(f"{sum(counts.values()) - len(failures)} passed, {len(failures)} failed, 0 skipped", file=sys.stderr)
-    return 1 if failures or sum(counts.values()) == 0 else 0
+# --------------------------------------------------------------------------------------------------------- the table
 
 
-def row_of(mutant, killed_by, caught, date, equivalent):
-    verdict = "killed" if killed_by != "-" else "equivalent" if mutant.name in equivalent else "survived"
+def row_of(mutant, verdict, killed_by, equivalent):
     reason = equivalent.get(mutant.name, mutant.reason)
-    values = (mutant.name, "hand" if mutant.by_hand else "generator", killed_by, verdict, reason, caught, mutant.line, date)
-    return dict(zip(COLUMNS, values))
+    if verdict in ("survived", "equivalent"):
+        verdict = "equivalent" if mutant.name in equivalent else "survived"
+    return dict(zip(COLUMNS, (mutant.name, mutant.by, verdict, killed_by, reason, mutant.code)))
 
 
-def merge(tables, mutants, equivalent, table):
-    """Of each mutant the last row, if it was in the same line of source."""
-    last = {(row["mutant"], row["line"]): row for rows in tables for row in rows}
-    known = ((mutant, last[mutant.name, mutant.line]) for mutant in mutants if (mutant.name, mutant.line) in last)
-    return write((row_of(mutant, row["killed_by"], row["caught_by_validate"] if mutant.trajectory else "-", row["date"],
-                         equivalent)
-                  for mutant, row in known), equivalent, table)
+def failure_in(row, mutant, equivalent):
+    """What is wrong with a row, or ""."""
+    where = f"{mutant.file}:{mutant.line}: {mutant.name}"
+    if row["verdict"] == "survived":
+        return f"{where} survived" + (f" {mutant.only}" if mutant.only else "")
+    if row["verdict"] == "killed" and mutant.name in equivalent:
+        return f"{where} is listed as equivalent, and killed by {row['killed_by']}"
+    if row["by"] == "hand" and row["killed_by"].endswith(BROKEN):
+        return f"{where} does not compile"
+    return ""
 
 
-def in_sample(mutant, table):
-    if (mutant.name, mutant.line) not in table:
-        return False
-    return zlib.crc32(mutant.name.encode()) % (SAMPLE_BY_HAND if mutant.by_hand else SAMPLE_GENERATED) == 0
+def kept_rows(path, mutants, equivalent):
+    """Of an earlier run: what need not be run again, by name."""
+    kept = {}
+    for row in rows_of(path) if path and path.exists() else []:
+        mutant = mutants.get(row["mutant"])
+        if mutant and row["code"] == mutant.code:
+            kept[mutant.name] = row_of(mutant, row["verdict"], row["killed_by"], equivalent)
+    return {name: row for name, row in kept.items() if not failure_in(row, mutants[name], equivalent)}
 
 
-def version():
-    header = (ROOT / "include/springstep/version.h").read_text(encoding="utf-8")
-    return re.search('SPRING_VERSION "(.*)"', header).group(1)
+def head(present):
+    version = re.search('SPRING_VERSION "(.*)"', (ROOT / "include/springstep/version.h").read_text(encoding="utf-8"))
+    return (f"# command: tests/mutants/run.py\n# version: {version.group(1)}\n# date: {datetime.date.today()}\n"
+            f"# present: {present}\n" + "\t".join(COLUMNS))
+
+
+def chosen(mutants, options):
+    for mutant in mutants:
+        if options.patterns and not any(pattern in mutant.name for pattern in options.patterns):
+            continue
+        if not options.sample or zlib.crc32(mutant.name.encode()) % SAMPLED[mutant.by] == 0:
+            yield mutant
 
 
 def main():
-    parser = argparse.ArgumentParser(add_help=True, usage=__doc__)
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("--list", action="store_true")
     parser.add_argument("--sample", action="store_true")
-    parser.add_argument("--new")
-    parser.add_argument("--merge", action="store_true")
-    parser.add_argument("-o", dest="output")
-    parser.add_argument("names", nargs="*")
+    parser.add_argument("-o", dest="output", type=pathlib.Path)
+    parser.add_argument("patterns", nargs="*")
     options = parser.parse_args()
-    mutants = [*written_by_hand(), *generated()]
+    mutants = {mutant.name: mutant for mutant in (*written_by_hand(), *generated())}
     equivalent = known_equivalents(mutants)
-    known = {(row["mutant"], row["line"]) for row in rows_of(options.new)} if options.new else set()
-    tables = [rows_of(path) for path in options.names] if options.merge else []
-    run_before = {(row["mutant"], row["line"]) for row in rows_of(HERE / "mutants.tsv")} if options.sample else set()
-    with open(options.output, "w", encoding="utf-8") if options.output else sys.stdout as table:
-        print(f"# command: tests/mutants/run.py\n# version: {version()}\n# date: {datetime.date.today()}\n"
-              f"# present: {len(mutants)}", file=table)
-        print(*COLUMNS, sep="\t", file=table)
-        if options.merge:
-            return merge(tables, mutants, equivalent, table)
-        chosen = [
-            mutant for mutant in mutants
-            if (not options.sample or in_sample(mutant, run_before)) and (mutant.name, mutant.line) not in known
-            and (not options.names or any(pattern in mutant.name for pattern in options.names))
-        ]
-        return run(chosen, equivalent, table)
+    wanted = list(chosen(mutants.values(), options))
+    if options.list:
+        for mutant in wanted:
+            print(f"{mutant.name}\t{mutant.file}:{mutant.line}")
+        return 0
+
+    os.environ.setdefault("CC", "clang" if shutil.which("clang") else "cc")  # clang takes two thirds of the time
+    rows = kept_rows(options.output, mutants, equivalent)
+    before = [head(len(mutants)), *("\t".join(row.values()) for row in rows.values())]
+    if options.output:  # never less than it held before
+        new = options.output.with_suffix(".new")
+        new.write_text("\n".join(before) + "\n", encoding="utf-8")
+        new.replace(options.output)
+    with open(options.output, "a", encoding="utf-8") if options.output else sys.stdout as table:
+        if not options.output:
+            print(*before, sep="\n", flush=True)
+        for mutant, verdict, killed_by in run([mutant for mutant in wanted if mutant.name not in rows]):
+            rows[mutant.name] = row = row_of(mutant, verdict, killed_by, equivalent)
+            print("\t".join(row.values()), file=table, flush=True)
+            failure = failure_in(row, mutant, equivalent)
+            if failure:
+                print("FAILED:", failure, file=sys.stderr, flush=True)
+
+    judged = [rows[mutant.name] for mutant in wanted]
+    verdicts = [row["verdict"] for row in judged]
+    failed = sum(failure_in(row, mutants[row["mutant"]], equivalent) != "" for row in judged)
+    counts = (f"{verdicts.count(verdict)} {verdict}" for verdict in ("killed", "same code", "equivalent", "survived"))
+    print(", ".join(counts), file=sys.stderr)
+    print(f"{len(judged) - failed} passed, {failed} failed, 0 skipped", file=sys.stderr)
+    return 1 if failed or not judged else 0
 
 
 if __name__ == "__main__":
