@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes the report from its template, its data and its figures: one page that needs no other file.
 
-usage: page.py [--quick] --into FOLDER --cmark PROGRAM FILE.tsv... FILE.svg... FILE.gif...
+usage: page.py [--quick] --into FOLDER --cmark PROGRAM [--if-there FILE.tsv] FILE.tsv... FILE.svg... FILE.gif...
 
 report.md.in is Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by the names of
 their columns, and a figure from its picture and the comment that opens its script. Whatever is not there - a file, a row,
@@ -227,8 +227,11 @@ def main():
     parser.add_argument("--quick", action="store_true", help="mark the page as that of a quick study")
     parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of index.html and data/")
     parser.add_argument("--cmark", required=True, help="the program cmark-gfm")
+    parser.add_argument("--if-there", type=pathlib.Path, help="a data file that the template can do without")
     parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv), pictures (.svg) and animations (.gif)")
     arguments = parser.parse_args()
+    if arguments.if_there and arguments.if_there.exists():
+        arguments.files.append(arguments.if_there)
     try:
         make(arguments)
     except (DataError, jinja2.TemplateError, OSError, subprocess.CalledProcessError) as error:
