@@ -77,6 +77,6 @@ prepare() {
     return_to_owner "$@"
     local -a how=()
     [[ ! -e $build/build.ninja ]] || how=(--reconfigure) # there may be more to find than when it was configured
-    meson setup "${how[@]}" -Dtools=enabled -Dwitnesses=enabled -Dtests=enabled -Dreport=enabled "$build" "$root" >&2
+    meson setup "${how[@]}" -Dtools=enabled -Dreferences=enabled -Dtests=enabled -Dreport=enabled "$build" "$root" >&2
     meson compile -C "$build" >&2
 }
