@@ -8,7 +8,7 @@ call plots."need.gp" runs "t_s x_m exact_x_m" methods
 first = 999.935
 last = 999.995
 picked(t) = t > first && t < last ? t : NaN
-size(m) = 2.1 - 1.5*(m - 1)/methods
+size(m) = 2.4*0.7**(m - 1)
 set xlabel "time / s"
 set ylabel "position / m"
 set xrange [first:last]

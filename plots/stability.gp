@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The largest stable step, as ω dt, over the damping ratio. Marks: found by taking steps and watching whether they grow,
 # without any formula. Lines: theory. Euler is stable only where there is damping, and best at critical damping; leapfrog
-# does not mind damping at all; RK4's limit rises before it falls.
+# does not mind damping at all; RK4's limit falls where damping is strong.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 stability = ARG3
 call plots."need.gp" stability "method damping_ratio limit_measured limit_theory"
@@ -9,10 +9,10 @@ call plots."need.gp" stability "method damping_ratio limit_measured limit_theory
 of(m, value) = strcol("method") eq names[m] && column("damping_ratio") > 0 ? value : NaN
 
 set datafile missing NaN # a line runs on past the rows of other methods
-set logscale x
+set logscale xy
 set xrange [0.008:125]
-set yrange [0:*]
-set format x "10^{%T}"
+set yrange [0.01:*]
+set format xy "10^{%T}"
 set xtics 10
 set mxtics 1
 set xlabel "damping ratio ζ"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The ideal spring after one period and after ten: error against force evaluations. Dotted: what theory says, exactly, of
-# Euler, leapfrog and RK4. The vertical line is where RK4 passes leapfrog. At the end rounding is all that is left, and
-# more steps make it more. Grey: GSL's rk4 and rk8pd.
+# Euler, leapfrog and RK4. Markers inside each other: the methods agree. The vertical line is where RK4 passes leapfrog.
+# At the end rounding is all that is left, and more steps make it more. Grey: GSL's rk4 and rk8pd.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "840 + key_height(methods + 2)"
 output = ARG1
 work = ARG3
@@ -11,9 +11,9 @@ evaluations(solver) = is(solver, "sweep") ? column("force_evaluations") : NaN
 
 # n steps of z = ω dt, from the direction (c, s) of (x, v/ω), after whole periods: so the true end is the start.
 omega = sqrt(2.7/1.3)
-size = sqrt(0.8**2 + (0.9/omega)**2)
-c = 0.8/size
-s = -0.9/omega/size
+motion = sqrt(0.8**2 + (0.9/omega)**2)
+c = 0.8/motion
+s = -0.9/omega/motion
 i = {0,1}
 by_euler(z, n) = abs(exp(n*log(1 - i*z)) - 1)
 by_rk4(z, n) = abs(exp(n*log(1 - z**2/2 + z**4/24 - i*(z - z**3/6))) - 1)
@@ -25,6 +25,8 @@ law(name, z, n) = name eq "euler" ? by_euler(z, n) : name eq "leapfrog" ? by_lea
 theory_of(m, x) = law(names[m], 2*pi*periods*forces[m]/x, x/forces[m])
 # The laws are computed with 16 digits, of which RK4's logarithm loses some at every step.
 visible(m, x) = x > 8*periods*sqrt(forces[m]) && theory_of(m, x) > (names[m] eq "rk4" ? 1e-16*x : 1e-14) ? theory_of(m, x) : NaN
+
+size(m) = 2*0.7**(m - 1)
 
 set datafile missing NaN
 array lengths[2] = [1, 10]
@@ -59,7 +61,8 @@ do for [k = 1:2] {
         unset key
         set xlabel "force evaluations"
     }
-    plot for [m = 1:methods] work using (evaluations(names[m])):"error" with points linetype types[m] pointsize 0.7 title labels[m], \
+    plot for [m = 1:methods] work using (evaluations(names[m])):"error" with points linetype types[m] pointsize size(m) \
+             title labels[m], \
          for [other in "gsl-rk4 gsl-rk8pd"] work using (evaluations(other)):"error" with linespoints linetype theory \
              dashtype solid linewidth 0.8 pointtype (other eq "gsl-rk4" ? 4 : 6) pointsize 0.6 \
              title other eq "gsl-rk4" ? "GSL rk4" : "GSL rk8pd", \
