@@ -4,7 +4,7 @@
  *
  *     mass x'' = load - stiffness x - damping x'
  *
- * by explicit Euler, leapfrog, Runge-Kutta 4, or the exact (closed-form) solution.
+ * by one of the methods of spring_method: steppers, or the exact (closed-form) solution.
  *
  *     spring_params p = {1.3, 2.7, 0, 0};                            // kg, N/m, no damping, no load
  *     spring_state  s = {1.0, 0.0};
@@ -196,7 +196,7 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
  *
  * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the exact solution; no force
  *         at all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
- * @par Source    the stability functions in src/euler.c, src/leapfrog.c, src/rk4.c
+ * @par Source    the header of each method, such as src/rk4.h, derives its limit
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 
