@@ -5,14 +5,13 @@
  * Method    With b = g/2, D = w - b^2 and s = D t^2,
  *
  *               x(t) = F x0 + H v0 + P a        F = e^(-bt) (C + bt S)     C = cos sqrt(s)  or cosh sqrt(-s)
- *               v(t) = -w H x0 + G v0 + H a     G = e^(-bt) (C - bt S)     S = sin sqrt(s)/sqrt(s)  or the same with
- *                                               sinh H = e^(-bt) t S            P = (1 - F)/w, the integral of H
+ *               v(t) = -w H x0 + G v0 + H a     G = e^(-bt) (C - bt S)     S = sin sqrt(s)/sqrt(s)  or with sinh
+ *                                               H = e^(-bt) t S            P = (1 - F)/w, the integral of H
  *
  *           C and S are entire functions of s: near s = 0 they are power series and nothing happens at critical
  *           damping. Far beyond it e^(-bt) cosh would be 0 times infinity: there the two roots p, q are taken apart,
  *
- *               H = e^(-pt) (1 - e^(-(q-p)t))/(q - p),  F = e^(-pt) (q - p e^(-(q-p)t))/(q - p),  p the root that
- *               lasts.
+ *               H = e^(-pt) (1 - e^(-(q-p)t))/(q - p),  F = e^(-pt) (q - p e^(-(q-p)t))/(q - p),  p the slow root.
  *
  *           Every exponential is applied as two halves, so that a large start times a tiny factor is neither 0 nor
  *           infinite before it has to be. 1 - F cancels for short times and for stiffness 0: there P has its own forms.

@@ -4,12 +4,12 @@
  *
  * The header, NAME.h, is read once for each shape of data, which the including file chooses by a definition:
  *
- *     SPRING_SHAPE_ONE     spring.c        NAME_one      one spring: what it is called, its kernel, loops, stable step
- *     SPRING_SHAPE_BATCH   kernels.h       NAME_batch    a loop over vectors of springs for each combination of
- *     features SPRING_SHAPE_SCENE   scene_step.c    NAME_scene    its step and stable step in a scene, what a scene
- *     stores for it
+ *     SPRING_SHAPE_ONE    in spring.c      NAME_one    what it is called, its kernel, loops, stable step
+ *     SPRING_SHAPE_BATCH  in kernels.h     NAME_batch  a loop over vectors of springs for each set of features
+ *     SPRING_SHAPE_SCENE  in scene_step.c  NAME_scene  its step and stable step in a scene, what a scene stores for it
  *
- * Each of these is a constant object of a type below; what a method does not offer is 0 in it.
+ * Each of these is a constant object, of types that one_method, batch_method and scene_method name; what a method does
+ * not offer is 0 in it. Only the exact solution has no loops and no batch kernels of its own for every set of features.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H

@@ -34,7 +34,7 @@ static inline double spring_slow_root(const spring_roots *r) /* [1/s]; b - split
 static inline double spring_hypot(double a, double b)
 {
     const double large = fmax(a, b), small = fmin(a, b);
-    const double ratio = large > 0 ? small / large : 0;
+    const double ratio = large > 0 && large < INFINITY ? small / large : 0;
     return large * sqrt(1 + ratio * ratio);
 }
 

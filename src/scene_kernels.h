@@ -318,7 +318,8 @@ SPRING_INLINE mask solved_kick_part(const scene_motion *s, const coordinates *c)
 SPRING_INLINE mask solved_kick_drift_part(const scene_motion *s, const coordinates *c)
 {
     const real v = solved_velocity(s, c);
-    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v);
+    const mask hidden = not_finite(c->kick * c->drag); /* in 1/(1 + q) */
+    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v) | hidden;
 }
 
 SPRING_INLINE mask move_along(const scene_motion *s, const coordinates *c, real dx, real dv)

@@ -11,6 +11,8 @@
 #include "scene_links.h"
 #include "simd/targets.h"
 
+#include <limits.h>
+
 #define SCENE_ROW(value, method) [value] = &method##_scene,
 const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(SCENE_ROW)};
 
@@ -111,19 +113,41 @@ static const scalar *coefficient_of(const slotted_link *link, link_coefficient w
     return which == STIFFNESS ? link->stiffness : link->damping;
 }
 
-/* The power of two above all coefficients: sums in units of it do not overflow. */
-static int largest_exponent(const spring_scene *s, link_coefficient which)
+static int exponent_of(double value)
 {
-    double largest = 0;
+    int exponent;
+    frexp(value, &exponent);
+    return exponent;
+}
+
+/* Sums are kept in units of powers of two, which change no bit: that of the inverse mass of each particle, times one
+   for all that keeps the largest term below 1. So none overflows, and what underflows does not count. */
+static int mass_exponent(const spring_scene *s, size_t i, bool by_mass)
+{
+    const double inverse = inverse_mass_at(s, i);
+    const int pinned = INT_MIN / 4; /* no term */
+    return !by_mass ? 0 : inverse > 0 ? exponent_of(inverse) : pinned;
+}
+
+/* Of the terms of all sums; 0 where there are none. */
+static int largest_exponent(const spring_scene *s, link_coefficient which, double own, bool by_mass)
+{
+    const int none = INT_MIN / 2;
+    int largest = none;
+    for (size_t i = 0; i < s->plan.particles && own > 0; i++) {
+        const int exponent = exponent_of(own) + mass_exponent(s, i, by_mass);
+        largest = exponent > largest ? exponent : largest;
+    }
     for (size_t i = 0; i < s->plan.links; i++) {
         const slotted_link link = scene_link(s, i);
         const scalar *value = coefficient_of(&link, which);
-        if (value != NULL)
-            largest = fmax(largest, (double)*value);
+        if (value == NULL || *value == 0)
+            continue;
+        const int a = mass_exponent(s, link.a, by_mass), b = mass_exponent(s, link.b, by_mass);
+        const int exponent = exponent_of((double)*value) + (a > b ? a : b);
+        largest = exponent > largest ? exponent : largest;
     }
-    int exponent;
-    frexp(largest, &exponent);
-    return exponent;
+    return largest > none ? largest : 0;
 }
 
 /* Over the particles that move the largest sum of twice a coefficient of their links, once where the other end is
@@ -131,22 +155,26 @@ static int largest_exponent(const spring_scene *s, link_coefficient which)
 static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
     const scalar *inverse_mass = s->plan.inverse_mass != 0 ? scene_array(s, s->plan.inverse_mass) : NULL;
-    const int exponent = largest_exponent(s, which);
+    const int exponent = largest_exponent(s, which, own, by_mass);
     scalar *sum = scene_axis(s, s->plan.force, 0);
     memset(sum, 0, s->plan.particles * sizeof *sum);
     for (size_t i = 0; i < s->plan.links; i++) {
         const slotted_link link = scene_link(s, i);
-        if (coefficient_of(&link, which) == NULL)
+        const scalar *value = coefficient_of(&link, which);
+        if (value == NULL || *value == 0)
             continue;
-        const scalar value = (scalar)ldexp((double)*coefficient_of(&link, which), -exponent);
-        sum[link.a] += inverse_mass != NULL && inverse_mass[link.b] == 0 ? value : 2 * value;
-        sum[link.b] += inverse_mass != NULL && inverse_mass[link.a] == 0 ? value : 2 * value;
+        const int twice_a = inverse_mass == NULL || inverse_mass[link.b] != 0;
+        const int twice_b = inverse_mass == NULL || inverse_mass[link.a] != 0;
+        sum[link.a] += (scalar)ldexp((double)*value, twice_a + mass_exponent(s, link.a, by_mass) - exponent);
+        sum[link.b] += (scalar)ldexp((double)*value, twice_b + mass_exponent(s, link.b, by_mass) - exponent);
     }
     double largest = 0;
     for (size_t i = 0; i < s->plan.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
+        const int unit = mass_exponent(s, i, by_mass);
         if (inverse > 0)
-            largest = fmax(largest, ((double)sum[i] + ldexp(own, -exponent)) * (by_mass ? inverse : 1));
+            largest =
+                fmax(largest, ((double)sum[i] + ldexp(own, unit - exponent)) * (by_mass ? ldexp(inverse, -unit) : 1));
     }
     s->force_kept = false;
     return ldexp(largest, exponent);

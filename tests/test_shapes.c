@@ -67,11 +67,24 @@ static void negative_zero_is_zero(void)
     }
 }
 
+/* A loop that is missing would be the exact solution. */
+static void methods_are_complete(void)
+{
+    for (size_t m = 0; m < SPRING_METHOD_COUNT; m++) {
+        const one_method *method = methods[m];
+        const bool exact = strcmp(method->info.name, "exact") == 0;
+        CHECK(method->info.springs == (method->kernel != NULL && method->stable_step != NULL), method->info.name);
+        for (int i = 0; i < 4; i++)
+            CHECK((method->loop[i / 2][i % 2] != NULL) == (method->info.springs && !exact), method->info.name);
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"a zero feature is an absent one, bit for bit", zero_is_absent},
         {"negative zeros", negative_zero_is_zero},
+        {"methods are complete", methods_are_complete},
     };
     return RUN_TESTS("shapes", tests);
 }

@@ -10,9 +10,8 @@ static const cli_program program = {
     .name = "spring-methods",
     .summary = "The methods of the library, in the order in which tables and figures show them.",
     .details = "Columns: method (its name), label (its name in a text), order (0: no error but rounding),\n"
-               "forces_per_step, and 1 or 0 for symplectic (bounded energy error without damping), springs "
-               "(offered\n"
-               "for one spring and batches) and scenes (offered for scenes).",
+               "forces_per_step, and 1 or 0 for symplectic (bounded energy error without damping), springs\n"
+               "(offered for one spring and batches) and scenes (offered for scenes).",
     .options = options,
 };
 

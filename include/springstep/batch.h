@@ -6,8 +6,9 @@
  *
  *     double x[1000], v[1000], omega2[1000];                         // yours; aligned as any array of double is
  *     const double gamma = 0.3;
- *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma, .shared =
- *     SPRING_SHARED_GAMMA}; spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
+ *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma,
+ *                       .shared = SPRING_SHARED_GAMMA};
+ *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
  * What holds for every function here, beside what spring.h says:
  *  - Bits. In double, advancing spring i is bitwise identical to advancing the single spring {1, omega2[i], gamma[i],
@@ -78,6 +79,7 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  * @return SPRING_OK: all springs advanced.
  *         SPRING_EINVAL, nothing changed: b, x, v or omega2 NULL; x or v overlapping another array; an unknown method
  *         or bit in shared; dt or a shared parameter not finite, or negative where it must not be.
+ *         SPRING_EUNSUPPORTED, nothing changed: a method for scenes alone.
  *         SPRING_EINVAL, all others advanced: a spring's own state or parameters are not valid.
  *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that
  *         have all overflowed is given up within SPRING_CHECK_INTERVAL steps.

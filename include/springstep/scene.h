@@ -21,8 +21,8 @@
  *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another
  *    place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a
  *    memcpy(), and rolling back another. The callback and its user pointer are copied as they are.
- *  - Distinct scenes may be used by distinct threads at once; one scene by one at a time, functions on a const scene
- *    included, since they may compute and keep forces.
+ *  - Distinct scenes may be used by distinct threads at once. One scene may be asked by several at once, by functions
+ *    that take a const scene, as long as none changes it.
  *  - The same bits with every compiler, instruction set and vector length, as far as the callback does its part.
  *  - There is no position solver: for a contact, move particles between calls of spring_scene_advance(..., 1) with
  *    spring_scene_get() and spring_scene_set(), or push them in the callback.
@@ -144,8 +144,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
  * @param[in] m   one of the methods of the definition
- * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag; 0,
- *                or in float what rounds to 0, does nothing
+ * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag,
+ *                symplectic Euler at half of it; 0, or in float what rounds to 0, does nothing
  * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the exact solution, or a method that the definition does not
  *         have; SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it
  *         does
@@ -161,7 +161,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
  * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
  * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness;
- * symplectic Euler 4/(p + sqrt(p^2 + 4 L)), p the part of G that comes from links less drag over the largest mass.
+ * symplectic Euler 4/(p + sqrt(p^2 + 4 L)), p = (the largest sum for links alone) - drag/(largest mass).
  * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on
  * cloth, twice on jelly; with heavy damping it may be several times larger. Links that spin or swing far can gain
  * energy from the step by resonance closer to it: take half, and less where a link turns faster than it would swing.

@@ -179,7 +179,8 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
  * @param[in]     m   method
  * @param[in]     dt  finite step [s]; negative runs backwards
  * @param[in]     n   number of steps
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE, noticed within SPRING_CHECK_INTERVAL steps
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: a method for scenes alone; SPRING_ENONFINITE, noticed within
+ *                    SPRING_CHECK_INTERVAL steps
  * @par Threads   re-entrant; allocates nothing, keeps nothing
  */
 SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt,

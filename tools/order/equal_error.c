@@ -75,7 +75,7 @@ static double error_of_long_steps(spring_method m, double duration, uint64_t n)
 /* Of at most 1 s. */
 static uint64_t fewest(double duration)
 {
-    return (uint64_t)fmax(ceil(duration), 1);
+    return (uint64_t)fmin(fmax(ceil(duration), 1), 0x1p62); /* longer durations are refused */
 }
 
 static uint64_t settled_from(spring_method m, double duration, double error)
