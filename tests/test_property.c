@@ -143,6 +143,20 @@ static void energy_is_what_it_says(void)
     }
 }
 
+/* Symplectic is to keep the area of phase space, and so is the description: the determinant of a step without damping. */
+static void area(void)
+{
+    const spring_params p = {.mass = 1.3, .stiffness = 2.7};
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        spring_state a = {1, 0}, b = {0, 1};
+        if (spring_advance(&a, &p, m, 0.4, 1) != SPRING_OK || spring_advance(&b, &p, m, 0.4, 1) != SPRING_OK)
+            continue; /* not for one spring */
+        CHECK((fabs(a.x * b.v - a.v * b.x - 1) <= 4 * DBL_EPSILON) == spring_method_describe(m)->symplectic,
+              spring_method_name(m));
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -150,6 +164,7 @@ int main(void)
         {"other units, powers of two", powers_of_two},
         {"superposition", superposition},
         {"reversal", reversal},
+        {"area", area},
         {"energy", energy_is_what_it_says},
     };
     return RUN_TESTS("property", tests);

@@ -8,8 +8,10 @@
 
 /* What the header's formulas are made of. */
 typedef struct largest_sums {
-    double L, G, K; /* of stiffness and damping over mass, and of stiffness alone */
-    bool damped;    /* links */
+    double L, G, K;  /* of stiffness and damping over mass, and of stiffness alone */
+    double links;    /* of damping over mass, of links alone */
+    double heaviest; /* [kg] that moves */
+    bool damped;     /* links */
 } largest_sums;
 
 /* Over all particles in turn. */
@@ -30,6 +32,8 @@ static largest_sums sums_of(const spring_scene_def *def)
         if (pinned_in(def, i))
             continue;
         all.L = fmax(all.L, stiffness / mass_in(def, i));
+        all.links = fmax(all.links, damping / mass_in(def, i));
+        all.heaviest = fmax(all.heaviest, mass_in(def, i));
         all.G = fmax(all.G, (damping + def->drag) / mass_in(def, i));
         all.K = fmax(all.K, stiffness);
     }
@@ -47,6 +51,7 @@ static void formulas(void)
             spring_scene *s = scene_of(&m.def);
             const largest_sums all = sums_of(&m.def);
             const double frequency = 2 / sqrt(all.L), damping = 2 / all.G;
+            const double p = all.links - m.def.drag / all.heaviest, root = sqrt(p * p + 4 * all.L);
             const struct {
                 spring_method method;
                 double step;
@@ -54,6 +59,7 @@ static void formulas(void)
                 {SPRING_EULER, all.K > 0 ? fmin(m.def.drag / all.K, damping) : damping},
                 {SPRING_LEAPFROG, all.damped ? fmin(frequency, damping) : frequency},
                 {SPRING_RK4, 2.61 / fmax(sqrt(all.L), all.G)},
+                {SPRING_SYMPLECTIC_EULER, p > 0 ? 4 / (p + root) : (root - p) / all.L},
             };
             for (size_t i = 0; i < sizeof want / sizeof want[0]; i++)
                 CHECK_CLOSE(spring_scene_stable_step(s, want[i].method), want[i].step, 60 * EPS * want[i].step,
@@ -90,6 +96,21 @@ static void nothing_to_be_unstable_with(void)
     const method_list all = methods_of(def);
     for (const spring_method *method = all.at; *method != no_method; method++)
         CHECK(spring_scene_stable_step(s, *method) == INFINITY, "no force");
+    free(s);
+}
+
+/* Without stiffness damped links set the limit, however weak their damping. */
+static void dampers_alone(void)
+{
+    const double position[] = {0, 1}, damping = 0.3, mass = 1.3;
+    const spring_link link = {0, 1, 1, 0, damping};
+    const spring_scene_def def = {
+        .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = mass, .link = &link};
+    spring_scene *s = scene_of(&def);
+    const spring_method methods[] = {SPRING_EULER, SPRING_SYMPLECTIC_EULER, SPRING_LEAPFROG};
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++)
+        CHECK_CLOSE(spring_scene_stable_step(s, methods[i]), mass / damping, 8 * EPS * mass / damping,
+                    "2/G, G = 2 damping/mass, a few roundings");
     free(s);
 }
 
@@ -471,6 +492,7 @@ int main(void)
         {"formulas of stable steps", formulas},
         {"stiffness and mass near the largest number", stiff_and_heavy},
         {"no force", nothing_to_be_unstable_with},
+        {"dampers alone", dampers_alone},
         {"stable at 0.95 of the stable step", stable_below},
 #ifndef SPRING_FLOAT
         {"how much larger the limit is", not_much_too_small},
