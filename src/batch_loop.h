@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The loop of a method over a batch, and its twelve kernels. Included by a method's header, with SPRING_METHOD its
-   name. */
+/*
+ * The loop of a method over a batch, and its twelve kernels. Included by a method's header, with SPRING_METHOD its name.
+ *
+ * What a method owes it: rates that are infinite or NaN leave x or v infinite or NaN, since only these are looked at
+ * afterwards (see symplectic_euler_prepare()); and rates that are 0 give the bits of the step without them.
+ */
 
 /* many: vectors in a group. A single step needs no more than one: there is nothing to wait for but the next group,
    which the processor begins by itself. */
