@@ -180,13 +180,13 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
     return ldexp(largest, exponent);
 }
 
-static double least_inverse_mass(const spring_scene *s) /* of the particles that move; INFINITY: none */
+static double least_inverse_mass(const spring_scene *s) /* of the particles that move; 0: none */
 {
     double least = INFINITY;
     for (size_t i = 0; i < s->plan.particles; i++)
         if (inverse_mass_at(s, i) > 0)
             least = fmin(least, inverse_mass_at(s, i));
-    return least;
+    return least < INFINITY ? least : 0;
 }
 
 static scene_bounds bounds_of(spring_scene *s)
@@ -197,7 +197,7 @@ static scene_bounds bounds_of(spring_scene *s)
         .damping = largest_sum(s, DAMPING, s->drag, true),
         .stiffness_sum = largest_sum(s, STIFFNESS, 0, false),
         .drag = s->drag,
-        .least_drag = s->drag > 0 ? s->drag * least_inverse_mass(s) : 0,
+        .least_drag = s->drag * least_inverse_mass(s),
     };
 }
 
