@@ -158,10 +158,8 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     const spring_method_info *info = spring_method_describe(m);
     if (b == NULL || !batch_valid(b) || info == NULL || !isfinite(dt))
         return SPRING_EINVAL;
-    if (!info->springs)
-        return SPRING_EUNSUPPORTED;
-    if (b->count == 0 || n == 0 || dt == 0)
-        return SPRING_OK;
+    if (b->count == 0 || n == 0 || dt == 0 || !info->springs)
+        return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
     const bool w_shared = shared(b, SPRING_SHARED_OMEGA2), loaded = b->accel != NULL;
     const enum sharing g = b->gamma == NULL ? NONE : shared(b, SPRING_SHARED_GAMMA) ? SHARED : EACH;
     batch_kernel *kernel = kernels->method[m]->kernel[w_shared ? SHARED : EACH][g][loaded];

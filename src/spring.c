@@ -29,14 +29,12 @@ spring_status spring_advance(spring_state *s, const spring_params *p, spring_met
     const one_method *method = find_method(m);
     if (s == NULL || p == NULL || method == NULL || !isfinite(dt))
         return SPRING_EINVAL;
-    if (!method->info.springs)
-        return SPRING_EUNSUPPORTED;
     spring_state now = {s->x, s->v}; /* by field, see simd/arithmetic.h */
     const spring_rates r = spring_rates_of(p);
     if (!finite_state(now) || !spring_rates_valid(p, &r))
         return SPRING_EINVAL;
-    if (n == 0 || dt == 0)
-        return SPRING_OK;
+    if (n == 0 || dt == 0 || !method->info.springs)
+        return method->info.springs ? SPRING_OK : SPRING_EUNSUPPORTED;
     spring_loop *loop = method->loop[r.g != 0][r.a != 0];
     while (n > 0) {
         uint64_t some = n < SPRING_CHECK_INTERVAL ? n : SPRING_CHECK_INTERVAL;
