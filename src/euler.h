@@ -67,7 +67,7 @@ static const one_method euler_one = {
 static scene_outcome euler_scene_step(const scene_step *s)
 {
     const scene_motion m = scene_motion_of(s);
-    return (scene_outcome){.finite = s->kernels->stage(&m)};
+    return (scene_outcome){.finite = scene_move(&m, s->kernels->stage)};
 }
 
 static double euler_scene_stable_step(const scene_bounds *b)

@@ -104,19 +104,21 @@ static scene_outcome leapfrog_scene_step(const scene_step *s)
 {
     scene_motion first = scene_motion_of(s);
     first.kick = s->h / 2;
-    if (!s->kernels->kick_drift(&first))
-        return (scene_outcome){.finite = false};
     scene_motion last = first;
     last.v0 = first.v;
-    scene_evaluate(s, first.x, first.v, s->end);
     if (!scene_forces_use_velocity(s->scene))
-        return (scene_outcome){.finite = s->kernels->solved_kick(&last), .force_kept = true};
+        return (scene_outcome){.finite = scene_sweep(s, &first, s->kernels->kick_drift, first.v, &last,
+                                                     s->kernels->solved_kick),
+                               .force_kept = true};
+    if (!scene_move(&first, s->kernels->kick_drift))
+        return (scene_outcome){.finite = false};
+    scene_evaluate(s, first.x, first.v, s->end);
     scene_motion predict = last;
     predict.v = scene_predicted(s);
-    if (!s->kernels->solved_kick(&predict))
+    if (!scene_move(&predict, s->kernels->solved_kick))
         return (scene_outcome){.finite = false};
     scene_evaluate(s, first.x, predict.v, s->end);
-    return (scene_outcome){.finite = s->kernels->solved_kick(&last)};
+    return (scene_outcome){.finite = scene_move(&last, s->kernels->solved_kick)};
 }
 
 static double leapfrog_scene_stable_step(const scene_bounds *b)

@@ -133,14 +133,14 @@ static scene_outcome rk4_scene_step(const scene_step *s)
     stage.weight = 2;
     for (int k = 0; k < 3; k++) {
         stage.kick = stage.drift = lengths[k];
-        if (!(k == 0 ? s->kernels->first_stage : s->kernels->next_stage)(&stage))
+        if (!scene_move(&stage, k == 0 ? s->kernels->first_stage : s->kernels->next_stage))
             return (scene_outcome){.finite = false};
         scene_evaluate(s, stage.x, stage.v, times[k]);
         stage.slope = stage.v;
     }
     end.slope = stage.slope;
     end.kick = end.drift = s->h / 6;
-    return (scene_outcome){.finite = s->kernels->last_stage(&end)};
+    return (scene_outcome){.finite = scene_move(&end, s->kernels->last_stage)};
 }
 
 static double rk4_scene_stable_step(const scene_bounds *b)

@@ -13,8 +13,8 @@ static drawn draw(const spring_scene *s, const slotted_link *link)
     double delta[3] = {0}, relative[3] = {0};
     for (uint32_t a = 0; a < p->axes; a++) {
         const scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
-        delta[a] = (double)x[link->b] - (double)x[link->a];
-        relative[a] = (double)v[link->b] - (double)v[link->a];
+        delta[a] = (double)x[p->step * link->b] - (double)x[p->step * link->a];
+        relative[a] = (double)v[p->step * link->b] - (double)v[p->step * link->a];
     }
     if (p->axes == 1)
         return (drawn){delta[0], relative[0]};
@@ -31,10 +31,11 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
     for (uint32_t a = 0; a < s->plan.axes; a++) {
         const scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->plan.particles; i++) {
-            const double inverse = inverse_mass_at(s, i);
+            const double inverse = inverse_mass_at(s, i), xi = (double)x[s->plan.step * i],
+                         vi = (double)v[s->plan.step * i];
             if (inverse > 0) {
-                e.kinetic += (double)v[i] * (double)v[i] / inverse / 2;
-                e.gravity -= (double)x[i] * s->gravity[a] / inverse;
+                e.kinetic += vi * vi / inverse / 2;
+                e.gravity -= xi * s->gravity[a] / inverse;
             }
         }
     }
@@ -80,9 +81,9 @@ spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double 
     if (status != SPRING_OK)
         return status;
     for (uint32_t a = 0; a < s->plan.axes; a++) {
-        const scalar *from = scene_quantity(s, q, a) + first;
+        const scalar *from = scene_quantity(s, q, a) + s->plan.step * first;
         for (size_t i = 0; i < count; i++)
-            out[i * stride + a] = (double)from[i];
+            out[i * stride + a] = (double)from[s->plan.step * i];
     }
     return SPRING_OK;
 }
@@ -94,9 +95,9 @@ spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float 
     if (status != SPRING_OK)
         return status;
     for (uint32_t a = 0; a < s->plan.axes; a++) {
-        const scalar *from = scene_quantity(s, q, a) + first;
+        const scalar *from = scene_quantity(s, q, a) + s->plan.step * first;
         for (size_t i = 0; i < count; i++)
-            out[i * stride + a] = (float)from[i];
+            out[i * stride + a] = (float)from[s->plan.step * i];
     }
     return SPRING_OK;
 }
@@ -112,9 +113,9 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
             if (!isfinite((scalar)in[i * stride + a]))
                 return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->plan.axes; a++) {
-        scalar *to = scene_quantity(s, q, a) + first;
+        scalar *to = scene_quantity(s, q, a) + s->plan.step * first;
         for (size_t i = 0; i < count; i++)
-            to[i] = (scalar)in[i * stride + a];
+            to[s->plan.step * i] = (scalar)in[i * stride + a];
     }
     s->force_kept = false;
     return SPRING_OK;
@@ -127,8 +128,7 @@ spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3])
     for (uint32_t a = 0; a < s->plan.axes; a++)
         if (!isfinite((scalar)gravity[a]))
             return SPRING_EINVAL;
-    for (uint32_t a = 0; a < s->plan.axes; a++)
-        s->gravity[a] = gravity[a];
+    scene_place_gravity(s, gravity);
     return SPRING_OK;
 }
 

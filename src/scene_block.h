@@ -9,30 +9,29 @@
 #include "scene_kernels.h"
 
 enum {
-    most_bands = 32, /* a block with diagonals and bending links has 16 */
     stage_buffer = 2,
     most_buffers = 3, /* of positions and velocities: two that take turns for rule "all or nothing", one for stages */
 };
 
-/* A band of links and its slots, one for each lower end from `padding` before the first to `padding` after the last.
-   Each slot has coefficients (stiffness, rest length, damping) and is occupied by a link or not; or, where all links
-   are equal and stay so, there is one vector of coefficients for all, and for each slot a byte that says whether it is
-   occupied. */
+/* A band of links and its slots, one for each particle of the tiles that hold its lower ends. For each slot a byte says whether it is occupied by a link. Each slot has coefficients (stiffness, rest length, damping);
+   or, where all links are equal and stay so, there is one vector of them for all. */
 typedef struct band_plan {
     uint32_t offset;     /* from the lower end of a link to its upper end */
     uint32_t first, end; /* of the lower ends */
     bool equal;
-    size_t start;        /* of its slots among those of all bands */
+    size_t slots;        /* where its slots begin among those of all bands */
     size_t coefficients; /* of its coefficients among those of all bands */
-    size_t occupied;     /* of its bytes, if it is equal */
+    size_t ring, force;  /* its slots in the ring of forces, see scene_band, and where it is among all rings */
 } band_plan;
 
 /* What a scene consists of, and where: offsets in bytes from its start, 0 for what it does not have. */
 typedef struct scene_plan {
     uint32_t axes, flags, methods;
     size_t particles, links;
-    size_t stride;                                    /* elements from one axis of a quantity to the next */
-    size_t band_slots, band_coefficients, band_bytes; /* in all bands together */
+    bool small;    /* quantities are arrays of quads, and all links are edges */
+    size_t stride; /* elements from one axis of a quantity to the next */
+    size_t step;   /* elements from one particle to the next */
+    size_t band_slots, band_coefficients, band_force; /* in all bands together */
     size_t edges;                                     /* links that lie in no band */
     uint32_t bands;
     band_plan band[most_bands]; /* by ascending offset */
@@ -41,9 +40,11 @@ typedef struct scene_plan {
     size_t predicted;    /* velocities */
     size_t sum_x, sum_v; /* of stages */
     size_t inverse_mass;
-    size_t band_occupied, band_stiffness, band_rest, band_damping;
+    size_t occupied, band_stiffness, band_rest, band_damping, rings;
     size_t edge_a, edge_b, edge_stiffness, edge_rest, edge_damping;
-    size_t slot; /* of each link: in the bands, or band_slots and its place in the edge list */
+    size_t records; /* see records() */
+    size_t callback; /* of a small scene: what a callback is shown, arrays of each axis of position, velocity, force */
+    size_t slot;    /* of each link: in the bands, or band_slots and its place in the edge list; without bands none */
     size_t bytes;
 } scene_plan;
 
@@ -62,6 +63,7 @@ struct spring_scene {
     spring_scene_force_fn *force;
     void *user;
     double mass_all, drag, gravity[3];
+    scalar gravity_vectors[3][padding]; /* of each axis; in a small scene the first holds quads of all */
     double t0, dt; /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
@@ -76,7 +78,7 @@ struct spring_scene {
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
                                         uint64_t n);
 
-/* The arrays of a quantity, one for each axis. */
+/* A quantity of all particles, one axis: that of particle i at plan.step * i. */
 SPRING_INLINE scalar *scene_axis(const spring_scene *s, size_t offset, uint32_t axis)
 {
     return (scalar *)((char *)(uintptr_t)s + offset) + axis * s->plan.stride + padding;
@@ -104,7 +106,7 @@ SPRING_INLINE int8_t *scene_bytes_at(const spring_scene *s, size_t offset)
 
 SPRING_INLINE double inverse_mass_at(const spring_scene *s, size_t i)
 {
-    return s->plan.inverse_mass != 0 ? (double)scene_array(s, s->plan.inverse_mass)[i] : 1 / s->mass_all;
+    return s->plan.inverse_mass != 0 ? (double)scene_array(s, s->plan.inverse_mass)[s->plan.step * i] : 1 / s->mass_all;
 }
 
 #endif

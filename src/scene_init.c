@@ -240,25 +240,26 @@ static void plan_bands(const spring_scene_def *def, scene_plan *plan)
     candidate table[candidates] = {{0}};
     for (size_t i = 0; i < def->links; i++)
         count_link(table, &def->link[i]);
-    plan->edges = def->links;
     for (const candidate *c = table; c < table + candidates; c++) {
         if (!makes_a_band(c) || longer_bands(table, c) >= most_bands)
             continue;
         size_t at = plan->bands++;
         for (; at > 0 && plan->band[at - 1].offset > c->offset; at--)
             plan->band[at] = plan->band[at - 1];
-        plan->band[at] = (band_plan){c->offset, c->first, c->last + 1, c->equal && !editable, 0, 0, 0};
+        plan->band[at] =
+            (band_plan){.offset = c->offset, .first = c->first, .end = c->last + 1, .equal = c->equal && !editable};
         plan->edges -= c->count;
     }
     for (uint32_t r = 0; r < plan->bands; r++) {
         band_plan *band = &plan->band[r];
-        const size_t slots = (band->end - band->first + 2 * padding + padding - 1) / padding * padding;
-        band->start = plan->band_slots;
+        const size_t slots = (band->end + tile - 1) / tile * tile - band->first / tile * tile;
+        band->slots = plan->band_slots;
         band->coefficients = plan->band_coefficients;
-        band->occupied = plan->band_bytes;
+        band->force = plan->band_force;
+        band->ring = ((size_t)band->offset + 2 * tile - 1) / tile * tile;
         plan->band_slots += slots;
         plan->band_coefficients += band->equal ? padding : slots;
-        plan->band_bytes += band->equal ? slots : 0;
+        plan->band_force += plan->axes * (band->ring + tile);
     }
 }
 
@@ -286,7 +287,8 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
     const bool damped = editable || any_damping(def);
     const bool velocity_used = damped || (plan->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const bool needed[most_buffers] = {true, rollback, (stores & SCENE_STORES_STAGE) != 0};
-    const size_t quantity = plan->axes * plan->stride + padding;
+    const size_t quantity =
+        (plan->small ? quad_size * (plan->particles + quad_size) : plan->axes * plan->stride) + 2 * padding;
     plan->bytes = (sizeof(spring_scene) + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
     for (uint32_t i = 0; i < most_buffers; i++)
         if (needed[i]) {
@@ -300,8 +302,9 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
         plan->sum_x = reserve(plan, quantity, sizeof(scalar));
         plan->sum_v = reserve(plan, quantity, sizeof(scalar));
     }
-    plan->inverse_mass = def->mass != NULL || def->pinned != NULL ? reserve(plan, plan->stride, sizeof(scalar)) : 0;
-    plan->band_occupied = reserve(plan, plan->band_bytes, 1);
+    plan->inverse_mass = def->mass != NULL || def->pinned != NULL ? reserve(plan, quantity, sizeof(scalar)) : 0;
+    plan->occupied = reserve(plan, plan->band_slots, 1);
+    plan->rings = reserve(plan, plan->band_force, sizeof(scalar));
     plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));
     plan->band_rest = reserve(plan, plan->band_coefficients, sizeof(scalar));
     plan->band_damping = damped ? reserve(plan, plan->band_coefficients, sizeof(scalar)) : 0;
@@ -310,8 +313,15 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
     plan->edge_stiffness = reserve(plan, plan->edges + padding, sizeof(scalar));
     plan->edge_rest = reserve(plan, plan->edges + padding, sizeof(scalar));
     plan->edge_damping = damped ? reserve(plan, plan->edges + padding, sizeof(scalar)) : 0;
-    plan->slot = reserve(plan, plan->links, sizeof(uint32_t));
+    plan->slot = plan->bands > 0 ? reserve(plan, plan->links, sizeof(uint32_t)) : 0;
+    if (plan->axes > 1 && !plan->small && plan->edges >= plan->particles)
+        plan->records = reserve(plan, plan->particles * quad_size * (damped ? 3 : 2), sizeof(scalar));
+    if (plan->small)
+        plan->callback = reserve(plan, 3 * plan->axes * plan->particles, sizeof(scalar));
 }
+
+/* Links and particles of a small scene: below, vectors are not filled. */
+enum { most_small = 32 };
 
 static spring_status make_plan(const spring_scene_def *def, scene_plan *plan)
 {
@@ -324,9 +334,13 @@ static spring_status make_plan(const spring_scene_def *def, scene_plan *plan)
         .methods = methods_of(def),
         .particles = def->particles,
         .links = def->links,
-        .stride = (def->particles + padding - 1) / padding * padding + padding,
     };
-    plan_bands(def, plan);
+    plan->small = plan->axes > 1 && def->particles <= most_small && def->links <= most_small;
+    plan->step = plan->small ? quad_size : 1;
+    plan->stride = plan->small ? 1 : (def->particles + tile - 1) / tile * tile + padding;
+    plan->edges = def->links;
+    if (!plan->small)
+        plan_bands(def, plan);
     plan_memory(def, plan);
     return SPRING_OK;
 }
@@ -350,14 +364,15 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
     for (uint32_t a = 0; a < axes; a++) {
         scalar *x = scene_axis(s, s->plan.x[0], a), *v = scene_axis(s, s->plan.v[0], a);
         for (size_t i = 0; i < def->particles; i++) {
-            x[i] = (scalar)def->position[i * axes + a];
-            v[i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
+            x[s->plan.step * i] = (scalar)def->position[i * axes + a];
+            v[s->plan.step * i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
         }
     }
     if (s->plan.inverse_mass != 0) {
         scalar *inverse_mass = scene_array(s, s->plan.inverse_mass);
         for (size_t i = 0; i < def->particles; i++)
-            inverse_mass[i] = inverse_mass_of(def, i);
+            for (size_t k = 0; k < s->plan.step; k++)
+                inverse_mass[s->plan.step * i + k] = inverse_mass_of(def, i);
     }
 }
 
@@ -385,17 +400,18 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
         const spring_link *link = &def->link[i];
         const uint32_t lower = lower_end(link);
         const band_plan *band = band_of(&s->plan, offset_of(link));
+        size_t at;
         if (band != NULL && lower >= next[band - s->plan.band]) {
             next[band - s->plan.band] = lower + 1;
-            slot[i] = (uint32_t)(band->start + padding + lower - band->first);
-            if (band->equal)
-                scene_bytes_at(s, s->plan.band_occupied)[band->occupied + slot[i] - band->start] = -1;
+            at = band->slots + lower - band->first / tile * tile;
         } else {
-            slot[i] = (uint32_t)(s->plan.band_slots + edge);
+            at = s->plan.band_slots + edge;
             scene_indices(s, s->plan.edge_a)[edge] = link->a;
             scene_indices(s, s->plan.edge_b)[edge] = link->b;
             edge++;
         }
+        if (s->plan.slot != 0)
+            slot[i] = (uint32_t)at;
         scene_place(s, i, link);
         s->damped_links += (scalar)link->damping > 0;
     }
@@ -431,8 +447,8 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
-        .gravity = {def->gravity[0], def->gravity[1], def->gravity[2]},
     };
+    scene_place_gravity(s, def->gravity);
     fill_particles(s, def);
     fill_links(s, def);
     *result = s;

@@ -9,12 +9,13 @@
 typedef struct slotted_link {
     uint32_t a, b;
     scalar *stiffness, *rest, *damping; /* damping NULL: not modelled */
+    int8_t *occupied;                   /* NULL: an edge */
 } slotted_link;
 
 SPRING_INLINE slotted_link scene_link(const spring_scene *s, size_t index)
 {
     const scene_plan *p = &s->plan;
-    const size_t slot = scene_indices(s, p->slot)[index];
+    const size_t slot = p->slot != 0 ? scene_indices(s, p->slot)[index] : index;
     if (slot >= p->band_slots) {
         const size_t i = slot - p->band_slots;
         return (slotted_link){
@@ -23,19 +24,21 @@ SPRING_INLINE slotted_link scene_link(const spring_scene *s, size_t index)
             scene_array(s, p->edge_stiffness) + i,
             scene_array(s, p->edge_rest) + i,
             p->edge_damping != 0 ? scene_array(s, p->edge_damping) + i : NULL,
+            NULL,
         };
     }
     const band_plan *band = p->band;
-    while (band + 1 < p->band + p->bands && band[1].start <= slot)
+    while (band + 1 < p->band + p->bands && band[1].slots <= slot)
         band++;
-    const uint32_t a = band->first + (uint32_t)(slot - band->start - padding);
-    const size_t number = band->coefficients + (band->equal ? 0 : slot - band->start);
+    const uint32_t a = (uint32_t)(band->first / tile * tile + slot - band->slots);
+    const size_t number = band->coefficients + (band->equal ? 0 : slot - band->slots);
     return (slotted_link){
         a,
         a + band->offset,
         scene_array(s, p->band_stiffness) + number,
         scene_array(s, p->band_rest) + number,
         p->band_damping != 0 ? scene_array(s, p->band_damping) + number : NULL,
+        scene_bytes_at(s, p->occupied) + slot,
     };
 }
 
@@ -67,6 +70,18 @@ static inline const char *scene_link_overflows(const spring_link *link, double i
                                                          : NULL;
 }
 
+static inline void scene_place_gravity(spring_scene *s, const double *gravity)
+{
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        s->gravity[a] = gravity[a];
+        for (size_t i = 0; i < padding; i++)
+            if (!s->plan.small)
+                s->gravity_vectors[a][i] = (scalar)gravity[a];
+            else if (i % quad_size == a)
+                s->gravity_vectors[0][i] = (scalar)gravity[a];
+    }
+}
+
 /* Write the coefficients of a link into its slot. */
 static inline void scene_place(spring_scene *s, size_t index, const spring_link *link)
 {
@@ -76,6 +91,8 @@ static inline void scene_place(spring_scene *s, size_t index, const spring_link 
     *at.rest = s->plan.axes == 1 && at.a != link->a ? -rest : rest;
     if (at.damping != NULL)
         *at.damping = (scalar)link->damping;
+    if (at.occupied != NULL)
+        *at.occupied = *at.stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
 }
 
 #endif

@@ -38,7 +38,7 @@ static bool finite_scene(const spring_scene *s)
     for (uint32_t a = 0; a < s->plan.axes; a++) {
         const scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->plan.particles; i++)
-            if (!isfinite(x[i]) || !isfinite(v[i]))
+            if (!isfinite(x[s->plan.step * i]) || !isfinite(v[s->plan.step * i]))
                 return false;
     }
     return true;
@@ -47,10 +47,10 @@ static bool finite_scene(const spring_scene *s)
 /* After a failure without rollback nothing is left of the state, not even what is finite. */
 static void invalidate(spring_scene *s)
 {
-    const int nan = 0xff; /* in each byte */
     for (uint32_t a = 0; a < s->plan.axes; a++) {
-        memset(scene_quantity(s, SPRING_POSITION, a), nan, s->plan.particles * sizeof(scalar));
-        memset(scene_quantity(s, SPRING_VELOCITY, a), nan, s->plan.particles * sizeof(scalar));
+        scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->plan.particles; i++)
+            x[s->plan.step * i] = v[s->plan.step * i] = (scalar)NAN;
     }
     s->lost = true;
 }
@@ -74,7 +74,13 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     if (!isfinite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     const scene_method *method = spring_scene_methods[m];
-    scene_step step = {.kernels = kernels, .scene = s, .from = s->buffer, .to = rollback ? 1 - s->buffer : s->buffer};
+    scene_force force;
+    scene_prepare_force(s, &force);
+    scene_step step = {.kernels = s->plan.small ? kernels->small : kernels,
+                       .scene = s,
+                       .force = &force,
+                       .from = s->buffer,
+                       .to = rollback ? 1 - s->buffer : s->buffer};
     step.h = (scalar)dt;
     for (uint64_t i = 0; i < n; i++) {
         const double done = (double)(before + i);
@@ -163,8 +169,8 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
         const scalar *value = coefficient_of(&link, which);
         if (value == NULL || *value == 0)
             continue;
-        const int twice_a = inverse_mass == NULL || inverse_mass[link.b] != 0;
-        const int twice_b = inverse_mass == NULL || inverse_mass[link.a] != 0;
+        const int twice_a = inverse_mass == NULL || inverse_mass[s->plan.step * link.b] != 0;
+        const int twice_b = inverse_mass == NULL || inverse_mass[s->plan.step * link.a] != 0;
         sum[link.a] += (scalar)ldexp((double)*value, twice_a + mass_exponent(s, link.a, by_mass) - exponent);
         sum[link.b] += (scalar)ldexp((double)*value, twice_b + mass_exponent(s, link.b, by_mass) - exponent);
     }
@@ -220,7 +226,9 @@ static void update_force(spring_scene *s)
 {
     if (s->force_kept)
         return;
-    scene_find_forces(best_scene_kernels(), s, scene_quantity(s, SPRING_POSITION, 0),
+    scene_force force;
+    scene_prepare_force(s, &force);
+    scene_find_forces(best_scene_kernels(), s, &force, scene_quantity(s, SPRING_POSITION, 0),
                       scene_quantity(s, SPRING_VELOCITY, 0), time_of(s));
     s->force_kept = s->force == NULL;
 }
@@ -234,8 +242,8 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, acceleration = 0; /* squared */
         for (uint32_t a = 0; a < s->plan.axes; a++) {
-            const double v = (double)scene_quantity(s, SPRING_VELOCITY, a)[i];
-            const double force = (double)scene_axis(s, s->plan.force, a)[i] - s->drag * v;
+            const double v = (double)scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * i];
+            const double force = (double)scene_axis(s, s->plan.force, a)[s->plan.step * i] - s->drag * v;
             const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed += v * v;
             acceleration += felt * felt;

@@ -5,11 +5,14 @@
 
 #include "scene_block.h"
 
+typedef struct scene_force scene_force;
+
 /* One step, from a buffer whose forces are known to a buffer, which may be the same. Its times are no sums of steps,
    and the end of one is the begin of the next, to the bit. */
 typedef struct scene_step {
     const scene_kernels *kernels;
     const spring_scene *scene;
+    const scene_force *force;
     uint32_t from, to;
     scalar h;           /* [s] */
     double middle, end; /* [s] */
@@ -62,12 +65,13 @@ static inline scene_motion scene_motion_of(const scene_step *step)
 {
     const spring_scene *s = step->scene;
     const scene_plan *p = &s->plan;
-    scene_motion m = {
-        .particles = p->particles,
-        .axes = p->axes,
+    return (scene_motion){
+        .particles = p->small ? quad_size * p->particles : p->particles,
+        .axes = p->small ? 1 : p->axes,
         .stride = p->stride,
         .inverse_mass = p->inverse_mass != 0 ? scene_array(s, p->inverse_mass) : NULL,
         .inverse_mass_all = (scalar)(1 / s->mass_all),
+        .gravity = s->gravity_vectors[0],
         .drag = (scalar)s->drag,
         .kick = step->h,
         .drift = step->h,
@@ -80,66 +84,138 @@ static inline scene_motion scene_motion_of(const scene_step *step)
         .sum_x = scene_axis(s, p->sum_x, 0),
         .sum_v = scene_axis(s, p->sum_v, 0),
     };
-    for (uint32_t a = 0; a < p->axes; a++)
-        m.gravity[a] = (scalar)s->gravity[a];
-    return m;
 }
 
-/* The forces of links and callback at time t on positions x and velocities v, arrays of all axes. */
-static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, const scalar *x,
-                                     const scalar *v, double t)
+/* The links of a scene, in terms of memory. */
+struct scene_force {
+    scene_links links;
+    scene_band band[most_bands];
+};
+
+static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
 {
     const scene_plan *p = &s->plan;
     const bool damped = s->damped_links > 0;
-    scene_band bands[most_bands];
-    scene_links links = {
+    f->links = (scene_links){
         .particles = p->particles,
         .stride = p->stride,
-        .x = x,
-        .v = v,
         .force = scene_axis(s, p->force, 0),
         .bands = p->bands,
-        .band = bands,
+        .band = f->band,
+        .edge_list =
+            {
+                .count = p->edges,
+                .a = scene_indices(s, p->edge_a),
+                .b = scene_indices(s, p->edge_b),
+                .stiffness = scene_array(s, p->edge_stiffness),
+                .rest = scene_array(s, p->edge_rest),
+                .damping = damped ? scene_array(s, p->edge_damping) : NULL,
+            },
+        .records = p->records != 0 ? scene_array(s, p->records) : NULL,
     };
     for (uint32_t i = 0; i < p->bands; i++) {
         const band_plan *band = &p->band[i];
-        bands[i] = (scene_band){
+        f->band[i] = (scene_band){
             .offset = band->offset,
-            .first = band->first,
+            .start = band->first / tile * tile,
             .end = band->end,
-            .occupied = band->equal ? scene_bytes_at(s, p->band_occupied) + band->occupied : NULL,
+            .occupied = scene_bytes_at(s, p->occupied) + band->slots,
+            .each = !band->equal,
             .stiffness = scene_array(s, p->band_stiffness) + band->coefficients,
             .rest = scene_array(s, p->band_rest) + band->coefficients,
             .damping = damped ? scene_array(s, p->band_damping) + band->coefficients : NULL,
+            .force = scene_array(s, p->rings) + band->force,
+            .ring = (ptrdiff_t)band->ring,
         };
     }
-    kernels->bands[p->axes - 1][damped](&links);
-    if (p->edges > 0) {
-        links.edge_list = (scene_edges){
-            .count = p->edges,
-            .a = scene_indices(s, p->edge_a),
-            .b = scene_indices(s, p->edge_b),
-            .stiffness = scene_array(s, p->edge_stiffness),
-            .rest = scene_array(s, p->edge_rest),
-            .damping = damped ? scene_array(s, p->edge_damping) : NULL,
-        };
-        kernels->edges[p->axes - 1][damped](&links);
-    }
-    if (s->force != NULL) {
-        const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
-        scalar *force[3] = {NULL};
-        for (uint32_t a = 0; a < p->axes; a++) {
-            position[a] = x + a * p->stride;
-            velocity[a] = v + a * p->stride;
-            force[a] = scene_axis(s, p->force, a);
+}
+
+/* What a callback adds, at time t. It is shown each axis by itself. */
+static inline void scene_call_back(const spring_scene *s, const scalar *x, const scalar *v, double t)
+{
+    const scene_plan *p = &s->plan;
+    const size_t n = p->particles;
+    const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
+    scalar *force[3] = {NULL};
+    for (uint32_t a = 0; a < p->axes; a++) {
+        scalar *const all = scene_axis(s, p->force, a);
+        scalar *const shown = p->small ? scene_array(s, p->callback) + 3 * a * n : NULL;
+        position[a] = p->small ? shown : x + a * p->stride;
+        velocity[a] = p->small ? shown + n : v + a * p->stride;
+        force[a] = p->small ? shown + 2 * n : all;
+        for (size_t i = 0; p->small && i < n; i++) {
+            shown[i] = x[p->step * i + a];
+            shown[n + i] = v[p->step * i + a];
+            shown[2 * n + i] = all[p->step * i];
         }
-        s->force(s->user, t, p->particles, position, velocity, force);
     }
+    s->force(s->user, t, n, position, velocity, force);
+    for (uint32_t a = 0; p->small && a < p->axes; a++)
+        for (size_t i = 0; i < n; i++)
+            scene_axis(s, p->force, a)[p->step * i] = force[a][i];
+}
+
+/* The forces of edges and callback, which need those of all bands to be there. */
+static inline void scene_add_forces(const scene_kernels *kernels, const spring_scene *s, const scene_force *f,
+                                    const scalar *x, const scalar *v, double t)
+{
+    const scene_plan *p = &s->plan;
+    const bool damped = s->damped_links > 0;
+    if (p->small)
+        kernels->quads[damped](&f->links, x, v);
+    else if (p->edges > 0)
+        (p->records != 0 ? kernels->records : kernels->edges)[p->axes - 1][damped](&f->links, x, v);
+    if (s->force != NULL)
+        scene_call_back(s, x, v, t);
+}
+
+/* The forces of links and callback at time t on positions x and velocities v, arrays of all axes. */
+static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, const scene_force *f,
+                                     const scalar *x, const scalar *v, double t)
+{
+    if (!s->plan.small)
+        kernels->bands[s->plan.axes - 1][s->damped_links > 0](&f->links, x, v, 0, s->plan.particles);
+    scene_add_forces(kernels, s, f, x, v, t);
 }
 
 static inline void scene_evaluate(const scene_step *s, const scalar *x, const scalar *v, double t)
 {
-    scene_find_forces(s->kernels, s->scene, x, v, t);
+    scene_find_forces(s->kernels, s->scene, s->force, x, v, t);
+}
+
+/* A motion of all particles by a kernel. */
+static inline bool scene_move(const scene_motion *m, scene_motion_kernel *kernel)
+{
+    return kernel(m, 0, m->particles);
+}
+
+/* A motion, the forces at its end, and a motion by them, which leaves positions alone: one pass over memory where there
+   are bands only. Then the forces on a particle are known as soon as those after it have moved that its links reach,
+   and it is moved on while it is in the cache. */
+static inline bool scene_sweep(const scene_step *s, const scene_motion *before, scene_motion_kernel *move_before,
+                               const scalar *v, const scene_motion *after, scene_motion_kernel *move_after)
+{
+    const spring_scene *scene = s->scene;
+    const scene_plan *p = &scene->plan;
+    if (p->small || p->edges > 0 || scene->force != NULL || p->bands == 0) {
+        if (!scene_move(before, move_before))
+            return false;
+        scene_evaluate(s, before->x, v, s->end);
+        return scene_move(after, move_after);
+    }
+    const size_t chunk = 16 * tile, ahead = (p->band[p->bands - 1].offset + chunk - 1) / chunk * chunk;
+    scene_band_kernel *const bands = s->kernels->bands[p->axes - 1][scene->damped_links > 0];
+    for (size_t i = 0; i < p->particles + ahead; i += chunk) {
+        if (i < p->particles && !move_before(before, i, i + chunk < p->particles ? i + chunk : p->particles))
+            return false;
+        if (i < ahead)
+            continue;
+        const size_t from = i - ahead, to = from + chunk < p->particles ? from + chunk : p->particles;
+        bands(&s->force->links, before->x, v, from, to);
+        if (!move_after(after, from, to))
+            return false;
+    }
+    return true;
 }
 
 #endif

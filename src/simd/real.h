@@ -22,10 +22,12 @@
 #define SPRING_INLINE              static inline __attribute__((always_inline)) /* constant flags vanish at -O1 too */
 #define SPRING_NOINLINE            static __attribute__((noinline))             /* kept out of the code that runs */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
+#define SPRING_PREFETCH(address)   __builtin_prefetch(address)
 #else
 #define SPRING_INLINE              static inline
 #define SPRING_NOINLINE            static
 #define SPRING_UNLIKELY(condition) (condition)
+#define SPRING_PREFETCH(address)   (void)(address)
 #endif
 
 /* Before a loop whose arrays are to live in registers. */
@@ -44,6 +46,11 @@ typedef int32_t scalar_bits;
 typedef double scalar;
 typedef int64_t scalar_bits;
 #endif
+
+SPRING_INLINE scalar scalar_sqrt(scalar a)
+{
+    return (scalar)sqrt((double)a); /* in float rounded twice, which changes nothing for a square root */
+}
 
 #if defined(SPRING_VECTOR) && defined(__GNUC__)
 #include "real_vector.h"

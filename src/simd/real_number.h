@@ -42,3 +42,19 @@ SPRING_INLINE real vec_abs(real a)
 {
     return (real)fabs((double)a);
 }
+
+/* See real_vector.h: the same bits. */
+SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
+{
+    (void)where;
+    for (int k = 0; k < many; k++) {
+#ifndef SPRING_FLOAT
+        const real y = (real)(1 / sqrtf((float)a[k])), r = 1 - a[k] * (y * y);
+        if (vec_abs(r) <= 0x1p-20) {
+            a[k] = y + y * r * (0.5 + 0.375 * r);
+            continue;
+        }
+#endif
+        a[k] = a[k] > 0 ? 1 / vec_sqrt(a[k]) : 0;
+    }
+}

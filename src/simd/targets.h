@@ -24,7 +24,7 @@
 #else
 #define SPRING_TARGET_EXISTS 1
 #if SPRING_VECTOR == 64
-#define SPRING_TARGET "avx512f,avx512dq"
+#define SPRING_TARGET "avx512f,avx512dq,avx512vl"
 #else
 #define SPRING_TARGET "avx2"
 #endif
@@ -44,7 +44,7 @@
    AVX2 for 32, AVX-512 for 64. */
 #if SPRING_X86_64
 #define SPRING_BEST_KERNELS(v128, v256, v512)                                         \
-    (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? (v512) \
+    (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? (v512) \
      : __builtin_cpu_supports("avx2")                                        ? (v256) \
                                                                              : (v128))
 #else

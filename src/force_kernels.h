@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The forces of a scene's links on its particles, in the vectors that real.h is set to.
+ *
+ * Bands     Links of constant offset, as in a rope, a sheet or a block, lie in one band, by their lower end. Each link
+ *           is computed once: for a tile of slots the forces of every band on its lower ends are kept; then each
+ *           particle of the tile adds those of which it is the lower end, and subtracts those of which it is the upper
+ *           one, `offset` slots before. So a band keeps a ring of its last offset + tile forces. Nothing is scattered,
+ *           both ends feel the same bits, so momentum is conserved to rounding, and the order of additions does not
+ *           depend on the length of vectors. A tile reads no position and no velocity of the tiles before it.
+ * Edges     All other links, the edge list, one by one in their order; a particle's axes lie side by side, in a quad.
+ * Law       k (1 - rest/length) delta, and with damping c (relative velocity . delta)/length^2 delta; nothing where
+ *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 0.8 ulp; of an edge the quotient
+ *           is rounded, and the square root.
+ */
+#ifndef SPRINGSTEP_FORCE_KERNELS_H
+#define SPRINGSTEP_FORCE_KERNELS_H
+
+#include "scene_kernels.h"
+
+/* ---------------------------------------------------------------------------------------------------------- bands */
+
+/* Vectors of links that are computed at once: while some wait for a root, others are computed. */
+enum { together = SPRING_VECTOR == 64 ? 4 : 2 };
+
+/* Turns deltas from the lower ends of links to the upper into forces on the lower. Where there is no link that is 0,
+   selected and not multiplied: particles that are not joined may be infinitely far apart. */
+SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                             const real *rest, const real *c, bool damped)
+{
+    real scale[together], rate[together];
+    SPRING_UNROLL
+    for (int m = 0; m < together; m++) {
+        real square = delta[m][0] * delta[m][0];
+        rate[m] = damped ? delta[m][0] * relative[m][0] : splat(0);
+        SPRING_UNROLL
+        for (uint32_t a = 1; a < axes; a++) {
+            square += delta[m][a] * delta[m][a];
+            if (damped)
+                rate[m] += delta[m][a] * relative[m][a];
+        }
+        scale[m] = square;
+    }
+    vec_inverse_sqrt(scale, joined, together);
+    SPRING_UNROLL
+    for (int m = 0; m < together; m++) {
+        const real inverse = scale[m];
+        scale[m] = k[m] * (1 - rest[m] * inverse);
+        if (damped)
+            scale[m] += c[m] * (rate[m] * inverse * inverse);
+    }
+    SPRING_UNROLL
+    for (int m = 0; m < together; m++)
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+}
+
+/* On one axis a link is a linear spring. */
+SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                                    const real *rest, const real *c, bool damped)
+{
+    SPRING_UNROLL
+    for (int m = 0; m < together; m++) {
+        const real pull = k[m] * (delta[m][0] - rest[m]);
+        delta[m][0] = select_real(joined[m], damped ? pull + c[m] * relative[m][0] : pull, splat(0));
+    }
+}
+
+/* The forces of a band in the tile of slots from t, of axis a at force + a * axis; each: slots have coefficients. */
+SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                               scalar *force, size_t axis, uint32_t axes, bool damped, bool each)
+{
+    const ptrdiff_t offset = band->offset, slot = t - band->start;
+    const int8_t *const occupied = band->occupied + slot;
+    const scalar *const stiffness = band->stiffness + (each ? slot : 0), *const length = band->rest + (each ? slot : 0),
+                        *const damping = damped ? band->damping + (each ? slot : 0) : NULL;
+    SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
+    const real all_k = vec_load(stiffness), all_rest = vec_load(length), all_c = damped ? vec_load(damping) : splat(0);
+    for (size_t j = 0; j < tile; j += together * lanes) {
+        real delta[together][3], relative[together][3], k[together], rest[together], c[together];
+        mask joined[together];
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            k[m] = each ? vec_load(stiffness + i) : all_k;
+            rest[m] = each ? vec_load(length + i) : all_rest;
+            c[m] = each && damped ? vec_load(damping + i) : all_c;
+            joined[m] = vec_load_mask(occupied + i);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
+                delta[m][a] = vec_load(at + offset) - vec_load(at);
+                if (damped)
+                    relative[m][a] = vec_load(with + offset) - vec_load(with);
+            }
+        }
+        if (axes == 1)
+            to_linear_forces(delta, relative, joined, k, rest, c, damped);
+        else
+            to_forces(axes, delta, relative, joined, k, rest, c, damped);
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++)
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+    }
+}
+
+SPRING_INLINE void band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                               scalar *force, size_t axis, uint32_t axes, bool damped)
+{
+    if (band->each)
+        tile_forces(band, x, v, stride, t, force, axis, axes, damped, true);
+    else
+        tile_forces(band, x, v, stride, t, force, axis, axes, damped, false);
+}
+
+/* Forces that are added to those of a tile, or subtracted: of axis a at force + a * axis. */
+typedef struct kept_forces {
+    const scalar *force;
+    size_t axis;
+} kept_forces;
+
+/* The bands' forces on the particles of the tile from t. */
+SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *plus, size_t pluses,
+                          const kept_forces *minus, size_t minuses, uint32_t axes)
+{
+    enum { some = 2 }; /* vectors at once */
+    scalar *const to = s->force + t;
+    const size_t stride = s->stride;
+    for (size_t j = 0; j < tile; j += some * lanes) {
+        real force[some][3];
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++)
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] = splat(0);
+        for (const kept_forces *k = plus; k < plus + pluses; k++)
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++)
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+        for (const kept_forces *k = minus; k < minus + minuses; k++)
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++)
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++)
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(to + a * stride + j + m * lanes, force[m][a]);
+    }
+}
+
+SPRING_INLINE void clear_tile(scalar *force, size_t axis, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < tile; j += lanes)
+            vec_store(force + a * axis + j, splat(0));
+}
+
+/* The first tile of a ring stands behind the last once more, so that any `tile` slots in a row lie so. */
+SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t axis, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < tile; j += lanes)
+            vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
+}
+
+/* The bands' forces on particles from ... to - 1. Those before them have theirs: their forces are in the rings. */
+SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to, uint32_t axes,
+                         bool damped)
+{
+    ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
+    for (size_t r = 0; r < s->bands; r++) {
+        const scene_band *band = &s->band[r];
+        slot[r] = (ptrdiff_t)from % band->ring;
+        if (from == 0) /* there are no forces before the first */
+            clear_tile(band->force + band->ring - tile, (size_t)(band->ring + tile), axes);
+    }
+    for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
+        kept_forces plus[most_bands], minus[most_bands];
+        size_t pluses = 0, minuses = 0;
+        for (size_t r = 0; r < s->bands; r++) {
+            const scene_band *band = &s->band[r];
+            const ptrdiff_t ring = band->ring, other = slot[r] - band->offset;
+            const size_t axis = (size_t)(ring + tile);
+            scalar *const force = band->force + slot[r];
+            if (t >= band->start && t < band->end) {
+                band_forces(band, x, v, s->stride, t, force, axis, axes, damped);
+                plus[pluses++] = (kept_forces){force, axis};
+            } else {
+                clear_tile(force, axis, axes);
+            }
+            if (slot[r] == 0)
+                repeat_tile(force, ring, axis, axes);
+            if (t < band->end + band->offset && t + tile > band->start + band->offset)
+                minus[minuses++] = (kept_forces){band->force + (other < 0 ? other + ring : other), axis};
+            slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
+        }
+        gather(s, t, plus, pluses, minus, minuses, axes);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- edges */
+
+/* The force of an edge is this times the delta between its ends. rate: relative velocity . delta */
+SPRING_INLINE scalar edge_scale(const scene_edges *l, size_t j, scalar square, scalar rate, bool damped)
+{
+    const scalar scale = l->stiffness[j] * (1 - l->rest[j] / scalar_sqrt(square));
+    return damped ? scale + l->damping[j] * (rate / square) : scale;
+}
+
+/* An edge that is cut does nothing, however far apart its ends are. */
+SPRING_INLINE bool edge_pulls(const scene_edges *l, size_t j, bool damped)
+{
+    return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
+}
+
+/* The edge list, from arrays of each axis. */
+SPRING_INLINE void edges(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+{
+    const scene_edges *const l = &s->edge_list;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        scalar delta[3], scale = 1, square = 0, rate = 0;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
+            square += delta[a] * delta[a];
+            if (damped)
+                rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
+        }
+        if (!edge_pulls(l, j, damped) || (axes > 1 && !(square > 0)))
+            continue;
+        if (axes == 1) {
+            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
+            if (damped)
+                delta[0] += l->damping[j] * (v[to] - v[from]);
+        } else {
+            scale = edge_scale(l, j, square, rate, damped);
+        }
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            s->force[a * s->stride + from] += scale * delta[a];
+            s->force[a * s->stride + to] -= scale * delta[a];
+        }
+    }
+}
+
+/* The edge list, from quads: x, v and force of particle i at step * i. */
+SPRING_INLINE void quad_edges(const scene_edges *l, const scalar *x, const scalar *v, scalar *force, size_t step,
+                              bool damped)
+{
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t a = step * l->a[j], b = step * l->b[j];
+        const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+        const scalar square = quad_dot(delta, delta);
+        if (!edge_pulls(l, j, damped) || !(square > 0))
+            continue;
+        const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
+        const quad pull = quad_times(edge_scale(l, j, square, rate, damped), delta);
+        quad_store(force + a, quad_plus(quad_load(force + a), pull));
+        quad_store(force + b, quad_minus(quad_load(force + b), pull));
+    }
+}
+
+/* What the edges of a scene without order read and write: of each particle position, velocity if links are damped, and
+   force, in one record. */
+SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+{
+    const size_t at_force = (damped ? 2 : 1) * quad_size, step = at_force + quad_size;
+    scalar *const base = s->records;
+    for (size_t i = 0; i < s->particles; i++) {
+        scalar *const record = base + step * i;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            record[a] = x[a * s->stride + i];
+            if (damped)
+                record[quad_size + a] = v[a * s->stride + i];
+            record[at_force + a] = s->bands > 0 ? s->force[a * s->stride + i] : 0;
+        }
+    }
+    quad_edges(&s->edge_list, base, base + quad_size, base + at_force, step, damped);
+    for (size_t i = 0; i < s->particles; i++)
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            s->force[a * s->stride + i] = base[step * i + at_force + a];
+}
+
+/* The forces of a small scene, whose arrays are of quads. */
+SPRING_INLINE void quads(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+{
+    (void)axes;
+    memset(s->force, 0, s->particles * quad_size * sizeof *s->force);
+    quad_edges(&s->edge_list, x, v, s->force, quad_size, damped);
+}
+
+#endif
