@@ -114,9 +114,9 @@ SPRING_INLINE real vec_abs(real a)
    anything.
 
    In double: a seed y by a square root and a quotient in float, which are several times as fast, then y (1 + r/2 + 3/8
-   r^2), r = 1 - a y^2. y has 24 bits, so its square is exact; |r| <= 2^-20 leaves out less than 2^-61. Where a does not
-   fit into a float r is larger, or NaN, and the quotient is taken in double. Each lane by itself, so it has the same
-   bits in any vector. */
+   r^2), r = 1 - a y^2. y has 24 bits, so its square is exact, and |r| < 2^-20: what is left out is below 2^-61. Where
+   some a has no exponent of 2^-84 ... 2^43 its lane takes the quotient in double; each lane by itself, so that it has
+   the same bits in any vector. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
 {
 #ifdef SPRING_FLOAT
@@ -125,26 +125,28 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
     for (int k = 0; k < many; k++)
         a[k] = select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0));
 #else
+    /* The exponents are 128, so the difference to the bits of the least number has 7 + 52 bits. */
+    const mask least = (mask)splat(0x1p-84), beyond = (mask){0} - ((int64_t)1 << 59);
     real y[8], r[8];
     mask wrong = {0};
+    SPRING_UNROLL
+    for (int k = 0; k < many; k++)
+        wrong |= where[k] & ((mask)a[k] - least);
+    if (SPRING_UNLIKELY(any(wrong & beyond))) {
+        for (int k = 0; k < many; k++) {
+            const mask fits = (((mask)a[k] - least) & beyond) == 0;
+            const real one = select_real(fits, a[k], splat(1)), seed = vec_seed(one), rest = 1 - one * (seed * seed);
+            const real root = seed + seed * rest * ((scalar)0.5 + (scalar)0.375 * rest);
+            a[k] = select_real(fits, root, select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0)));
+        }
+        return;
+    }
     SPRING_UNROLL
     for (int k = 0; k < many; k++)
         y[k] = vec_seed(a[k]);
     SPRING_UNROLL
     for (int k = 0; k < many; k++)
         r[k] = 1 - a[k] * (y[k] * y[k]);
-    SPRING_UNROLL
-    for (int k = 0; k < many; k++)
-        wrong |= where[k] & ~(vec_abs(r[k]) <= (scalar)0x1p-20);
-    if (SPRING_UNLIKELY(any(wrong))) {
-        SPRING_UNROLL
-        for (int k = 0; k < many; k++) {
-            const real quotient = select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0));
-            const mask fine = vec_abs(r[k]) <= (scalar)0x1p-20;
-            a[k] = select_real(fine, y[k] + y[k] * r[k] * ((scalar)0.5 + (scalar)0.375 * r[k]), quotient);
-        }
-        return;
-    }
     SPRING_UNROLL
     for (int k = 0; k < many; k++)
         a[k] = y[k] + y[k] * r[k] * ((scalar)0.5 + (scalar)0.375 * r[k]);
