@@ -67,6 +67,13 @@ SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const
     }
 }
 
+SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < slots; j += lanes)
+            vec_store(force + a * axis + j, splat(0));
+}
+
 /* The forces of a band in the tile of slots from t, of axis a at force + a * axis; each: slots have coefficients. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
                                scalar *force, size_t axis, uint32_t axes, bool damped, bool each)
@@ -76,8 +83,10 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
     const scalar *const stiffness = band->stiffness + (each ? slot : 0), *const length = band->rest + (each ? slot : 0),
                         *const damping = damped ? band->damping + (each ? slot : 0) : NULL;
     SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
+    const size_t left = (size_t)(band->end - t), count = left < tile ? left : tile;
     const real all_k = vec_load(stiffness), all_rest = vec_load(length), all_c = damped ? vec_load(damping) : splat(0);
-    for (size_t j = 0; j < tile; j += together * lanes) {
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
         real delta[together][3], relative[together][3], k[together], rest[together], c[together];
         mask joined[together];
         SPRING_UNROLL
@@ -105,6 +114,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
             for (uint32_t a = 0; a < axes; a++)
                 vec_store(force + a * axis + j + m * lanes, delta[m][a]);
     }
+    clear_slots(force + j, axis, tile - j, axes);
 }
 
 SPRING_INLINE void band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
@@ -128,8 +138,8 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
 {
     enum { some = 2 }; /* vectors at once */
     scalar *const to = s->force + t;
-    const size_t stride = s->stride;
-    for (size_t j = 0; j < tile; j += some * lanes) {
+    const size_t stride = s->stride, left = s->particles - (size_t)t, count = left < tile ? left : tile;
+    for (size_t j = 0; j < count; j += some * lanes) {
         real force[some][3];
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++)
@@ -156,13 +166,6 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
     }
 }
 
-SPRING_INLINE void clear_tile(scalar *force, size_t axis, uint32_t axes)
-{
-    for (uint32_t a = 0; a < axes; a++)
-        for (size_t j = 0; j < tile; j += lanes)
-            vec_store(force + a * axis + j, splat(0));
-}
-
 /* The first tile of a ring stands behind the last once more, so that any `tile` slots in a row lie so. */
 SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t axis, uint32_t axes)
 {
@@ -179,8 +182,10 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
     for (size_t r = 0; r < s->bands; r++) {
         const scene_band *band = &s->band[r];
         slot[r] = (ptrdiff_t)from % band->ring;
-        if (from == 0) /* there are no forces before the first */
-            clear_tile(band->force + band->ring - tile, (size_t)(band->ring + tile), axes);
+        if (from == 0) { /* there are no forces before the first */
+            const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
+            clear_slots(band->force + band->ring - before, (size_t)(band->ring + tile), before, axes);
+        }
     }
     for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
         kept_forces plus[most_bands], minus[most_bands];
@@ -194,7 +199,7 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
                 band_forces(band, x, v, s->stride, t, force, axis, axes, damped);
                 plus[pluses++] = (kept_forces){force, axis};
             } else {
-                clear_tile(force, axis, axes);
+                clear_slots(force, axis, tile, axes);
             }
             if (slot[r] == 0)
                 repeat_tile(force, ring, axis, axes);
@@ -253,9 +258,10 @@ SPRING_INLINE void edges(const scene_links *s, const scalar *x, const scalar *v,
 }
 
 /* The edge list, from quads: x, v and force of particle i at step * i. */
-SPRING_INLINE void quad_edges(const scene_edges *l, const scalar *x, const scalar *v, scalar *force, size_t step,
+SPRING_INLINE void quad_edges(const scene_edges *edges, const scalar *x, const scalar *v, scalar *force, size_t step,
                               bool damped)
 {
+    const scene_edges own = *edges, *const l = &own; /* no store changes it, for all a compiler knows */
     for (size_t j = 0; j < l->count; j++) {
         const size_t a = step * l->a[j], b = step * l->b[j];
         const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));

@@ -102,7 +102,7 @@ static const one_method leapfrog_one = {
    then: the last one is that of the prediction, and ten calls would differ from one call of ten steps. */
 static scene_outcome leapfrog_scene_step(const scene_step *s)
 {
-    scene_motion first = scene_motion_of(s);
+    scene_motion first = s->motion;
     first.kick = s->h / 2;
     scene_motion last = first;
     last.v0 = first.v;

@@ -43,7 +43,8 @@ SPRING_INLINE real free_acceleration(const scene_motion *s, const coordinates *c
 
 SPRING_INLINE real acceleration(const scene_motion *s, const coordinates *c, real v)
 {
-    return free_acceleration(s, c) - c->drag * v;
+    const real free = free_acceleration(s, c);
+    return s->drag != 0 ? free - c->drag * v : free;
 }
 
 SPRING_INLINE mask move_to(const scene_motion *s, const coordinates *c, real x, real v)
@@ -57,8 +58,9 @@ SPRING_INLINE mask move_to(const scene_motion *s, const coordinates *c, real x, 
 typedef mask motion_part(const scene_motion *s, const coordinates *c);
 
 /* The one loop of all kernels. */
-SPRING_INLINE bool all_coordinates(const scene_motion *s, size_t from, size_t to, motion_part *part, bool solved)
+SPRING_INLINE bool all_coordinates(const scene_motion *motion, size_t from, size_t to, motion_part *part, bool solved)
 {
+    const scene_motion own = *motion, *const s = &own; /* no store changes it, for all a compiler knows */
     const coordinates all = {.kick = splat(s->kick), .drift = splat(s->drift), .weight = splat(s->weight)};
     mask wrong = {0};
     for (size_t i = from; i < to; i += lanes) {

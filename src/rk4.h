@@ -127,7 +127,7 @@ static scene_outcome rk4_scene_step(const scene_step *s)
 {
     const double times[] = {s->middle, s->middle, s->end};
     const scalar lengths[] = {s->h / 2, s->h / 2, s->h}; /* from the start to the next stage */
-    scene_motion end = scene_motion_of(s), stage = end;
+    scene_motion end = s->motion, stage = end;
     stage.x = scene_stage_x(s);
     stage.v = scene_stage_v(s);
     stage.weight = 2;

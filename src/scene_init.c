@@ -321,7 +321,7 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
 }
 
 /* Links and particles of a small scene: below, vectors are not filled. */
-enum { most_small = 32 };
+enum { most_small = 12 };
 
 static spring_status make_plan(const spring_scene_def *def, scene_plan *plan)
 {

@@ -86,6 +86,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         const double done = (double)(before + i);
         step.middle = t0 + (done + 0.5) * dt;
         step.end = t0 + (double)(before + i + 1) * dt;
+        if (i < 2) /* then it stays in one buffer */
+            scene_prepare_motion(&step);
         if (!s->force_kept)
             scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
                            t0 + done * dt);

@@ -14,8 +14,9 @@ typedef struct scene_step {
     const spring_scene *scene;
     const scene_force *force;
     uint32_t from, to;
-    scalar h;           /* [s] */
-    double middle, end; /* [s] */
+    scalar h;            /* [s] */
+    double middle, end;  /* [s] */
+    scene_motion motion; /* over the whole step, from the state at its start to the one at its end */
 } scene_step;
 
 /* A step ends where the first number is not finite: a callback is shown nothing else. */
@@ -60,12 +61,11 @@ static inline scalar *scene_predicted(const scene_step *s)
     return scene_axis(s->scene, s->scene->plan.predicted, 0);
 }
 
-/* A part of a step, over its whole length, from the state at its start to the one at its end. */
-static inline scene_motion scene_motion_of(const scene_step *step)
+static inline void scene_prepare_motion(scene_step *step)
 {
     const spring_scene *s = step->scene;
     const scene_plan *p = &s->plan;
-    return (scene_motion){
+    step->motion = (scene_motion){
         .particles = p->small ? quad_size * p->particles : p->particles,
         .axes = p->small ? 1 : p->axes,
         .stride = p->stride,
