@@ -47,10 +47,11 @@ static bool finite_scene(const spring_scene *s)
 /* After a failure without rollback nothing is left of the state, not even what is finite. */
 static void invalidate(spring_scene *s)
 {
-    for (uint32_t a = 0; a < s->plan.axes; a++) {
+    for (uint32_t a = 0; a < (s->plan.small ? quad_size : s->plan.axes); a++) {
+        const bool axis = a < s->plan.axes; /* nobody sets the other numbers of a quad again */
         scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->plan.particles; i++)
-            x[s->plan.step * i] = v[s->plan.step * i] = (scalar)NAN;
+            x[s->plan.step * i] = v[s->plan.step * i] = axis ? (scalar)NAN : 0;
     }
     s->lost = true;
 }
