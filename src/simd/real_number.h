@@ -49,8 +49,8 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
     (void)where;
     for (int k = 0; k < many; k++) {
 #ifndef SPRING_FLOAT
-        const real y = (real)(1 / sqrtf((float)a[k])), r = 1 - a[k] * (y * y);
-        if (vec_abs(r) <= 0x1p-20) {
+        if (a[k] >= 0x1p-84 && a[k] < 0x1p44) {
+            const real y = (real)(1 / sqrtf((float)a[k])), r = 1 - a[k] * (y * y);
             a[k] = y + y * r * (0.5 + 0.375 * r);
             continue;
         }
