@@ -302,7 +302,8 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
         plan->sum_x = reserve(plan, quantity, sizeof(scalar));
         plan->sum_v = reserve(plan, quantity, sizeof(scalar));
     }
-    plan->inverse_mass = def->mass != NULL || def->pinned != NULL ? reserve(plan, quantity, sizeof(scalar)) : 0;
+    if (def->mass != NULL || def->pinned != NULL)
+        plan->inverse_mass = reserve(plan, plan->small ? quantity : plan->stride, sizeof(scalar));
     plan->occupied = reserve(plan, plan->band_slots, 1);
     plan->rings = reserve(plan, plan->band_force, sizeof(scalar));
     plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));
