@@ -10,8 +10,8 @@
  *           depend on the length of vectors. A tile reads no position and no velocity of the tiles before it.
  * Edges     All other links, the edge list, one by one in their order; a particle's axes lie side by side, in a quad.
  * Law       k (1 - rest/length) delta, and with damping c (relative velocity . delta)/length^2 delta; nothing where
- *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 0.8 ulp; of an edge the quotient
- *           is rounded, and the square root.
+ *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 1 ulp; of an edge the square root is
+ *           rounded, and the quotient rest/length.
  */
 #ifndef SPRINGSTEP_FORCE_KERNELS_H
 #define SPRINGSTEP_FORCE_KERNELS_H
@@ -52,8 +52,8 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
     SPRING_UNROLL
     for (int m = 0; m < together; m++)
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+    for (uint32_t a = 0; a < axes; a++)
+        delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
 }
 
 /* On one axis a link is a linear spring. */
@@ -111,8 +111,8 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++)
             SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+        for (uint32_t a = 0; a < axes; a++)
+            vec_store(force + a * axis + j + m * lanes, delta[m][a]);
     }
     clear_slots(force + j, axis, tile - j, axes);
 }
@@ -144,25 +144,25 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++)
             SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                force[m][a] = splat(0);
+        for (uint32_t a = 0; a < axes; a++)
+            force[m][a] = splat(0);
         for (const kept_forces *k = plus; k < plus + pluses; k++)
             SPRING_UNROLL
-            for (size_t m = 0; m < some; m++)
-                SPRING_UNROLL
-                for (uint32_t a = 0; a < axes; a++)
-                    force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+        for (size_t m = 0; m < some; m++)
+            SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
         for (const kept_forces *k = minus; k < minus + minuses; k++)
             SPRING_UNROLL
-            for (size_t m = 0; m < some; m++)
-                SPRING_UNROLL
-                for (uint32_t a = 0; a < axes; a++)
-                    force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+        for (size_t m = 0; m < some; m++)
+            SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++)
             SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                vec_store(to + a * stride + j + m * lanes, force[m][a]);
+        for (uint32_t a = 0; a < axes; a++)
+            vec_store(to + a * stride + j + m * lanes, force[m][a]);
     }
 }
 
@@ -294,8 +294,8 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
     quad_edges(&s->edge_list, base, base + quad_size, base + at_force, step, damped);
     for (size_t i = 0; i < s->particles; i++)
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            s->force[a * s->stride + i] = base[step * i + at_force + a];
+    for (uint32_t a = 0; a < axes; a++)
+        s->force[a * s->stride + i] = base[step * i + at_force + a];
 }
 
 /* The forces of a small scene, whose arrays are of quads. */

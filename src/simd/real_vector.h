@@ -110,12 +110,12 @@ SPRING_INLINE real vec_abs(real a)
     return (real)(~(mask)splat(-(scalar)0) & (mask)a);
 }
 
-/* 1/sqrt(a) to 0.8 ulp for a > 0, and 0 for 0, of several vectors at once; elsewhere than in the lanes of `where`
-   anything.
+/* 1/sqrt(a) for a > 0, and 0 for 0, of several vectors at once; elsewhere than in the lanes of `where` anything.
+   By a seed to 1 ulp, by a quotient, as in float, to 1.5 ulp (tests/test_inverse_sqrt.c).
 
    In double: a seed y by a square root and a quotient in float, which are several times as fast, then y (1 + r/2 + 3/8
-   r^2), r = 1 - a y^2. y has 24 bits, so its square is exact, and |r| < 2^-20: what is left out is below 2^-61. Where
-   some a has no exponent of 2^-84 ... 2^43 its lane takes the quotient in double; each lane by itself, so that it has
+   r^2), r = 1 - a y^2. y has 24 bits, so its square is exact, and |r| < 2^-20: what is left out is below 2^-61. Half an
+   ulp at most comes from the last sum, as much from a y^2. Where some a has no exponent of 2^-84 ... 2^43 its lane takes the quotient in double; each lane by itself, so that it has
    the same bits in any vector. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
 {
