@@ -28,9 +28,9 @@ typedef struct band_plan {
 typedef struct scene_plan {
     uint32_t axes, flags, methods;
     size_t particles, links;
-    bool small;    /* quantities are arrays of quads, and all links are edges */
-    size_t stride; /* elements from one axis of a quantity to the next */
-    size_t step;   /* elements from one particle to the next */
+    bool small;                                       /* quantities are arrays of quads, and all links are edges */
+    size_t stride;                                    /* elements from one axis of a quantity to the next */
+    size_t step;                                      /* elements from one particle to the next */
     size_t band_slots, band_coefficients, band_force; /* in all bands together */
     size_t edges;                                     /* links that lie in no band */
     uint32_t bands;
@@ -42,9 +42,9 @@ typedef struct scene_plan {
     size_t inverse_mass;
     size_t occupied, band_stiffness, band_rest, band_damping, rings;
     size_t edge_a, edge_b, edge_stiffness, edge_rest, edge_damping;
-    size_t records; /* see records() */
+    size_t records;  /* see records() */
     size_t callback; /* of a small scene: what a callback is shown, arrays of each axis of position, velocity, force */
-    size_t slot;    /* of each link: in the bands, or band_slots and its place in the edge list; without bands none */
+    size_t slot;     /* of each link: in the bands, or band_slots and its place in the edge list; without bands none */
     size_t bytes;
 } scene_plan;
 
@@ -64,7 +64,7 @@ struct spring_scene {
     void *user;
     double mass_all, drag, gravity[3];
     scalar gravity_vectors[3][padding]; /* of each axis; in a small scene the first holds quads of all */
-    double t0, dt; /* time is t0 + steps dt */
+    double t0, dt;                      /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
     uint32_t buffer; /* that holds the state */

@@ -24,8 +24,8 @@ typedef struct scene_band {
     const scalar *stiffness; /* [N/m] */
     const scalar *rest;      /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;   /* [N s/m]; NULL: none in the scene */
-    scalar *force;           /* [N] on the lower ends of the last slots, of each axis: a ring, and its first tile again */
-    ptrdiff_t ring;          /* slots: a multiple of tile, at least offset + tile */
+    scalar *force;  /* [N] on the lower ends of the last slots, of each axis: a ring, and its first tile again */
+    ptrdiff_t ring; /* slots: a multiple of tile, at least offset + tile */
 } scene_band;
 
 typedef struct scene_edges {
@@ -51,7 +51,7 @@ typedef struct scene_motion {
     size_t stride;              /* elements from one axis to the next */
     const scalar *inverse_mass; /* NULL: one for all */
     scalar inverse_mass_all;
-    const scalar *gravity;      /* of each axis a vector; of quads one for all axes */
+    const scalar *gravity; /* of each axis a vector; of quads one for all axes */
     scalar drag;
     scalar kick, drift; /* [s] how long forces act on v, and v on x */
     const scalar *force;
@@ -72,12 +72,12 @@ typedef bool scene_motion_kernel(const scene_motion *, size_t from, size_t to);
 typedef struct scene_kernels {
     const struct scene_kernels *small; /* those whose vectors hold at most a quad, for small scenes: what one kernel
                                           stores the next loads at once only in the same pieces */
-    scene_band_kernel *bands[3][2]; /* the forces of bands; by axes - 1, damping */
-    scene_force_kernel *edges[3][2]; /* adds those of the edge list */
+    scene_band_kernel *bands[3][2];    /* the forces of bands; by axes - 1, damping */
+    scene_force_kernel *edges[3][2];   /* adds those of the edge list */
     scene_force_kernel *records[3][2]; /* the same, for many edges without order; not on one axis */
     scene_force_kernel *quads[2];      /* the forces of the edge list, where the axes of a particle lie side by side */
-    scene_motion_kernel *kick_drift;        /* v = v0 + kick a(v0);       x = x0 + drift v */
-    scene_motion_kernel *solved_kick;       /* v = v0 + kick a(v) */
+    scene_motion_kernel *kick_drift;   /* v = v0 + kick a(v0);       x = x0 + drift v */
+    scene_motion_kernel *solved_kick;  /* v = v0 + kick a(v) */
     scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     scene_motion_kernel *stage;             /* v = v0 + kick a(slope);    x = x0 + drift slope */
     scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
@@ -94,7 +94,7 @@ extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v5
 
 /* ------------------------------------------------------------------------------------------------------ the table */
 
-#define BAND_KERNELS(axes)                                                                                         \
+#define BAND_KERNELS(axes)                                                                                            \
     static void bands_##axes(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to)          \
     {                                                                                                                 \
         bands(s, x, v, from, to, axes, false);                                                                        \

@@ -43,10 +43,10 @@
 /* Of three tables of kernels, for vectors of 16, 32 and 64 bytes, the widest that the processor has instructions for:
    AVX2 for 32, AVX-512 for 64. */
 #if SPRING_X86_64
-#define SPRING_BEST_KERNELS(v128, v256, v512)                                         \
+#define SPRING_BEST_KERNELS(v128, v256, v512)                                          \
     (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? (v512) \
-     : __builtin_cpu_supports("avx2")                                        ? (v256) \
-                                                                             : (v128))
+     : __builtin_cpu_supports("avx2")                                         ? (v256) \
+                                                                              : (v128))
 #else
 #define SPRING_BEST_KERNELS(v128, v256, v512) (v128)
 #endif
