@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Kernels compiled without vectors, for compilers that have none, against those of vectors: the same bits. */
+/* Kernels compiled without vectors, for compilers that have none, against those of vectors: the same bits. Of scenes
+   they are tried in test_scene_*.c, too, see kernels_of(). */
 #include "batch_kernels.h"
 #include "test_methods.h"
 #include "test_scene.h"
 
 extern const batch_kernels plain_batch;
-extern const scene_kernels plain_scene;
 
 /* ------------------------------------------------------------------------------------------------------------
    batches */
@@ -64,25 +64,6 @@ static void batches(void)
 /* -------------------------------------------------------------------------------------------------------------
    scenes */
 
-static void scenes(void)
-{
-    static model m;
-    for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 5) {
-            build(&m, (uint32_t[]){7, 4, 1}, axes, features);
-            const method_list all = methods_of(m.def);
-            for (const spring_method *method = all.at; *method != no_method; method++) {
-                spring_scene *plain = scene_of(&m.def), *vectors = scene_of(&m.def);
-                CHECK(spring_scene_advance_with(&plain_scene, plain, *method, 0.004, 5) == SPRING_OK &&
-                          spring_scene_advance_with(&spring_scene_v128, vectors, *method, 0.004, 5) == SPRING_OK,
-                      "stable");
-                CHECK(same_bits(plain, vectors, m.def.particles, axes), "lane by lane the same operations");
-                free(plain);
-                free(vectors);
-            }
-        }
-}
-
 static void lost_scenes(void)
 {
     static model m;
@@ -102,7 +83,6 @@ int main(void)
 {
     static const test tests[] = {
         {"batches", batches},
-        {"scenes", scenes},
         {"lost scenes", lost_scenes},
     };
     return RUN_TESTS("plain", tests);

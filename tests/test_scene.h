@@ -21,18 +21,20 @@ typedef spring_scene scene;
 #define EPS DBL_EPSILON
 #endif
 
-enum { kernel_count = 3 };
+extern const scene_kernels plain_scene; /* without vectors, see plain_kernels.c */
 
-/* By ascending length of the vectors; NULL: this processor lacks the instructions. */
+enum { kernel_count = 4 };
+
+/* By ascending length of the vectors, and without vectors; NULL: this processor lacks the instructions. */
 SPRING_INLINE const scene_kernels *kernels_of(int i)
 {
 #if SPRING_X86_64
     if (i == 1)
         return __builtin_cpu_supports("avx2") ? &spring_scene_v256 : NULL;
     if (i == 2)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") ? &spring_scene_v512 : NULL;
+        return __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? &spring_scene_v512 : NULL;
 #endif
-    return i == 0 ? &spring_scene_v128 : NULL;
+    return i == 0 ? &spring_scene_v128 : i == 3 ? &plain_scene : NULL;
 }
 
 /* The methods that take a definition, in the order of the table, up to no_method. */
@@ -274,6 +276,72 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
         size[link->a] += larger;
         size[link->b] += larger;
     }
+}
+
+typedef struct seen_forces {
+    uint32_t axes;
+    double force[3 * most];
+} seen_forces;
+
+/* A callback that only looks: the forces of the links are there when it is called. */
+SPRING_INLINE void look(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                        scalar *const force[3])
+{
+    (void)t, (void)x, (void)v;
+    seen_forces *all = user;
+    for (size_t i = 0; i < particles; i++)
+        for (uint32_t a = 0; a < all->axes; a++)
+            all->force[i * all->axes + a] = (double)force[a][i];
+}
+
+SPRING_INLINE void check_forces(model *m, const scene_kernels *kernels)
+{
+    static seen_forces all;
+    static state y;
+    static double force[3 * most], size[most];
+    static unsigned degree[most];
+    const uint32_t axes = all.axes = m->def.axes;
+    const size_t particles = m->def.particles;
+    m->def.force = look;
+    m->def.user = &all;
+    spring_scene *s = scene_of(&m->def);
+    get_state(s, particles, &y);
+    CHECK(spring_scene_advance_with(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
+    memset(force, 0, sizeof force);
+    memset(size, 0, sizeof size);
+    memset(degree, 0, sizeof degree);
+    plain_forces(&m->def, axes, y.x, y.v, force, size);
+    for (size_t i = 0; i < m->def.links; i++) {
+        degree[m->def.link[i].a]++;
+        degree[m->def.link[i].b]++;
+    }
+    for (size_t i = 0; i < particles; i++)
+        for (uint32_t a = 0; a < axes; a++)
+            CHECK_CLOSE(all.force[i * axes + a], force[i * axes + a], (15 + degree[i]) * EPS * size[i],
+                        "15 roundings of half an eps in each link here and there, and one for each sum");
+    free(s);
+    m->def.force = NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------- strangers */
+
+/* More particles, which are pinned and joined to nothing: what there is must not notice. */
+SPRING_INLINE void add_strangers(model *m, size_t strangers)
+{
+    const size_t particles = m->def.particles;
+    CHECK(particles + strangers <= most, "fits into a model");
+    for (size_t i = 0; i < particles && m->def.pinned == NULL; i++)
+        m->pinned[i] = 0;
+    for (size_t i = particles; i < particles + strangers; i++) {
+        m->pinned[i] = 1;
+        m->mass[i] = 1;
+        for (uint32_t a = 0; a < m->def.axes; a++) {
+            m->position[i * m->def.axes + a] = (double)(i + a);
+            m->velocity[i * m->def.axes + a] = 0;
+        }
+    }
+    m->def.pinned = m->pinned;
+    m->def.particles += strangers;
 }
 
 #endif

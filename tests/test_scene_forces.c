@@ -6,51 +6,6 @@
 /* ------------------------------------------------------------------------------------------------ against a plain
    loop */
 
-typedef struct seen {
-    uint32_t axes;
-    double force[3 * most];
-} seen;
-
-/* A callback that only looks: the forces of the links are there when it is called. */
-static void look(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
-                 scalar *const force[3])
-{
-    (void)t, (void)x, (void)v;
-    seen *all = user;
-    for (size_t i = 0; i < particles; i++)
-        for (uint32_t a = 0; a < all->axes; a++)
-            all->force[i * all->axes + a] = (double)force[a][i];
-}
-
-static void check_forces(model *m, const scene_kernels *kernels)
-{
-    static seen all;
-    static state y;
-    static double force[3 * most], size[most];
-    static unsigned degree[most];
-    const uint32_t axes = all.axes = m->def.axes;
-    const size_t particles = m->def.particles;
-    m->def.force = look;
-    m->def.user = &all;
-    spring_scene *s = scene_of(&m->def);
-    get_state(s, particles, &y);
-    CHECK(spring_scene_advance_with(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
-    memset(force, 0, sizeof force);
-    memset(size, 0, sizeof size);
-    memset(degree, 0, sizeof degree);
-    plain_forces(&m->def, axes, y.x, y.v, force, size);
-    for (size_t i = 0; i < m->def.links; i++) {
-        degree[m->def.link[i].a]++;
-        degree[m->def.link[i].b]++;
-    }
-    for (size_t i = 0; i < particles; i++)
-        for (uint32_t a = 0; a < axes; a++)
-            CHECK_CLOSE(all.force[i * axes + a], force[i * axes + a], (15 + degree[i]) * EPS * size[i],
-                        "15 roundings of half an eps in each link here and there, and one for each sum");
-    free(s);
-    m->def.force = NULL;
-}
-
 static const uint32_t grids[][3] = {{23, 1, 1}, {2, 9, 1}, {3, 17, 1}, {13, 11, 1}, {5, 4, 7}, {17, 2, 3}};
 static const size_t grid_count = sizeof grids / sizeof grids[0];
 

@@ -54,7 +54,9 @@ static uint32_t bands_of(uint32_t links, uint32_t offset, uint32_t first, uint32
         const uint32_t lower = i + 1 < links ? first + i : last;
         link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0};
     }
-    const spring_scene_def def = {.particles = last + offset + 1, .links = links, .position = position, .link = link};
+    const uint32_t more = 13; /* so that the scene is not small */
+    const spring_scene_def def = {
+        .particles = last + offset + more, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
     const uint32_t bands = s->plan.bands;
     CHECK(s->plan.edges == (bands == 0 ? links : 0), "in a band, or in the edge list");

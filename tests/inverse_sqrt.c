@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, under the name INVERSE_SQRT; with PLAIN as compilers without
+   vectors of GNU C see it. See test_inverse_sqrt.c. */
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "simd/targets.h"
+
+#ifdef PLAIN
+#undef __clang__
+#undef __GNUC__
+#endif
+
+#if SPRING_TARGET_EXISTS
+
+SPRING_TARGET_BEGIN
+
+#include "simd/real.h"
+
+void INVERSE_SQRT(scalar *a, const int8_t *where, size_t count); /* in place; count: a multiple of 64 */
+
+void INVERSE_SQRT(scalar *a, const int8_t *where, size_t count)
+{
+    enum { many = 4 };
+    for (size_t i = 0; i < count; i += many * lanes) {
+        real each[many];
+        mask joined[many];
+        for (size_t k = 0; k < many; k++) {
+            each[k] = vec_load(a + i + k * lanes);
+            joined[k] = vec_load_mask(where + i + k * lanes);
+        }
+        vec_inverse_sqrt(each, joined, many);
+        for (size_t k = 0; k < many; k++)
+            vec_store(a + i + k * lanes, each[k]);
+    }
+}
+
+SPRING_TARGET_END
+
+#endif
