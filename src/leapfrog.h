@@ -98,32 +98,30 @@ static const one_method leapfrog_one = {
 #include "batch_loop.h"
 
 #elif defined(SPRING_SHAPE_SCENE)
-/* Velocities that forces depend on are predicted: v* = v' + h/2 a(x1, v'), v1 = v' + h/2 a(x1, v*). No force is kept
-   then: the last one is that of the prediction, and ten calls would differ from one call of ten steps. */
+/* Velocities that forces depend on are predicted from the forces at the start of the step: v* = v' + h/2 a(v*), with
+   only drag at v*; v1 = v' + h/2 a(x1, v*). So the forces are found once a step, and kept at (x1, v*): being those of a
+   velocity that is not the state's, they are part of it. A callback that uses velocities may have changed from call to
+   call: then none are kept, and they are found twice. */
 static scene_outcome leapfrog_scene_step(const scene_step *s)
 {
-    scene_motion first = s->motion;
-    first.kick = s->h / 2;
-    scene_motion last = first;
+    const bool predicts = scene_forces_use_velocity(s->scene);
+    scene_motion first = s->motion, last = s->motion;
+    first.kick = last.kick = s->h / 2;
+    first.predicted = predicts ? scene_predicted(s) : NULL;
+    last.force = scene_force_of(s->scene, s->to);
     last.v0 = first.v;
-    if (!scene_forces_use_velocity(s->scene))
-        return (scene_outcome){.finite = scene_sweep(s, &first, s->kernels->kick_drift, first.v, &last,
-                                                     s->kernels->solved_kick),
-                               .force_kept = true};
-    if (!scene_move(&first, s->kernels->kick_drift))
-        return (scene_outcome){.finite = false};
-    scene_evaluate(s, first.x, first.v, s->end);
-    scene_motion predict = last;
-    predict.v = scene_predicted(s);
-    if (!scene_move(&predict, s->kernels->solved_kick))
-        return (scene_outcome){.finite = false};
-    scene_evaluate(s, first.x, predict.v, s->end);
-    return (scene_outcome){.finite = scene_move(&last, s->kernels->solved_kick)};
+    const bool finite =
+        scene_sweep(s, &first, predicts ? s->kernels->kick_drift_predict : s->kernels->kick_drift,
+                    predicts ? first.predicted : first.v, &last, s->kernels->solved_kick);
+    const known_force kept = scene_callback_uses_velocity(s->scene) ? NO_FORCE : predicts ? PREDICTED_FORCE : FORCE;
+    return (scene_outcome){.finite = finite, .known = kept};
 }
 
+/* With link damping, of stiffness k and damping c over the mass: h^2 k/4 + h c < 1. */
 static double leapfrog_scene_stable_step(const scene_bounds *b)
 {
-    return b->link_damping > 0 ? fmin(2 / sqrt(b->stiffness), 2 / b->damping) : 2 / sqrt(b->stiffness);
+    return b->link_damping > 0 ? 2 / (b->damping + spring_hypot(b->damping, sqrt(b->stiffness)))
+                               : 2 / sqrt(b->stiffness);
 }
 
 static const scene_method leapfrog_scene = {

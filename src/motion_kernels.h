@@ -81,22 +81,31 @@ SPRING_INLINE mask kick_drift_part(const scene_motion *s, const coordinates *c)
     return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v);
 }
 
-SPRING_INLINE real solved_velocity(const scene_motion *s, const coordinates *c)
+SPRING_INLINE real solved_velocity(const scene_motion *s, const coordinates *c, real v0, real free)
 {
-    const real u = vec_load(s->v0 + c->at) + c->kick * free_acceleration(s, c);
+    const real u = v0 + c->kick * free;
     return s->drag != 0 ? c->share.keep * u + c->share.lose * u : u;
+}
+
+SPRING_INLINE mask kick_drift_predict_part(const scene_motion *s, const coordinates *c)
+{
+    const real v0 = vec_load(s->v0 + c->at), free = free_acceleration(s, c);
+    const real v = v0 + c->kick * (s->drag != 0 ? free - c->drag * v0 : free);
+    const real predicted = solved_velocity(s, c, v, free);
+    vec_store(s->predicted + c->at, predicted);
+    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v) | not_finite(predicted);
 }
 
 SPRING_INLINE mask solved_kick_part(const scene_motion *s, const coordinates *c)
 {
-    const real v = solved_velocity(s, c);
+    const real v = solved_velocity(s, c, vec_load(s->v0 + c->at), free_acceleration(s, c));
     vec_store(s->v + c->at, v);
     return not_finite(v);
 }
 
 SPRING_INLINE mask solved_kick_drift_part(const scene_motion *s, const coordinates *c)
 {
-    const real v = solved_velocity(s, c);
+    const real v = solved_velocity(s, c, vec_load(s->v0 + c->at), free_acceleration(s, c));
     const mask hidden = not_finite(c->kick * c->drag); /* in 1/(1 + q) */
     return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v) | hidden;
 }
@@ -137,6 +146,11 @@ SPRING_INLINE mask last_stage_part(const scene_motion *s, const coordinates *c)
 static bool kick_drift(const scene_motion *s, size_t from, size_t to)
 {
     return all_coordinates(s, from, to, kick_drift_part, false);
+}
+
+static bool kick_drift_predict(const scene_motion *s, size_t from, size_t to)
+{
+    return all_coordinates(s, from, to, kick_drift_predict_part, true);
 }
 
 static bool solved_kick(const scene_motion *s, size_t from, size_t to)

@@ -137,6 +137,7 @@ static scene_outcome rk4_scene_step(const scene_step *s)
             return (scene_outcome){.finite = false};
         scene_evaluate(s, stage.x, stage.v, times[k]);
         stage.slope = stage.v;
+        stage.force = end.force = scene_force_of(s->scene, s->to);
     }
     end.slope = stage.slope;
     end.kick = end.drift = s->h / 6;

@@ -117,7 +117,7 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
         for (size_t i = 0; i < count; i++)
             to[s->plan.step * i] = (scalar)in[i * stride + a];
     }
-    s->force_kept = false;
+    s->known = NO_FORCE;
     return SPRING_OK;
 }
 
@@ -138,7 +138,7 @@ spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *for
         return SPRING_EINVAL;
     s->force = force;
     s->user = user;
-    s->force_kept = false;
+    s->known = NO_FORCE;
     return SPRING_OK;
 }
 
@@ -158,7 +158,7 @@ spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_
     s->damped_links -= *old.damping > 0;
     s->damped_links += (scalar)link->damping > 0;
     scene_place(s, index, link);
-    s->force_kept = false;
+    s->known = NO_FORCE;
     s->bounds_known = false;
     return SPRING_OK;
 }

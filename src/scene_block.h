@@ -36,8 +36,8 @@ typedef struct scene_plan {
     uint32_t bands;
     band_plan band[most_bands]; /* by ascending offset */
     size_t x[most_buffers], v[most_buffers];
-    size_t force;
-    size_t predicted;    /* velocities */
+    size_t force[2];     /* at the state in each buffer, or the same for both, see scene_force_of() */
+    size_t predicted;    /* velocities, where they cannot lie where the forces will */
     size_t sum_x, sum_v; /* of stages */
     size_t inverse_mass;
     size_t occupied, band_stiffness, band_rest, band_damping, rings;
@@ -58,6 +58,13 @@ typedef struct scene_bounds {
     double least_drag;    /* [1/s]   drag over the largest mass */
 } scene_bounds;
 
+/* The forces that are known at a state. */
+typedef enum known_force {
+    NO_FORCE,
+    FORCE,          /* those of its positions and velocities */
+    PREDICTED_FORCE /* those of its positions and the velocities that leapfrog had predicted; part of the state */
+} known_force;
+
 struct spring_scene {
     scene_plan plan;
     spring_scene_force_fn *force;
@@ -68,7 +75,7 @@ struct spring_scene {
     uint64_t steps;
     uint64_t damped_links;
     uint32_t buffer; /* that holds the state */
-    bool force_kept; /* force is that of the state */
+    known_force known;
     bool lost;       /* an advance without rollback has failed */
     bool bounds_known;
     scene_bounds bounds;
@@ -92,6 +99,12 @@ SPRING_INLINE scalar *scene_array(const spring_scene *s, size_t offset)
 SPRING_INLINE scalar *scene_quantity(const spring_scene *s, spring_quantity q, uint32_t axis) /* of the state */
 {
     return scene_axis(s, (q == SPRING_POSITION ? s->plan.x : s->plan.v)[s->buffer], axis);
+}
+
+/* The forces at the state in a buffer. */
+SPRING_INLINE scalar *scene_force_of(const spring_scene *s, uint32_t buffer)
+{
+    return scene_axis(s, s->plan.force[buffer], 0);
 }
 
 SPRING_INLINE uint32_t *scene_indices(const spring_scene *s, size_t offset)

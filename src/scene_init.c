@@ -286,6 +286,8 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
                editable = (plan->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || any_damping(def);
     const bool velocity_used = damped || (plan->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    const bool predicts = (stores & SCENE_STORES_PREDICTED) != 0 && velocity_used;
+    const bool records = plan->axes > 1 && !plan->small && plan->edges >= plan->particles;
     const bool needed[most_buffers] = {true, rollback, (stores & SCENE_STORES_STAGE) != 0};
     const size_t quantity =
         (plan->small ? quad_size * (plan->particles + quad_size) : plan->axes * plan->stride) + 2 * padding;
@@ -295,8 +297,9 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
             plan->x[i] = reserve(plan, quantity, sizeof(scalar));
             plan->v[i] = reserve(plan, quantity, sizeof(scalar));
         }
-    plan->force = reserve(plan, quantity, sizeof(scalar));
-    if ((stores & SCENE_STORES_PREDICTED) != 0 && velocity_used)
+    plan->force[0] = reserve(plan, quantity, sizeof(scalar));
+    plan->force[1] = predicts ? reserve(plan, quantity, sizeof(scalar)) : plan->force[0];
+    if (predicts && damped && plan->edges > 0 && (plan->bands > 0 || !records))
         plan->predicted = reserve(plan, quantity, sizeof(scalar));
     if ((stores & SCENE_STORES_SUMS) != 0) {
         plan->sum_x = reserve(plan, quantity, sizeof(scalar));
@@ -315,7 +318,7 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
     plan->edge_rest = reserve(plan, plan->edges + padding, sizeof(scalar));
     plan->edge_damping = damped ? reserve(plan, plan->edges + padding, sizeof(scalar)) : 0;
     plan->slot = plan->bands > 0 ? reserve(plan, plan->links, sizeof(uint32_t)) : 0;
-    if (plan->axes > 1 && !plan->small && plan->edges >= plan->particles)
+    if (records)
         plan->records = reserve(plan, plan->particles * quad_size * (damped ? 3 : 2), sizeof(scalar));
     if (plan->small)
         plan->callback = reserve(plan, 3 * plan->axes * plan->particles, sizeof(scalar));

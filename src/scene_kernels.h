@@ -57,12 +57,13 @@ typedef struct scene_motion {
     const scalar *force;
     const scalar *x0, *v0; /* from */
     scalar *x, *v;         /* to */
+    scalar *predicted;     /* velocities; may be force */
     const scalar *slope;   /* the velocity of the stage that the force belongs to; v0 at first */
     scalar *sum_x, *sum_v; /* weighted sums of the slopes of stages, and of their accelerations */
     scalar weight;         /* of this stage */
 } scene_motion;
 
-/* Positions, and velocities if links are damped. force may be v where a kernel says so. */
+/* From positions, and velocities if links are damped. s->force may be v for bands, and for records without bands. */
 typedef void scene_force_kernel(const scene_links *s, const scalar *x, const scalar *v);
 typedef void scene_band_kernel(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to);
 /* Of particles from ... to - 1, both multiples of tile, but for the last; false: a number is infinite or NaN. */
@@ -76,8 +77,9 @@ typedef struct scene_kernels {
     scene_force_kernel *edges[3][2];   /* adds those of the edge list */
     scene_force_kernel *records[3][2]; /* the same, for many edges without order; not on one axis */
     scene_force_kernel *quads[2];      /* the forces of the edge list, where the axes of a particle lie side by side */
-    scene_motion_kernel *kick_drift;   /* v = v0 + kick a(v0);       x = x0 + drift v */
-    scene_motion_kernel *solved_kick;  /* v = v0 + kick a(v) */
+    scene_motion_kernel *kick_drift;         /* v = v0 + kick a(v0);       x = x0 + drift v */
+    scene_motion_kernel *kick_drift_predict; /* the same; predicted = v + kick a(predicted) */
+    scene_motion_kernel *solved_kick;        /* v = v0 + kick a(v) */
     scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     scene_motion_kernel *stage;             /* v = v0 + kick a(slope);    x = x0 + drift slope */
     scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
@@ -136,6 +138,7 @@ FORCE_KERNELS(quads, 3)
     .records = {{0}, FORCE_TABLE(records, 2), FORCE_TABLE(records, 3)}, \
     .quads = FORCE_TABLE(quads, 3), \
     .kick_drift = kick_drift, \
+    .kick_drift_predict = kick_drift_predict, \
     .solved_kick = solved_kick, \
     .solved_kick_drift = solved_kick_drift, \
     .stage = stage, \

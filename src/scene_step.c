@@ -83,24 +83,29 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .from = s->buffer,
                        .to = rollback ? 1 - s->buffer : s->buffer};
     step.h = (scalar)dt;
+    known_force known = s->known;
     for (uint64_t i = 0; i < n; i++) {
         const double done = (double)(before + i);
         step.middle = t0 + (done + 0.5) * dt;
         step.end = t0 + (double)(before + i + 1) * dt;
         if (i < 2) /* then it stays in one buffer */
             scene_prepare_motion(&step);
-        if (!s->force_kept)
-            scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
-                           t0 + done * dt);
+        if (known == NO_FORCE || (known == PREDICTED_FORCE && (method->stores & SCENE_STORES_PREDICTED) == 0)) {
+            scene_evaluate(&step, step.motion.x0, step.motion.v0, t0 + done * dt);
+            step.motion.force = scene_force_of(s, step.to); /* those that were kept may have to be rolled back to */
+        }
         const scene_outcome outcome = method->step(&step);
-        s->force_kept = outcome.finite && outcome.force_kept;
         if (!outcome.finite) {
             if (!rollback)
                 invalidate(s);
+            if (!rollback || s->plan.force[0] == s->plan.force[1] || s->known != PREDICTED_FORCE)
+                s->known = NO_FORCE;
             return SPRING_ENONFINITE;
         }
+        known = outcome.known;
         step.from = step.to;
     }
+    s->known = known;
     s->buffer = step.to;
     s->t0 = t0;
     s->dt = dt;
@@ -160,12 +165,12 @@ static int largest_exponent(const spring_scene *s, link_coefficient which, doubl
 }
 
 /* Over the particles that move the largest sum of twice a coefficient of their links, once where the other end is
-   pinned, and of what each particle has of its own; by_mass: times the inverse mass. Uses the memory of the forces. */
+   pinned, and of what each particle has of its own; by_mass: times the inverse mass. Uses memory of forces. */
 static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
     const scalar *inverse_mass = s->plan.inverse_mass != 0 ? scene_array(s, s->plan.inverse_mass) : NULL;
     const int exponent = largest_exponent(s, which, own, by_mass);
-    scalar *sum = scene_axis(s, s->plan.force, 0);
+    scalar *sum = scene_force_of(s, 1 - s->buffer);
     memset(sum, 0, s->plan.particles * sizeof *sum);
     for (size_t i = 0; i < s->plan.links; i++) {
         const slotted_link link = scene_link(s, i);
@@ -185,7 +190,8 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
             largest =
                 fmax(largest, ((double)sum[i] + ldexp(own, unit - exponent)) * (by_mass ? ldexp(inverse, -unit) : 1));
     }
-    s->force_kept = false;
+    if (sum == scene_force_of(s, s->buffer))
+        s->known = NO_FORCE;
     return ldexp(largest, exponent);
 }
 
@@ -223,30 +229,32 @@ double spring_scene_stable_step(spring_scene *s, spring_method m)
 
 /* -------------------------------------------------------------------------------------------------------- at rest */
 
-/* Forces of the state, unless they are at hand. Those of a callback are not kept: what *user holds may change before
-   the next step. */
-static void update_force(spring_scene *s)
+/* The forces of the state. Those of a callback are not kept: what *user holds may change before the next step. */
+static const scalar *force_of_state(spring_scene *s)
 {
-    if (s->force_kept)
-        return;
-    scene_force force;
-    scene_prepare_force(s, &force);
-    scene_find_forces(best_scene_kernels(), s, &force, scene_quantity(s, SPRING_POSITION, 0),
-                      scene_quantity(s, SPRING_VELOCITY, 0), time_of(s));
-    s->force_kept = s->force == NULL;
+    if (s->known == FORCE)
+        return scene_force_of(s, s->buffer);
+    scalar *force = scene_force_of(s, s->known == NO_FORCE ? s->buffer : 1 - s->buffer);
+    scene_force links;
+    scene_prepare_force(s, &links);
+    scene_find_forces(best_scene_kernels(), s, &links, scene_quantity(s, SPRING_POSITION, 0),
+                      scene_quantity(s, SPRING_VELOCITY, 0), time_of(s), force);
+    if (s->known == NO_FORCE && s->force == NULL)
+        s->known = FORCE;
+    return force;
 }
 
 bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
 {
     if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
         return false;
-    update_force(s);
+    const scalar *all = force_of_state(s);
     for (size_t i = 0; i < s->plan.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, acceleration = 0; /* squared */
         for (uint32_t a = 0; a < s->plan.axes; a++) {
             const double v = (double)scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * i];
-            const double force = (double)scene_axis(s, s->plan.force, a)[s->plan.step * i] - s->drag * v;
+            const double force = (double)all[a * s->plan.stride + s->plan.step * i] - s->drag * v;
             const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed += v * v;
             acceleration += felt * felt;

@@ -12,7 +12,7 @@ typedef struct scene_force scene_force;
 typedef struct scene_step {
     const scene_kernels *kernels;
     const spring_scene *scene;
-    const scene_force *force;
+    scene_force *force;
     uint32_t from, to;
     scalar h;            /* [s] */
     double middle, end;  /* [s] */
@@ -22,12 +22,12 @@ typedef struct scene_step {
 /* A step ends where the first number is not finite: a callback is shown nothing else. */
 typedef struct scene_outcome {
     bool finite;
-    bool force_kept; /* the forces at the end are known */
+    known_force known; /* at the end */
 } scene_outcome;
 
 /* What a scene stores for a method, besides the state and the force. */
 enum {
-    SCENE_STORES_PREDICTED = 1, /* velocities, where forces depend on velocities */
+    SCENE_STORES_PREDICTED = 1, /* velocities and forces of a prediction, where forces depend on velocities */
     SCENE_STORES_STAGE = 2,     /* positions and velocities of a stage */
     SCENE_STORES_SUMS = 4       /* over the stages, of their slopes and accelerations */
 };
@@ -40,10 +40,15 @@ typedef struct scene_method {
 
 extern const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT];
 
+static inline bool scene_callback_uses_velocity(const spring_scene *s)
+{
+    return s->force != NULL && (s->plan.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+}
+
 /* Does a(x, v) depend on v by more than drag? */
 static inline bool scene_forces_use_velocity(const spring_scene *s)
 {
-    return s->damped_links > 0 || (s->force != NULL && (s->plan.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0);
+    return s->damped_links > 0 || scene_callback_uses_velocity(s);
 }
 
 static inline scalar *scene_stage_x(const scene_step *s)
@@ -56,9 +61,14 @@ static inline scalar *scene_stage_v(const scene_step *s)
     return scene_axis(s->scene, s->scene->plan.v[stage_buffer], 0);
 }
 
+/* Where velocities are predicted: where the forces at them will be, if they are kept and these may overwrite those as
+   they are found, else in memory of their own; if none are kept, where the others would be. */
 static inline scalar *scene_predicted(const scene_step *s)
 {
-    return scene_axis(s->scene, s->scene->plan.predicted, 0);
+    const scene_plan *p = &s->scene->plan;
+    if (scene_callback_uses_velocity(s->scene))
+        return scene_force_of(s->scene, 1 - s->to);
+    return p->predicted != 0 ? scene_axis(s->scene, p->predicted, 0) : scene_force_of(s->scene, s->to);
 }
 
 static inline void scene_prepare_motion(scene_step *step)
@@ -75,7 +85,7 @@ static inline void scene_prepare_motion(scene_step *step)
         .drag = (scalar)s->drag,
         .kick = step->h,
         .drift = step->h,
-        .force = scene_axis(s, p->force, 0),
+        .force = scene_force_of(s, step->from),
         .x0 = scene_axis(s, p->x[step->from], 0),
         .v0 = scene_axis(s, p->v[step->from], 0),
         .x = scene_axis(s, p->x[step->to], 0),
@@ -99,7 +109,6 @@ static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
     f->links = (scene_links){
         .particles = p->particles,
         .stride = p->stride,
-        .force = scene_axis(s, p->force, 0),
         .bands = p->bands,
         .band = f->band,
         .edge_list =
@@ -131,14 +140,14 @@ static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
 }
 
 /* What a callback adds, at time t. It is shown each axis by itself. */
-static inline void scene_call_back(const spring_scene *s, const scalar *x, const scalar *v, double t)
+static inline void scene_call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
 {
     const scene_plan *p = &s->plan;
     const size_t n = p->particles;
     const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
     scalar *force[3] = {NULL};
     for (uint32_t a = 0; a < p->axes; a++) {
-        scalar *const all = scene_axis(s, p->force, a);
+        scalar *const all = sum + a * p->stride;
         scalar *const shown = p->small ? scene_array(s, p->callback) + 3 * a * n : NULL;
         position[a] = p->small ? shown : x + a * p->stride;
         velocity[a] = p->small ? shown + n : v + a * p->stride;
@@ -152,35 +161,30 @@ static inline void scene_call_back(const spring_scene *s, const scalar *x, const
     s->force(s->user, t, n, position, velocity, force);
     for (uint32_t a = 0; p->small && a < p->axes; a++)
         for (size_t i = 0; i < n; i++)
-            scene_axis(s, p->force, a)[p->step * i] = force[a][i];
-}
-
-/* The forces of edges and callback, which need those of all bands to be there. */
-static inline void scene_add_forces(const scene_kernels *kernels, const spring_scene *s, const scene_force *f,
-                                    const scalar *x, const scalar *v, double t)
-{
-    const scene_plan *p = &s->plan;
-    const bool damped = s->damped_links > 0;
-    if (p->small)
-        kernels->quads[damped](&f->links, x, v);
-    else if (p->edges > 0)
-        (p->records != 0 ? kernels->records : kernels->edges)[p->axes - 1][damped](&f->links, x, v);
-    if (s->force != NULL)
-        scene_call_back(s, x, v, t);
+            sum[a * p->stride + p->step * i] = force[a][i];
 }
 
 /* The forces of links and callback at time t on positions x and velocities v, arrays of all axes. */
-static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, const scene_force *f,
-                                     const scalar *x, const scalar *v, double t)
+static inline void scene_find_forces(const scene_kernels *kernels, const spring_scene *s, scene_force *f,
+                                     const scalar *x, const scalar *v, double t, scalar *force)
 {
-    if (!s->plan.small)
-        kernels->bands[s->plan.axes - 1][s->damped_links > 0](&f->links, x, v, 0, s->plan.particles);
-    scene_add_forces(kernels, s, f, x, v, t);
+    const scene_plan *p = &s->plan;
+    const bool damped = s->damped_links > 0;
+    f->links.force = force;
+    if (p->small)
+        kernels->quads[damped](&f->links, x, v);
+    else if (p->bands > 0 || p->records == 0)
+        kernels->bands[p->axes - 1][damped](&f->links, x, v, 0, p->particles);
+    if (!p->small && p->edges > 0)
+        (p->records != 0 ? kernels->records : kernels->edges)[p->axes - 1][damped](&f->links, x, v);
+    if (s->force != NULL)
+        scene_call_back(s, x, v, t, force);
 }
 
+/* Those at the end of a step. */
 static inline void scene_evaluate(const scene_step *s, const scalar *x, const scalar *v, double t)
 {
-    scene_find_forces(s->kernels, s->scene, s->force, x, v, t);
+    scene_find_forces(s->kernels, s->scene, s->force, x, v, t, scene_force_of(s->scene, s->to));
 }
 
 /* A motion of all particles by a kernel. */
@@ -189,9 +193,9 @@ static inline bool scene_move(const scene_motion *m, scene_motion_kernel *kernel
     return kernel(m, 0, m->particles);
 }
 
-/* A motion, the forces at its end, and a motion by them, which leaves positions alone: one pass over memory where there
-   are bands only. Then the forces on a particle are known as soon as those after it have moved that its links reach,
-   and it is moved on while it is in the cache. */
+/* A motion, the forces at its end with velocities v, and a motion by them, which leaves positions alone: one pass over
+   memory where there are bands only. Then the forces on a particle are known as soon as those after it have moved that
+   its links reach, and it is moved on while it is in the cache. */
 static inline bool scene_sweep(const scene_step *s, const scene_motion *before, scene_motion_kernel *move_before,
                                const scalar *v, const scene_motion *after, scene_motion_kernel *move_after)
 {
@@ -205,6 +209,7 @@ static inline bool scene_sweep(const scene_step *s, const scene_motion *before, 
     }
     const size_t chunk = 16 * tile, ahead = (p->band[p->bands - 1].offset + chunk - 1) / chunk * chunk;
     scene_band_kernel *const bands = s->kernels->bands[p->axes - 1][scene->damped_links > 0];
+    s->force->links.force = scene_force_of(scene, s->to);
     for (size_t i = 0; i < p->particles + ahead; i += chunk) {
         if (i < p->particles && !move_before(before, i, i + chunk < p->particles ? i + chunk : p->particles))
             return false;
