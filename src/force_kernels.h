@@ -257,22 +257,58 @@ SPRING_INLINE void edges(const scene_links *s, const scalar *x, const scalar *v,
     }
 }
 
-/* The edge list, from quads: x, v and force of particle i at step * i. */
+SPRING_INLINE void one_quad_edge(const scene_edges *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                 size_t step, bool damped)
+{
+    const size_t a = step * l->a[j], b = step * l->b[j];
+    const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+    const scalar square = quad_dot(delta, delta);
+    if (!edge_pulls(l, j, damped) || !(square > 0))
+        return;
+    const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
+    const quad pull = quad_times(quad_all(edge_scale(l, j, square, rate, damped)), delta);
+    quad_store(force + a, quad_plus(quad_load(force + a), pull));
+    quad_store(force + b, quad_minus(quad_load(force + b), pull));
+}
+
+/* The edge list, from quads: x, v and force of particle i at step * i. Four links share a root and a quotient. */
 SPRING_INLINE void quad_edges(const scene_edges *edges, const scalar *x, const scalar *v, scalar *force, size_t step,
                               bool damped)
 {
     const scene_edges own = *edges, *const l = &own; /* no store changes it, for all a compiler knows */
-    for (size_t j = 0; j < l->count; j++) {
-        const size_t a = step * l->a[j], b = step * l->b[j];
-        const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
-        const scalar square = quad_dot(delta, delta);
-        if (!edge_pulls(l, j, damped) || !(square > 0))
+    const size_t some = quad_size, fours = l->count / some * some;
+    for (size_t j = 0; j < fours; j += some) {
+        quad delta[4];
+        scalar squares[4], rates[4] = {0};
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = step * l->a[j + m], b = step * l->b[j + m];
+            delta[m] = quad_minus(quad_load(x + b), quad_load(x + a));
+            squares[m] = quad_dot(delta[m], delta[m]);
+            if (damped)
+                rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
+        }
+        const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
+        quad scale = quad_times(quad_load(l->stiffness + j),
+                                quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square))));
+        if (damped)
+            scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
+                                                quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
+        if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* ends at one place, or very far apart */
+            for (size_t m = 0; m < some; m++)
+                one_quad_edge(l, j + m, x, v, force, step, damped);
             continue;
-        const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
-        const quad pull = quad_times(edge_scale(l, j, square, rate, damped), delta);
-        quad_store(force + a, quad_plus(quad_load(force + a), pull));
-        quad_store(force + b, quad_minus(quad_load(force + b), pull));
+        }
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = step * l->a[j + m], b = step * l->b[j + m];
+            const quad pull = quad_times(quad_all(quad_at(scale, (int)m)), delta[m]);
+            quad_store(force + a, quad_plus(quad_load(force + a), pull));
+            quad_store(force + b, quad_minus(quad_load(force + b), pull));
+        }
     }
+    for (size_t j = fours; j < l->count; j++)
+        one_quad_edge(l, j, x, v, force, step, damped);
 }
 
 /* What the edges of a scene without order read and write: of each particle position, velocity if links are damped, and
