@@ -276,8 +276,16 @@ SPRING_INLINE void quad_edges(const scene_edges *edges, const scalar *x, const s
                               bool damped)
 {
     const scene_edges own = *edges, *const l = &own; /* no store changes it, for all a compiler knows */
+    const size_t ahead = 32; /* links, whose ends are fetched: where the scene fits into no cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
+        if (j + ahead < fours) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_PREFETCH(x + step * l->a[j + ahead + m]);
+                SPRING_PREFETCH(x + step * l->b[j + ahead + m]);
+            }
+        }
         quad delta[4];
         scalar squares[4], rates[4] = {0};
         SPRING_UNROLL
