@@ -201,7 +201,7 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
             } else {
                 clear_slots(force, axis, tile, axes);
             }
-            if (slot[r] == 0)
+            if (slot[r] == 0 && t + tile < (ptrdiff_t)s->particles)
                 repeat_tile(force, ring, axis, axes);
             if (t < band->end + band->offset && t + tile > band->start + band->offset)
                 minus[minuses++] = (kept_forces){band->force + (other < 0 ? other + ring : other), axis};
@@ -346,7 +346,8 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
 SPRING_INLINE void quads(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
 {
     (void)axes;
-    memset(s->force, 0, s->particles * quad_size * sizeof *s->force);
+    for (size_t i = 0; i < s->particles; i++)
+        quad_store(s->force + quad_size * i, quad_all(0));
     quad_edges(&s->edge_list, x, v, s->force, quad_size, damped);
 }
 
