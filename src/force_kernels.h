@@ -201,7 +201,7 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
             } else {
                 clear_slots(force, axis, tile, axes);
             }
-            if (slot[r] == 0 && t + tile < (ptrdiff_t)s->particles)
+            if (slot[r] == 0)
                 repeat_tile(force, ring, axis, axes);
             if (t < band->end + band->offset && t + tile > band->start + band->offset)
                 minus[minuses++] = (kept_forces){band->force + (other < 0 ? other + ring : other), axis};
