@@ -47,9 +47,10 @@ static void plain_steps(const model *m, spring_method method, double t, double h
     double drag[3 * most], *room = malloc(iterate_room(count) * sizeof *room);
     for (size_t j = 0; j < count; j++)
         drag[j] = pinned_in(&m->def, j / axes) ? 0 : m->def.drag / mass_in(&m->def, j / axes);
-    const iterate_scene s = {count, acceleration, m, drag, room};
-    for (int i = 0; i < n; i++)
-        iterate_of(method)->scene(&s, t + i * h, h, y->x, y->v);
+    const bool promised = (m->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) != 0;
+    iterate_scene s = {count, acceleration, m, drag, room, .changes = m->def.force != NULL && !promised};
+    for (; s.step < (uint64_t)n; s.step++)
+        iterate_of(method)->scene(&s, t + (double)s.step * h, h, y->x, y->v);
     free(room);
 }
 
@@ -125,13 +126,13 @@ static void against_definitions(void)
         }
 }
 
-/* ------------------------------------------------------------------------------------------------------- normal
-   modes */
+/* -------------------------------------------------------------------------------------------------- normal modes */
 
 typedef struct mode {
     double omega2; /* [1/s^2] */
     double drag;   /* [1/s] */
     double gamma;  /* [1/s] of links and callback */
+    bool rubbed;   /* by a callback */
 } mode;
 
 static void mode_acceleration(const void *data, double t, const double *x, const double *v, double *a)
@@ -146,14 +147,14 @@ static void mode_acceleration(const void *data, double t, const double *x, const
 static spring_state mode_after(const mode *q, spring_method method, double h, int n, spring_state y)
 {
     double *room = malloc(iterate_room(1) * sizeof *room);
-    const iterate_scene s = {1, mode_acceleration, q, &q->drag, room};
+    iterate_scene s = {1, mode_acceleration, q, &q->drag, room, .changes = q->rubbed};
     const spring_params p = {1, q->omega2, q->drag, 0};
     reference ref;
     reference_init(&ref);
     reference_start(&ref, &p, y);
     reference_iterate(&ref, &p, method, h, (uint64_t)n);
-    for (int i = 0; i < n; i++)
-        iterate_of(method)->scene(&s, i * h, h, &y.x, &y.v);
+    for (; s.step < (uint64_t)n; s.step++)
+        iterate_of(method)->scene(&s, (double)s.step * h, h, &y.x, &y.v);
     if (q->gamma == 0) {
         const spring_state exact = {mpfr_get_d(ref.x, MPFR_RNDN), mpfr_get_d(ref.v, MPFR_RNDN)};
         CHECK_CLOSE(exact.x, y.x, 4 * n * DBL_EPSILON, "some roundings of numbers below 1 in each step");
@@ -220,6 +221,7 @@ static void build_mode(mode_scene *s, uint32_t nx, uint32_t ny, int j, int k, un
     s->q = (mode){
         .omega2 = stiffness / mass * curvature,
         .drag = how & WITH_DRAG ? drag / mass : 0,
+        .rubbed = (how & RUBBING) != 0,
         .gamma = (how & LINK_DAMPING ? damping / mass * curvature : 0) + (how & RUBBING ? friction / mass : 0),
     };
     s->fastest = sqrt(stiffness / mass * (rope ? 4 : 8));

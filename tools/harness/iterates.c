@@ -102,17 +102,18 @@ static void last_kick(const iterate_scene *s, double h, const double *a, const d
         v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * s->drag[i]);
 }
 
-/* Forces that depend on velocities see one that is predicted by a first last kick; to the others it makes no
+/* Forces that depend on velocities see one that is predicted by a last kick with the acceleration at the start of the
+   step; the acceleration that is found so is that at the start of the next one. To other forces it makes no
    difference. */
 static void leapfrog_scene(const iterate_scene *s, double t, double h, double *x, double *v)
 {
     double *a = s->room, *predicted = s->room + s->count;
-    scene_acceleration(s, t, x, v, a);
+    if (s->step == 0 || s->changes)
+        s->acceleration(s->data, t, x, v, a);
     for (size_t i = 0; i < s->count; i++) {
-        v[i] += h / 2 * a[i];
+        v[i] += h / 2 * (a[i] - s->drag[i] * v[i]);
         x[i] += h * v[i];
     }
-    s->acceleration(s->data, t + h, x, v, a);
     last_kick(s, h, a, v, predicted);
     s->acceleration(s->data, t + h, x, predicted, a);
     last_kick(s, h, a, v, v);

@@ -12,6 +12,8 @@
 
 #include <mpfr.h>
 
+#include <stdbool.h>
+
 #include <springstep/spring.h>
 
 /* One spring, in multiple precision: x'' = a - w x - g v. */
@@ -25,7 +27,9 @@ typedef struct iterate_scene {
     void (*acceleration)(const void *data, double t, const double *x, const double *v, double *a); /* 0 where pinned */
     const void *data;
     const double *drag; /* [count] drag/mass [1/s], 0 where pinned */
-    double *room;       /* [iterate_room(count)] for what a step has to keep */
+    double *room;       /* [iterate_room(count)] for what a step has to keep, also for the next one */
+    bool changes;       /* acceleration may be another one before each step: nothing that it gave is used again */
+    uint64_t step;      /* number of the step in a run of steps; 0: nothing is kept yet */
 } iterate_scene;
 
 typedef struct iterate {

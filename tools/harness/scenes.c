@@ -173,11 +173,18 @@ void scene_derivative(double t, const double *y, double *dy, const void *data)
     }
 }
 
-/* One step of y; room is for iterate_room(moving) numbers. */
-static void step(const scene_problem *p, spring_method m, double h, double t, double *y, double *room)
+/* A step of y from t on, number i of a run; room is for iterate_room(moving) numbers, and holds what is kept from the
+   step before. */
+static void step(const scene_problem *p, spring_method m, double h, double t, uint64_t i, double *y, double *room)
 {
-    const iterate_scene scene = {
-        .count = p->moving, .acceleration = accelerations, .data = p, .drag = p->drag, .room = room};
+    const bool promised = (p->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) != 0;
+    const iterate_scene scene = {.count = p->moving,
+                                 .acceleration = accelerations,
+                                 .data = p,
+                                 .drag = p->drag,
+                                 .room = room,
+                                 .changes = p->def.force != NULL && !promised,
+                                 .step = i};
     iterate_of(m)->scene(&scene, t, h, y, y + p->moving);
 }
 
@@ -252,7 +259,8 @@ static double carried(const scene_case *c, const carrier *r, double h, uint64_t 
     return norm * fmax(1, fmax(slow, c->fastest / c->omega));
 }
 
-/* The matrix of a step in (x, v/omega) by one-sided differences, relative error of about 1e-7 h times a rate. */
+/* The matrix of a step in (x, v/omega) by one-sided differences, relative error of about 1e-7 h times a rate. As if the
+   accelerations at its start were those of (x, v): what leapfrog keeps differs from them by a truncation error. */
 static void step_matrix(const scene_case *c, const scene_problem *p, spring_method m, double h, double t,
                         const double *y, double *matrix, double *work)
 {
@@ -260,13 +268,13 @@ static void step_matrix(const scene_case *c, const scene_problem *p, spring_meth
     const double nudge = 1e-7 * c->length;
     double *base = work, *moved = work + size, *room = work + 2 * size;
     memcpy(base, y, size * sizeof *y);
-    step(p, m, h, t, base, room);
+    step(p, m, h, t, 0, base, room);
     for (size_t j = 0; j < size; j++) {
         memcpy(moved, y, size * sizeof *y);
         moved[j] += nudge * (j < p->moving ? 1 : c->omega);
-        step(p, m, h, t, moved, room);
-        for (size_t i = 0; i < size; i++)
-            matrix[i * size + j] = (moved[i] - base[i]) / nudge / (i < p->moving ? 1 : c->omega);
+        step(p, m, h, t, 0, moved, room);
+        for (size_t k = 0; k < size; k++)
+            matrix[k * size + j] = (moved[k] - base[k]) / nudge / (k < p->moving ? 1 : c->omega);
     }
 }
 
@@ -337,7 +345,7 @@ double scene_rounding(const scene_case *c, const scene_problem *p, spring_method
     for (uint64_t i = 0; i < n; i++) {
         if (!linear)
             memcpy(states + i * size, end, size * sizeof *end);
-        step(p, m, h, (double)i * h, end, room);
+        step(p, m, h, (double)i * h, i, end, room);
         local[i] = added(c, p, &r, h, end);
         if (linear)
             sum += local[i] * carried(c, &linearly, h, n - 1 - i);
