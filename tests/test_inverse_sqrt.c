@@ -82,7 +82,7 @@ static scalar any_square(unsigned kind)
 /* Each block by itself and, every second one, with squares beside it that are not looked at, or are rare. */
 static void fill(scalar *a, int8_t *where, bool mixed)
 {
-    static const scalar rare[] = {0, -(scalar)0, LEAST, LARGEST, INFINITY, -1, NAN};
+    static const scalar rare[] = {0, LEAST, LARGEST, INFINITY, NAN, -NAN};
     for (size_t i = 0; i < block; i++) {
         a[i] = any_square((unsigned)random_bits());
         where[i] = -1;

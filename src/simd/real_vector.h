@@ -110,7 +110,7 @@ SPRING_INLINE real vec_abs(real a)
     return (real)(~(mask)splat(-(scalar)0) & (mask)a);
 }
 
-/* 1/sqrt(a) for a > 0, and 0 for 0, of several vectors at once; elsewhere than in the lanes of `where` anything.
+/* 1/sqrt(a) of squares a > 0, and 0 for 0, of several vectors at once; elsewhere than in the lanes of `where` anything.
    By a seed to 1 ulp, by a quotient, as in float, to 1.5 ulp (tests/test_inverse_sqrt.c).
 
    In double: a seed y by a square root and a quotient in float, which are several times as fast, then y (1 + r/2 + 3/8
