@@ -115,8 +115,8 @@ SPRING_INLINE real vec_abs(real a)
 
    In double: a seed y by a square root and a quotient in float, which are several times as fast, then y (1 + r/2 + 3/8
    r^2), r = 1 - a y^2. y has 24 bits, so its square is exact, and |r| < 2^-20: what is left out is below 2^-61. Half an
-   ulp at most comes from the last sum, as much from a y^2. Where some a has no exponent of 2^-84 ... 2^43 its lane takes the quotient in double; each lane by itself, so that it has
-   the same bits in any vector. */
+   ulp at most comes from the last sum, as much from a y^2. Where some a has no exponent of 2^-84 ... 2^43 its lane
+   takes the quotient in double; each lane by itself, so that it has the same bits in any vector. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
 {
 #ifdef SPRING_FLOAT
