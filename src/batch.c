@@ -6,7 +6,7 @@
 #include "propagator.h"
 #include "simd/targets.h"
 
-enum { largest_group = 128 }; /* springs: eight vectors of 64 bytes, in float */
+enum { largest_vector = 16, largest_group = 8 * largest_vector }; /* springs: 64 bytes, in float */
 
 static const uint32_t known_bits = SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
 
@@ -81,66 +81,72 @@ static const batch_kernels *best_batch_kernels(void)
     return SPRING_BEST_KERNELS(&spring_batch_v128, &spring_batch_v256, &spring_batch_v512);
 }
 
+/* The first `size` elements of `to`: `count` elements, and copies of the first of them. */
+static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t size)
+{
+    memcpy(to, from, count * sizeof *to);
+    for (size_t i = count; i < size; i++)
+        to[i] = from[0];
+    return to;
+}
+
 /* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
    group is given up when all of them are lost. */
 static bool advance_tail(batch_kernel *kernel, size_t size, const spring_batch *b, const batch_block *all, size_t first)
 {
-    scalar x[largest_group] = {0}, v[largest_group] = {0}, w[largest_group] = {0}, g[largest_group] = {0},
-           a[largest_group] = {0};
-    const size_t count = b->count - first, bytes = count * sizeof(scalar);
+    scalar x[largest_group], v[largest_group], w[largest_group], g[largest_group], a[largest_group];
+    const size_t count = b->count - first;
     batch_block tail = *all;
     tail.count = size;
-    tail.x = memcpy(x, b->x + first, bytes);
-    tail.v = memcpy(v, b->v + first, bytes);
-    if (!shared(b, SPRING_SHARED_OMEGA2))
-        tail.w = memcpy(w, b->omega2 + first, bytes);
-    if (b->gamma != NULL && !shared(b, SPRING_SHARED_GAMMA))
-        tail.g = memcpy(g, b->gamma + first, bytes);
-    if (b->accel != NULL && !shared(b, SPRING_SHARED_ACCEL))
-        tail.a = memcpy(a, b->accel + first, bytes);
-    for (size_t i = count; i < size; i++) {
-        x[i] = x[0];
-        v[i] = v[0];
-        w[i] = w[0];
-        g[i] = g[0];
-        a[i] = a[0];
-    }
+    tail.x = filled_up(x, b->x + first, count, size);
+    tail.v = filled_up(v, b->v + first, count, size);
+    if (tail.w.step > 0)
+        tail.w.first = filled_up(w, b->omega2 + first, count, size);
+    if (tail.g.step > 0)
+        tail.g.first = filled_up(g, b->gamma + first, count, size);
+    if (tail.a.step > 0)
+        tail.a.first = filled_up(a, b->accel + first, count, size);
     const bool done = kernel(&tail);
-    memcpy(b->x + first, x, bytes);
-    memcpy(b->v + first, v, bytes);
+    memcpy(b->x + first, x, count * sizeof *x);
+    memcpy(b->v + first, v, count * sizeof *v);
     return done;
+}
+
+/* A parameter as kernels read it: a shared one from `same`. */
+static batch_array array_of(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar *same)
+{
+    if (parameter == NULL)
+        return (batch_array){NULL, 0};
+    if (!shared(b, bit))
+        return (batch_array){parameter, 1};
+    for (size_t i = 0; i < largest_vector; i++)
+        same[i] = *parameter;
+    return (batch_array){same, 0};
 }
 
 static bool run(batch_kernel *kernel, size_t size, const spring_batch *b, batch_block block)
 {
-    scalar same[largest_group];
+    scalar w[largest_vector], g[largest_vector], a[largest_vector];
     block.count = b->count - b->count % size;
     block.x = b->x;
     block.v = b->v;
-    block.w = b->omega2;
-    block.g = b->gamma;
-    block.a = b->accel;
-    block.a_step = 1;
-    if (b->accel != NULL && shared(b, SPRING_SHARED_ACCEL)) {
-        for (size_t i = 0; i < largest_group; i++)
-            same[i] = *b->accel;
-        block.a = same;
-        block.a_step = 0;
-    }
+    block.w = array_of(b, b->omega2, SPRING_SHARED_OMEGA2, w);
+    block.g = array_of(b, b->gamma, SPRING_SHARED_GAMMA, g);
+    block.a = array_of(b, b->accel, SPRING_SHARED_ACCEL, a);
     bool done = kernel(&block);
     if (block.count < b->count)
         done &= advance_tail(kernel, size, b, &block, block.count);
     return done;
 }
 
-/* Each spring by itself, in double. */
-static bool advance_each(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
+/* Each spring by itself, exactly, in double. */
+static bool advance_each(const spring_batch *b, scalar dt, uint64_t n)
 {
     bool done = true;
     for (size_t i = 0; i < b->count; i++) {
         const spring_params p = spring_at(b, i);
         spring_state s = {(double)b->x[i], (double)b->v[i]};
-        const bool advanced = spring_advance(&s, &p, m, (double)dt, n) == SPRING_OK;
+        const bool advanced = spring_advance(&s, &p, SPRING_EXACT, (double)dt, n) == SPRING_OK;
         const scalar x = (scalar)s.x, v = (scalar)s.v;
         if (advanced && isfinite(x) && isfinite(v)) {
             b->x[i] = x;
@@ -160,18 +166,17 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
         return SPRING_EINVAL;
     if (b->count == 0 || n == 0 || dt == 0 || !info->springs)
         return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
-    const bool w_shared = shared(b, SPRING_SHARED_OMEGA2), loaded = b->accel != NULL;
-    const enum sharing g = b->gamma == NULL ? NONE : shared(b, SPRING_SHARED_GAMMA) ? SHARED : EACH;
-    batch_kernel *kernel = kernels->method[m]->kernel[w_shared ? SHARED : EACH][g][loaded];
-    if (kernel == NULL)
-        return advance_each(b, m, dt, n) ? SPRING_OK : reason(b);
+    const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
     batch_block block = {.dt = dt, .n = n};
     spring_propagator propagator;
     if (m == SPRING_EXACT) {
+        if (!shared(b, SPRING_SHARED_OMEGA2) || (damped && !shared(b, SPRING_SHARED_GAMMA)))
+            return advance_each(b, dt, n) ? SPRING_OK : reason(b);
         const spring_params p = spring_at(b, 0);
         propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
         block.propagator = &propagator;
     }
+    batch_kernel *kernel = kernels->method[m]->kernel[damped][loaded];
     return run(kernel, kernels->group, b, block) ? SPRING_OK : reason(b);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The kernels of a batch: one for each method and combination of features, in the vectors that real.h is set to.
+ * The kernels of a batch: of each method one for every set of features, in the vectors that real.h is set to.
  *
  * Method    A group of a few vectors is loaded, with its coefficients, into registers, takes all its steps there, and
  *           is stored: several independent chains of operations keep the processor busy, and memory is read once
@@ -16,12 +16,17 @@
 
 struct spring_propagator;
 
+/* An array of parameters: an element for each spring, or a vector of equal elements for all of them. */
+typedef struct batch_array {
+    const scalar *first;
+    size_t step; /* from spring to spring: 1, or 0 */
+} batch_array;
+
 /* What a kernel works on. count is a multiple of the group. */
 typedef struct batch_block {
     size_t count;
     scalar *x, *v;
-    const scalar *w, *g, *a;
-    size_t a_step; /* 1: an element a spring; 0: a holds a vector of equal elements, for all */
+    batch_array w, g, a;
     scalar dt;
     uint64_t n;
     const struct spring_propagator *propagator; /* of the exact solution, for w, g and n dt */
@@ -29,10 +34,8 @@ typedef struct batch_block {
 
 typedef bool batch_kernel(const batch_block *b); /* false: at least one spring has kept its state */
 
-enum sharing { SHARED, EACH, NONE }; /* one element for all, one each, not modelled */
-
 typedef struct batch_method {
-    batch_kernel *kernel[2][3][2]; /* by sharing of w, sharing of g, loaded; NULL: each spring by spring_advance() */
+    batch_kernel *kernel[2][2]; /* by damped, loaded */
 } batch_method;
 
 typedef struct batch_kernels {
@@ -51,32 +54,35 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
 /* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, else 16). */
 enum { vectors = SPRING_VECTOR == 64 ? 8 : 4, group = vectors * lanes };
 
-SPRING_INLINE real rate(const scalar *p, size_t i, enum sharing s)
+SPRING_INLINE real rate(batch_array p, size_t i)
 {
-    return s == NONE ? splat(0) : (s == SHARED ? splat(*p) : vec_load(p + i)) + 0;
+    return vec_load(p.first + i * p.step) + 0;
 }
 
 /* The rates of the vector of springs from i. */
-SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, enum sharing w, enum sharing g, bool loaded)
+SPRING_INLINE spring_rates rates_at(const batch_block *b, size_t i, bool damped, bool loaded)
 {
     return (spring_rates){
-        rate(b->w, i, w),
-        rate(b->g, i, g),
-        loaded ? rate(b->a, i * b->a_step, EACH) : splat(0),
+        .w = rate(b->w, i),
+        .g = damped ? rate(b->g, i) : splat(0),
+        .a = loaded ? rate(b->a, i) : splat(0),
     };
 }
 
+SPRING_INLINE bool negative(batch_array p, size_t i)
+{
+    return p.first != NULL && p.first[i * p.step] < 0;
+}
+
 /* Stores the springs of a group that may advance; false if one keeps its state. */
-SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
-                                 enum sharing w, enum sharing g)
+SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, const real *v, size_t many)
 {
     scalar x1[group], v1[group];
     memcpy(x1, x, many * sizeof *x);
     memcpy(v1, v, many * sizeof *v);
     bool all = true;
     for (size_t j = 0; j < many * lanes; j++) {
-        const bool finite = isfinite(x1[j]) && isfinite(v1[j]);
-        if (finite && !(w == EACH && b->w[i + j] < 0) && !(g == EACH && b->g[i + j] < 0)) {
+        if (isfinite(x1[j]) && isfinite(v1[j]) && !negative(b->w, i + j) && !negative(b->g, i + j)) {
             b->x[i + j] = x1[j];
             b->v[i + j] = v1[j];
         } else {
@@ -86,32 +92,31 @@ SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, 
     return all;
 }
 
-/* Stores a group; false if a spring keeps its state. Whether one might have to is asked for all of them at once: a sum
-   is not finite if a part of it is not, nor is it if it overflows, and a sign is set if a rate is negative, or -0. */
-SPRING_INLINE bool store_group(const batch_block *b, size_t i, const real *x, const real *v, size_t many,
-                               enum sharing w, enum sharing g)
+/* Might a spring have to keep its state? This is asked for a group at once: a sum is not finite if a part of it is not,
+   nor is it if it overflows; signs has a bit if a rate is negative. */
+SPRING_INLINE bool doubtful(const real *x, const real *v, size_t many, mask signs)
 {
     real sum = x[0] + v[0];
-    mask signs = {0};
     SPRING_UNROLL
-    for (size_t k = 0; k < many; k++) {
-        if (k > 0)
-            sum += x[k] + v[k];
-        if (w == EACH)
-            signs |= sign_bit(vec_load(b->w + i + k * lanes));
-        if (g == EACH)
-            signs |= sign_bit(vec_load(b->g + i + k * lanes));
-    }
-    if (SPRING_UNLIKELY(any(not_finite(sum) | signs))) {
+    for (size_t k = 1; k < many; k++)
+        sum += x[k] + v[k];
+    return any(not_finite(sum) | signs);
+}
+
+/* Stores a group at x_to and v_to, where its springs, from i, are in b; false if a spring keeps its state. */
+SPRING_INLINE bool store_group(const batch_block *b, size_t i, scalar *x_to, scalar *v_to, const real *x, const real *v,
+                               size_t many, mask signs)
+{
+    if (SPRING_UNLIKELY(doubtful(x, v, many, signs))) {
         real x1[vectors], v1[vectors]; /* x and v themselves stay in registers */
         memcpy(x1, x, many * sizeof *x);
         memcpy(v1, v, many * sizeof *v);
-        return store_valid(b, i, x1, v1, many, w, g);
+        return store_valid(b, i, x1, v1, many);
     }
     SPRING_UNROLL
     for (size_t k = 0; k < many; k++) {
-        vec_store(b->x + i + k * lanes, x[k]);
-        vec_store(b->v + i + k * lanes, v[k]);
+        vec_store(x_to + k * lanes, x[k]);
+        vec_store(v_to + k * lanes, v[k]);
     }
     return true;
 }
@@ -122,7 +127,7 @@ SPRING_INLINE bool all_lost(const real *x, const real *v)
     mask finite = {0};
     SPRING_UNROLL
     for (size_t k = 0; k < vectors; k++)
-        finite |= (x[k] - x[k] == 0) & (v[k] - v[k] == 0);
+        finite |= (x[k] - x[k]) + (v[k] - v[k]) == 0;
     return !any(finite);
 }
 

@@ -60,9 +60,9 @@ SPRING_INLINE bool exact_springs(const batch_block *b, bool loaded)
             const size_t j = i + k * lanes;
             x[k] = vec_load(b->x + j);
             v[k] = vec_load(b->v + j);
-            exact_step(&x[k], &v[k], rates_at(b, j, NONE, NONE, loaded).a, &c, loaded);
+            exact_step(&x[k], &v[k], loaded ? rate(b->a, j) : splat(0), &c, loaded);
         }
-        all &= store_group(b, i, x, v, vectors, SHARED, SHARED);
+        all &= store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
     }
     return all;
 }
@@ -77,10 +77,8 @@ static bool exact_loaded(const batch_block *b)
     return exact_springs(b, true);
 }
 
-/* Where springs have a stiffness or damping of their own each one takes its own evaluation. */
-static const batch_method exact_batch = {
-    .kernel = {[SHARED] = {[SHARED] = {exact_plain, exact_loaded}, [NONE] = {exact_plain, exact_loaded}}},
-};
+/* For springs of equal stiffness and damping: others take an evaluation each. */
+static const batch_method exact_batch = {.kernel = {{exact_plain, exact_loaded}, {exact_plain, exact_loaded}}};
 
 #elif defined(SPRING_SHAPE_SCENE)
 static const scene_method exact_scene = {0};

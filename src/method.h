@@ -9,7 +9,7 @@
  *     SPRING_SHAPE_SCENE  in scene_step.c  NAME_scene  its step and stable step in a scene, what a scene stores for it
  *
  * Each of these is a constant object, of types that one_method, batch_method and scene_method name; what a method does
- * not offer is 0 in it. Only the exact solution has no loops and no batch kernels of its own for every set of features.
+ * not offer is 0 in it. Only the exact solution has no loops, and batch kernels for springs of equal rates alone.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H

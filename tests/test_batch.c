@@ -103,6 +103,8 @@ typedef struct place {
     _Alignas(64) scalar of[arrays][room];
 } place;
 
+enum sharing { SHARED, EACH, NONE }; /* one element for all, one each, not modelled */
+
 typedef struct features {
     enum sharing w, g, a;
 } features;
