@@ -8,7 +8,7 @@
 /* u/(1 + q) as u - u q/(1 + q) while q <= 1: rounding 1 + q, or its reciprocal, would be an error of the same sign in
    every step, and the amplitude of a lightly damped spring would drift by n eps/2. Beyond, u times the reciprocal,
    since the difference would cancel. One formula for both: keep u + lose u, (keep, lose) = (1, -q/(1 + q)) or
-   (1/(1 + q), 0). */
+   (0, 1/(1 + q)). */
 typedef struct solved_share {
     real keep, lose;
 } solved_share;
@@ -17,8 +17,8 @@ SPRING_INLINE solved_share solved_share_of(real q)
 {
     const mask light = vec_abs(q) <= 1;
     return (solved_share){
-        select_real(light, splat(1), 1 / (1 + q)),
-        select_real(light, 0 - q / (1 + q), splat(0)),
+        .keep = select_real(light, splat(1), splat(0)),
+        .lose = select_real(light, 0 - q, splat(1)) / (1 + q),
     };
 }
 
