@@ -21,7 +21,7 @@ SPRING_INLINE bool METHOD(groups)(const batch_block *block, bool damped, bool lo
         SPRING_UNROLL
         for (size_t k = 0; k < many; k++) {
             const spring_rates r = rates_at(&b, i + k * lanes, damped, loaded);
-            c[k] = METHOD(prepare)(r, h);
+            c[k] = METHOD(prepare)(r, h, damped);
             signs |= sign_bit(r.w) | sign_bit(r.g);
         }
         do {

@@ -18,8 +18,9 @@ typedef struct euler_coefficients {
     real h, hw, hg, ha;
 } euler_coefficients;
 
-SPRING_INLINE euler_coefficients euler_prepare(spring_rates r, real h)
+SPRING_INLINE euler_coefficients euler_prepare(spring_rates r, real h, bool damped)
 {
+    (void)damped; /* no coefficient would be simpler without */
     return (euler_coefficients){.h = h, .hw = h * r.w, .hg = h * r.g + 0, .ha = h * r.a + 0};
 }
 

@@ -24,8 +24,9 @@ typedef struct leapfrog_coefficients {
     real keep, lose; /* 1/(1 + q) = keep + lose, see solved_kick.h */
 } leapfrog_coefficients;
 
-SPRING_INLINE leapfrog_coefficients leapfrog_prepare(spring_rates r, real h)
+SPRING_INLINE leapfrog_coefficients leapfrog_prepare(spring_rates r, real h, bool damped)
 {
+    (void)damped; /* no coefficient would be simpler without */
     const real half = h / 2, q = half * r.g;
     const solved_share share = solved_share_of(q);
     return (leapfrog_coefficients){

@@ -8,7 +8,7 @@
 SPRING_INLINE spring_state METHOD(loop)(spring_state s, const spring_rates *r, double dt, uint64_t n, bool damped,
                                         bool loaded)
 {
-    const METHOD(coefficients) c = METHOD(prepare)(*r, dt);
+    const METHOD(coefficients) c = METHOD(prepare)(*r, dt, damped);
     for (; n > 0; n--)
         METHOD(step)(&s.x, &s.v, &c, damped, loaded);
     return s;

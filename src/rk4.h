@@ -32,11 +32,12 @@ typedef struct rk4_coefficients {
     real x_load, v_load; /* minus the correction from the load: subtracting a zero changes no bit */
 } rk4_coefficients;
 
-SPRING_INLINE rk4_coefficients rk4_prepare(spring_rates r, real h)
+SPRING_INLINE rk4_coefficients rk4_prepare(spring_rates r, real h, bool damped)
 {
     const real hw = h * r.w, W = h * hw, G = h * r.g;
-    const real E = (12 - 4 * G + (G * G - W)) * (scalar)(1.0 / 24);
-    const real F = (4 * (G * G - W) - 12 * G + G * (2 * W - G * G)) * (scalar)(1.0 / 24);
+    /* Without damping G is 0, and the short forms have the bits of the long ones. */
+    const real E = (damped ? 12 - 4 * G + (G * G - W) : 12 - W) * (scalar)(1.0 / 24);
+    const real F = (damped ? 4 * (G * G - W) - 12 * G + G * (2 * W - G * G) : 0 - 4 * W) * (scalar)(1.0 / 24);
     return (rk4_coefficients){
         .h = h,
         .hw = hw,

@@ -24,8 +24,9 @@ typedef struct symplectic_euler_coefficients {
     real keep, lose; /* 1/(1 + q) = keep + lose, see solved_kick.h */
 } symplectic_euler_coefficients;
 
-SPRING_INLINE symplectic_euler_coefficients symplectic_euler_prepare(spring_rates r, real h)
+SPRING_INLINE symplectic_euler_coefficients symplectic_euler_prepare(spring_rates r, real h, bool damped)
 {
+    (void)damped; /* no coefficient would be simpler without */
     const real q = h * r.g;
     const solved_share share = solved_share_of(q);
     return (symplectic_euler_coefficients){
