@@ -316,6 +316,31 @@ SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particle
  */
 SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link);
 
+/**
+ * Number particles so that those are near each other in memory which are joined, and sort links by their lower, then
+ * their upper ends: before a scene is made, in either precision, of what is in no order. Ropes get back their order and
+ * sheets their rows, which make bands, if the links along rows are the shortest (by a fifth) or all; other meshes get a
+ * small bandwidth.
+ *
+ * The caller permutes his own arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
+ *
+ * Time is proportional to particles + links: about 10 passes over both ends of all links, at most 18, in random order.
+ * What is done depends on nothing but the arguments.
+ *
+ * @param[in]     particles   fewer than 2^32 - 1
+ * @param[in]     links       fewer than 2^29
+ * @param[in,out] link        [links]; a stays a, and b stays b. May be NULL if there are none
+ * @param[out]    order       [particles]; order[new index] = old index
+ * @param[out]    link_order  [links]; link_order[new index] = old index. May be NULL
+ * @param         work        [4*particles + 2*links + 1], not to be kept
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle is
+ *         too large, or a count. Nothing is written after an error
+ * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969); George, Liu, An
+ *                implementation of a pseudoperipheral node finder (1979); what is better of that and chains through it
+ */
+SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, spring_link *link, uint32_t *order,
+                                               uint32_t *link_order, uint32_t *work);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Renumbering: what comes out is what went in under other numbers, in order; ropes and sheets get their rows back; a
+ * scene moves as it would have.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <springstep/scene.h>
+
+#include "check.h"
+
+enum { most_particles = 1300, most_links = 8000, most_work = 4 * most_particles + 2 * most_links + 1 };
+
+typedef struct model {
+    size_t particles, links;
+    spring_link link[most_links];
+} model;
+
+typedef struct renumbered {
+    spring_link link[most_links];
+    uint32_t order[most_particles], link_order[most_links];
+} renumbered;
+
+static double position[3 * most_particles];
+
+static uint32_t below(size_t n)
+{
+    return (uint32_t)(random_bits() % n);
+}
+
+static void join(model *m, size_t a, size_t b, double rest)
+{
+    m->link[m->links] = (spring_link){(uint32_t)a, (uint32_t)b, rest, 2.7 + (double)m->links, 0.6};
+    m->links++;
+}
+
+/* ----------------------------------------------------------------------------------------- what is to be renumbered */
+
+static void sheet(model *m, uint32_t x, uint32_t y, uint32_t z, uint32_t families, bool height)
+{
+    const spring_grid g = {
+        .count = {x, y, z}, .height = height, .spacing = 0.1, .families = families, .stiffness = 2.7};
+    spring_grid_size(&g, &m->particles, &m->links);
+    spring_grid_fill(&g, position, NULL, m->link);
+    for (size_t i = 0; i < m->links; i++)
+        m->link[i].stiffness += (double)i;
+}
+
+static void one(model *m)
+{
+    m->particles = 1;
+}
+
+static void nothing(model *m)
+{
+    m->particles = 0;
+}
+
+static void pair(model *m)
+{
+    m->particles = 2;
+    join(m, 1, 0, 0.3);
+}
+
+static void rope(model *m)
+{
+    sheet(m, 300, 1, 1, SPRING_GRID_STRUCTURAL, false);
+}
+
+/* Two ropes, a ring, and some particles that nothing is joined to. */
+static void apart(model *m)
+{
+    m->particles = 100;
+    for (size_t i = 0; i < 90; i++)
+        if (i != 29 && i != 59)
+            join(m, i, i + 1 == 90 ? 60 : i + 1, 0.2);
+}
+
+static void twice(model *m)
+{
+    rope(m);
+    for (size_t i = 0; i < 299; i++)
+        join(m, m->link[i].b, m->link[i].a, 0.1 * (double)(i % 3));
+}
+
+static void star(model *m)
+{
+    m->particles = 700;
+    for (size_t i = 1; i < m->particles; i++)
+        join(m, i % 2 == 0 ? 0 : i, i % 2 == 0 ? i : 0, 0.3);
+}
+
+static void random_graph(model *m)
+{
+    m->particles = 400;
+    for (int i = 0; i < 1500; i++) {
+        const uint32_t a = below(400);
+        join(m, a, (a + 1 + below(399)) % 400, random_uniform(0, 1));
+    }
+}
+
+/* Lengths that no scene takes are no reason to fall. */
+static void odd_lengths(model *m)
+{
+    const double length[] = {-1, INFINITY, NAN, 0, -INFINITY};
+    rope(m);
+    for (size_t i = 0; i < m->links; i++)
+        m->link[i].rest = length[i % 5];
+}
+
+static void plain_sheet(model *m)
+{
+    sheet(m, 33, 21, 1, SPRING_GRID_STRUCTURAL, false);
+}
+
+static void sheet_with_shear(model *m)
+{
+    sheet(m, 20, 31, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR, false);
+}
+
+static void cloth(model *m)
+{
+    sheet(m, 35, 35, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
+}
+
+static void water(model *m)
+{
+    sheet(m, 30, 24, 1, SPRING_GRID_STRUCTURAL, true);
+}
+
+static void water_with_shear(model *m)
+{
+    sheet(m, 30, 24, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, true);
+}
+
+static void jelly(model *m)
+{
+    sheet(m, 9, 8, 7, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
+}
+
+/* Bounds: what numbering by rows gives, whichever way the rows run; where the lengths of links do not tell the rows,
+   a link joins particles of the same level or of neighbouring ones, and a level is at most two diagonals. */
+typedef struct row {
+    void (*make)(model *m);
+    uint32_t bandwidth; /* at most */
+    size_t offsets;     /* at most; 0: as many as there are */
+} row;
+
+static const row rows[] = {
+    {nothing, 0, 0},     {one, 0, 0},          {pair, 1, 1},
+    {rope, 1, 1},        {apart, 2, 2}, /* the ring's particles alternate between its sides */
+    {twice, 1, 1},       {star, 699, 0},       {random_graph, 399, 0},
+    {odd_lengths, 1, 1}, {plain_sheet, 33, 2}, {sheet_with_shear, 31 + 1, 4},
+    {cloth, 2 * 35, 6},  {water, 30, 2},       {water_with_shear, 4 * 24, 0},
+    {jelly, 4 * 56, 0},
+};
+
+enum { row_count = sizeof rows / sizeof rows[0] };
+
+/* Numbers the particles at random, puts the links in random order and turns some round. new_number[old] is written. */
+static void shuffle(model *m, uint32_t *new_number)
+{
+    for (size_t i = 0; i < m->particles; i++) {
+        const uint32_t j = below(i + 1);
+        new_number[i] = new_number[j];
+        new_number[j] = (uint32_t)i;
+    }
+    for (size_t i = 0; i < m->links; i++) {
+        const uint32_t a = new_number[m->link[i].a], b = new_number[m->link[i].b];
+        const bool turn = below(2) != 0;
+        m->link[i].a = turn ? b : a;
+        m->link[i].b = turn ? a : b;
+    }
+    for (size_t i = m->links; i > 1; i--) {
+        const size_t j = below(i);
+        const spring_link kept = m->link[i - 1];
+        m->link[i - 1] = m->link[j];
+        m->link[j] = kept;
+    }
+}
+
+static model *make(const row *r)
+{
+    static model m;
+    static uint32_t number[most_particles];
+    memset(&m, 0, sizeof m);
+    r->make(&m);
+    shuffle(&m, number);
+    return &m;
+}
+
+/* With work that holds anything before; nothing behind what is needed is touched. */
+static renumbered *renumber(const model *m, int garbage, bool with_links)
+{
+    renumbered *r = malloc(sizeof *r);
+    uint32_t *work = malloc(most_work * sizeof *work);
+    memset(work, garbage, most_work * sizeof *work);
+    memset(r, garbage, sizeof *r);
+    memcpy(r->link, m->link, m->links * sizeof *r->link);
+    CHECK(spring_links_renumber(m->particles, m->links, r->link, r->order, with_links ? r->link_order : NULL, work) ==
+              SPRING_OK,
+          "valid links");
+    uint32_t untouched;
+    memset(&untouched, garbage, sizeof untouched);
+    const size_t needed = 4 * m->particles + 2 * m->links + 1;
+    CHECK(work[needed] == untouched && r->order[m->particles] == untouched &&
+              r->link_order[with_links ? m->links : 0] == untouched,
+          "nothing behind the arrays is written");
+    free(work);
+    return r;
+}
+
+/* ------------------------------------------------------------------------------------------------------- properties */
+
+static bool is_permutation(const uint32_t *order, size_t count)
+{
+    static uint8_t seen[most_links];
+    memset(seen, 0, sizeof seen);
+    for (size_t i = 0; i < count; i++) {
+        if (order[i] >= count || seen[order[i]] != 0)
+            return false;
+        seen[order[i]] = 1;
+    }
+    return true;
+}
+
+static uint32_t lower(const spring_link *l)
+{
+    return l->a < l->b ? l->a : l->b;
+}
+
+static uint32_t upper(const spring_link *l)
+{
+    return l->a < l->b ? l->b : l->a;
+}
+
+static void the_same_links_in_order(void)
+{
+    for (size_t i = 0; i < row_count; i++) {
+        const model *m = make(&rows[i]);
+        renumbered *r = renumber(m, 0x5a, true);
+        CHECK(is_permutation(r->order, m->particles), "every particle once");
+        CHECK(is_permutation(r->link_order, m->links), "every link once");
+        for (size_t l = 0; l < m->links; l++) {
+            spring_link back = r->link[l];
+            back.a = r->order[back.a];
+            back.b = r->order[back.b];
+            CHECK(memcmp(&back, &m->link[r->link_order[l]], sizeof back) == 0, "the link it was, from a to b");
+            if (l == 0)
+                continue;
+            const spring_link *before = &r->link[l - 1], *now = &r->link[l];
+            CHECK(lower(before) < lower(now) || (lower(before) == lower(now) && upper(before) <= upper(now)), "sorted");
+            if (lower(before) == lower(now) && upper(before) == upper(now))
+                CHECK(r->link_order[l - 1] < r->link_order[l], "several between two particles stay in their order");
+        }
+        free(r);
+    }
+}
+
+static void few_offsets(void)
+{
+    for (size_t i = 0; i < row_count; i++)
+        for (int times = 0; times < 5; times++) {
+            const model *m = make(&rows[i]);
+            renumbered *r = renumber(m, 0, true);
+            bool seen[most_particles] = {false};
+            size_t offsets = 0;
+            uint32_t bandwidth = 0;
+            for (size_t l = 0; l < m->links; l++) {
+                const uint32_t offset = upper(&r->link[l]) - lower(&r->link[l]);
+                offsets += !seen[offset];
+                seen[offset] = true;
+                bandwidth = offset > bandwidth ? offset : bandwidth;
+            }
+            CHECK_BELOW(bandwidth, rows[i].bandwidth, "rows, or two levels");
+            if (rows[i].offsets != 0)
+                CHECK_BELOW((double)offsets, (double)rows[i].offsets, "one for each direction of links");
+            free(r);
+        }
+}
+
+static void the_same_each_time(void)
+{
+    for (size_t i = 0; i < row_count; i++) {
+        const model *m = make(&rows[i]);
+        renumbered *first = renumber(m, 0, true), *again = renumber(m, -1, false);
+        CHECK(memcmp(first->order, again->order, m->particles * sizeof *first->order) == 0 &&
+                  memcmp(first->link, again->link, m->links * sizeof *first->link) == 0,
+              "what was in the arrays before makes no difference, nor whether the order of links is asked for");
+        free(first);
+        free(again);
+    }
+}
+
+/* Of a sheet that is in order the order is kept, or turned: nothing is gained by moving it. */
+static void order_is_not_lost(void)
+{
+    static model m;
+    cloth(&m);
+    renumbered *r = renumber(&m, 0, true);
+    size_t offsets = 0;
+    for (size_t l = 0; l < m.links; l++)
+        offsets += upper(&r->link[l]) - lower(&r->link[l]);
+    size_t before = 0;
+    for (size_t l = 0; l < m.links; l++)
+        before += upper(&m.link[l]) - lower(&m.link[l]);
+    CHECK(offsets == before, "square: rows, this way or that");
+    free(r);
+}
+
+static void bad_input(void)
+{
+    const model *m = make(&rows[3]);
+    static spring_link link[most_links];
+    static uint32_t order[most_particles], link_order[most_links], work[most_work];
+    static const uint32_t zero[most_work];
+    const size_t particles = m->particles, links = m->links;
+    struct {
+        size_t link;
+        uint32_t a, b;
+        spring_status status;
+    } bad[] = {
+        {0, (uint32_t)particles, 0, SPRING_ERANGE},
+        {links - 1, 0, (uint32_t)particles, SPRING_ERANGE},
+        {links - 1, UINT32_MAX, 1, SPRING_ERANGE},
+        {links / 2, 5, 5, SPRING_EINVAL},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        memcpy(link, m->link, links * sizeof *link);
+        link[bad[i].link].a = bad[i].a;
+        link[bad[i].link].b = bad[i].b;
+        spring_link kept[most_links];
+        memcpy(kept, link, sizeof kept);
+        CHECK(spring_links_renumber(particles, links, link, order, link_order, work) == bad[i].status, "a bad link");
+        CHECK(memcmp(kept, link, sizeof kept) == 0, "links stay");
+    }
+    CHECK(spring_links_renumber(particles, links, NULL, order, link_order, work) == SPRING_EINVAL &&
+              spring_links_renumber(particles, links, link, NULL, link_order, work) == SPRING_EINVAL &&
+              spring_links_renumber(particles, links, link, order, link_order, NULL) == SPRING_EINVAL,
+          "NULL");
+    CHECK(spring_links_renumber(UINT32_MAX, 0, link, order, link_order, work) == SPRING_ERANGE &&
+              spring_links_renumber(particles, UINT32_MAX / 8 + 1, link, order, link_order, work) == SPRING_ERANGE,
+          "too many to be counted");
+    CHECK(memcmp(order, zero, sizeof order) == 0 && memcmp(link_order, zero, sizeof link_order) == 0 &&
+              memcmp(work, zero, sizeof work) == 0,
+          "nothing is written");
+    CHECK(spring_links_renumber(3, 0, NULL, order, NULL, work) == SPRING_OK && is_permutation(order, 3),
+          "no links, no array of them");
+}
+
+/* ------------------------------------------------------------------------------------------------------------ scenes */
+
+static spring_scene *scene_of(size_t particles, size_t links, const spring_link *link, const double *x,
+                              const uint8_t *pinned)
+{
+    const spring_scene_def def = {.particles = particles,
+                                  .links = links,
+                                  .position = x,
+                                  .mass_all = 0.05,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .gravity = {0.3, -9.81, 0.5}};
+    size_t bytes;
+    spring_scene *s = NULL;
+    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "a scene");
+    CHECK(spring_scene_init(aligned_alloc(SPRING_SCENE_ALIGN, bytes), bytes, &def, &s) == SPRING_OK, "a scene");
+    return s;
+}
+
+/* Links are the same, but a particle adds up its forces in another order: each of at most 12, of stiffness 2.7 ...
+   and a stretch below 0.1 m, is rounded up to 12 times a step, and what a velocity is off by adds up to the
+   square of the steps. Positions, below 4 m, are rounded once a step. */
+static void a_scene_moves_as_before(void)
+{
+    enum { steps = 50, x = 20, y = 15, particles = x * y };
+    const double dt = 1e-3, mass = 0.05, stiffness = 30, stretch = 0.1;
+    static model m;
+    memset(&m, 0, sizeof m);
+    sheet(&m, x, y, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
+    for (size_t i = 0; i < m.links; i++)
+        m.link[i].stiffness = stiffness - 0.01 * (double)i;
+    static uint32_t number[particles];
+    static double shuffled[3 * particles], sorted[3 * particles];
+    uint8_t pinned[particles] = {0}, pinned_sorted[particles];
+    shuffle(&m, number);
+    for (uint32_t i = 0; i < particles; i++) {
+        memcpy(&shuffled[3 * number[i]], &position[3 * i], 3 * sizeof *position);
+        pinned[number[i]] = i < x;
+    }
+    renumbered *r = renumber(&m, 0, true);
+    for (uint32_t i = 0; i < particles; i++) {
+        memcpy(&sorted[3 * i], &shuffled[3 * r->order[i]], 3 * sizeof *sorted);
+        pinned_sorted[i] = pinned[r->order[i]];
+    }
+    spring_scene *a = scene_of(particles, m.links, m.link, shuffled, pinned);
+    spring_scene *b = scene_of(particles, m.links, r->link, sorted, pinned_sorted);
+    CHECK(spring_scene_advance(a, SPRING_LEAPFROG, dt, steps) == SPRING_OK &&
+              spring_scene_advance(b, SPRING_LEAPFROG, dt, steps) == SPRING_OK,
+          "they move");
+    spring_scene_get(a, SPRING_POSITION, shuffled, 0, 0, particles);
+    spring_scene_get(b, SPRING_POSITION, sorted, 0, 0, particles);
+    const double force = 12 * stiffness * stretch;
+    const double bound = DBL_EPSILON * (steps * steps * dt * dt * 12 * force / mass + steps * 4);
+    double moved = 0;
+    for (uint32_t i = 0; i < particles; i++)
+        for (uint32_t axis = 0; axis < 3; axis++) {
+            const uint32_t old = r->order[i];
+            CHECK_CLOSE(sorted[3 * i + axis], shuffled[3 * old + axis], bound, "sums of forces in another order");
+            moved = fmax(moved, fabs(sorted[3 * i + axis] - position[3 * i + axis]));
+        }
+    CHECK(moved > 1e-3, "the test sees a motion");
+    free(a);
+    free(b);
+    free(r);
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"the same links in order", the_same_links_in_order},
+        {"few offsets", few_offsets},
+        {"the same each time", the_same_each_time},
+        {"order is not lost", order_is_not_lost},
+        {"bad input", bad_input},
+        {"a scene moves as before", a_scene_moves_as_before},
+    };
+    return RUN_TESTS("renumber", tests);
+}
