@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+"""tools/bench/wasm/run: the library as WebAssembly reaches what plain JavaScript does; how fast is nobody's promise."""
+import pathlib
+
+import pytest
+from tools import parse, run
+
+RUN = pathlib.Path(__file__).parents[2] / 'tools/bench/wasm/run'
+
+
+def test_rows():
+    result = run(RUN, '--quick', timeout=280)
+    if result.returncode == 3:
+        pytest.skip(result.stderr)
+    assert (result.returncode, result.stderr) == (0, '')
+    rows = parse(result.stdout)
+    assert [row['scene'] for row in rows] == ['cloth', 'water'] * 4
+    assert all(float(row[name]) > 0 for row in rows for name in ('library_ns_per_link_step', 'plain_ns_per_link_step'))
+
+
+def test_usage():
+    result = run(RUN, '--slowly')
+    assert (result.returncode, result.stdout) == (2, '')
+    assert result.stderr.startswith('usage: ')
