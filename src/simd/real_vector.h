@@ -28,6 +28,8 @@ SPRING_INLINE bool any(mask t)
     return !_mm256_testz_si256((__m256i)t, (__m256i)t);
 #elif SPRING_X86_64
     return _mm_movemask_epi8(_mm_cmpeq_epi8((__m128i)t, _mm_setzero_si128())) != 0xffff;
+#elif defined(__wasm_simd128__) && SPRING_VECTOR == 16
+    return wasm_v128_any_true((v128_t)t);
 #else
     uint64_t part[sizeof t / sizeof(uint64_t)], all = 0;
     memcpy(part, &t, sizeof t);
@@ -77,6 +79,10 @@ SPRING_INLINE real vec_sqrt(real a)
     return (real)_mm_sqrt_ps((__m128)a);
 #elif SPRING_X86_64
     return (real)_mm_sqrt_pd((__m128d)a);
+#elif defined(__wasm_simd128__) && SPRING_VECTOR == 16 && defined(SPRING_FLOAT)
+    return (real)wasm_f32x4_sqrt((v128_t)a);
+#elif defined(__wasm_simd128__) && SPRING_VECTOR == 16
+    return (real)wasm_f64x2_sqrt((v128_t)a);
 #else
     scalar each[sizeof a / sizeof(scalar)];
     memcpy(each, &a, sizeof a);

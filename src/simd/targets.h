@@ -11,6 +11,8 @@
 
 #if SPRING_X86_64
 #include <immintrin.h> /* before a target is set: it sets its own */
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 /* SPRING_TARGET_BEGIN ... SPRING_TARGET_END: functions between them use the instructions for vectors of SPRING_VECTOR
