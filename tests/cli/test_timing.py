@@ -94,7 +94,8 @@ def about(got, want):
 
 
 @pytest.mark.parametrize('args', ['--part batch --count 1000', '--kernel leapfrog_batch_16',
-                                  '--part spring --kernel rk4', '--part scene --count 7002'])
+                                  '--part spring --kernel rk4', '--part scene --count 7002',
+                                  '--kernel leapfrog_rope_1'])
 def test_bench_rows(args):
     fixed = 'kernel precision count ns_per_spring_step limit_ns ratio spread verdict'.split()
     rows = bench(args)
@@ -107,7 +108,10 @@ def test_bench_rows(args):
         assert (math.isnan(speedup) and math.isnan(baseline)) or about(speedup, baseline / time)
         if spread != 0.05:
             assert (row['verdict'] == 'noisy') == (spread > 0.05)
-        excess = max(ratio / goal_ratio, time / goal_time, 0 if math.isnan(speedup) else goal_speedup / speedup)
+        step, goal_excess = float(row['step_ns']), float(row['goal_excess_ns'])
+        assert about(step, time * int(row['count']))
+        excess = max(ratio / goal_ratio, time / goal_time, 0 if math.isnan(speedup) else goal_speedup / speedup,
+                     (step - limit * int(row['count'])) / goal_excess if goal_excess > 0 else 0)
         if row['verdict'] != 'noisy' and not about(1, excess):
             assert (row['verdict'] == 'above_goal') == (excess > 1)
 
@@ -136,6 +140,15 @@ def test_bench_scenes():
             'rk4_sheet_16', 'init_sheet'} <= {row['kernel'] for row in rows}
     assert {(row['limit'], row['speedup'] != 'nan') for row in rows if row['kernel'] == 'leapfrog_sheet_16'} == {
         ('arithmetic', True), ('double', False)}
+
+
+def test_bench_ropes():
+    """Of few particles, which games have most: beside a plain loop, and one step a call beside sixteen."""
+    for steps, limits in (16, {'streams', 'arithmetic'}), (1, {'16_steps'}):
+        rows = bench(f'--kernel leapfrog_rope_{steps}')
+        assert [int(row['count']) for row in rows] == [1, 2, 3, 7, 15, 31, 63]
+        assert {row['limit'] for row in rows} <= limits
+        assert 'nan' not in {row['speedup'] for row in rows}
 
 
 def test_bench_calls_measures_nothing():

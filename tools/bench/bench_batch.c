@@ -179,10 +179,10 @@ static double run(const bench_row *row, int which, uint64_t calls)
 /* --------------------------------------------------------------------------------------------------------- the rows */
 
 /* In one run, of what is possible: one step over springs in memory, several steps. */
-static const double memory_goal = 1 / 0.85, steps_goal = 1 / 0.8;
+static const double memory_goal = 1 / 0.88, memory_goal_rk4 = 1 / 0.85, steps_goal = 1 / 0.8;
 static const size_t from_memory = 10000000, in_cache = 1000;
 
-static void add(const char *feature, subject s, double goal_ns)
+static void add(const char *feature, subject s)
 {
     const bool limited = s.beside == LIMITS;
     bench_row row = {
@@ -192,9 +192,10 @@ static void add(const char *feature, subject s, double goal_ns)
         .steps = s.steps,
         .goal_ratio = !limited                 ? INFINITY
                       : s.steps > 1            ? steps_goal
-                      : s.count == from_memory ? memory_goal
-                                               : INFINITY,
-        .goal_ns = goal_ns,
+                      : s.count != from_memory ? INFINITY
+                      : s.method == SPRING_RK4 ? memory_goal_rk4
+                                               : memory_goal,
+        .goal_ns = INFINITY,
         .limits = {limited                ? "streams"
                    : s.beside == ORDINARY ? "ordinary"
                                           : "textbook",
@@ -205,28 +206,25 @@ static void add(const char *feature, subject s, double goal_ns)
     bench_add(&row, &s, sizeof s);
 }
 
-static void add_counts(spring_method m, uint64_t steps, double goal_ns)
+static void add_counts(spring_method m, uint64_t steps)
 {
     const bool exact = m == SPRING_EXACT; /* of own stiffnesses: add_special() */
     for (int single = 0; single < 2; single++)
         for (size_t count = in_cache; count <= from_memory; count *= 10)
-            add(exact ? "_shared_omega2" : "", (subject){m, count, steps, exact ? SHARED : OWN, .single = single},
-                goal_ns * (single ? 0.6 : 1));
+            add(exact ? "_shared_omega2" : "", (subject){m, count, steps, exact ? SHARED : OWN, .single = single});
 }
 
 /* Every method, at every count, in both precisions. */
 static void add_methods(void)
 {
-    /* of 16 steps in double, on the processor that it was set for; 0: none */
-    static const double goals_ns[SPRING_METHOD_COUNT] = {[SPRING_LEAPFROG] = 0.13, [SPRING_RK4] = 0.20};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const spring_method m = spring_method_at(i);
         const spring_method_info *info = spring_method_describe(m);
         if (!info->springs)
             continue;
-        add_counts(m, 1, INFINITY);
+        add_counts(m, 1);
         if (info->order > 0)
-            add_counts(m, 16, goals_ns[m] > 0 ? goals_ns[m] : INFINITY);
+            add_counts(m, 16);
     }
 }
 
@@ -256,29 +254,27 @@ static void add_features(void)
     for (int k = 0; k < SPRING_METHOD_COUNT; k++)
         for (size_t i = 0; is_accurate(spring_method_at(k)) && i < sizeof at / sizeof at[0]; i++)
             for (size_t f = 0; f < sizeof features / sizeof features[0]; f++)
-                add(features[f].name,
-                    (subject){.method = spring_method_at(k),
-                              .count = at[i].count,
-                              .steps = at[i].steps,
-                              .omega2 = features[f].omega2,
-                              .gamma = features[f].gamma,
-                              .accel = features[f].accel},
-                    INFINITY);
+                add(features[f].name, (subject){.method = spring_method_at(k),
+                                                .count = at[i].count,
+                                                .steps = at[i].steps,
+                                                .omega2 = features[f].omega2,
+                                                .gamma = features[f].gamma,
+                                                .accel = features[f].accel});
 }
 
 static void add_special(void)
 {
     const subject exact = {SPRING_EXACT, in_cache, 1, OWN, .beside = TEXTBOOK};
-    add("", exact, INFINITY);
+    add("", exact);
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const subject s = {spring_method_at(i), in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
         if (is_accurate(s.method))
-            add("_settled", s, INFINITY);
+            add("_settled", s);
     }
     const subject settled = {SPRING_LEAPFROG, in_cache, 16, OWN, .single = true, .beside = ORDINARY, .settled = true};
-    add("_settled", settled, INFINITY);
+    add("_settled", settled);
     const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .beside = ORDINARY, .unaligned = true};
-    add("_unaligned", unaligned, INFINITY);
+    add("_unaligned", unaligned);
 }
 
 void bench_add_batches(void)

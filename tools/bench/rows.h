@@ -21,6 +21,7 @@ struct bench_row {
     const char *precision;
     uint64_t count, steps;                 /* springs, or links; steps a call */
     double goal_ratio, goal_ns;            /* [1], [ns]; INFINITY: none */
+    double goal_excess_ns;                 /* [ns] more than the limit, a step of all of them; 0: none */
     double goal_speedup;                   /* [1]; 0: none */
     const char *limits[bench_most_limits]; /* their names, NULL where there are fewer; the slowest one counts */
     const char *baseline;                  /* its name; NULL: none */
