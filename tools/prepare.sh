@@ -30,9 +30,9 @@ present() {
 }
 
 missing_packages() {
-    local kind name package
-    while read -r kind name package; do
-        if [[ -n $kind && $kind != '#'* ]] && ! present "$kind" "$name"; then
+    local kind name package optional
+    while read -r kind name package optional; do
+        if [[ -n $kind && $kind != '#'* && -z $optional ]] && ! present "$kind" "$name"; then
             echo "$package"
         fi
     done <"$root/tools/packages.txt"

@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench: what a step of a spring costs, beside a limit that is measured in the same run.
- *
- * Method    A sample is the time of a fixed number of calls. Samples of the library and of its limits alternate, so
- *           that what slows the machine down for a while slows all of them; each figure is the median of its samples.
- *           Of two limits the slower one counts: nothing can be faster than either. Processor time is what is measured:
- *           other processes take part of the caches and of the memory's time, but not of the clock's.
+ * spring-bench: what a step of a spring costs, beside a limit that is measured in the same run; samples.h says how.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +9,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "parts.h"
-#include "rows.h"
+#include "samples.h"
 
 static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double", "float", NULL};
 static int only_part = -1, only_kernel = -1, only_precision = -1;
@@ -34,8 +29,6 @@ static const cli_option options[] = {
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
     {.name = NULL},
 };
-
-static const double noisy_spread = 0.05; /* --help says it, too */
 
 static const cli_program program = {
     .name = "spring-bench",
@@ -84,78 +77,19 @@ static const cli_program program = {
     .options = options,
 };
 
-/* ---------------------------------------------------------------------------------------------------- the samples */
-
-enum { most_samples = 51, timed = bench_baseline + 1 }; /* the kernel, its limits, the baseline */
-
-/* As many calls as fill the time. */
-static uint64_t calls_for(const bench_row *r, int which, double time_ns)
+static void write_row(cli_table *table, const bench_row *r)
 {
-    uint64_t n = 1;
-    while (r->time(r, which, n) < time_ns)
-        n *= 2;
-    return n;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-typedef struct figure {
-    double median, spread;
-} figure;
-
-static figure summarise(double *samples, size_t count)
-{
-    qsort(samples, count, sizeof *samples, ascending);
-    const double median = samples[count / 2];
-    return (figure){median, (samples[count - 1 - count / 4] - samples[count / 4]) / median};
-}
-
-/* Measures and writes one row. */
-static void measure(cli_table *table, const bench_row *r)
-{
-    const double sample_ns = quick ? 5e5 : 2e6, row_ns = quick ? 2e7 : 2.5e8;
-    const size_t few = 3, least = quick ? few : 11, most = quick ? 7 : most_samples;
-    bool is_used[timed] = {true, [bench_baseline] = r->baseline != NULL};
-    for (int k = 0; k < bench_most_limits; k++)
-        is_used[1 + k] = r->limits[k] != NULL;
-    double samples[timed][most_samples];
-    uint64_t n[timed];
-    for (int k = 0; k < timed; k++)
-        n[k] = is_used[k] ? calls_for(r, k, sample_ns) : 0;
-    size_t count = 0;
-    const double begin = timing_now();
-    for (double spent = 0; count < few || (count < least && spent < 5 * row_ns) || (count < most && spent < row_ns);
-         spent = timing_now() - begin) {
-        for (int k = 0; k < timed; k++)
-            if (is_used[k])
-                samples[k][count] = r->time(r, k, n[k]) / (double)n[k] / (double)r->count / (double)r->steps;
-        count++;
-    }
-    figure figures[timed];
-    for (int k = 0; k < timed; k++)
-        figures[k] = is_used[k] ? summarise(samples[k], count) : (figure){NAN, 0};
-    int slowest = 1;
-    for (int k = 2; k <= bench_most_limits; k++)
-        if (figures[k].median > figures[slowest].median)
-            slowest = k;
-    const figure ours = figures[0], limit = figures[slowest], baseline = figures[bench_baseline];
-    const double ratio = ours.median / limit.median, speedup = baseline.median / ours.median;
-    const double spread = fmax(fmax(ours.spread, limit.spread), baseline.spread);
-    const bool noisy = !(spread <= noisy_spread);
-    const double step_ns = ours.median * (double)r->count, excess = step_ns - limit.median * (double)r->count;
-    const bool holds = ratio <= r->goal_ratio && ours.median <= r->goal_ns && !(speedup < r->goal_speedup) &&
+    const bench_times t = bench_measure(r, quick);
+    const double ratio = t.ours / t.limit, speedup = t.baseline / t.ours;
+    const double step_ns = t.ours * (double)r->count, excess = step_ns - t.limit * (double)r->count;
+    const bool holds = ratio <= r->goal_ratio && t.ours <= r->goal_ns && !(speedup < r->goal_speedup) &&
                        (r->goal_excess_ns == 0 || excess <= r->goal_excess_ns);
     cli_row(table, "%s\t%s\t%" PRIu64 "\t%.4g\t%.4g\t%.4g\t%.2g\t%s\t%.4g\t%.4g\t%s\t%.4g\t%.4g\t%.4g\t%.4g\t%.4g",
-            r->kernel, r->precision, r->count, ours.median, limit.median, ratio, spread,
-            noisy   ? "noisy"
-            : holds ? "ok"
-                    : "above_goal",
-            r->goal_ratio, r->goal_ns, r->limits[slowest - 1], baseline.median, speedup, r->goal_speedup, step_ns,
-            r->goal_excess_ns);
+            r->kernel, r->precision, r->count, t.ours, t.limit, ratio, t.spread,
+            bench_is_noisy(t.spread) ? "noisy"
+            : holds                  ? "ok"
+                                     : "above_goal",
+            r->goal_ratio, r->goal_ns, t.limit_name, t.baseline, speedup, r->goal_speedup, step_ns, r->goal_excess_ns);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the table */
@@ -188,7 +122,7 @@ int main(int argc, char **argv)
         if (calls > 0)
             r->time(r, 0, calls);
         else
-            measure(table, r);
+            write_row(table, r);
     }
     cli_finish();
     return 0;

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""spring-engines: a table of the library beside physics engines. How fast they are is nobody's promise."""
+import pytest
+from tools import is_failure, parse, run
+
+ENGINES = 'spring-engines'
+
+
+@pytest.mark.parametrize('engine', ['bullet', 'chipmunk'])
+def test_rows(engine):
+    result = run(ENGINES, '--quick', '--engine', engine)  # an engine may say what it likes on standard error
+    assert result.returncode == 0
+    rows = parse(result.stdout)
+    assert [(row['engine'], row['links'], row['substeps']) for row in rows] == [
+        (engine, links, '16') for links in ('6868', '96520')]
+    for row in rows:
+        speedup, theirs, ours = (float(row[name]) for name in ('speedup', 'engine_ns', 'our_ns'))
+        assert theirs > 0 and ours > 0 and abs(speedup - theirs / ours) <= 2e-3 * speedup
+        assert row['precision'] in ('double', 'float') and row['verdict'] in ('ok', 'noisy', 'above_goal')
+
+
+@pytest.mark.parametrize('args, wanted', [
+    (['--engine', 'box2d'], ['--engine', '"box2d"', 'one of bullet, chipmunk']),
+    (['--substeps', '0'], ['--substeps', '"0"', 'from 1 to 1000']),
+    (['--substeps', '1001'], ['--substeps', '"1001"', 'from 1 to 1000']),
+    (['sheet'], ['"sheet"', 'not an option', f'{ENGINES} --help']),
+])
+def test_refused(args, wanted):
+    is_failure(run(ENGINES, *args), 2, *wanted)
+
+
+def test_help():
+    result = run(ENGINES, '--help')
+    assert (result.returncode, result.stderr) == (0, '') and result.stdout.startswith(f'Usage: {ENGINES} ')

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-engines: the same sheet by the library and by physics engines that games use, in one run; samples.h says how
+ * it is measured.
+ *
+ * A sheet, pinned along two edges, hangs under gravity, with structural, shear and bend links, all of them damped. The
+ * step is the same for both: half of what is stable.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "common/timing.h"
+#include "engine.h"
+#include "samples.h"
+
+static const char *const engines[] = {"bullet", "chipmunk", NULL};
+static const physics_engine *const engine_of[] = {&engine_bullet, &engine_chipmunk};
+static const uint32_t sides[] = {35, 128};
+static int only_engine = -1;
+static uint64_t substeps = 16;
+static bool quick;
+
+static const cli_option options[] = {
+    {"engine", CLI_CHOICE, .choice = &only_engine, .choices = engines, .value = "NAME", .help = "bullet or chipmunk"},
+    {"substeps", CLI_COUNT, .count = &substeps, .value = "N", .help = "steps a call, 16 unless given", .least = 1,
+     .most = 1000},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-engines",
+    .summary = "A sheet by the library and by physics engines that games use, in one run.",
+    .details = "Columns: engine, precision (its own; ours is double), links, substeps, speedup (how many times as\n"
+               "fast as the engine the library is), spread, verdict, engine_ns and our_ns (per link and step).\n\n"
+               "Sheets of 35 x 35 and 128 x 128 particles with structural, shear and bend links, all damped,\n"
+               "pinned along two edges, under gravity, by leapfrog; the same steps for both.\n\n"
+               "bullet: a soft body in a world of its own, with one iteration of its position solver a step.\n"
+               "That moves both ends of a link to its length, so the material is another one, but the work is\n"
+               "that of one force a link; its links in random order, as in Bullet's examples, and fastest.\n"
+               "chipmunk: damped springs between bodies, with one iteration a step; the same\n"
+               "forces as ours, on two axes, as ours are then. Nothing collides in either.\n\n"
+               "Figures are medians of samples, in processor time, that alternate. spread is the distance\n"
+               "between the quartiles over the median, the larger one of both. verdict is ok, noisy (spread\n"
+               "above 0.05: the machine was busy, the row proves nothing) or above_goal (speedup below 15).\n"
+               "It does not change the exit status: time is for people to judge.",
+    .options = options,
+};
+
+static const double least_speedup = 15; /* --help says it, too */
+static const double most_distance = 1;  /* [m] of the middle of a sheet by an engine from ours; materials may differ */
+
+/* ------------------------------------------------------------------------------------------------------- the sheets */
+
+typedef struct sheet {
+    const physics_engine *engine;
+    void *world; /* the engine's */
+    spring_scene *scene;
+    double dt; /* [s] */
+    size_t particles;
+} sheet;
+
+static void *allocate(size_t bytes)
+{
+    const size_t align = SPRING_SCENE_ALIGN;
+    void *memory = aligned_alloc(align, (bytes + align - 1) / align * align);
+    if (memory == NULL)
+        cli_fail(CLI_FAILED, "no memory for a sheet");
+    return memory;
+}
+
+static void check(spring_status status)
+{
+    if (status != SPRING_OK)
+        cli_fail(CLI_FAILED, "a sheet: %s", spring_status_string(status));
+}
+
+static spring_scene *scene_of(const spring_scene_def *def)
+{
+    size_t bytes;
+    spring_scene *scene;
+    check(spring_scene_bytes(def, &bytes));
+    check(spring_scene_init(allocate(bytes), bytes, def, &scene));
+    return scene;
+}
+
+/* Leaves out links between particles that are both pinned, which Chipmunk refuses. */
+static size_t movable(spring_link *link, size_t links, const uint8_t *pinned)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < links; i++)
+        if (pinned[link[i].a] == 0 || pinned[link[i].b] == 0)
+            link[kept++] = link[i];
+    return kept;
+}
+
+static sheet make(const physics_engine *engine, uint32_t side, size_t *links)
+{
+    const spring_grid grid = {
+        .count = {side, side},
+        .axes = engine->axes,
+        .spacing = 0.1,
+        .stretch = 1.05, /* or it crumples, which needs shorter steps */
+        .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+        .stiffness = 20000,
+        .damping = 0.5,
+        .pinned = SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y,
+    };
+    size_t particles;
+    check(spring_grid_size(&grid, &particles, links));
+    double *position = allocate(particles * engine->axes * sizeof *position);
+    uint8_t *pinned = allocate(particles);
+    spring_link *link = allocate(*links * sizeof *link);
+    check(spring_grid_fill(&grid, position, pinned, link));
+    *links = movable(link, *links, pinned);
+    const spring_scene_def def = {
+        .axes = engine->axes,
+        .methods = 1u << SPRING_LEAPFROG,
+        .particles = particles,
+        .links = *links,
+        .position = position,
+        .mass_all = 0.1,
+        .pinned = pinned,
+        .link = link,
+        .gravity = {0.3, -9.81, -0.5},
+    };
+    spring_scene *scene = scene_of(&def);
+    void *world = engine->make(&def);
+    if (world == NULL)
+        cli_fail(CLI_FAILED, "no memory for a sheet of %s", engine->name);
+    free(position);
+    free(pinned);
+    free(link);
+    return (sheet){engine, world, scene, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG), particles};
+}
+
+/* An engine whose sheet has exploded, or does not move, computes no sheet. */
+static void check_engine(const sheet *s)
+{
+    double from[3], to[3];
+    const size_t middle = s->particles / 2;
+    spring_scene_get(s->scene, SPRING_POSITION, from, 0, middle, 1);
+    s->engine->position(s->world, middle, to);
+    for (uint32_t a = 0; a < s->engine->axes; a++)
+        if (!(fabs(from[a] - to[a]) < most_distance))
+            cli_fail(CLI_FAILED, "%s: the middle is %.3g m from where it should be", s->engine->name, from[a] - to[a]);
+}
+
+static double run(const bench_row *row, int which, uint64_t calls)
+{
+    const sheet *s = row->subject;
+    const double begin = timing_busy();
+    if (which == 0)
+        for (; calls > 0; calls--)
+            check(spring_scene_advance(s->scene, SPRING_LEAPFROG, s->dt, row->steps));
+    else
+        for (uint64_t i = 0; i < calls * row->steps; i++)
+            s->engine->step(s->world, s->dt);
+    return timing_busy() - begin;
+}
+
+static void write_row(cli_table *table, const physics_engine *engine, uint32_t side)
+{
+    size_t links;
+    const sheet s = make(engine, side, &links);
+    const bench_row row = {.count = links, .steps = substeps, .limits = {engine->name}, .time = run, .subject = &s};
+    const bench_times t = bench_measure(&row, quick);
+    check_engine(&s);
+    const double speedup = t.limit / t.ours;
+    cli_row(table, "%s\t%s\t%zu\t%" PRIu64 "\t%.4g\t%.2g\t%s\t%.4g\t%.4g", engine->name, engine->precision, links,
+            substeps, speedup, t.spread,
+            bench_is_noisy(t.spread)   ? "noisy"
+            : speedup >= least_speedup ? "ok"
+                                       : "above_goal",
+            t.limit, t.ours);
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    cli_table *table = cli_open_output();
+    timing_stamp(table);
+    cli_columns(table, "engine precision links substeps speedup spread verdict engine_ns our_ns");
+    for (int e = 0; engines[e] != NULL; e++)
+        for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)
+            if (only_engine < 0 || only_engine == e)
+                write_row(table, engine_of[e], sides[i]);
+    cli_finish();
+    return 0;
+}
