@@ -36,6 +36,7 @@ SPRING_INLINE bool METHOD(groups)(const batch_block *block, bool damped, bool lo
                 uint64_t some = left < SPRING_CHECK_INTERVAL ? left : SPRING_CHECK_INTERVAL;
                 left -= some;
                 for (; some > 0; some--) {
+                    SPRING_HOT_LOOP("spring", many * lanes);
                     SPRING_UNROLL
                     for (size_t k = 0; k < many; k++)
                         METHOD(step)(&x[k], &v[k], &c[k], damped, loaded);

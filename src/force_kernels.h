@@ -87,6 +87,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
     const real all_k = vec_load(stiffness), all_rest = vec_load(length), all_c = damped ? vec_load(damping) : splat(0);
     size_t j = 0;
     for (; j < count; j += together * lanes) {
+        SPRING_HOT_LOOP("link", together * lanes);
         real delta[together][3], relative[together][3], k[together], rest[together], c[together];
         mask joined[together];
         SPRING_UNROLL
@@ -146,18 +147,22 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
             SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++)
             force[m][a] = splat(0);
-        for (const kept_forces *k = plus; k < plus + pluses; k++)
+        for (const kept_forces *k = plus; k < plus + pluses; k++) {
+            SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
-        for (size_t m = 0; m < some; m++)
+            for (size_t m = 0; m < some; m++)
+                SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+        }
+        for (const kept_forces *k = minus; k < minus + minuses; k++) {
+            SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
-        for (const kept_forces *k = minus; k < minus + minuses; k++)
-            SPRING_UNROLL
-        for (size_t m = 0; m < some; m++)
-            SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+            for (size_t m = 0; m < some; m++)
+                SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+        }
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++)
             SPRING_UNROLL
@@ -242,6 +247,7 @@ SPRING_INLINE void edges(const scene_links *s, const scalar *x, const scalar *v,
         }
         if (!edge_pulls(l, j, damped) || (axes > 1 && !(square > 0)))
             continue;
+        SPRING_HOT_LOOP("edge", 1);
         if (axes == 1) {
             delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
             if (damped)
@@ -307,6 +313,7 @@ SPRING_INLINE void quad_edges(const scene_edges *edges, const scalar *x, const s
                 one_quad_edge(l, j + m, x, v, force, step, damped);
             continue;
         }
+        SPRING_HOT_LOOP("edge", quad_size);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = step * l->a[j + m], b = step * l->b[j + m];

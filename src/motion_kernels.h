@@ -66,6 +66,7 @@ SPRING_INLINE bool all_coordinates(const scene_motion *motion, size_t from, size
     for (size_t i = from; i < to; i += lanes) {
         coordinates c = coordinates_from(s, i, all, solved);
         for (uint32_t a = 0; a < s->axes; a++) {
+            SPRING_HOT_LOOP("coordinate", lanes);
             c.at = a * s->stride + i;
             c.gravity = vec_load(s->gravity + a * padding + i % quad_size); /* a vector may be shorter than a quad */
             wrong |= part(s, &c);
