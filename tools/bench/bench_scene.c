@@ -16,8 +16,8 @@
 #include "common/timing.h"
 #include "plain_loop.h"
 
-static scene_arrays all;
-static double dt; /* [s] half of what is safe for leapfrog */
+static scene_arrays all, shuffled; /* shuffled: as all were before they were renumbered */
+static double dt;                  /* [s] half of what is safe for leapfrog */
 
 /* ----------------------------------------------------------------------------------------------------------- scenes */
 
@@ -118,24 +118,24 @@ static void advance(const built *b, spring_method method, uint64_t steps, uint64
 
 /* -------------------------------------------------------------------------------------------------- the plain loop */
 
-static plain_scene plain;
+static plain_scene plain, plain_shuffled;
 
-static void build_plain(const scene_feature *f)
+static void build_plain(plain_scene *p, const scene_arrays *a, const scene_feature *f)
 {
-    free(plain.particle);
-    plain = (plain_scene){
-        .particles = all.particles,
-        .links = all.links,
-        .particle = scene_allocate(all.particles * sizeof *plain.particle),
-        .link = all.link,
+    free(p->particle);
+    *p = (plain_scene){
+        .particles = a->particles,
+        .links = a->links,
+        .particle = scene_allocate(a->particles * sizeof *p->particle),
+        .link = a->link,
         .drag = f->drag,
         .damped = f->damping > 0,
     };
-    memcpy(plain.gravity, scene_gravity, sizeof plain.gravity);
-    for (size_t i = 0; i < all.particles; i++) {
-        const double mass = f->masses ? all.mass[i] : scene_mass;
-        plain.particle[i] = (plain_particle){.inverse_mass = all.pinned[i] != 0 ? 0 : 1 / mass};
-        memcpy(plain.particle[i].x, &all.position[3 * i], sizeof plain.particle[i].x);
+    memcpy(p->gravity, scene_gravity, sizeof p->gravity);
+    for (size_t i = 0; i < a->particles; i++) {
+        const double mass = f->masses ? a->mass[i] : scene_mass;
+        p->particle[i] = (plain_particle){.inverse_mass = a->pinned[i] != 0 ? 0 : 1 / mass};
+        memcpy(p->particle[i].x, &a->position[3 * i], sizeof p->particle[i].x);
     }
 }
 
@@ -192,15 +192,32 @@ static void prepare(const bench_row *row)
     if (s->beside == LEAPFROG || s->beside == IN_DOUBLE)
         build_other(s);
     if (row->baseline != NULL)
-        build_plain(&s->feature);
+        build_plain(&plain, &all, &s->feature);
+    if (s->beside == SHUFFLED_LIST || s->work == RENUMBER)
+        scene_fill(&shuffled, s->shape, s->side, SHUFFLED, s->feature.damping);
+    if (s->beside == SHUFFLED_LIST)
+        build_plain(&plain_shuffled, &shuffled, &s->feature);
+}
+
+/* Of links in random order, which are copied for that. */
+static void renumber(uint64_t calls)
+{
+    uint32_t *order = scene_allocate(all.particles * sizeof *order);
+    for (; calls > 0; calls--) {
+        memcpy(all.link, shuffled.link, all.links * sizeof *all.link);
+        scene_renumber(&all, order);
+    }
+    free(order);
 }
 
 static void run_ours(const scene_subject *s, uint64_t calls)
 {
     const spring_scene_def def = definition(&s->feature, s->shape);
-    if (s->init)
+    if (s->work == INIT)
         for (; calls > 0; calls--)
             init(&ours, &def);
+    else if (s->work == RENUMBER)
+        renumber(calls);
     else
         advance(&ours, s->feature.method, s->steps, calls);
 }
@@ -208,8 +225,10 @@ static void run_ours(const scene_subject *s, uint64_t calls)
 static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_t steps)
 {
     const bench_limits *limits = bench_limits_of(s->single);
-    if (s->init)
+    if (s->work != STEPS)
         read_definition(calls);
+    else if (s->beside == SHUFFLED_LIST)
+        plain_advance(&plain_shuffled, dt, steps);
     else if (s->beside == SIXTEEN_STEPS)
         advance(&ours, s->feature.method, 16, (s->steps * calls + 15) / 16);
     else if (s->beside != LIMITS)
@@ -226,7 +245,7 @@ double scene_time(const bench_row *row, int which, uint64_t calls)
     prepare(row);
     /* a step of the plain loop, or of a limit, takes as long as any other: in large scenes one stands for those of a
        call */
-    const bool scenes = which == 0 || (which != bench_baseline && s->beside != LIMITS);
+    const bool scenes = which == 0 || (which != bench_baseline && s->beside != LIMITS && s->beside != SHUFFLED_LIST);
     const uint64_t share = all.links > 300000 && !scenes ? s->steps : 1, steps = s->steps / share;
     const double begin = timing_busy();
     if (which == 0)

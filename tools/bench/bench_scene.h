@@ -17,11 +17,15 @@ typedef struct scene_feature {
 
 /* What stands beside it. */
 typedef enum scene_beside {
-    LIMITS,       /* the kernels of bench_limits.h */
-    LEAPFROG,     /* the scene without its feature, by leapfrog */
-    IN_DOUBLE,    /* the scene in double */
-    SIXTEEN_STEPS /* the scene, 16 steps a call */
+    LIMITS,        /* the kernels of bench_limits.h */
+    LEAPFROG,      /* the scene without its feature, by leapfrog */
+    IN_DOUBLE,     /* the scene in double */
+    SIXTEEN_STEPS, /* the scene, 16 steps a call */
+    SHUFFLED_LIST  /* the plain loop, before the scene was renumbered */
 } scene_beside;
+
+/* What is timed. */
+typedef enum scene_work { STEPS, INIT, RENUMBER } scene_work;
 
 typedef struct scene_subject {
     scene_shape shape;
@@ -30,8 +34,8 @@ typedef struct scene_subject {
     scene_feature feature;
     uint64_t steps; /* a call */
     scene_beside beside;
-    bool single; /* float */
-    bool init;   /* is what is timed, beside reading the links of the definition */
+    bool single;     /* float */
+    scene_work work; /* all but STEPS beside reading the links of the definition */
 } scene_subject;
 
 /** The time of a row whose subject is a scene_subject. */

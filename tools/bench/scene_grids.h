@@ -7,8 +7,8 @@
 
 typedef enum scene_shape { ROPE, SHEET, JELLY, WATER } scene_shape;
 
-/* SHUFFLED: links and the numbers of particles. */
-typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED } scene_order;
+/* SHUFFLED: links and the numbers of particles. RENUMBERED: the same, and then spring_links_renumber(). */
+typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED, RENUMBERED } scene_order;
 
 /* The arrays of a definition. */
 typedef struct scene_arrays {
@@ -30,5 +30,8 @@ size_t scene_links(scene_shape shape, uint32_t side);
 
 /** Fill arrays anew; damping [N s/m] of every link. The same every time. */
 void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scene_order order, double damping);
+
+/** spring_links_renumber(): the links of shuffled arrays, and where to order[] their particles. */
+void scene_renumber(scene_arrays *all, uint32_t *order);
 
 #endif

@@ -41,8 +41,10 @@ static double goal_speedup(const scene_subject *s)
 /* The time over that of the limit; INFINITY: none. */
 static double goal_ratio(const scene_subject *s)
 {
-    if (s->init || s->beside == SIXTEEN_STEPS)
+    if (s->work != STEPS || s->beside == SIXTEEN_STEPS)
         return INFINITY;
+    if (s->beside == SHUFFLED_LIST)
+        return s->side == 400 ? 1 / 2.5 : INFINITY; /* of 10^6 links */
     if (s->single)
         return 0.5;
     if (s->feature.method == SPRING_RK4)
@@ -60,7 +62,7 @@ static const double most_excess = 25; /* [ns] a step that is a call by itself, b
 /* Has it a plain loop beside it? That moves on three axes, in double, by leapfrog, and calls nobody back. */
 static bool is_looped(const scene_subject *s)
 {
-    return s->shape != WATER && !s->single && !s->init && s->feature.method == SPRING_LEAPFROG &&
+    return s->shape != WATER && !s->single && s->work == STEPS && s->feature.method == SPRING_LEAPFROG &&
            s->feature.force == NULL && s->feature.flags == 0;
 }
 
@@ -68,9 +70,12 @@ static void add(const char *name, const scene_subject *s)
 {
     static const char *const shapes[] = {[ROPE] = "rope", [SHEET] = "sheet", [JELLY] = "jelly", [WATER] = "water"};
     static const char *const orders[] = {
-        [NATURAL] = "", [LINKS_SHUFFLED] = "_links_shuffled", [SHUFFLED] = "_shuffled"};
-    static const char *const besides[] = {
-        [LIMITS] = "streams", [LEAPFROG] = "leapfrog", [IN_DOUBLE] = "double", [SIXTEEN_STEPS] = "16_steps"};
+        [NATURAL] = "", [LINKS_SHUFFLED] = "_links_shuffled", [SHUFFLED] = "_shuffled", [RENUMBERED] = "_renumbered"};
+    static const char *const besides[] = {[LIMITS] = "streams",
+                                          [LEAPFROG] = "leapfrog",
+                                          [IN_DOUBLE] = "double",
+                                          [SIXTEEN_STEPS] = "16_steps",
+                                          [SHUFFLED_LIST] = "shuffled_list"};
     const size_t links = scene_links(s->shape, s->side);
     const bool looped = is_looped(s);
     bench_row row = {
@@ -79,16 +84,18 @@ static void add(const char *name, const scene_subject *s)
         .count = links,
         .steps = s->steps,
         .goal_ratio = goal_ratio(s),
-        .goal_ns = s->init && s->side == 1000 ? most_init : INFINITY,
+        .goal_ns = s->work == INIT && s->side == 1000 ? most_init : INFINITY,
         .goal_excess_ns = s->beside == SIXTEEN_STEPS ? most_excess : 0,
         .goal_speedup = looped ? goal_speedup(s) : 0,
-        .limits = {s->init ? "definition" : besides[s->beside], s->beside == LIMITS && !s->init ? "arithmetic" : NULL},
+        .limits = {s->work != STEPS ? "definition" : besides[s->beside],
+                   s->beside == LIMITS && s->work == STEPS ? "arithmetic" : NULL},
         .baseline = looped ? "list" : NULL,
         .long_only = links > 2000000,
         .time = scene_time,
     };
-    if (s->init)
-        snprintf(row.kernel, sizeof row.kernel, "init_%s%s", shapes[s->shape], orders[s->order]);
+    if (s->work != STEPS)
+        snprintf(row.kernel, sizeof row.kernel, "%s_%s%s", s->work == INIT ? "init" : "renumber", shapes[s->shape],
+                 orders[s->order]);
     else
         snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s->feature.method), shapes[s->shape],
                  (int)s->steps, orders[s->order], name);
@@ -114,7 +121,8 @@ static void add_both(scene_subject s)
 {
     s.steps = 1;
     add("", &s);
-    if (s.order != NATURAL && s.side > 128) /* slow, and nothing of it stays in a cache from step to step */
+    if ((s.order == LINKS_SHUFFLED || s.order == SHUFFLED) &&
+        s.side > 128) /* slow, and nothing of it stays in a cache from step to step */
         return;
     s.steps = 16;
     add("", &s);
@@ -125,6 +133,9 @@ static void add_shapes(void)
     for (scene_order order = NATURAL; order <= SHUFFLED; order++)
         for (int i = 0; i < side_count; i++)
             add_both((scene_subject){.shape = SHEET, .side = sides[i], .order = order, .feature = plainly});
+    for (int i = 0; i < side_count; i++)
+        add_both((scene_subject){
+            .shape = SHEET, .side = sides[i], .order = RENUMBERED, .feature = plainly, .beside = SHUFFLED_LIST});
     for (uint32_t side = 10; side <= 40; side *= 2)
         add_both((scene_subject){.shape = JELLY, .side = side, .feature = plainly});
     for (int i = 1; i < side_count; i++) {
@@ -181,7 +192,15 @@ static void add_init(void)
         for (int i = 1; i < side_count; i++)
             add("",
                 &(scene_subject){
-                    .shape = SHEET, .side = sides[i], .order = order, .feature = plainly, .steps = 1, .init = true});
+                    .shape = SHEET, .side = sides[i], .order = order, .feature = plainly, .steps = 1, .work = INIT});
+}
+
+static void add_renumbering(void)
+{
+    for (int i = 1; i < side_count; i++)
+        add("",
+            &(scene_subject){
+                .shape = SHEET, .side = sides[i], .order = SHUFFLED, .feature = plainly, .steps = 1, .work = RENUMBER});
 }
 
 void bench_add_scenes(void)
@@ -192,4 +211,5 @@ void bench_add_scenes(void)
     add_features(128);
     add_features(1000);
     add_init();
+    add_renumbering();
 }
