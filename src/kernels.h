@@ -14,8 +14,8 @@
 
 #if SPRING_TARGET_EXISTS
 
-/* How quads are passed depends on the target; they never are. gcc says so where it inlines, down to the last line. */
-#if defined(__GNUC__) && !defined(__clang__)
+/* How quads are passed depends on the target; they never are, and compilers warn all the same: gcc at the last line. */
+#if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
