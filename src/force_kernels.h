@@ -50,10 +50,11 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
             scale[m] += c[m] * (rate[m] * inverse * inverse);
     }
     SPRING_UNROLL
-    for (int m = 0; m < together; m++)
+    for (int m = 0; m < together; m++) {
         SPRING_UNROLL
-    for (uint32_t a = 0; a < axes; a++)
-        delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+    }
 }
 
 /* On one axis a link is a linear spring. */
@@ -110,10 +111,11 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         else
             to_forces(axes, delta, relative, joined, k, rest, c, damped);
         SPRING_UNROLL
-        for (size_t m = 0; m < together; m++)
+        for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+        }
     }
     clear_slots(force + j, axis, tile - j, axes);
 }
@@ -143,31 +145,35 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
     for (size_t j = 0; j < count; j += some * lanes) {
         real force[some][3];
         SPRING_UNROLL
-        for (size_t m = 0; m < some; m++)
+        for (size_t m = 0; m < some; m++) {
             SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            force[m][a] = splat(0);
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] = splat(0);
+        }
         for (const kept_forces *k = plus; k < plus + pluses; k++) {
             SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
-            for (size_t m = 0; m < some; m++)
+            for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+            }
         }
         for (const kept_forces *k = minus; k < minus + minuses; k++) {
             SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
-            for (size_t m = 0; m < some; m++)
+            for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+            }
         }
         SPRING_UNROLL
-        for (size_t m = 0; m < some; m++)
+        for (size_t m = 0; m < some; m++) {
             SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            vec_store(to + a * stride + j + m * lanes, force[m][a]);
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(to + a * stride + j + m * lanes, force[m][a]);
+        }
     }
 }
 
@@ -343,10 +349,11 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
         }
     }
     quad_edges(&s->edge_list, base, base + quad_size, base + at_force, step, damped);
-    for (size_t i = 0; i < s->particles; i++)
+    for (size_t i = 0; i < s->particles; i++) {
         SPRING_UNROLL
-    for (uint32_t a = 0; a < axes; a++)
-        s->force[a * s->stride + i] = base[step * i + at_force + a];
+        for (uint32_t a = 0; a < axes; a++)
+            s->force[a * s->stride + i] = base[step * i + at_force + a];
+    }
 }
 
 /* The forces of a small scene, whose arrays are of quads. */

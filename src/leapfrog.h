@@ -111,9 +111,8 @@ static scene_outcome leapfrog_scene_step(const scene_step *s)
     first.predicted = predicts ? scene_predicted(s) : NULL;
     last.force = scene_force_of(s->scene, s->to);
     last.v0 = first.v;
-    const bool finite =
-        scene_sweep(s, &first, predicts ? s->kernels->kick_drift_predict : s->kernels->kick_drift,
-                    predicts ? first.predicted : first.v, &last, s->kernels->solved_kick);
+    const bool finite = scene_sweep(s, &first, predicts ? s->kernels->kick_drift_predict : s->kernels->kick_drift,
+                                    predicts ? first.predicted : first.v, &last, s->kernels->solved_kick);
     const known_force kept = scene_callback_uses_velocity(s->scene) ? NO_FORCE : predicts ? PREDICTED_FORCE : FORCE;
     return (scene_outcome){.finite = finite, .known = kept};
 }

@@ -76,7 +76,7 @@ struct spring_scene {
     uint64_t damped_links;
     uint32_t buffer; /* that holds the state */
     known_force known;
-    bool lost;       /* an advance without rollback has failed */
+    bool lost; /* an advance without rollback has failed */
     bool bounds_known;
     scene_bounds bounds;
 };

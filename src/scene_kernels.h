@@ -77,14 +77,14 @@ typedef struct scene_kernels {
     scene_force_kernel *edges[3][2];   /* adds those of the edge list */
     scene_force_kernel *records[3][2]; /* the same, for many edges without order; not on one axis */
     scene_force_kernel *quads[2];      /* the forces of the edge list, where the axes of a particle lie side by side */
-    scene_motion_kernel *kick_drift;         /* v = v0 + kick a(v0);       x = x0 + drift v */
+    scene_motion_kernel *kick_drift;   /* v = v0 + kick a(v0);       x = x0 + drift v */
     scene_motion_kernel *kick_drift_predict; /* the same; predicted = v + kick a(predicted) */
     scene_motion_kernel *solved_kick;        /* v = v0 + kick a(v) */
-    scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
-    scene_motion_kernel *stage;             /* v = v0 + kick a(slope);    x = x0 + drift slope */
-    scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
-    scene_motion_kernel *next_stage;        /* the same, and they are added to the sums, times weight */
-    scene_motion_kernel *last_stage;        /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
+    scene_motion_kernel *solved_kick_drift;  /* v = v0 + kick a(v);  x = x0 + drift v */
+    scene_motion_kernel *stage;              /* v = v0 + kick a(slope);    x = x0 + drift slope */
+    scene_motion_kernel *first_stage;        /* the same, and the sums are slope and a(slope) */
+    scene_motion_kernel *next_stage;         /* the same, and they are added to the sums, times weight */
+    scene_motion_kernel *last_stage;         /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
 } scene_kernels;
 
 extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v512; /* by bits of a vector */
