@@ -2,17 +2,15 @@
 /*
  * A numbering of particles that puts those near each other in memory which are joined.
  *
- * Method    Of four numberings the one is kept that leaves the fewest different offsets between the ends of links, since
- *           links of constant offset make a band (scene_init.c), and a small bandwidth leaves few, too. Two are those
- *           of Cuthill and McKee: breadth first from a particle at the rim, neighbours by ascending degree; one
- *           follows only the shortest links, which in a sheet or block are those along its rows, the other all. (Their
- *           reversal, which is for factors of matrices, changes no offset.) They number a sheet by diagonals, and the
- *           lengths of diagonals differ. So of each a second is made: of chains, each particle behind the last numbered
- *           of its neighbours that has none behind it yet. In a sheet they are its rows.
- * Start     The particle at the rim is pseudo-peripheral: of a numbering's last level one of least degree starts the
- *           next, as long as there are more levels each time.
- * Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969); George, Liu, An implementation
- *           of a pseudoperipheral node finder, ACM Transactions on Mathematical Software 5 (1979)
+ * Method    Links of constant offset between their ends make bands (scene_init.c). Cuthill and McKee number breadth first
+ *           from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
+ *           Chains through that numbering, each particle behind the last numbered of its neighbours that has none
+ *           behind it yet, are the rows of a sheet, if only the shortest links are followed: those along rows. Where
+ *           these chains leave many offsets, more than a sheet has particles along its edge, the numbering itself is
+ *           tried, through all links: it leaves few, if no band, since it joins only what is in neighbouring levels.
+ *           (Its reversal, which is for factors of matrices, changes no offset.)
+ * Start     The particle at the rim is the last numbered from any other.
+ * Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969)
  */
 #include <math.h>
 #include <string.h>
@@ -27,7 +25,7 @@ typedef struct graph {
     const spring_link *link;
     uint32_t *start, *neighbour;
     uint32_t *number; /* of each particle, or none */
-    uint32_t *queue;  /* particles by number */
+    uint32_t *queue;  /* particles by level */
     uint32_t *next;   /* in its chain */
 } graph;
 
@@ -49,21 +47,6 @@ static uint32_t degree(const graph *g, uint32_t v)
     return g->start[v + 1] - g->start[v];
 }
 
-/* By ascending degree. A particle with very many links is left alone: this is quadratic. */
-static void sort_neighbours(graph *g, uint32_t v)
-{
-    const uint32_t most = 64;
-    uint32_t *list = g->neighbour + g->start[v];
-    const uint32_t count = degree(g, v) <= most ? degree(g, v) : 0;
-    for (uint32_t i = 1; i < count; i++) {
-        const uint32_t moved = list[i];
-        uint32_t at = i;
-        for (; at > 0 && degree(g, list[at - 1]) > degree(g, moved); at--)
-            list[at] = list[at - 1];
-        list[at] = moved;
-    }
-}
-
 /* Joined by links up to a length. */
 static void list_neighbours(graph *g, double longest)
 {
@@ -80,69 +63,47 @@ static void list_neighbours(graph *g, double longest)
             g->neighbour[--g->start[g->link[i].a]] = g->link[i].b;
             g->neighbour[--g->start[g->link[i].b]] = g->link[i].a;
         }
-    for (uint32_t v = 0; v < g->particles; v++)
-        sort_neighbours(g, v);
 }
 
-typedef struct levels {
-    uint32_t count, last, end; /* numbers of the last level: last to end - 1 */
-} levels;
-
-/* Numbers what is joined to root by breadth first, from first on. */
-static levels sweep(graph *g, uint32_t root, uint32_t first)
+/* Puts what is joined to root into the queue from first on, breadth first, and numbers it. Returns where it ends. */
+static uint32_t sweep(graph *g, uint32_t root, uint32_t first)
 {
-    levels l = {1, first, first + 1};
-    uint32_t level_end = l.end;
+    const uint32_t most_moves = 64; /* of a particle in the queue: all would be quadratic, where one has many links */
+    uint32_t end = first + 1;
     g->queue[first] = root;
-    g->number[root] = first;
-    for (uint32_t at = first; at < l.end; at++) {
-        if (at == level_end) {
-            l.count++;
-            l.last = at;
-            level_end = l.end;
-        }
-        const uint32_t v = g->queue[at];
+    for (uint32_t at = first; at < end; at++) {
+        const uint32_t v = g->queue[at], children = end;
+        g->number[v] = at;
         for (uint32_t k = g->start[v]; k < g->start[v + 1]; k++) {
             const uint32_t w = g->neighbour[k];
-            if (g->number[w] == none) {
-                g->number[w] = l.end;
-                g->queue[l.end++] = w;
-            }
+            if (g->number[w] != none)
+                continue;
+            g->number[w] = 0; /* any, until it is known */
+            uint32_t to = end++;
+            for (; to > children && end - to <= most_moves && degree(g, g->queue[to - 1]) > degree(g, w); to--)
+                g->queue[to] = g->queue[to - 1];
+            g->queue[to] = w;
         }
     }
-    return l;
-}
-
-static uint32_t least_degree(const graph *g, levels l)
-{
-    uint32_t least = g->queue[l.last];
-    for (uint32_t at = l.last; at < l.end; at++)
-        if (degree(g, g->queue[at]) < degree(g, least))
-            least = g->queue[at];
-    return least;
+    return end;
 }
 
 static void number_by_levels(graph *g)
 {
-    const int most_sweeps = 8; /* they are seldom more than three */
     memset(g->number, -1, g->particles * sizeof *g->number);
     uint32_t first = 0;
     for (uint32_t v = 0; v < g->particles; v++) {
         if (g->number[v] != none)
             continue;
-        levels l = sweep(g, v, first), before = {0, 0, 0};
-        for (int s = 1; s < most_sweeps && l.count > before.count; s++) {
-            const uint32_t root = least_degree(g, l);
-            for (uint32_t at = first; at < l.end; at++)
-                g->number[g->queue[at]] = none;
-            before = l;
-            l = sweep(g, root, first);
-        }
-        first = l.end;
+        const uint32_t end = sweep(g, v, first);
+        for (uint32_t at = first; at < end; at++)
+            g->number[g->queue[at]] = none;
+        first = sweep(g, g->queue[end - 1], first);
     }
 }
 
-static void number_by_chains(graph *g)
+/* Follows a numbering by levels. */
+static void number_by_chains(graph *g, uint32_t *order)
 {
     memset(g->next, -1, g->particles * sizeof *g->next);
     for (uint32_t at = 0; at < g->particles; at++) {
@@ -159,8 +120,10 @@ static void number_by_chains(graph *g)
     memset(g->number, -1, g->particles * sizeof *g->number);
     uint32_t number = 0;
     for (uint32_t at = 0; at < g->particles; at++)
-        for (uint32_t v = g->queue[at]; v != none && g->number[v] == none; v = g->next[v])
+        for (uint32_t v = g->queue[at]; v != none && g->number[v] == none; v = g->next[v]) {
+            order[number] = v;
             g->number[v] = number++;
+        }
 }
 
 /* How many different offsets there are between the ends of links. */
@@ -178,34 +141,22 @@ static size_t count_offsets(graph *g)
     return offsets;
 }
 
-/* Keeps a numbering if it is the best so far: order is its inverse. */
-static void keep_better(graph *g, size_t *least, uint32_t *order)
-{
-    const size_t offsets = count_offsets(g);
-    if (offsets >= *least)
-        return;
-    *least = offsets;
-    for (uint32_t v = 0; v < g->particles; v++)
-        order[g->number[v]] = v;
-}
-
 static void find_order(graph *g, uint32_t *order)
 {
     const double longer = 1.25; /* than the shortest link: between the edge of a square and its diagonal */
     double shortest = INFINITY;
     for (size_t i = 0; i < g->links; i++)
         shortest = g->link[i].rest < shortest ? g->link[i].rest : shortest;
-    const double longest[] = {longer * shortest, INFINITY};
-    size_t least = SIZE_MAX;
-    for (int i = 0; i < 2; i++) {
-        list_neighbours(g, longest[i]);
-        number_by_levels(g);
-        keep_better(g, &least, order);
-        number_by_chains(g);
-        keep_better(g, &least, order);
-        if (g->start[g->particles] == 2 * g->links)
-            break; /* all links were among the shortest */
-    }
+    list_neighbours(g, longer * shortest);
+    number_by_levels(g);
+    number_by_chains(g, order);
+    const uint64_t offsets = count_offsets(g);
+    if (offsets * offsets <= g->particles)
+        return;
+    list_neighbours(g, INFINITY);
+    number_by_levels(g);
+    if (count_offsets(g) < offsets)
+        memcpy(order, g->queue, g->particles * sizeof *order);
 }
 
 static uint32_t end_of(const spring_link *link, bool upper)
@@ -267,7 +218,7 @@ spring_status spring_links_renumber(size_t particles, size_t links, spring_link 
     uint32_t *from = g.neighbour + links;
     sort_by_end(&g, true, NULL, g.neighbour);
     sort_by_end(&g, false, g.neighbour, from);
-    if (link_order != NULL && links > 0)
+    if (link_order != NULL)
         memcpy(link_order, from, links * sizeof *from);
     permute(links, link, from);
     return SPRING_OK;

@@ -324,8 +324,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  *
  * The caller permutes his own arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *
- * Time is proportional to particles + links: about 10 passes over both ends of all links, at most 18, in random order.
- * What is done depends on nothing but the arguments.
+ * Time is proportional to particles + links: ten passes over both ends of all links in random order, fifteen where there
+ * are no rows to be found. What is done depends on nothing but the arguments.
  *
  * @param[in]     particles   fewer than 2^32 - 1
  * @param[in]     links       fewer than 2^29
@@ -335,8 +335,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  * @param         work        [4*particles + 2*links + 1], not to be kept
  * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle is
  *         too large, or a count. Nothing is written after an error
- * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969); George, Liu, An
- *                implementation of a pseudoperipheral node finder (1979); what is better of that and chains through it
+ * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969), and chains through its
+ *                numbering, src/renumber.c
  */
 SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, spring_link *link, uint32_t *order,
                                                uint32_t *link_order, uint32_t *work);
