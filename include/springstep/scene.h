@@ -72,9 +72,9 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
    succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/* No callback uses velocities, or there is none and none is going to be set. Leapfrog need not predict velocities then:
-   no time for that, and no memory either where no link is damped or can be changed. It keeps the force at the end of a
-   step for the next. */
+/* No callback uses velocities, or there is none and none is going to be set. Leapfrog keeps the force at the end of a
+   step for the next then, which halves its work; and it needs no memory for a prediction where no link is damped or can
+   be changed. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /* Zero-initialise what is not modelled. Every array is copied. */
@@ -136,10 +136,14 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *     RK4               the four stages
  *
  * Drag is solved for in the kick of symplectic Euler and in the last half kick of leapfrog. Velocities that enter link
- * damping and callbacks in that half kick are predicted: v* = v' + dt/2 a(x1, v'), v1 = v' + dt/2 a(x1, v*): still of
- * second order, at three force evaluations a step instead of one. (Of both Eulers: one, RK4: four. A callback that uses
- * no velocities is not predicted for, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.) With drag alone leapfrog evaluates
- * once; its force at the end of a step is that at the start of the next, and is kept.
+ * damping and callbacks in that half kick are predicted, v* = v' + dt/2 a0, v1 = v' + dt/2 a(x1, v*), with a0 the
+ * acceleration of the first half kick: still of second order.
+ *
+ * Force evaluations a step: both Eulers one, RK4 four, leapfrog one: its force at the end of a step is that at the
+ * start of the next, and is kept. With damped links it is the one at v*: it is part of the state then, is copied with a
+ * snapshot, and is found afresh, at v, after spring_scene_set(), another change of the scene, or steps of another
+ * method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps nothing
+ * and evaluates twice, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
@@ -159,7 +163,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * link is compressed below half its rest length.
  *
  * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
- * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping min(2/sqrt(L), 2/G); RK4
+ * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping 2/(G + sqrt(G^2 + L)); RK4
  * 2.61/max(sqrt(L), G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest sum of 2 stiffness;
  * symplectic Euler 4/(p + sqrt(p^2 + 4 L)), p = (the largest sum for links alone) - drag/(largest mass).
  * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on
