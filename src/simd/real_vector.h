@@ -57,6 +57,8 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     int four;
     memcpy(&four, p, sizeof four);
     return (mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+#elif defined(__wasm_simd128__) && SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
+    return (mask)wasm_i64x2_make(p[0], p[1]);
 #else
     mask t = {0};
     for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
@@ -103,6 +105,9 @@ SPRING_INLINE real vec_seed(real a)
     return (real)_mm256_cvtps_pd(1 / _mm_sqrt_ps(_mm256_cvtpd_ps((__m256d)a)));
 #elif SPRING_X86_64
     return (real)_mm_cvtps_pd(1 / _mm_sqrt_ps(_mm_cvtpd_ps((__m128d)a)));
+#elif defined(__wasm_simd128__) && SPRING_VECTOR == 16
+    const v128_t root = wasm_f32x4_sqrt(wasm_f32x4_demote_f64x2_zero((v128_t)a));
+    return (real)wasm_f64x2_promote_low_f32x4(wasm_f32x4_div(wasm_f32x4_const_splat(1), root));
 #else
     for (size_t i = 0; i < sizeof a / sizeof(scalar); i++)
         a[i] = (scalar)(1 / sqrtf((float)a[i]));
