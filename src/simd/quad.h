@@ -8,95 +8,14 @@
 enum { quad_size = 4 };
 
 #if defined(SPRING_VECTOR) && defined(__GNUC__)
-typedef scalar quad __attribute__((vector_size(quad_size * sizeof(scalar))));
-
-SPRING_INLINE quad quad_of(scalar a, scalar b, scalar c, scalar d)
-{
-    return (quad){a, b, c, d};
-}
-
-SPRING_INLINE scalar quad_at(quad q, int i)
-{
-    return q[i];
-}
-
-SPRING_INLINE quad quad_plus(quad a, quad b)
-{
-    return a + b;
-}
-
-SPRING_INLINE quad quad_minus(quad a, quad b)
-{
-    return a - b;
-}
-
-SPRING_INLINE quad quad_times(quad a, quad b)
-{
-    return a * b;
-}
-
-SPRING_INLINE quad quad_over(quad a, quad b)
-{
-    return a / b;
-}
+#include "quad_vector.h"
 #else
-typedef struct quad {
-    scalar at[quad_size];
-} quad;
-
-SPRING_INLINE quad quad_of(scalar a, scalar b, scalar c, scalar d)
-{
-    return (quad){{a, b, c, d}};
-}
-
-SPRING_INLINE scalar quad_at(quad q, int i)
-{
-    return q.at[i];
-}
-
-SPRING_INLINE quad quad_plus(quad a, quad b)
-{
-    return quad_of(a.at[0] + b.at[0], a.at[1] + b.at[1], a.at[2] + b.at[2], a.at[3] + b.at[3]);
-}
-
-SPRING_INLINE quad quad_minus(quad a, quad b)
-{
-    return quad_of(a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2], a.at[3] - b.at[3]);
-}
-
-SPRING_INLINE quad quad_times(quad a, quad b)
-{
-    return quad_of(a.at[0] * b.at[0], a.at[1] * b.at[1], a.at[2] * b.at[2], a.at[3] * b.at[3]);
-}
-
-SPRING_INLINE quad quad_over(quad a, quad b)
-{
-    return quad_of(a.at[0] / b.at[0], a.at[1] / b.at[1], a.at[2] / b.at[2], a.at[3] / b.at[3]);
-}
+#include "quad_number.h"
 #endif
 
 SPRING_INLINE quad quad_all(scalar a)
 {
     return quad_of(a, a, a, a);
-}
-
-SPRING_INLINE quad quad_sqrt(quad a)
-{
-#if SPRING_X86_64 && defined(SPRING_VECTOR) && !defined(SPRING_FLOAT) && defined(__GNUC__) && SPRING_VECTOR >= 32
-    return (quad)_mm256_sqrt_pd((__m256d)a);
-#elif SPRING_X86_64 && defined(SPRING_VECTOR) && !defined(SPRING_FLOAT) && defined(__GNUC__)
-    __m128d half[2];
-    memcpy(half, &a, sizeof half);
-    half[0] = _mm_sqrt_pd(half[0]);
-    half[1] = _mm_sqrt_pd(half[1]);
-    memcpy(&a, half, sizeof half);
-    return a;
-#elif SPRING_X86_64 && defined(SPRING_VECTOR) && defined(__GNUC__)
-    return (quad)_mm_sqrt_ps((__m128)a);
-#else
-    return quad_of(scalar_sqrt(quad_at(a, 0)), scalar_sqrt(quad_at(a, 1)), scalar_sqrt(quad_at(a, 2)),
-                   scalar_sqrt(quad_at(a, 3)));
-#endif
 }
 
 /* Of the axes. */
