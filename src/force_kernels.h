@@ -10,8 +10,8 @@
  *           depend on the length of vectors. A tile reads no position and no velocity of the tiles before it.
  * Edges     All other links, the edge list, one by one in their order; a particle's axes lie side by side, in a quad.
  * Law       k (1 - rest/length) delta, and with damping c (relative velocity . delta)/length^2 delta; nothing where
- *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 1 ulp; of an edge the square root is
- *           rounded, and the quotient rest/length.
+ *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 1 ulp; of an edge the square root
+ *           is rounded, and the quotient rest/length.
  */
 #ifndef SPRINGSTEP_FORCE_KERNELS_H
 #define SPRINGSTEP_FORCE_KERNELS_H
@@ -340,6 +340,8 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
     scalar *const base = s->records;
     for (size_t i = 0; i < s->particles; i++) {
         scalar *const record = base + step * i;
+        for (size_t k = 0; k < step; k += quad_size) /* what no axis uses is 0, whatever links were damped before */
+            quad_store(record + k, quad_all(0));
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
             record[a] = x[a * s->stride + i];

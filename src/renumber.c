@@ -2,8 +2,8 @@
 /*
  * A numbering of particles that puts those near each other in memory which are joined.
  *
- * Method    Links of constant offset between their ends make bands (scene_init.c). Cuthill and McKee number breadth first
- *           from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
+ * Method    Links of constant offset between their ends make bands (scene_init.c). Cuthill and McKee number breadth
+ *           first from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
  *           Chains through that numbering, each particle behind the last numbered of its neighbours that has none
  *           behind it yet, are the rows of a sheet, if only the shortest links are followed: those along rows. Where
  *           these chains leave many offsets, more than a sheet has particles along its edge, the numbering itself is

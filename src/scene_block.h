@@ -13,8 +13,9 @@ enum {
     most_buffers = 3, /* of positions and velocities: two that take turns for rule "all or nothing", one for stages */
 };
 
-/* A band of links and its slots, one for each particle of the tiles that hold its lower ends. For each slot a byte says whether it is occupied by a link. Each slot has coefficients (stiffness, rest length, damping);
-   or, where all links are equal and stay so, there is one vector of them for all. */
+/* A band of links and its slots, one for each particle of the tiles that hold its lower ends. For each slot a byte says
+   whether it is occupied by a link. Each slot has coefficients (stiffness, rest length, damping); or, where all links are
+   equal and stay so, there is one vector of them for all. */
 typedef struct band_plan {
     uint32_t offset;     /* from the lower end of a link to its upper end */
     uint32_t first, end; /* of the lower ends */

@@ -45,7 +45,8 @@ extern "C" {
 
 /* A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest) + damping
    (v_b - v_a); on more it pulls both ends along the line between them with stiffness (length - rest) + damping (rate of
-   length). Where both ends are at the same place that line has no direction, and there is no force. */
+   length). Where both ends are at the same place that line has no direction, and there is no force; nor is there
+   a sensible one where the square of the length underflows, below some 1e-160 m, in float 1e-21 m. */
 typedef struct spring_link {
     uint32_t a, b;    /*         indices of two different particles */
     double rest;      /* [m]     length at which it does not pull >= 0 */
@@ -72,7 +73,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
    succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/* No callback uses velocities, or there is none and none is going to be set. Leapfrog keeps the force at the end of a
+/* No callback uses velocities, or there is none and none is going to be set. (What it is shown as velocities may be
+   other numbers then.) Leapfrog keeps the force at the end of a
    step for the next then, which halves its work; and it needs no memory for a prediction where no link is damped or can
    be changed. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
@@ -141,8 +143,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * Force evaluations a step: both Eulers one, RK4 four, leapfrog one: its force at the end of a step is that at the
  * start of the next, and is kept. With damped links it is the one at v*: it is part of the state then, is copied with a
- * snapshot, and is found afresh, at v, after spring_scene_set(), another change of the scene, or steps of another
- * method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps nothing
+ * snapshot, and is found afresh, at v, after spring_scene_set(), a change of a link or of the callback, or steps of
+ * another method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps nothing
  * and evaluates twice, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
@@ -328,8 +330,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  *
  * The caller permutes his own arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *
- * Time is proportional to particles + links: ten passes over both ends of all links in random order, fifteen where there
- * are no rows to be found. What is done depends on nothing but the arguments.
+ * Time is proportional to particles + links: ten passes over both ends of all links in random order, fifteen where
+ * there are no rows to be found. What is done depends on nothing but the arguments.
  *
  * @param[in]     particles   fewer than 2^32 - 1
  * @param[in]     links       fewer than 2^29
