@@ -506,7 +506,11 @@ static void goes_on_alike(life *l, const place *p)
 {
     static state old, made;
     const double dt = 1.0 / 64;
+    double first[3];
     copy_over(l);
+    /* forces that leapfrog has kept for damped links are not in the new one: they are found afresh after this */
+    if (spring_scene_get(l->other.s, SPRING_POSITION, first, 0, 0, 1) == SPRING_OK)
+        (void)spring_scene_set(l->other.s, SPRING_POSITION, first, 0, 0, 1);
     const spring_status status = spring_scene_advance(l->other.s, SPRING_LEAPFROG, dt, 3);
     must(spring_scene_advance(p->s, SPRING_LEAPFROG, dt, 3) == status ||
              !isfinite(spring_scene_time(l->one.s) + 3 * dt),
