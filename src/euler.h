@@ -67,8 +67,8 @@ static const one_method euler_one = {
 #elif defined(SPRING_SHAPE_SCENE)
 static scene_outcome euler_scene_step(const scene_step *s)
 {
-    const scene_motion m = s->motion;
-    return (scene_outcome){.finite = scene_move(&m, s->kernels->stage)};
+    const scene_motion m = scene_motion_of(s);
+    return (scene_outcome){.finite = scene_move(s, &m, s->kernels->stage)};
 }
 
 static double euler_scene_stable_step(const scene_bounds *b)

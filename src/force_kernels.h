@@ -75,16 +75,16 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* The forces of a band in the tile of slots from t, of axis a at force + a * axis; each: slots have coefficients. */
+/* The forces of a band in `slots` slots from t, of axis a at force + a * axis; each: slots have coefficients. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               scalar *force, size_t axis, uint32_t axes, bool damped, bool each)
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool each)
 {
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const scalar *const stiffness = band->stiffness + (each ? slot : 0), *const length = band->rest + (each ? slot : 0),
                         *const damping = damped ? band->damping + (each ? slot : 0) : NULL;
     SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
-    const size_t left = (size_t)(band->end - t), count = left < tile ? left : tile;
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const real all_k = vec_load(stiffness), all_rest = vec_load(length), all_c = damped ? vec_load(damping) : splat(0);
     size_t j = 0;
     for (; j < count; j += together * lanes) {
@@ -117,16 +117,17 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
                 vec_store(force + a * axis + j + m * lanes, delta[m][a]);
         }
     }
-    clear_slots(force + j, axis, tile - j, axes);
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
 }
 
 SPRING_INLINE void band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               scalar *force, size_t axis, uint32_t axes, bool damped)
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
 {
     if (band->each)
-        tile_forces(band, x, v, stride, t, force, axis, axes, damped, true);
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
     else
-        tile_forces(band, x, v, stride, t, force, axis, axes, damped, false);
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);
 }
 
 /* Forces that are added to those of a tile, or subtracted: of axis a at force + a * axis. */
@@ -135,13 +136,13 @@ typedef struct kept_forces {
     size_t axis;
 } kept_forces;
 
-/* The bands' forces on the particles of the tile from t. */
-SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *plus, size_t pluses,
+/* The bands' forces on `count` particles from t. */
+SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, size_t count, const kept_forces *plus, size_t pluses,
                           const kept_forces *minus, size_t minuses, uint32_t axes)
 {
     enum { some = 2 }; /* vectors at once */
     scalar *const to = s->force + t;
-    const size_t stride = s->stride, left = s->particles - (size_t)t, count = left < tile ? left : tile;
+    const size_t stride = s->stride;
     for (size_t j = 0; j < count; j += some * lanes) {
         real force[some][3];
         SPRING_UNROLL
@@ -178,10 +179,10 @@ SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, const kept_forces *
 }
 
 /* The first tile of a ring stands behind the last once more, so that any `tile` slots in a row lie so. */
-SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t axis, uint32_t axes)
+SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
-        for (size_t j = 0; j < tile; j += lanes)
+        for (size_t j = 0; j < slots; j += lanes)
             vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
 }
 
@@ -201,24 +202,25 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
     for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
         kept_forces plus[most_bands], minus[most_bands];
         size_t pluses = 0, minuses = 0;
+        const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
             const ptrdiff_t ring = band->ring, other = slot[r] - band->offset;
             const size_t axis = (size_t)(ring + tile);
             scalar *const force = band->force + slot[r];
             if (t >= band->start && t < band->end) {
-                band_forces(band, x, v, s->stride, t, force, axis, axes, damped);
+                band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
                 plus[pluses++] = (kept_forces){force, axis};
             } else {
-                clear_slots(force, axis, tile, axes);
+                clear_slots(force, axis, count, axes);
             }
             if (slot[r] == 0)
-                repeat_tile(force, ring, axis, axes);
+                repeat_tile(force, ring, count, axis, axes);
             if (t < band->end + band->offset && t + tile > band->start + band->offset)
                 minus[minuses++] = (kept_forces){band->force + (other < 0 ? other + ring : other), axis};
             slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
         }
-        gather(s, t, plus, pluses, minus, minuses, axes);
+        gather(s, t, count, plus, pluses, minus, minuses, axes);
     }
 }
 

@@ -101,20 +101,21 @@ static const one_method leapfrog_one = {
 #elif defined(SPRING_SHAPE_SCENE)
 /* Velocities that forces depend on are predicted from the forces at the start of the step: v* = v' + h/2 a(v*), with
    only drag at v*; v1 = v' + h/2 a(x1, v*). So the forces are found once a step, and kept at (x1, v*): being those of a
-   velocity that is not the state's, they are part of it. A callback that uses velocities may have changed from call to
-   call: then none are kept, and they are found twice. */
+   velocity that is not the state's, they are part of it. The last kick of a step and the first of the next are one pass
+   over the particles. A callback that uses velocities may have changed from call to call: then no forces are kept, they
+   are found twice, and each kick is a pass. */
 static scene_outcome leapfrog_scene_step(const scene_step *s)
 {
-    const bool predicts = scene_forces_use_velocity(s->scene);
-    scene_motion first = s->motion, last = s->motion;
+    const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    scene_motion first = scene_motion_of(s), last = scene_motion_of(s);
     first.kick = last.kick = s->h / 2;
     first.predicted = predicts ? scene_predicted(s) : NULL;
     last.force = scene_force_of(s->scene, s->to);
     last.v0 = first.v;
-    const bool finite = scene_sweep(s, &first, predicts ? s->kernels->kick_drift_predict : s->kernels->kick_drift,
-                                    predicts ? first.predicted : first.v, &last, s->kernels->solved_kick);
-    const known_force kept = scene_callback_uses_velocity(s->scene) ? NO_FORCE : predicts ? PREDICTED_FORCE : FORCE;
-    return (scene_outcome){.finite = finite, .known = kept};
+    const bool finite =
+        scene_sweep(s, &first, s->kernels->kick_drift[keeps && !s->first][predicts],
+                    predicts ? first.predicted : first.v, &last, keeps && !s->last ? NULL : s->kernels->solved_kick);
+    return (scene_outcome){.finite = finite, .known = !keeps ? NO_FORCE : predicts ? PREDICTED_FORCE : FORCE};
 }
 
 /* With link damping, of stiffness k and damping c over the mass: h^2 k/4 + h c < 1. */

@@ -9,30 +9,17 @@
 #include "scene_kernels.h"
 #include "solved_kick.h"
 
-/* A vector of coordinates on one axis, of particles from i. */
+/* A vector of coordinates on one axis. */
 typedef struct coordinates {
     size_t at;         /* in the arrays of a quantity */
     real inverse_mass; /* 0: pinned */
     real gravity;
-    real drag;                /* [1/s] */
-    solved_share share;       /* of a solved kick; else unset */
-    real kick, drift, weight; /* as in scene_motion, where a store might have changed them for all a compiler knows */
+    real drag;          /* [1/s] */
+    bool dragged;       /* is there any? */
+    solved_share share; /* of a solved kick with drag; else unset */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-
-/* c: with kick, drift and weight. */
-SPRING_INLINE coordinates coordinates_from(const scene_motion *s, size_t i, coordinates c, bool solved)
-{
-    real inverse_mass = s->inverse_mass != NULL ? vec_load(s->inverse_mass + i) : splat(s->inverse_mass_all);
-    if (i + lanes > s->particles) /* what fills the last vector stays where it is, and finite */
-        inverse_mass = select_real(vec_load(lane_number) < splat((scalar)(s->particles - i)), inverse_mass, splat(0));
-    c.inverse_mass = inverse_mass;
-    c.drag = s->drag * inverse_mass;
-    if (solved)
-        c.share = solved_share_of(c.kick * c.drag);
-    return c;
-}
 
 /* By force and gravity. A particle that is pinned feels no force, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *s, const coordinates *c)
@@ -44,7 +31,7 @@ SPRING_INLINE real free_acceleration(const scene_motion *s, const coordinates *c
 SPRING_INLINE real acceleration(const scene_motion *s, const coordinates *c, real v)
 {
     const real free = free_acceleration(s, c);
-    return s->drag != 0 ? free - c->drag * v : free;
+    return c->dragged ? free - c->drag * v : free;
 }
 
 SPRING_INLINE mask move_to(const scene_motion *s, const coordinates *c, real x, real v)
@@ -58,43 +45,74 @@ SPRING_INLINE mask move_to(const scene_motion *s, const coordinates *c, real x, 
 typedef mask motion_part(const scene_motion *s, const coordinates *c);
 
 /* The one loop of all kernels. */
-SPRING_INLINE bool all_coordinates(const scene_motion *motion, size_t from, size_t to, motion_part *part, bool solved)
+SPRING_INLINE bool all_coordinates(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
+                                   motion_part *part, bool solved)
 {
-    const scene_motion own = *motion, *const s = &own; /* no store changes it, for all a compiler knows */
-    const coordinates all = {.kick = splat(s->kick), .drift = splat(s->drift), .weight = splat(s->weight)};
+    const scene_particles p = *particles; /* no store changes these, for all a compiler knows */
+    const scene_motion m = *motion;
     mask wrong = {0};
-    for (size_t i = from; i < to; i += lanes) {
-        coordinates c = coordinates_from(s, i, all, solved);
-        for (uint32_t a = 0; a < s->axes; a++) {
+    for (uint32_t a = 0; a < p.axes; a++) {
+        const scalar *const quad_gravity = p.gravity + a * padding;
+        const real gravity = vec_load(quad_gravity);
+        for (size_t i = from; i < to; i += lanes) {
             SPRING_HOT_LOOP("coordinate", lanes);
-            c.at = a * s->stride + i;
-            c.gravity = vec_load(s->gravity + a * padding + i % quad_size); /* a vector may be shorter than a quad */
-            wrong |= part(s, &c);
+            real inverse_mass = vec_load(p.inverse_mass + i * p.mass_step);
+            if (SPRING_UNLIKELY(i + lanes > p.count)) /* what fills the last vector stays where it is, and finite */
+                inverse_mass =
+                    select_real(vec_load(lane_number) < splat((scalar)(p.count - i)), inverse_mass, splat(0));
+            coordinates c = {
+                .at = a * p.stride + i,
+                .inverse_mass = inverse_mass,
+                .gravity = lanes < quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
+                .drag = p.drag * inverse_mass,
+                .dragged = p.drag != 0,
+            };
+            if (solved && c.dragged)
+                c.share = solved_share_of(m.kick * c.drag);
+            wrong |= part(&m, &c);
         }
     }
     return !any(wrong);
 }
 
-SPRING_INLINE mask kick_drift_part(const scene_motion *s, const coordinates *c)
-{
-    const real v0 = vec_load(s->v0 + c->at);
-    const real v = v0 + c->kick * acceleration(s, c, v0);
-    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v);
-}
-
 SPRING_INLINE real solved_velocity(const scene_motion *s, const coordinates *c, real v0, real free)
 {
-    const real u = v0 + c->kick * free;
-    return s->drag != 0 ? c->share.keep * u + c->share.lose * u : u;
+    const real u = v0 + s->kick * free;
+    return c->dragged ? c->share.keep * u + c->share.lose * u : u;
+}
+
+/* again: after the solved kick that ends the step before */
+SPRING_INLINE mask kick_and_drift(const scene_motion *s, const coordinates *c, bool again, bool predict)
+{
+    const real free = free_acceleration(s, c), start = vec_load(s->v0 + c->at);
+    const real v0 = again ? solved_velocity(s, c, start, free) : start;
+    const real v = v0 + s->kick * (c->dragged ? free - c->drag * v0 : free);
+    const mask wrong = move_to(s, c, vec_load(s->x0 + c->at) + s->drift * v, v);
+    if (!predict)
+        return wrong;
+    const real predicted = solved_velocity(s, c, v, free);
+    vec_store(s->predicted + c->at, predicted);
+    return wrong | not_finite(predicted);
+}
+
+SPRING_INLINE mask kick_drift_part(const scene_motion *s, const coordinates *c)
+{
+    return kick_and_drift(s, c, false, false);
 }
 
 SPRING_INLINE mask kick_drift_predict_part(const scene_motion *s, const coordinates *c)
 {
-    const real v0 = vec_load(s->v0 + c->at), free = free_acceleration(s, c);
-    const real v = v0 + c->kick * (s->drag != 0 ? free - c->drag * v0 : free);
-    const real predicted = solved_velocity(s, c, v, free);
-    vec_store(s->predicted + c->at, predicted);
-    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v) | not_finite(predicted);
+    return kick_and_drift(s, c, false, true);
+}
+
+SPRING_INLINE mask kick_kick_drift_part(const scene_motion *s, const coordinates *c)
+{
+    return kick_and_drift(s, c, true, false);
+}
+
+SPRING_INLINE mask kick_kick_drift_predict_part(const scene_motion *s, const coordinates *c)
+{
+    return kick_and_drift(s, c, true, true);
 }
 
 SPRING_INLINE mask solved_kick_part(const scene_motion *s, const coordinates *c)
@@ -107,13 +125,13 @@ SPRING_INLINE mask solved_kick_part(const scene_motion *s, const coordinates *c)
 SPRING_INLINE mask solved_kick_drift_part(const scene_motion *s, const coordinates *c)
 {
     const real v = solved_velocity(s, c, vec_load(s->v0 + c->at), free_acceleration(s, c));
-    const mask hidden = not_finite(c->kick * c->drag); /* in 1/(1 + q) */
-    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * v, v) | hidden;
+    const mask hidden = not_finite(s->kick * c->drag); /* in 1/(1 + q) */
+    return move_to(s, c, vec_load(s->x0 + c->at) + s->drift * v, v) | hidden;
 }
 
 SPRING_INLINE mask move_along(const scene_motion *s, const coordinates *c, real dx, real dv)
 {
-    return move_to(s, c, vec_load(s->x0 + c->at) + c->drift * dx, vec_load(s->v0 + c->at) + c->kick * dv);
+    return move_to(s, c, vec_load(s->x0 + c->at) + s->drift * dx, vec_load(s->v0 + c->at) + s->kick * dv);
 }
 
 SPRING_INLINE mask stage_part(const scene_motion *s, const coordinates *c)
@@ -133,8 +151,8 @@ SPRING_INLINE mask first_stage_part(const scene_motion *s, const coordinates *c)
 SPRING_INLINE mask next_stage_part(const scene_motion *s, const coordinates *c)
 {
     const real dx = vec_load(s->slope + c->at), dv = acceleration(s, c, dx);
-    vec_store(s->sum_x + c->at, vec_load(s->sum_x + c->at) + c->weight * dx);
-    vec_store(s->sum_v + c->at, vec_load(s->sum_v + c->at) + c->weight * dv);
+    vec_store(s->sum_x + c->at, vec_load(s->sum_x + c->at) + s->weight * dx);
+    vec_store(s->sum_v + c->at, vec_load(s->sum_v + c->at) + s->weight * dv);
     return move_along(s, c, dx, dv);
 }
 
@@ -144,44 +162,54 @@ SPRING_INLINE mask last_stage_part(const scene_motion *s, const coordinates *c)
     return move_along(s, c, vec_load(s->sum_x + c->at) + dx, vec_load(s->sum_v + c->at) + dv);
 }
 
-static bool kick_drift(const scene_motion *s, size_t from, size_t to)
+static bool kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, kick_drift_part, false);
+    return all_coordinates(p, s, from, to, kick_drift_part, false);
 }
 
-static bool kick_drift_predict(const scene_motion *s, size_t from, size_t to)
+static bool kick_drift_predict(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, kick_drift_predict_part, true);
+    return all_coordinates(p, s, from, to, kick_drift_predict_part, true);
 }
 
-static bool solved_kick(const scene_motion *s, size_t from, size_t to)
+static bool kick_kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, solved_kick_part, true);
+    return all_coordinates(p, s, from, to, kick_kick_drift_part, true);
 }
 
-static bool solved_kick_drift(const scene_motion *s, size_t from, size_t to)
+static bool kick_kick_drift_predict(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, solved_kick_drift_part, true);
+    return all_coordinates(p, s, from, to, kick_kick_drift_predict_part, true);
 }
 
-static bool stage(const scene_motion *s, size_t from, size_t to)
+static bool solved_kick(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, stage_part, false);
+    return all_coordinates(p, s, from, to, solved_kick_part, true);
 }
 
-static bool first_stage(const scene_motion *s, size_t from, size_t to)
+static bool solved_kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, first_stage_part, false);
+    return all_coordinates(p, s, from, to, solved_kick_drift_part, true);
 }
 
-static bool next_stage(const scene_motion *s, size_t from, size_t to)
+static bool stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, next_stage_part, false);
+    return all_coordinates(p, s, from, to, stage_part, false);
 }
 
-static bool last_stage(const scene_motion *s, size_t from, size_t to)
+static bool first_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
 {
-    return all_coordinates(s, from, to, last_stage_part, false);
+    return all_coordinates(p, s, from, to, first_stage_part, false);
+}
+
+static bool next_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
+{
+    return all_coordinates(p, s, from, to, next_stage_part, false);
+}
+
+static bool last_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
+{
+    return all_coordinates(p, s, from, to, last_stage_part, false);
 }
 
 #endif

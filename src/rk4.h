@@ -128,13 +128,13 @@ static scene_outcome rk4_scene_step(const scene_step *s)
 {
     const double times[] = {s->middle, s->middle, s->end};
     const scalar lengths[] = {s->h / 2, s->h / 2, s->h}; /* from the start to the next stage */
-    scene_motion end = s->motion, stage = end;
+    scene_motion end = scene_motion_of(s), stage = scene_motion_of(s);
     stage.x = scene_stage_x(s);
     stage.v = scene_stage_v(s);
     stage.weight = 2;
     for (int k = 0; k < 3; k++) {
         stage.kick = stage.drift = lengths[k];
-        if (!scene_move(&stage, k == 0 ? s->kernels->first_stage : s->kernels->next_stage))
+        if (!scene_move(s, &stage, k == 0 ? s->kernels->first_stage : s->kernels->next_stage))
             return (scene_outcome){.finite = false};
         scene_evaluate(s, stage.x, stage.v, times[k]);
         stage.slope = stage.v;
@@ -142,7 +142,7 @@ static scene_outcome rk4_scene_step(const scene_step *s)
     }
     end.slope = stage.slope;
     end.kick = end.drift = s->h / 6;
-    return (scene_outcome){.finite = scene_move(&end, s->kernels->last_stage)};
+    return (scene_outcome){.finite = scene_move(s, &end, s->kernels->last_stage)};
 }
 
 static double rk4_scene_stable_step(const scene_bounds *b)

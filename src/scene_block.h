@@ -71,8 +71,9 @@ struct spring_scene {
     spring_scene_force_fn *force;
     void *user;
     double mass_all, drag, gravity[3];
-    scalar gravity_vectors[3][padding]; /* of each axis; in a small scene the first holds quads of all */
-    double t0, dt;                      /* time is t0 + steps dt */
+    scalar gravity_vectors[3][padding];  /* of each axis; in a small scene the first holds quads of all */
+    scalar inverse_mass_vector[padding]; /* where particles have none of their own */
+    double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
     uint32_t buffer; /* that holds the state */

@@ -452,6 +452,8 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
     };
+    s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
+    spread(s->inverse_mass_vector);
     scene_place_gravity(s, def->gravity);
     fill_particles(s, def);
     fill_links(s, def);

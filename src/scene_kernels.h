@@ -44,15 +44,19 @@ typedef struct scene_links { /* what a force kernel works on */
     scalar *records; /* see record_edges() */
 } scene_links;
 
-/* A part of a step. A kernel uses what its line in scene_kernels says. */
-typedef struct scene_motion {
-    size_t particles;
+/* What a motion kernel works on. Where quantities are quads, they are those of so many particles on one axis. */
+typedef struct scene_particles {
+    size_t count;
     uint32_t axes;
     size_t stride;              /* elements from one axis to the next */
-    const scalar *inverse_mass; /* NULL: one for all */
-    scalar inverse_mass_all;
-    const scalar *gravity; /* of each axis a vector; of quads one for all axes */
+    const scalar *inverse_mass; /* 0: pinned */
+    size_t mass_step;           /* from particle to particle: 1, or 0: a vector for all of them */
+    const scalar *gravity;      /* of each axis a vector; of quads one for all axes */
     scalar drag;
+} scene_particles;
+
+/* A part of a step. A kernel uses what its line in scene_kernels says. */
+typedef struct scene_motion {
     scalar kick, drift; /* [s] how long forces act on v, and v on x */
     const scalar *force;
     const scalar *x0, *v0; /* from */
@@ -67,7 +71,7 @@ typedef struct scene_motion {
 typedef void scene_force_kernel(const scene_links *s, const scalar *x, const scalar *v);
 typedef void scene_band_kernel(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to);
 /* Of particles from ... to - 1, both multiples of tile, but for the last; false: a number is infinite or NaN. */
-typedef bool scene_motion_kernel(const scene_motion *, size_t from, size_t to);
+typedef bool scene_motion_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
 /* With a(u) the acceleration by force, gravity and the drag of u: */
 typedef struct scene_kernels {
@@ -77,14 +81,14 @@ typedef struct scene_kernels {
     scene_force_kernel *edges[3][2];   /* adds those of the edge list */
     scene_force_kernel *records[3][2]; /* the same, for many edges without order; not on one axis */
     scene_force_kernel *quads[2];      /* the forces of the edge list, where the axes of a particle lie side by side */
-    scene_motion_kernel *kick_drift;   /* v = v0 + kick a(v0);       x = x0 + drift v */
-    scene_motion_kernel *kick_drift_predict; /* the same; predicted = v + kick a(predicted) */
-    scene_motion_kernel *solved_kick;        /* v = v0 + kick a(v) */
-    scene_motion_kernel *solved_kick_drift;  /* v = v0 + kick a(v);  x = x0 + drift v */
-    scene_motion_kernel *stage;              /* v = v0 + kick a(slope);    x = x0 + drift slope */
-    scene_motion_kernel *first_stage;        /* the same, and the sums are slope and a(slope) */
-    scene_motion_kernel *next_stage;         /* the same, and they are added to the sums, times weight */
-    scene_motion_kernel *last_stage;         /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
+    scene_motion_kernel *kick_drift[2][2];  /* v = v0 + kick a(v0);       x = x0 + drift v; by: solved_kick before it,
+                                              and after it predicted = v + kick a(predicted) */
+    scene_motion_kernel *solved_kick;       /* v = v0 + kick a(v) */
+    scene_motion_kernel *solved_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
+    scene_motion_kernel *stage;             /* v = v0 + kick a(slope);    x = x0 + drift slope */
+    scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
+    scene_motion_kernel *next_stage;        /* the same, and they are added to the sums, times weight */
+    scene_motion_kernel *last_stage;        /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
 } scene_kernels;
 
 extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v512; /* by bits of a vector */
@@ -137,8 +141,7 @@ FORCE_KERNELS(quads, 3)
     .edges = {FORCE_TABLE(edges, 1), FORCE_TABLE(edges, 2), FORCE_TABLE(edges, 3)}, \
     .records = {{0}, FORCE_TABLE(records, 2), FORCE_TABLE(records, 3)}, \
     .quads = FORCE_TABLE(quads, 3), \
-    .kick_drift = kick_drift, \
-    .kick_drift_predict = kick_drift_predict, \
+    .kick_drift = {{kick_drift, kick_drift_predict}, {kick_kick_drift, kick_kick_drift_predict}}, \
     .solved_kick = solved_kick, \
     .solved_kick_drift = solved_kick_drift, \
     .stage = stage, \

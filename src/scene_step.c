@@ -80,6 +80,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     scene_step step = {.kernels = s->plan.small ? kernels->small : kernels,
                        .scene = s,
                        .force = &force,
+                       .particles = scene_prepare_particles(s),
                        .from = s->buffer,
                        .to = rollback ? 1 - s->buffer : s->buffer};
     step.h = (scalar)dt;
@@ -88,11 +89,13 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         const double done = (double)(before + i);
         step.middle = t0 + (done + 0.5) * dt;
         step.end = t0 + (double)(before + i + 1) * dt;
-        if (i < 2) /* then it stays in one buffer */
-            scene_prepare_motion(&step);
+        step.known = scene_force_of(s, step.from);
+        step.first = i == 0;
+        step.last = i + 1 == n;
         if (known == NO_FORCE || (known == PREDICTED_FORCE && (method->stores & SCENE_STORES_PREDICTED) == 0)) {
-            scene_evaluate(&step, step.motion.x0, step.motion.v0, t0 + done * dt);
-            step.motion.force = scene_force_of(s, step.to); /* those that were kept may have to be rolled back to */
+            scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
+                           t0 + done * dt);
+            step.known = scene_force_of(s, step.to); /* those that were kept may have to be rolled back to */
         }
         const scene_outcome outcome = method->step(&step);
         if (!outcome.finite) {

@@ -13,10 +13,12 @@ typedef struct scene_step {
     const scene_kernels *kernels;
     const spring_scene *scene;
     scene_force *force;
+    scene_particles particles;
     uint32_t from, to;
+    bool first, last;    /* of a call */
+    const scalar *known; /* the forces at the start */
     scalar h;            /* [s] */
     double middle, end;  /* [s] */
-    scene_motion motion; /* over the whole step, from the state at its start to the one at its end */
 } scene_step;
 
 /* A step ends where the first number is not finite: a callback is shown nothing else. */
@@ -71,21 +73,15 @@ static inline scalar *scene_predicted(const scene_step *s)
     return p->predicted != 0 ? scene_axis(s->scene, p->predicted, 0) : scene_force_of(s->scene, s->to);
 }
 
-static inline void scene_prepare_motion(scene_step *step)
+/* A motion over the whole step, from the state at its start to the one at its end. */
+static inline scene_motion scene_motion_of(const scene_step *step)
 {
     const spring_scene *s = step->scene;
     const scene_plan *p = &s->plan;
-    step->motion = (scene_motion){
-        .particles = p->small ? quad_size * p->particles : p->particles,
-        .axes = p->small ? 1 : p->axes,
-        .stride = p->stride,
-        .inverse_mass = p->inverse_mass != 0 ? scene_array(s, p->inverse_mass) : NULL,
-        .inverse_mass_all = (scalar)(1 / s->mass_all),
-        .gravity = s->gravity_vectors[0],
-        .drag = (scalar)s->drag,
+    return (scene_motion){
         .kick = step->h,
         .drift = step->h,
-        .force = scene_force_of(s, step->from),
+        .force = step->known,
         .x0 = scene_axis(s, p->x[step->from], 0),
         .v0 = scene_axis(s, p->v[step->from], 0),
         .x = scene_axis(s, p->x[step->to], 0),
@@ -93,6 +89,21 @@ static inline void scene_prepare_motion(scene_step *step)
         .slope = scene_axis(s, p->v[step->from], 0),
         .sum_x = scene_axis(s, p->sum_x, 0),
         .sum_v = scene_axis(s, p->sum_v, 0),
+    };
+}
+
+static inline scene_particles scene_prepare_particles(const spring_scene *s)
+{
+    const scene_plan *p = &s->plan;
+    const bool each = p->inverse_mass != 0;
+    return (scene_particles){
+        .count = p->small ? quad_size * p->particles : p->particles,
+        .axes = p->small ? 1 : p->axes,
+        .stride = p->stride,
+        .inverse_mass = each ? scene_array(s, p->inverse_mass) : s->inverse_mass_vector,
+        .mass_step = each,
+        .gravity = s->gravity_vectors[0],
+        .drag = (scalar)s->drag,
     };
 }
 
@@ -187,14 +198,21 @@ static inline void scene_evaluate(const scene_step *s, const scalar *x, const sc
     scene_find_forces(s->kernels, s->scene, s->force, x, v, t, scene_force_of(s->scene, s->to));
 }
 
+/* Particles that are moved on all axes before the next: what they have in common stays in the cache. */
+enum { chunk = 16 * tile };
+
 /* A motion of all particles by a kernel. */
-static inline bool scene_move(const scene_motion *m, scene_motion_kernel *kernel)
+static inline bool scene_move(const scene_step *s, const scene_motion *m, scene_motion_kernel *kernel)
 {
-    return kernel(m, 0, m->particles);
+    const size_t count = s->particles.count;
+    for (size_t i = 0; i < count; i += chunk)
+        if (!kernel(&s->particles, m, i, count - i > chunk ? i + chunk : count))
+            return false;
+    return true;
 }
 
-/* A motion, the forces at its end with velocities v, and a motion by them, which leaves positions alone: one pass over
-   memory where there are bands only. Then the forces on a particle are known as soon as those after it have moved that
+/* A motion, the forces at its end with velocities v, and, if not NULL, a motion by them, which leaves positions alone:
+   one pass over memory where there are bands only. Then the forces on a particle are known as soon as those after it have moved that
    its links reach, and it is moved on while it is in the cache. */
 static inline bool scene_sweep(const scene_step *s, const scene_motion *before, scene_motion_kernel *move_before,
                                const scalar *v, const scene_motion *after, scene_motion_kernel *move_after)
@@ -202,22 +220,23 @@ static inline bool scene_sweep(const scene_step *s, const scene_motion *before, 
     const spring_scene *scene = s->scene;
     const scene_plan *p = &scene->plan;
     if (p->small || p->edges > 0 || scene->force != NULL || p->bands == 0) {
-        if (!scene_move(before, move_before))
+        if (!scene_move(s, before, move_before))
             return false;
         scene_evaluate(s, before->x, v, s->end);
-        return scene_move(after, move_after);
+        return move_after == NULL || scene_move(s, after, move_after);
     }
-    const size_t chunk = 16 * tile, ahead = (p->band[p->bands - 1].offset + chunk - 1) / chunk * chunk;
+    const size_t ahead = (p->band[p->bands - 1].offset + chunk - 1) / chunk * chunk;
     scene_band_kernel *const bands = s->kernels->bands[p->axes - 1][scene->damped_links > 0];
     s->force->links.force = scene_force_of(scene, s->to);
     for (size_t i = 0; i < p->particles + ahead; i += chunk) {
-        if (i < p->particles && !move_before(before, i, i + chunk < p->particles ? i + chunk : p->particles))
+        if (i < p->particles &&
+            !move_before(&s->particles, before, i, i + chunk < p->particles ? i + chunk : p->particles))
             return false;
         if (i < ahead)
             continue;
         const size_t from = i - ahead, to = from + chunk < p->particles ? from + chunk : p->particles;
         bands(&s->force->links, before->x, v, from, to);
-        if (!move_after(after, from, to))
+        if (move_after != NULL && !move_after(&s->particles, after, from, to))
             return false;
     }
     return true;

@@ -83,8 +83,8 @@ static const one_method symplectic_euler_one = {
 #elif defined(SPRING_SHAPE_SCENE)
 static scene_outcome symplectic_euler_scene_step(const scene_step *s)
 {
-    const scene_motion m = s->motion;
-    return (scene_outcome){.finite = scene_move(&m, s->kernels->solved_kick_drift)};
+    const scene_motion m = scene_motion_of(s);
+    return (scene_outcome){.finite = scene_move(s, &m, s->kernels->solved_kick_drift)};
 }
 
 /* Damping of links is explicit and costs stability, drag is solved for and gives some back: a motion with stiffness k,
