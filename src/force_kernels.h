@@ -75,17 +75,18 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* The forces of a band in `slots` slots from t, of axis a at force + a * axis; each: slots have coefficients. */
+/* The forces of a band in `slots` slots from t, of axis a at force + a * axis; equal: all slots
+   have the same coefficients. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool each)
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool equal)
 {
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
-    const scalar *const stiffness = band->stiffness + (each ? slot : 0), *const length = band->rest + (each ? slot : 0),
-                        *const damping = damped ? band->damping + (each ? slot : 0) : NULL;
+    const ptrdiff_t step = equal ? 0 : band->coefficient_step;
+    const scalar *const stiffness = band->stiffness + slot * step, *const length = band->rest + slot * step,
+                        *const damping = damped ? band->damping + slot * step : NULL;
     SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
-    const real all_k = vec_load(stiffness), all_rest = vec_load(length), all_c = damped ? vec_load(damping) : splat(0);
     size_t j = 0;
     for (; j < count; j += together * lanes) {
         SPRING_HOT_LOOP("link", together * lanes);
@@ -94,9 +95,10 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
-            k[m] = each ? vec_load(stiffness + i) : all_k;
-            rest[m] = each ? vec_load(length + i) : all_rest;
-            c[m] = each && damped ? vec_load(damping + i) : all_c;
+            const ptrdiff_t number = (ptrdiff_t)i * step;
+            k[m] = vec_load(stiffness + number);
+            rest[m] = vec_load(length + number);
+            c[m] = damped ? vec_load(damping + number) : splat(0);
             joined[m] = vec_load_mask(occupied + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
@@ -124,7 +126,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
 SPRING_INLINE void band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
                                size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
 {
-    if (band->each)
+    if (axes == 1 && band->coefficient_step == 0) /* such a link is so quick that loading coefficients counts */
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
     else
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);

@@ -18,12 +18,12 @@ enum {
 /* Links whose upper end is `offset` particles after the lower one. Arrays are of whole tiles of slots. */
 typedef struct scene_band {
     ptrdiff_t offset;
-    ptrdiff_t start, end;    /* slots: from the tile of the first lower end to behind the last */
-    const int8_t *occupied;  /* -1 where there is a link that pulls, else 0 */
-    bool each;               /* slot has coefficients; or there is one vector of them, for all */
-    const scalar *stiffness; /* [N/m] */
-    const scalar *rest;      /* [m]; negative on one axis where the link runs from the upper end to the lower */
-    const scalar *damping;   /* [N s/m]; NULL: none in the scene */
+    ptrdiff_t start, end;       /* slots: from the tile of the first lower end to behind the last */
+    const int8_t *occupied;     /* -1 where there is a link that pulls, else 0 */
+    ptrdiff_t coefficient_step; /* from slot to slot: 1, or 0: a vector of coefficients for all of them */
+    const scalar *stiffness;    /* [N/m] */
+    const scalar *rest;         /* [m]; negative on one axis where the link runs from the upper end to the lower */
+    const scalar *damping;      /* [N s/m]; NULL: none in the scene */
     scalar *force;  /* [N] on the lower ends of the last slots, of each axis: a ring, and its first tile again */
     ptrdiff_t ring; /* slots: a multiple of tile, at least offset + tile */
 } scene_band;

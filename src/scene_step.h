@@ -140,7 +140,7 @@ static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
             .start = band->first / tile * tile,
             .end = band->end,
             .occupied = scene_bytes_at(s, p->occupied) + band->slots,
-            .each = !band->equal,
+            .coefficient_step = !band->equal,
             .stiffness = scene_array(s, p->band_stiffness) + band->coefficients,
             .rest = scene_array(s, p->band_rest) + band->coefficients,
             .damping = damped ? scene_array(s, p->band_damping) + band->coefficients : NULL,
