@@ -338,12 +338,16 @@ SPRING_INLINE void quad_edges(const scene_edges *edges, const scalar *x, const s
 
 /* What the edges of a scene without order read and write: of each particle position, velocity if links are damped, and
    force, in one record. */
-SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+SPRING_INLINE size_t force_in_record(bool damped)
 {
-    const size_t at_force = (damped ? 2 : 1) * quad_size, step = at_force + quad_size;
-    scalar *const base = s->records;
+    return (damped ? 2 : 1) * quad_size;
+}
+
+SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), step = at_force + quad_size;
     for (size_t i = 0; i < s->particles; i++) {
-        scalar *const record = base + step * i;
+        scalar *record = s->records + step * i;
         for (size_t k = 0; k < step; k += quad_size) /* what no axis uses is 0, whatever links were damped before */
             quad_store(record + k, quad_all(0));
         SPRING_UNROLL
@@ -354,18 +358,35 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
             record[at_force + a] = s->bands > 0 ? s->force[a * s->stride + i] : 0;
         }
     }
-    quad_edges(&s->edge_list, base, base + quad_size, base + at_force, step, damped);
+}
+
+SPRING_INLINE void take_forces(const scene_links *s, uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), step = at_force + quad_size;
     for (size_t i = 0; i < s->particles; i++) {
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++)
-            s->force[a * s->stride + i] = base[step * i + at_force + a];
+            s->force[a * s->stride + i] = s->records[step * i + at_force + a];
     }
 }
 
-/* The forces of a small scene, whose arrays are of quads. */
-SPRING_INLINE void quads(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *v, bool damped)
 {
-    (void)axes;
+    const size_t at_force = force_in_record(damped);
+    if (s->axes == 3)
+        fill_records(s, x, v, 3, damped);
+    else
+        fill_records(s, x, v, 2, damped);
+    quad_edges(&s->edge_list, s->records, s->records + quad_size, s->records + at_force, at_force + quad_size, damped);
+    if (s->axes == 3)
+        take_forces(s, 3, damped);
+    else
+        take_forces(s, 2, damped);
+}
+
+/* The forces of a small scene, whose arrays are of quads. */
+SPRING_INLINE void quads(const scene_links *s, const scalar *x, const scalar *v, bool damped)
+{
     for (size_t i = 0; i < s->particles; i++)
         quad_store(s->force + quad_size * i, quad_all(0));
     quad_edges(&s->edge_list, x, v, s->force, quad_size, damped);

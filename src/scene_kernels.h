@@ -36,6 +36,7 @@ typedef struct scene_edges {
 
 typedef struct scene_links { /* what a force kernel works on */
     size_t particles;
+    uint32_t axes;
     size_t stride; /* elements from one axis to the next */
     scalar *force;
     size_t bands;
@@ -79,7 +80,7 @@ typedef struct scene_kernels {
                                           stores the next loads at once only in the same pieces */
     scene_band_kernel *bands[3][2];    /* the forces of bands; by axes - 1, damping */
     scene_force_kernel *edges[3][2];   /* adds those of the edge list */
-    scene_force_kernel *records[3][2]; /* the same, for many edges without order; not on one axis */
+    scene_force_kernel *records[2];    /* the same, for many edges without order; not on one axis */
     scene_force_kernel *quads[2];      /* the forces of the edge list, where the axes of a particle lie side by side */
     scene_motion_kernel *kick_drift[2][2];  /* v = v0 + kick a(v0);       x = x0 + drift v; by: solved_kick before it,
                                               and after it predicted = v + kick a(predicted) */
@@ -127,9 +128,19 @@ BAND_KERNELS(3)
 FORCE_KERNELS(edges, 1)
 FORCE_KERNELS(edges, 2)
 FORCE_KERNELS(edges, 3)
-FORCE_KERNELS(records, 2)
-FORCE_KERNELS(records, 3)
-FORCE_KERNELS(quads, 3)
+
+#define QUAD_KERNELS(kernel)                                                            \
+    static void kernel##_plain(const scene_links *s, const scalar *x, const scalar *v)  \
+    {                                                                                   \
+        kernel(s, x, v, false);                                                         \
+    }                                                                                   \
+    static void kernel##_damped(const scene_links *s, const scalar *x, const scalar *v) \
+    {                                                                                   \
+        kernel(s, x, v, true);                                                          \
+    }
+
+QUAD_KERNELS(records)
+QUAD_KERNELS(quads)
 
 /* clang-format off */
 #define FORCE_TABLE(kernel, axes) {kernel##_##axes, kernel##_##axes##_damped}
@@ -139,8 +150,8 @@ FORCE_KERNELS(quads, 3)
                                            : &spring_scene_v128, \
     .bands = {FORCE_TABLE(bands, 1), FORCE_TABLE(bands, 2), FORCE_TABLE(bands, 3)}, \
     .edges = {FORCE_TABLE(edges, 1), FORCE_TABLE(edges, 2), FORCE_TABLE(edges, 3)}, \
-    .records = {{0}, FORCE_TABLE(records, 2), FORCE_TABLE(records, 3)}, \
-    .quads = FORCE_TABLE(quads, 3), \
+    .records = {records_plain, records_damped}, \
+    .quads = {quads_plain, quads_damped}, \
     .kick_drift = {{kick_drift, kick_drift_predict}, {kick_kick_drift, kick_kick_drift_predict}}, \
     .solved_kick = solved_kick, \
     .solved_kick_drift = solved_kick_drift, \

@@ -119,6 +119,7 @@ static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
     const bool damped = s->damped_links > 0;
     f->links = (scene_links){
         .particles = p->particles,
+        .axes = p->axes,
         .stride = p->stride,
         .bands = p->bands,
         .band = f->band,
@@ -187,7 +188,7 @@ static inline void scene_find_forces(const scene_kernels *kernels, const spring_
     else if (p->bands > 0 || p->records == 0)
         kernels->bands[p->axes - 1][damped](&f->links, x, v, 0, p->particles);
     if (!p->small && p->edges > 0)
-        (p->records != 0 ? kernels->records : kernels->edges)[p->axes - 1][damped](&f->links, x, v);
+        (p->records != 0 ? kernels->records : kernels->edges[p->axes - 1])[damped](&f->links, x, v);
     if (s->force != NULL)
         scene_call_back(s, x, v, t, force);
 }
