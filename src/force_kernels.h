@@ -20,17 +20,24 @@
 
 /* ---------------------------------------------------------------------------------------------------------- bands */
 
-/* Vectors of links that are computed at once: while some wait for a root, others are computed. */
-enum { together = SPRING_VECTOR == 64 ? 4 : 2 };
+/* Vectors of links that are computed at once: while some wait for a root, others are computed. On one axis there is none
+   to wait for, and a loop of few operations is worth more of them. */
+enum { most_together = 4 };
+
+SPRING_INLINE size_t links_together(uint32_t axes)
+{
+    return axes == 1 && SPRING_VECTOR == 64 ? 4 : 2;
+}
 
 /* Turns deltas from the lower ends of links to the upper into forces on the lower. Where there is no link that is 0,
    selected and not multiplied: particles that are not joined may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
                              const real *rest, const real *c, bool damped)
 {
-    real scale[together], rate[together];
+    const size_t together = links_together(axes);
+    real scale[most_together], rate[most_together];
     SPRING_UNROLL
-    for (int m = 0; m < together; m++) {
+    for (size_t m = 0; m < together; m++) {
         real square = delta[m][0] * delta[m][0];
         rate[m] = damped ? delta[m][0] * relative[m][0] : splat(0);
         SPRING_UNROLL
@@ -41,16 +48,16 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
         }
         scale[m] = square;
     }
-    vec_inverse_sqrt(scale, joined, together);
+    vec_inverse_sqrt(scale, joined, (int)together);
     SPRING_UNROLL
-    for (int m = 0; m < together; m++) {
+    for (size_t m = 0; m < together; m++) {
         const real inverse = scale[m];
         scale[m] = k[m] * (1 - rest[m] * inverse);
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
     }
     SPRING_UNROLL
-    for (int m = 0; m < together; m++) {
+    for (size_t m = 0; m < together; m++) {
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++)
             delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
@@ -62,7 +69,7 @@ SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const
                                     const real *rest, const real *c, bool damped)
 {
     SPRING_UNROLL
-    for (int m = 0; m < together; m++) {
+    for (size_t m = 0; m < links_together(1); m++) {
         const real pull = k[m] * (delta[m][0] - rest[m]);
         delta[m][0] = select_real(joined[m], damped ? pull + c[m] * relative[m][0] : pull, splat(0));
     }
@@ -87,11 +94,13 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
                         *const damping = damped ? band->damping + slot * step : NULL;
     SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
     size_t j = 0;
     for (; j < count; j += together * lanes) {
         SPRING_HOT_LOOP("link", together * lanes);
-        real delta[together][3], relative[together][3], k[together], rest[together], c[together];
-        mask joined[together];
+        real delta[most_together][3], relative[most_together][3];
+        real k[most_together], rest[most_together], c[most_together];
+        mask joined[most_together];
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
