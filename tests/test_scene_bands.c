@@ -271,8 +271,10 @@ static const struct {
 static void one_pass(void)
 {
     for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++)
-        for (int particular = 0; particular < 2; particular++) {
-            large l = large_of(&sweeps[i].grid, sweeps[i].longest, particular != 0);
+        for (int features = 0; features < 4; features++) {
+            large l = large_of(&sweeps[i].grid, sweeps[i].longest, (features & 1) != 0);
+            for (size_t j = 0; (features & 2) != 0 && j < l.def.links; j++)
+                l.link[j].damping = random_uniform(0.1, 0.4);
             for (int k = 0; k < kernel_count; k++) {
                 if (kernels_of(k) == NULL)
                     continue;
