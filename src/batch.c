@@ -176,7 +176,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
         propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
         block.propagator = &propagator;
     }
-    batch_kernel *kernel = kernels->method[m]->kernel[damped][loaded];
+    batch_kernel *kernel = kernels->method[m];
     return run(kernel, kernels->group, b, block) ? SPRING_OK : reason(b);
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The kernels of a batch: of each method one for every set of features, in the vectors that real.h is set to.
+ * The kernels of a batch: one of each method, in the vectors that real.h is set to.
  *
- * Method    A group of a few vectors is loaded, with its coefficients, into registers, takes all its steps there, and
- *           is stored: several independent chains of operations keep the processor busy, and memory is read once
- *           however many steps there are. Since nothing is stored before the end, rolling a spring back costs nothing.
+ * Method    A group of a few vectors is loaded into registers, takes all its steps there, and is stored: several
+ *           independent chains of operations keep the processor busy, and memory is read once however many steps there
+ *           are. Since nothing is stored before the end, rolling a spring back costs nothing.
  *           batch.c includes this for the declarations, kernels.h for each vector length and precision.
  */
 #ifndef SPRINGSTEP_BATCH_KERNELS_H
@@ -34,13 +34,9 @@ typedef struct batch_block {
 
 typedef bool batch_kernel(const batch_block *b); /* false: at least one spring has kept its state */
 
-typedef struct batch_method {
-    batch_kernel *kernel[2][2]; /* by damped, loaded */
-} batch_method;
-
 typedef struct batch_kernels {
     size_t group; /* springs that are advanced together */
-    const batch_method *method[SPRING_METHOD_COUNT];
+    batch_kernel *method[SPRING_METHOD_COUNT];
 } batch_kernels;
 
 extern const batch_kernels spring_batch_v128, spring_batch_v256, spring_batch_v512; /* by bits of a vector */

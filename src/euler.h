@@ -15,23 +15,26 @@
 #include "method.h"
 
 typedef struct euler_coefficients {
-    real h, hw, hg, ha;
+    real hw, hg, ha;
 } euler_coefficients;
 
-SPRING_INLINE euler_coefficients euler_prepare(spring_rates r, real h, bool damped)
+SPRING_INLINE void euler_prepare(euler_coefficients *c, spring_rates r, real h, bool damped, bool loaded)
 {
-    (void)damped; /* no coefficient would be simpler without */
-    return (euler_coefficients){.h = h, .hw = h * r.w, .hg = h * r.g + 0, .ha = h * r.a + 0};
+    c->hw = h * r.w;
+    if (damped)
+        c->hg = h * r.g + 0;
+    if (loaded)
+        c->ha = h * r.a + 0;
 }
 
-SPRING_INLINE void euler_step(real *x, real *v, const euler_coefficients *c, bool damped, bool loaded)
+SPRING_INLINE void euler_step(real *x, real *v, real h, const euler_coefficients *c, bool damped, bool loaded)
 {
     real pull = c->hw * *x;
     if (loaded)
         pull -= c->ha;
     if (damped)
         pull += c->hg * *v;
-    *x += c->h * *v;
+    *x += h * *v;
     *v -= pull;
 }
 

@@ -67,18 +67,11 @@ SPRING_INLINE bool exact_springs(const batch_block *b, bool loaded)
     return all;
 }
 
-static bool exact_plain(const batch_block *b)
-{
-    return exact_springs(b, false);
-}
-
-static bool exact_loaded(const batch_block *b)
-{
-    return exact_springs(b, true);
-}
-
 /* For springs of equal stiffness and damping: others take an evaluation each. */
-static const batch_method exact_batch = {.kernel = {{exact_plain, exact_loaded}, {exact_plain, exact_loaded}}};
+static bool exact_batch(const batch_block *b)
+{
+    return b->a.first != NULL ? exact_springs(b, true) : exact_springs(b, false);
+}
 
 #elif defined(SPRING_SHAPE_SCENE)
 static const scene_method exact_scene = {0};

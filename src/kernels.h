@@ -25,7 +25,7 @@ SPRING_TARGET_BEGIN
 #include "methods.h"
 #include "scene_kernels.h"
 
-#define BATCH_ROW(value, method) [value] = &method##_batch,
+#define BATCH_ROW(value, method) [value] = method##_batch,
 const batch_kernels SPRING_BATCH_TABLE = {.group = group, .method = {SPRING_METHODS(BATCH_ROW)}};
 
 const scene_kernels SPRING_SCENE_TABLE = SCENE_KERNELS;

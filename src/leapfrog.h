@@ -20,23 +20,22 @@
 #include "solved_kick.h"
 
 typedef struct leapfrog_coefficients {
-    real h, K, A, q;
+    real K, A, q;
     real keep, lose; /* 1/(1 + q) = keep + lose, see solved_kick.h */
 } leapfrog_coefficients;
 
-SPRING_INLINE leapfrog_coefficients leapfrog_prepare(spring_rates r, real h, bool damped)
+SPRING_INLINE void leapfrog_prepare(leapfrog_coefficients *c, spring_rates r, real h, bool damped, bool loaded)
 {
-    (void)damped; /* no coefficient would be simpler without */
-    const real half = h / 2, q = half * r.g;
-    const solved_share share = solved_share_of(q);
-    return (leapfrog_coefficients){
-        .h = h,
-        .K = half * r.w,
-        .A = half * r.a + 0,
-        .q = q,
-        .keep = share.keep,
-        .lose = share.lose,
-    };
+    const real half = h / 2;
+    c->K = half * r.w;
+    if (loaded)
+        c->A = half * r.a + 0;
+    if (damped) {
+        c->q = half * r.g;
+        const solved_share share = solved_share_of(c->q);
+        c->keep = share.keep;
+        c->lose = share.lose;
+    }
 }
 
 SPRING_INLINE real leapfrog_force(real x, const leapfrog_coefficients *c, bool loaded) /* times -h/2m */
@@ -44,27 +43,36 @@ SPRING_INLINE real leapfrog_force(real x, const leapfrog_coefficients *c, bool l
     return loaded ? c->K * x - c->A : c->K * x;
 }
 
-SPRING_INLINE real leapfrog_kick(real x, real v, const leapfrog_coefficients *c, bool damped, bool loaded)
+SPRING_INLINE real leapfrog_kick(real v, real force, const leapfrog_coefficients *c, bool damped)
 {
-    return v - (damped ? leapfrog_force(x, c, loaded) + c->q * v : leapfrog_force(x, c, loaded));
+    return v - (damped ? force + c->q * v : force);
 }
 
-SPRING_INLINE real leapfrog_drift(real x, real v, const leapfrog_coefficients *c)
+SPRING_INLINE real leapfrog_drift(real x, real v, real h)
 {
-    return x + c->h * v;
+    return x + h * v;
 }
 
-SPRING_INLINE real leapfrog_solve(real x, real v, const leapfrog_coefficients *c, bool damped, bool loaded)
+SPRING_INLINE real leapfrog_solve(real v, real force, const leapfrog_coefficients *c, bool damped)
 {
-    const real u = v - leapfrog_force(x, c, loaded);
+    const real u = v - force;
     return damped ? c->keep * u + c->lose * u : u;
 }
 
-SPRING_INLINE void leapfrog_step(real *x, real *v, const leapfrog_coefficients *c, bool damped, bool loaded)
+/* force: that at x, which the last kick of a step leaves to the first of the next. */
+SPRING_INLINE void leapfrog_step_from(real *x, real *v, real *force, real h, const leapfrog_coefficients *c,
+                                      bool damped, bool loaded)
 {
-    *v = leapfrog_kick(*x, *v, c, damped, loaded);
-    *x = leapfrog_drift(*x, *v, c);
-    *v = leapfrog_solve(*x, *v, c, damped, loaded);
+    *v = leapfrog_kick(*v, *force, c, damped);
+    *x = leapfrog_drift(*x, *v, h);
+    *force = leapfrog_force(*x, c, loaded);
+    *v = leapfrog_solve(*v, *force, c, damped);
+}
+
+SPRING_INLINE void leapfrog_step(real *x, real *v, real h, const leapfrog_coefficients *c, bool damped, bool loaded)
+{
+    real force = leapfrog_force(*x, c, loaded);
+    leapfrog_step_from(x, v, &force, h, c, damped, loaded);
 }
 
 #if defined(SPRING_SHAPE_ONE)
@@ -96,6 +104,22 @@ static const one_method leapfrog_one = {
 
 #elif defined(SPRING_SHAPE_BATCH)
 #define SPRING_METHOD leapfrog
+#define SPRING_OWN_STEPS
+SPRING_INLINE void leapfrog_steps(real *x, real *v, real h, const leapfrog_coefficients c[vectors], uint64_t n,
+                                  bool damped, bool loaded)
+{
+    real force[vectors];
+    SPRING_UNROLL
+    for (size_t k = 0; k < vectors; k++)
+        force[k] = leapfrog_force(x[k], &c[k], loaded);
+    for (; n > 0; n--) {
+        SPRING_HOT_LOOP("spring", group);
+        vec_read_again(c);
+        SPRING_UNROLL
+        for (size_t k = 0; k < vectors; k++)
+            leapfrog_step_from(&x[k], &v[k], &force[k], h, &c[k], damped, loaded);
+    }
+}
 #include "batch_loop.h"
 
 #elif defined(SPRING_SHAPE_SCENE)

@@ -5,11 +5,11 @@
  * The header, NAME.h, is read once for each shape of data, which the including file chooses by a definition:
  *
  *     SPRING_SHAPE_ONE    in spring.c      NAME_one    what it is called, its kernel, loops, stable step
- *     SPRING_SHAPE_BATCH  in kernels.h     NAME_batch  a loop over vectors of springs for each set of features
+ *     SPRING_SHAPE_BATCH  in kernels.h     NAME_batch  its kernel for vectors of springs, a function
  *     SPRING_SHAPE_SCENE  in scene_step.c  NAME_scene  its step and stable step in a scene, what a scene stores for it
  *
- * Each of these is a constant object, of types that one_method, batch_method and scene_method name; what a method does
- * not offer is 0 in it. Only the exact solution has no loops, and batch kernels for springs of equal rates alone.
+ * The others are constant objects, of types that one_method and scene_method name; what a method does not offer is 0 in
+ * them. Only the exact solution has no loops, and a batch kernel for springs of equal rates alone.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H
@@ -38,5 +38,12 @@ typedef struct one_method {
 #define SPRING_PASTE(method, name)  method##_##name
 #define SPRING_PASTED(method, name) SPRING_PASTE(method, name)
 #define METHOD(name)                SPRING_PASTED(SPRING_METHOD, name)
+
+/* function(..., damped, loaded) with flags that are constants there: one choice here, none in its loops. */
+#define SPRING_BY_FEATURES(damped, loaded, function, ...)         \
+    (!(damped) && !(loaded) ? function(__VA_ARGS__, false, false) \
+     : !(damped)            ? function(__VA_ARGS__, false, true)  \
+     : !(loaded)            ? function(__VA_ARGS__, true, false)  \
+                            : function(__VA_ARGS__, true, true))
 
 #endif

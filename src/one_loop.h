@@ -8,9 +8,10 @@
 SPRING_INLINE spring_state METHOD(loop)(spring_state s, const spring_rates *r, double dt, uint64_t n, bool damped,
                                         bool loaded)
 {
-    const METHOD(coefficients) c = METHOD(prepare)(*r, dt, damped);
+    METHOD(coefficients) c;
+    METHOD(prepare)(&c, *r, dt, damped, loaded);
     for (; n > 0; n--)
-        METHOD(step)(&s.x, &s.v, &c, damped, loaded);
+        METHOD(step)(&s.x, &s.v, dt, &c, damped, loaded);
     return s;
 }
 
@@ -27,14 +28,7 @@ ONE_LOOP(damped_loaded, true, true)
 
 SPRING_INLINE spring_state METHOD(shortest_loop)(spring_state s, const spring_rates *r, double dt, uint64_t n)
 {
-    const bool damped = r->g != 0, loaded = r->a != 0;
-    if (!damped && !loaded)
-        return METHOD(loop)(s, r, dt, n, false, false);
-    if (!loaded)
-        return METHOD(loop)(s, r, dt, n, true, false);
-    if (!damped)
-        return METHOD(loop)(s, r, dt, n, false, true);
-    return METHOD(loop)(s, r, dt, n, true, true);
+    return SPRING_BY_FEATURES(r->g != 0, r->a != 0, METHOD(loop), s, r, dt, n);
 }
 
 SPRING_INLINE void METHOD(one_step)(spring_state *s, const spring_params *p, double dt)

@@ -27,32 +27,32 @@
 #include "method.h"
 
 typedef struct rk4_coefficients {
-    real h, hw, hg, ha;  /* Euler's part */
+    real hw, hg, ha;     /* Euler's part */
     real xx, xv, vx, vv; /* the correction to x and v, from x and v */
     real x_load, v_load; /* minus the correction from the load: subtracting a zero changes no bit */
 } rk4_coefficients;
 
-SPRING_INLINE rk4_coefficients rk4_prepare(spring_rates r, real h, bool damped)
+SPRING_INLINE void rk4_prepare(rk4_coefficients *c, spring_rates r, real h, bool damped, bool loaded)
 {
     const real hw = h * r.w, W = h * hw, G = h * r.g;
     /* Without damping G is 0, and the short forms have the bits of the long ones. */
     const real E = (damped ? 12 - 4 * G + (G * G - W) : 12 - W) * (scalar)(1.0 / 24);
     const real F = (damped ? 4 * (G * G - W) - 12 * G + G * (2 * W - G * G) : 0 - 4 * W) * (scalar)(1.0 / 24);
-    return (rk4_coefficients){
-        .h = h,
-        .hw = hw,
-        .hg = G + 0,
-        .ha = h * r.a + 0,
-        .xx = -W * E,
-        .xv = h * F,
-        .vx = -hw * F,
-        .vv = -W * E - G * F,
-        .x_load = 0 - h * E * (h * r.a),
-        .v_load = 0 - F * (h * r.a),
-    };
+    c->hw = hw;
+    c->xx = -W * E;
+    c->xv = h * F;
+    c->vx = -hw * F;
+    c->vv = c->xx - G * F;
+    if (damped)
+        c->hg = G + 0;
+    if (loaded) {
+        c->ha = h * r.a + 0;
+        c->x_load = 0 - h * E * (h * r.a);
+        c->v_load = 0 - F * (h * r.a);
+    }
 }
 
-SPRING_INLINE void rk4_step(real *x, real *v, const rk4_coefficients *c, bool damped, bool loaded)
+SPRING_INLINE void rk4_step(real *x, real *v, real h, const rk4_coefficients *c, bool damped, bool loaded)
 {
     real pull = c->hw * *x;
     real dx = c->xx * *x + c->xv * *v;
@@ -64,7 +64,7 @@ SPRING_INLINE void rk4_step(real *x, real *v, const rk4_coefficients *c, bool da
     }
     if (damped)
         pull += c->hg * *v;
-    *x += c->h * *v + dx;
+    *x += h * *v + dx;
     *v += dv - pull;
 }
 

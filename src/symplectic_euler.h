@@ -20,31 +20,31 @@
 #include "solved_kick.h"
 
 typedef struct symplectic_euler_coefficients {
-    real h, hw, ha;
+    real hw, ha;
     real keep, lose; /* 1/(1 + q) = keep + lose, see solved_kick.h */
 } symplectic_euler_coefficients;
 
-SPRING_INLINE symplectic_euler_coefficients symplectic_euler_prepare(spring_rates r, real h, bool damped)
+SPRING_INLINE void symplectic_euler_prepare(symplectic_euler_coefficients *c, spring_rates r, real h, bool damped,
+                                            bool loaded)
 {
-    (void)damped; /* no coefficient would be simpler without */
-    const real q = h * r.g;
-    const solved_share share = solved_share_of(q);
-    return (symplectic_euler_coefficients){
-        .h = h,
-        .hw = h * r.w,
-        .ha = h * r.a + 0,
-        .keep = share.keep + (q - q), /* NaN where q is infinite: 1/(1 + q) would hide it */
-        .lose = share.lose,
-    };
+    c->hw = h * r.w;
+    if (loaded)
+        c->ha = h * r.a + 0;
+    if (damped) {
+        const real q = h * r.g;
+        const solved_share share = solved_share_of(q);
+        c->keep = share.keep + (q - q); /* NaN where q is infinite: 1/(1 + q) would hide it */
+        c->lose = share.lose;
+    }
 }
 
-SPRING_INLINE void symplectic_euler_step(real *x, real *v, const symplectic_euler_coefficients *c, bool damped,
+SPRING_INLINE void symplectic_euler_step(real *x, real *v, real h, const symplectic_euler_coefficients *c, bool damped,
                                          bool loaded)
 {
     const real pull = c->hw * *x;
     const real u = *v - (loaded ? pull - c->ha : pull);
     *v = damped ? c->keep * u + c->lose * u : u;
-    *x += c->h * *v;
+    *x += h * *v;
 }
 
 #if defined(SPRING_SHAPE_ONE)

@@ -39,6 +39,15 @@
 #define SPRING_UNROLL
 #endif
 
+/* Before a loop with a long body, which is to be there once. */
+#if defined(__clang__)
+#define SPRING_ROLLED _Pragma("clang loop unroll(disable)")
+#elif defined(__GNUC__)
+#define SPRING_ROLLED _Pragma("GCC unroll 1")
+#else
+#define SPRING_ROLLED
+#endif
+
 /* For tools/bench/instructions, which looks for it in the assembly: the innermost loop around this is a hot one, and a
    pass through it does so many ("link", 8) of a thing. It stands behind what ends a pass early. */
 #ifdef SPRING_MCA
@@ -76,6 +85,17 @@ SPRING_INLINE real vec_load(const scalar *p) /* of any alignment */
 SPRING_INLINE void vec_store(scalar *p, real r)
 {
     memcpy(p, &r, sizeof r);
+}
+
+/* In a loop that reads an array of which registers hold a part at best. Instructions of x86 read operands from memory at
+   no cost; compilers would copy the array to another part of the stack before the loop. */
+SPRING_INLINE void vec_read_again(const void *array)
+{
+#if SPRING_X86_64
+    __asm__ volatile("" : : "r"(array) : "memory");
+#else
+    (void)array;
+#endif
 }
 
 enum { lanes = sizeof(real) / sizeof(scalar) };
