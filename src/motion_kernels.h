@@ -63,7 +63,7 @@ SPRING_INLINE bool all_coordinates(const scene_particles *particles, const scene
             coordinates c = {
                 .at = a * p.stride + i,
                 .inverse_mass = inverse_mass,
-                .gravity = lanes < quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
+                .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
             };
