@@ -10,8 +10,8 @@
  *           depend on the length of vectors. A tile reads no position and no velocity of the tiles before it.
  * Edges     All other links, the edge list, one by one in their order; a particle's axes lie side by side, in a quad.
  * Law       k (1 - rest/length) delta, and with damping c (relative velocity . delta)/length^2 delta; nothing where
- *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 1 ulp; of an edge the square root
- *           is rounded, and the quotient rest/length.
+ *           both ends are at one point. Of a band 1/length is vec_inverse_sqrt(), to 1 ulp, in float 1.5; of an edge
+ *           the square root is rounded, and the quotient rest/length.
  */
 #ifndef SPRINGSTEP_FORCE_KERNELS_H
 #define SPRINGSTEP_FORCE_KERNELS_H
@@ -82,14 +82,14 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* The forces of a band in `slots` slots from t, of axis a at force + a * axis; equal: all slots
-   have the same coefficients. */
+/* The forces of a band in `slots` slots from t, of axis a at force + a * axis; shared: they all
+   have the same coefficients, and the compiler is to know it. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool equal)
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared)
 {
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
-    const ptrdiff_t step = equal ? 0 : band->coefficient_step;
+    const ptrdiff_t step = shared ? 0 : band->coefficient_step;
     const scalar *const stiffness = band->stiffness + slot * step, *const length = band->rest + slot * step,
                         *const damping = damped ? band->damping + slot * step : NULL;
     SPRING_PREFETCH(occupied + tile); /* a line in a megabyte: too few for the processor to notice a stream */
@@ -216,13 +216,13 @@ SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v,
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const ptrdiff_t ring = band->ring, other = slot[r] - band->offset;
+            const ptrdiff_t ring = band->ring, other = slot[r] - band->back;
             const size_t axis = (size_t)(ring + tile);
             scalar *const force = band->force + slot[r];
             if (t >= band->start && t < band->end) {
                 band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
                 plus[pluses++] = (kept_forces){force, axis};
-            } else {
+            } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends may reach so far */
                 clear_slots(force, axis, count, axes);
             }
             if (slot[r] == 0)

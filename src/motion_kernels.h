@@ -16,7 +16,7 @@ typedef struct coordinates {
     real gravity;
     real drag;          /* [1/s] */
     bool dragged;       /* is there any? */
-    solved_share share; /* of a solved kick with drag; else unset */
+    solved_share share; /* of a solved kick; without drag unset */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -46,7 +46,7 @@ typedef mask motion_part(const scene_motion *s, const coordinates *c);
 
 /* The one loop of all kernels. */
 SPRING_INLINE bool all_coordinates(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
-                                   motion_part *part, bool solved)
+                                   motion_part *part)
 {
     const scene_particles p = *particles; /* no store changes these, for all a compiler knows */
     const scene_motion m = *motion;
@@ -67,7 +67,7 @@ SPRING_INLINE bool all_coordinates(const scene_particles *particles, const scene
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
             };
-            if (solved && c.dragged)
+            if (c.dragged)
                 c.share = solved_share_of(m.kick * c.drag);
             wrong |= part(&m, &c);
         }
@@ -162,54 +162,21 @@ SPRING_INLINE mask last_stage_part(const scene_motion *s, const coordinates *c)
     return move_along(s, c, vec_load(s->sum_x + c->at) + dx, vec_load(s->sum_v + c->at) + dv);
 }
 
-static bool kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, kick_drift_part, false);
-}
+#define MOTION_KERNEL(name)                                                                   \
+    static bool name(const scene_particles *p, const scene_motion *s, size_t from, size_t to) \
+    {                                                                                         \
+        return all_coordinates(p, s, from, to, name##_part);                                  \
+    }
 
-static bool kick_drift_predict(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, kick_drift_predict_part, true);
-}
-
-static bool kick_kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, kick_kick_drift_part, true);
-}
-
-static bool kick_kick_drift_predict(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, kick_kick_drift_predict_part, true);
-}
-
-static bool solved_kick(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, solved_kick_part, true);
-}
-
-static bool solved_kick_drift(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, solved_kick_drift_part, true);
-}
-
-static bool stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, stage_part, false);
-}
-
-static bool first_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, first_stage_part, false);
-}
-
-static bool next_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, next_stage_part, false);
-}
-
-static bool last_stage(const scene_particles *p, const scene_motion *s, size_t from, size_t to)
-{
-    return all_coordinates(p, s, from, to, last_stage_part, false);
-}
+MOTION_KERNEL(kick_drift)
+MOTION_KERNEL(kick_drift_predict)
+MOTION_KERNEL(kick_kick_drift)
+MOTION_KERNEL(kick_kick_drift_predict)
+MOTION_KERNEL(solved_kick)
+MOTION_KERNEL(solved_kick_drift)
+MOTION_KERNEL(stage)
+MOTION_KERNEL(first_stage)
+MOTION_KERNEL(next_stage)
+MOTION_KERNEL(last_stage)
 
 #endif

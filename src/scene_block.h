@@ -20,9 +20,9 @@ typedef struct band_plan {
     uint32_t offset;     /* from the lower end of a link to its upper end */
     uint32_t first, end; /* of the lower ends */
     bool equal;
-    size_t slots;        /* where its slots begin among those of all bands */
-    size_t coefficients; /* of its coefficients among those of all bands */
-    size_t ring, force;  /* its slots in the ring of forces, see scene_band, and where it is among all rings */
+    size_t slots;             /* where its slots begin among those of all bands */
+    size_t coefficients;      /* of its coefficients among those of all bands */
+    size_t ring, back, force; /* of its ring of forces, see scene_band; and where it is among all rings */
 } band_plan;
 
 /* What a scene consists of, and where: offsets in bytes from its start, 0 for what it does not have. */
@@ -46,7 +46,7 @@ typedef struct scene_plan {
     size_t records;  /* see records() */
     size_t callback; /* of a small scene: what a callback is shown, arrays of each axis of position, velocity, force */
     size_t slot;     /* of each link: in the bands, or band_slots and its place in the edge list; without bands none */
-    size_t bytes;
+    uint64_t bytes;  /* may be more than there are addresses for */
 } scene_plan;
 
 /* What bounds the stable step. */

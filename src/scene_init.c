@@ -256,7 +256,10 @@ static void plan_bands(const spring_scene_def *def, scene_plan *plan)
         band->slots = plan->band_slots;
         band->coefficients = plan->band_coefficients;
         band->force = plan->band_force;
-        band->ring = ((size_t)band->offset + 2 * tile - 1) / tile * tile;
+        /* the empty tiles before the slots and behind them share a place */
+        const size_t until_read = ((size_t)band->offset + 2 * tile - 1) / tile * tile, all = slots + tile;
+        band->ring = until_read < all ? until_read : all;
+        band->back = band->offset % band->ring;
         plan->band_slots += slots;
         plan->band_coefficients += band->equal ? padding : slots;
         plan->band_force += plan->axes * (band->ring + tile);
@@ -266,9 +269,9 @@ static void plan_bands(const spring_scene_def *def, scene_plan *plan)
 /* Reserve memory behind the scene: its offset. */
 static size_t reserve(scene_plan *plan, size_t elements, size_t size)
 {
-    const size_t offset = plan->bytes;
-    plan->bytes += (elements * size + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
-    return offset;
+    const uint64_t offset = plan->bytes, align = SPRING_SCENE_ALIGN;
+    plan->bytes += ((uint64_t)elements * size + align - 1) / align * align;
+    return (size_t)offset;
 }
 
 static bool any_damping(const spring_scene_def *def)
@@ -346,7 +349,7 @@ static spring_status make_plan(const spring_scene_def *def, scene_plan *plan)
     if (!plan->small)
         plan_bands(def, plan);
     plan_memory(def, plan);
-    return SPRING_OK;
+    return plan->bytes <= SIZE_MAX ? SPRING_OK : SPRING_ERANGE;
 }
 
 spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
@@ -356,7 +359,7 @@ spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
     scene_plan plan;
     const spring_status status = make_plan(def, &plan);
     if (status == SPRING_OK)
-        *bytes = plan.bytes;
+        *bytes = (size_t)plan.bytes;
     return status;
 }
 
@@ -443,7 +446,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         return SPRING_EALIGN;
     if (bytes < plan.bytes)
         return SPRING_ENOMEM;
-    memset(memory, 0, plan.bytes);
+    memset(memory, 0, (size_t)plan.bytes);
     spring_scene *s = memory;
     *s = (spring_scene){
         .plan = plan,

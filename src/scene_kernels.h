@@ -10,7 +10,7 @@
 #include "twins.h"
 
 enum {
-    padding = 16,    /* elements before and after what vectors read: as many as the longest vector has lanes */
+    padding = 16,    /* elements of the longest vector; so many stand before and behind a quantity */
     most_bands = 32, /* a block with diagonals and bending links has 16 */
     tile = 64        /* slots of a band whose forces are computed at once, in the first cache: a multiple of padding */
 };
@@ -25,7 +25,8 @@ typedef struct scene_band {
     const scalar *rest;         /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;      /* [N s/m]; NULL: none in the scene */
     scalar *force;  /* [N] on the lower ends of the last slots, of each axis: a ring, and its first tile again */
-    ptrdiff_t ring; /* slots: a multiple of tile, at least offset + tile */
+    ptrdiff_t ring; /* slots: a multiple of tile, at least offset + tile, or all that are read and written */
+    ptrdiff_t back; /* offset, less whole rings */
 } scene_band;
 
 typedef struct scene_edges {

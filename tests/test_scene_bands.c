@@ -191,6 +191,48 @@ static void odd_links(void)
                 }
 }
 
+/* A few links far from where the scene begins, between ends far apart, keep few forces; with links that do nothing from
+   end to end of the scene, their band keeps as many as any. The forces are the same. */
+static void short_bands(void)
+{
+    enum { room = 3100, few_links = 11 };
+    static double position[3 * room];
+    static spring_link link[few_links + 2 * room];
+    for (size_t i = 0; i < 3 * room; i++)
+        position[i] = random_uniform(-9, 9);
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (uint32_t offset = 190; offset < 2500; offset += 127) {
+            const uint32_t particles = room - (uint32_t)(random_bits() % 130);
+            const uint32_t first = (uint32_t)(random_bits() % (particles - offset - few_links));
+            spring_scene_def def = {.axes = axes,
+                                    .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                                    .particles = particles,
+                                    .position = position,
+                                    .link = link};
+            for (uint32_t i = first; i < first + few_links; i++)
+                link[def.links++] = (spring_link){i, i + offset, 0.7, 3, 0};
+            spring_scene *few = scene_of(&def);
+            def.links = 0;
+            for (uint32_t i = 0; i + offset < particles; i++) {
+                const bool pulls = i >= first && i < first + few_links;
+                link[def.links++] = (spring_link){i, i + offset, 0.7, pulls ? 3 : 0, 0};
+            }
+            spring_scene *many = scene_of(&def);
+            CHECK(few->plan.bands == 1 && many->plan.bands == 1 && few->plan.edges == 0, "a band");
+            CHECK(few->plan.bytes < many->plan.bytes, "few links, little memory");
+            for (int k = 0; k < kernel_count; k++) {
+                if (kernels_of(k) == NULL)
+                    continue;
+                CHECK(spring_scene_advance_with(kernels_of(k), few, SPRING_LEAPFROG, 0.01, 3) == SPRING_OK &&
+                          spring_scene_advance_with(kernels_of(k), many, SPRING_LEAPFROG, 0.01, 3) == SPRING_OK,
+                      "stable");
+                CHECK(same_first(few, many, particles, axes), "the same forces");
+            }
+            free(few);
+            free(many);
+        }
+}
+
 /* -------------------------------------------------------------------------------------------- one pass over memory */
 
 static void add_nothing(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
@@ -364,6 +406,7 @@ int main(void)
         {"many bands", many_bands},
         {"one band too many", one_band_too_many},
         {"a link among others", odd_links},
+        {"a few links far apart", short_bands},
         {"one pass over memory", one_pass},
         {"one pass that fails", one_pass_fails},
         {"records of edges", records_of_edges},

@@ -69,14 +69,13 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /* spring_scene_set_link() is allowed. Each link has numbers of its own, equal to others or not. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/* No second copy of the state. An advance that fails loses it: positions and velocities are NaN then, and no step
+/* No second copy of the state. An advance that fails in a step loses it: positions and velocities are NaN then, and no step
    succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
 /* No callback uses velocities, or there is none and none is going to be set. (What it is shown as velocities may be
-   other numbers then.) Leapfrog keeps the force at the end of a
-   step for the next then, which halves its work; and it needs no memory for a prediction where no link is damped or can
-   be changed. */
+   other numbers then.) Leapfrog keeps the force at the end of a step for the next then, which halves its work; and it
+   needs no memory for a prediction where no link is damped or can be changed. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /* Zero-initialise what is not modelled. Every array is copied. */
@@ -138,14 +137,14 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *     RK4               the four stages
  *
  * Drag is solved for in the kick of symplectic Euler and in the last half kick of leapfrog. Velocities that enter link
- * damping and callbacks in that half kick are predicted, v* = v' + dt/2 a0, v1 = v' + dt/2 a(x1, v*), with a0 the
- * acceleration of the first half kick: still of second order.
+ * damping and callbacks in that half kick are predicted, v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), with a* the
+ * acceleration by the forces of the first half kick and the drag at v*, solved for: still of second order.
  *
  * Force evaluations a step: both Eulers one, RK4 four, leapfrog one: its force at the end of a step is that at the
  * start of the next, and is kept. With damped links it is the one at v*: it is part of the state then, is copied with a
  * snapshot, and is found afresh, at v, after spring_scene_set(), a change of a link or of the callback, or steps of
- * another method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps nothing
- * and evaluates twice, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
+ * another method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps
+ * nothing and evaluates twice, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
  * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
  *
