@@ -139,25 +139,6 @@ static bool run(batch_kernel *kernel, size_t size, const spring_batch *b, batch_
     return done;
 }
 
-/* Each spring by itself, exactly, in double. */
-static bool advance_each(const spring_batch *b, scalar dt, uint64_t n)
-{
-    bool done = true;
-    for (size_t i = 0; i < b->count; i++) {
-        const spring_params p = spring_at(b, i);
-        spring_state s = {(double)b->x[i], (double)b->v[i]};
-        const bool advanced = spring_advance(&s, &p, SPRING_EXACT, (double)dt, n) == SPRING_OK;
-        const scalar x = (scalar)s.x, v = (scalar)s.v;
-        if (advanced && isfinite(x) && isfinite(v)) {
-            b->x[i] = x;
-            b->v[i] = v;
-        } else {
-            done = false;
-        }
-    }
-    return done;
-}
-
 spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
                                         uint64_t n)
 {
@@ -169,9 +150,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
     batch_block block = {.dt = dt, .n = n};
     spring_propagator propagator;
-    if (m == SPRING_EXACT) {
-        if (!shared(b, SPRING_SHARED_OMEGA2) || (damped && !shared(b, SPRING_SHARED_GAMMA)))
-            return advance_each(b, dt, n) ? SPRING_OK : reason(b);
+    if (m == SPRING_EXACT && shared(b, SPRING_SHARED_OMEGA2) && (!damped || shared(b, SPRING_SHARED_GAMMA))) {
         const spring_params p = spring_at(b, 0);
         propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
         block.propagator = &propagator;

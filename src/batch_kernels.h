@@ -29,7 +29,7 @@ typedef struct batch_block {
     batch_array w, g, a;
     scalar dt;
     uint64_t n;
-    const struct spring_propagator *propagator; /* of the exact solution, for w, g and n dt */
+    const struct spring_propagator *propagator; /* of the exact solution, of all springs; NULL: each its own */
 } batch_block;
 
 typedef bool batch_kernel(const batch_block *b); /* false: at least one spring has kept its state */

@@ -123,7 +123,7 @@ static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t i
 static spring_link make_link(const spring_grid *g, uint32_t a, uint32_t b, const direction *d)
 {
     const int *s = d->step;
-    const double length = g->height ? 0 : g->spacing * sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    const double length = g->height ? 0 : g->spacing * spring_sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
     return (spring_link){a, b, length / stretch_of(g), g->stiffness, g->damping};
 }
 

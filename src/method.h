@@ -9,7 +9,7 @@
  *     SPRING_SHAPE_SCENE  in scene_step.c  NAME_scene  its step and stable step in a scene, what a scene stores for it
  *
  * The others are constant objects, of types that one_method and scene_method name; what a method does not offer is 0 in
- * them. Only the exact solution has no loops, and a batch kernel for springs of equal rates alone.
+ * them. Only the exact solution has no loops.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H

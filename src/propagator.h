@@ -4,6 +4,7 @@
 #define SPRINGSTEP_PROPAGATOR_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include <springstep/spring.h>
 
@@ -16,5 +17,24 @@ spring_propagator spring_propagator_of(const spring_params *p, double t, bool lo
 
 /* spring_step_exact(), by value. */
 spring_state spring_exact(spring_state s, const spring_params *p, double t);
+
+/* Springs that the exact solution moves each by its own coefficients, in double, whatever they are stored in: bitwise
+   identical to spring_exact(). One that would not stay finite, or has a negative rate, keeps its state. */
+typedef struct exact_array {
+    const void *first; /* NULL: all are 0 */
+    size_t step;       /* from spring to spring: 1, or 0 for a vector of equal elements */
+} exact_array;
+
+typedef struct exact_block {
+    size_t count; /* a multiple of any vector's */
+    bool single;  /* arrays of float, not double */
+    void *x, *v;
+    exact_array w, g, a;
+    double t; /* [s] */
+} exact_block;
+
+typedef bool exact_kernel(const exact_block *b); /* false: at least one spring has kept its state */
+
+extern exact_kernel spring_exact_v128, spring_exact_v256, spring_exact_v512; /* by bits of a vector */
 
 #endif

@@ -148,7 +148,7 @@ static scene_outcome rk4_scene_step(const scene_step *s)
 static double rk4_scene_stable_step(const scene_bounds *b)
 {
     const double limit = 2.61; /* |hz| below which RK4 is stable in every direction of the left half plane */
-    return limit / fmax(sqrt(b->stiffness), b->damping);
+    return limit / fmax(spring_sqrt(b->stiffness), b->damping);
 }
 
 static const scene_method rk4_scene = {

@@ -3,8 +3,7 @@
 #ifndef SPRINGSTEP_ROOTS_H
 #define SPRINGSTEP_ROOTS_H
 
-#include <math.h>
-#include <stdbool.h>
+#include "simd/real.h"
 
 #include <springstep/spring.h>
 
@@ -18,16 +17,43 @@ typedef struct spring_roots {
     bool overdamped; /*         omega < b */
 } spring_roots;
 
+/* omega^2 - b^2 = w - b^2 + rest */
+typedef struct spring_quotients {
+    double w, b, rest;
+} spring_quotients;
+
+/* k, c, m: stiffness, damping, mass. By value: clang 14 would read two at once, and wait for a caller's two stores. */
+spring_quotients spring_quotients_of(double k, double c, double m);
+
 spring_roots spring_roots_of(const spring_params *p);
+
+#ifndef SPRING_FLOAT
+#include "simd/elementary.h"
+
+/* split = sqrt |w - b^2|; overdamped: w < b^2 */
+typedef struct spring_split {
+    real split;
+    mask overdamped;
+} spring_split;
+
+/* rest: what rounding has taken from w - b^2 before. */
+SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
+{
+    real scale = splat(1), back = splat(1);
+    const mask large = (b > 0x1p400) | (w > 0x1p800), small = (b < 0x1p-400) & (w < 0x1p-800);
+    if (SPRING_UNLIKELY(any(large | small))) { /* squares, or their errors, might overflow or underflow */
+        scale = select_real(large, splat(0x1p-700), select_real(small, splat(0x1p600), scale));
+        back = select_real(large, splat(0x1p700), select_real(small, splat(0x1p-600), back));
+    }
+    const real c = b * scale, square = c * c;
+    const real D = (((w * scale) * scale - square) - square_error(c, square)) + (rest * scale) * scale;
+    return (spring_split){vec_sqrt(vec_abs(D)) * back, D < 0};
+}
+#endif
 
 static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an overdamped spring */
 {
     return r->b + r->split;
-}
-
-static inline double spring_slow_root(const spring_roots *r) /* [1/s]; b - split would cancel */
-{
-    return r->w / (r->b + r->split);
 }
 
 /* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow. (hypot() has other last bits in each C library.) */
@@ -35,7 +61,7 @@ static inline double spring_hypot(double a, double b)
 {
     const double large = fmax(a, b), small = fmin(a, b);
     const double ratio = large > 0 && large < INFINITY ? small / large : 0;
-    return large * sqrt(1 + ratio * ratio);
+    return large * spring_sqrt(1 + ratio * ratio);
 }
 
 #endif

@@ -18,7 +18,7 @@ static drawn draw(const spring_scene *s, const slotted_link *link)
     }
     if (p->axes == 1)
         return (drawn){delta[0], relative[0]};
-    const double length = sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
+    const double length = spring_sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
     const double rate = delta[0] * relative[0] + delta[1] * relative[1] + delta[2] * relative[2];
     return (drawn){length, length > 0 ? rate / length : 0};
 }

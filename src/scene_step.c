@@ -262,7 +262,7 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
             speed += v * v;
             acceleration += felt * felt;
         }
-        if (!(sqrt(speed) <= v_tol) || !(sqrt(acceleration) <= a_tol))
+        if (!(spring_sqrt(speed) <= v_tol) || !(spring_sqrt(acceleration) <= a_tol))
             return false;
     }
     return true;

@@ -2,113 +2,134 @@
 /*
  * The settling time: when a spring has come to rest.
  *
- * Method    Measured from the rest position, y(t) is monotone between the zeros of v, which are known: evenly spaced
- *           by pi/split for an oscillating spring, at most one for an overdamped one. The swings at these turning
- *           points shrink by a fixed factor, so the last swing beyond x_tol is found by a logarithm; after it y enters
- *           the band for good, at a crossing found by bisection on the exact solution.
+ * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
+ *           oscillating spring, at most one for an overdamped one. The swings at these turning points shrink by a fixed
+ *           factor; after the last one beyond x_tol y enters the band for good. The first turning point, the last swing
+ *           and the crossing are each found by bisection on the exact solution, of time or of the number of swings:
+ *           whoever walks through the same bits gets the same time.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
  * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance
  *           within its rounding error of the state gives a time that means nothing
  */
 #include <stddef.h>
 
+#include "exact_formula.h"
 #include "propagator.h"
-#include "roots.h"
-#include "simd/real.h"
 
 static const double pi = 3.141592653589793;
 
-static double swing(spring_state start, const spring_params *p, double t)
+typedef struct motion {
+    spring_state start; /* from the rest position */
+    spring_params params;
+    spring_roots roots;
+    double tol; /* [m] */
+} motion;
+
+/* Of the rest position, or without stiffness of where the particle will stop, v/g ahead. */
+static bool is_within(const motion *m, double t)
 {
-    return fabs(spring_exact(start, p, t).x);
+    const double g = 2 * m->roots.b;
+    if (m->roots.w > 0)
+        return !(fabs(spring_exact(m->start, &m->params, t).x) > m->tol);
+    const exact_halves E = exact_halves_of(-g * t);
+    return !(fabs(m->start.v * E.other * E.half / g) > m->tol);
 }
 
-/* The first time in (inside .. outside], |y(outside)| > tol >= |y(inside)|, from which on |y| <= tol. */
-static double bisect(spring_state start, const spring_params *p, double outside, double inside, double tol)
+static bool has_turned(const motion *m, double t)
+{
+    const double v = spring_exact(m->start, &m->params, t).v;
+    return !(m->start.v > 0 ? v > 0 : v < 0);
+}
+
+/* The first time in (before .. after] of which something is true, where it is false before. */
+static double first_time(const motion *m, bool is_true(const motion *, double), double before, double after)
 {
     for (;;) {
-        const double middle = outside + (inside - outside) / 2;
-        if (!(middle > outside && middle < inside))
-            return inside;
-        if (swing(start, p, middle) <= tol)
-            inside = middle;
+        const double middle = before + (after - before) / 2;
+        if (!(middle > before && middle < after))
+            return after;
+        if (is_true(m, middle))
+            after = middle;
         else
-            outside = middle;
+            before = middle;
     }
 }
 
-static double log_ratio(double large, double small) /* small may be 0, of either sign */
+/* A time from which something is true: `from` plus a span, doubled as often as it takes; infinite if that does. */
+static double some_time(const motion *m, bool is_true(const motion *, double), double from, double span)
 {
-    const double ratio = large / small;
-    return isinf(ratio) ? log(large) - log(small) : log(ratio);
-}
-
-/* A state in the same direction, of a size that squares of frequencies cannot make overflow. */
-static spring_state direction(spring_state y)
-{
-    int exponent;
-    frexp(fmax(fabs(y.x), fabs(y.v)), &exponent);
-    return (spring_state){ldexp(y.x, -exponent), ldexp(y.v, -exponent)};
-}
-
-static double settling_oscillating(spring_state y, const spring_params *p, const spring_roots *r, double tol)
-{
-    const double spacing = pi / r->split;
-    const spring_state u = direction(y);
-    /* a zero of v in (-spacing, spacing] */
-    double first = atan2(u.v * r->split, r->w * u.x + r->b * u.v) / r->split;
-    if (first < 0)
-        first += spacing;
-    const double largest = swing(y, p, first);
-    if (!(largest > tol))
-        return fabs(y.x) > tol ? bisect(y, p, 0, first, tol) : 0;
-    if (r->b == 0 || tol == 0)
-        return INFINITY;
-    double last = first + floor(log_ratio(largest, tol) / (r->b * spacing)) * spacing;
-    if (!(swing(y, p, last) > tol)) /* rounding of the logarithm, either way */
-        last -= spacing;
-    else if (swing(y, p, last + spacing) > tol)
-        last += spacing;
-    return bisect(y, p, last, last + spacing, tol);
-}
-
-static double settling_creeping(spring_state y, const spring_params *p, const spring_roots *r, double tol)
-{
-    const spring_state u = direction(y);
-    const double T = u.v / (r->w * u.x + r->b * u.v); /* tanh(split t)/split at the turning point */
-    double turn = 0;
-    if (T > 0 && r->split * T < 1)
-        turn = r->split > 0 ? atanh(r->split * T) / r->split : T;
-    if (!(swing(y, p, turn) > tol))
-        return fabs(y.x) > tol ? bisect(y, p, 0, turn, tol) : 0;
-    if (tol == 0)
-        return INFINITY;
-    double span = 1 / spring_slow_root(r);
-    while (span < INFINITY && swing(y, p, turn + span) > tol)
+    while (span < INFINITY && !is_true(m, from + span))
         span *= 2;
-    return span < INFINITY ? bisect(y, p, turn, turn + span, tol) : INFINITY;
+    return from + span;
 }
 
-static double settling_free(double v, double g, double tol)
+/* The time after the last swing beyond the tolerance: of the swings at first + n spacing swing 0 is. */
+static double after_last_swing(const motion *m, double first, double spacing)
 {
-    if (v == 0)
-        return 0;
-    const double distance = fabs(v / g); /* still to go; infinite without damping */
-    return distance > tol ? log_ratio(distance, tol) / g : 0;
+    double beyond = 0, within = 1;
+    while (first + within * spacing < INFINITY && !is_within(m, first + within * spacing)) {
+        beyond = within;
+        within *= 2;
+    }
+    for (;;) {
+        const double middle = beyond + floor((within - beyond) / 2);
+        if (!(middle > beyond && middle < within))
+            break;
+        if (is_within(m, first + middle * spacing))
+            within = middle;
+        else
+            beyond = middle;
+    }
+    const double end = first + within * spacing;
+    return end < INFINITY ? first_time(m, is_within, first + beyond * spacing, end) : INFINITY;
+}
+
+static double settling_oscillating(const motion *m)
+{
+    const double spacing = pi / m->roots.split;
+    const double first = m->start.v != 0 ? first_time(m, has_turned, 0, spacing) : 0;
+    if (is_within(m, first))
+        return is_within(m, 0) ? 0 : first_time(m, is_within, 0, first);
+    return m->roots.b == 0 || m->tol == 0 ? INFINITY : after_last_swing(m, first, spacing);
+}
+
+/* Does an overdamped spring turn at all? tanh(split t) = split T where it does. */
+static bool will_turn(const motion *m)
+{
+    /* a state in the same direction, of a size that squares of frequencies cannot make overflow */
+    int exponent;
+    frexp(fmax(fabs(m->start.x), fabs(m->start.v)), &exponent);
+    const double x = ldexp(m->start.x, -exponent), v = ldexp(m->start.v, -exponent);
+    const double T = v / (m->roots.w * x + m->roots.b * v);
+    return m->roots.w > 0 && T > 0 && m->roots.split * T < 1;
+}
+
+static double settling_creeping(const motion *m)
+{
+    const double fast = spring_fast_root(&m->roots), slow = m->roots.w > 0 ? m->roots.w / fast : fast;
+    const double turn = will_turn(m) ? first_time(m, has_turned, 0, some_time(m, has_turned, 0, 1 / fast)) : 0;
+    if (is_within(m, turn))
+        return is_within(m, 0) ? 0 : first_time(m, is_within, 0, turn);
+    if (fast == 0 || m->tol == 0)
+        return INFINITY;
+    const double end = some_time(m, is_within, turn, 1 / slow);
+    return end < INFINITY ? first_time(m, is_within, turn, end) : INFINITY;
 }
 
 double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
 {
     if (s == NULL || !isfinite(s->x) || !isfinite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
         return NAN;
-    const spring_roots r = spring_roots_of(p);
-    if (r.w == 0)
-        return p->load == 0 ? settling_free(s->v, 2 * r.b, x_tol) : INFINITY;
-    const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};
-    const spring_state y = {s->x - p->load / p->stiffness, s->v};
-    if (!isfinite(y.x))
+    motion m = {
+        .start = {s->x, s->v},
+        .params = {p->mass, p->stiffness, p->damping, 0},
+        .roots = spring_roots_of(p),
+        .tol = x_tol,
+    };
+    if (m.roots.w == 0)
+        return p->load == 0 ? settling_creeping(&m) : INFINITY;
+    m.start.x -= p->load / p->stiffness;
+    if (!isfinite(m.start.x))
         return INFINITY;
-    if (r.overdamped || r.split == 0)
-        return settling_creeping(y, &unloaded, &r, x_tol);
-    return settling_oscillating(y, &unloaded, &r, x_tol);
+    return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }

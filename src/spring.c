@@ -90,7 +90,8 @@ spring_params spring_params_half_life(double half_life, double damping_ratio)
 {
     const double ln2 = 0.6931471805599453;
     const double z = damping_ratio;
-    const double rate = z <= 1 ? z : 1 / (z + sqrt(z - 1) * sqrt(z + 1)); /* of the envelope, in units of omega */
+    const double rate =
+        z <= 1 ? z : 1 / (z + spring_sqrt(z - 1) * spring_sqrt(z + 1)); /* of the envelope, in units of omega */
     return params_of(half_life > 0 && isfinite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
 }
 

@@ -13,6 +13,8 @@
 #include <springstep/batch.h>
 #include <springstep/scene.h>
 
+#include "propagator.h"
+
 #if defined(__clang__)
 #pragma clang diagnostic ignored "-Wbitwise-instead-of-logical" /* a mask is a bool here */
 #elif defined(__GNUC__)
@@ -23,4 +25,10 @@
 #define SPRING_VECTOR      16
 #define SPRING_BATCH_TABLE plain_batch
 #define SPRING_SCENE_TABLE plain_scene
+#ifdef SPRING_FLOAT
+#define SPRING_EXACT_KERNEL spring_exact_v128 /* the exact solution is in double all the same */
+#else
+#define SPRING_EXACT_KERNEL plain_exact
+extern exact_kernel plain_exact;
+#endif
 #include "kernels.h"

@@ -485,14 +485,45 @@ static void exact_over_all_steps(void)
             const uint64_t n = lengths[i % 3] == huge_number ? UINT64_MAX : 107;
             springs[0] = (spring){(scalar)0.3, (scalar)-0.7, (scalar)2.7, i < 3 ? (scalar)0.6 : 7, (scalar)0.4};
             ends[0] = advance_alone(seen(springs, 0, f), SPRING_EXACT, lengths[i % 3], n, f.w == SHARED && f.g != EACH);
-            CHECK(i >= 3 || (ends[0].status == SPRING_OK) == isfinite((double)lengths[i % 3] * (double)n),
-                  "n dt may overflow");
+            CHECK((ends[0].status == SPRING_OK) == isfinite((double)lengths[i % 3] * (double)n), "n dt may overflow");
             for (size_t j = 1; j < 3; j++) {
                 springs[j] = springs[0];
                 ends[j] = ends[0];
             }
             check_batch(springs, 3, f, SPRING_EXACT, lengths[i % 3], n, ends);
         }
+}
+
+/* Springs of every kind side by side, of all sizes: by any formula, or one that is not finite, each is what it is
+   alone. */
+static void exact_of_any_spring(void)
+{
+    const double far = sizeof(scalar) == 4 ? 1e30 : 1e250;
+    const scalar lengths[] = {step, -step, 1000, (scalar)1e-9, (scalar)1e20};
+    for (size_t k = 0; k < 20 * feature_count; k++) {
+        const features f = features_of(k);
+        const scalar dt = lengths[k / feature_count % 5];
+        const uint64_t n = 1 + random_bits() % 7;
+        draw(k % 3);
+        for (size_t i = 0; i < most; i++) {
+            spring *s = &springs[i];
+            const uint64_t kind = random_bits() % 8;
+            if (kind == 0) /* critically damped */
+                s->g = (scalar)random_log(1e-3, 1e3), s->w = s->g * s->g / 4;
+            if (kind == 1)
+                s->w = (scalar)random_log(1 / far, far);
+            if (kind == 2)
+                s->g = (scalar)random_log(1 / far, far);
+            if (kind == 3)
+                s->w = (scalar)random_log(1 / far, far),
+                s->g = 2 * (scalar)(sqrt((double)s->w) * random_log(1e-5, 1e5));
+            if (kind == 4)
+                s->x *= huge_number, s->v *= huge_number;
+        }
+        for (size_t i = 0; i < most; i++)
+            ends[i] = advance_alone(seen(springs, i, f), SPRING_EXACT, dt, n, f.w == SHARED && f.g != EACH);
+        check_batch(springs, most, f, SPRING_EXACT, dt, n, ends);
+    }
 }
 
 static void nothing_to_do(void)
@@ -768,6 +799,7 @@ int main(int argc, char **argv)
         {"the public function", public_function},
         {"overflow ends a batch", overflow_ends},
         {"the exact solution is one evaluation", exact_over_all_steps},
+        {"the exact solution of any spring", exact_of_any_spring},
         {"nothing to do", nothing_to_do},
         {"overlapping arrays", overlaps},
         {"bad batches", bad_batches},

@@ -64,7 +64,7 @@ typedef struct spring_batchf { /* the same in float: half the memory, half the t
  * change nothing, and the springs are not looked at.
  *
  * SPRING_EXACT is one evaluation over n dt. With omega2 shared and gamma shared or NULL its coefficients are computed
- * once, and a spring costs six multiplications and two additions; otherwise each spring costs a spring_step_exact().
+ * once, and a spring costs six multiplications and two additions; otherwise each spring has its own, in vectors too.
  * In float, shared coefficients are computed in double and rounded once, and a spring with parameters of its own is
  * moved in double and rounded at the end: here, and only here, sharing changes the last bit.
  *

@@ -12,10 +12,9 @@
  *
  * What holds for every function here:
  *  - Bits. Every stepper first forms w = stiffness/mass, g = damping/mass, a = load/mass, each rounded once, and works
- *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering: the
- *    same bits from every compiler and processor that follow IEEE 754 (options that do not, such as -ffast-math, are
- *    refused where they can be seen). The exact solution calls the C library's exp, sin, cos and expm1, and is as
- *    reproducible as they are.
+ *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering, no
+ *    function of the C library that is not exact: the same bits from every compiler, C library and processor that
+ *    follow IEEE 754 (options that do not, such as -ffast-math, are refused where they can be seen).
  *  - All or nothing. spring_advance() either happens or leaves the state as it was, and says why.
  *  - dt may be negative, and is never clamped or refused for being unstable: spring_stable_step() tells, you decide.
  *  - Nothing allocates, prints, aborts or keeps anything: every function is re-entrant.
@@ -160,7 +159,7 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *                of the exact one, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
  *                (x, v/omega), all norms Euclidean; critical damping is no exception. What a load a = load/mass adds to
  *                x is within 8 eps (1 + omega t) of itself, or of a/omega^2 where it oscillates (tests/test_exact.c)
- * @par Source    src/exact.c derives the formula
+ * @par Source    src/exact_formula.h derives the formula
  * @par Threads   re-entrant; allocates nothing, keeps nothing
  */
 SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, double dt);

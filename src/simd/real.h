@@ -66,7 +66,7 @@ typedef int64_t scalar_bits;
 
 SPRING_INLINE scalar scalar_sqrt(scalar a)
 {
-    return (scalar)sqrt((double)a); /* in float rounded twice, which changes nothing for a square root */
+    return (scalar)spring_sqrt((double)a); /* in float rounded twice, which changes nothing for a square root */
 }
 
 #if defined(SPRING_VECTOR) && defined(__GNUC__)

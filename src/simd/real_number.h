@@ -2,6 +2,7 @@
 /* `real` as one number; see real.h. */
 typedef scalar real;
 typedef bool mask;
+typedef uint64_t real_bits; /* of a double */
 
 SPRING_INLINE real splat(scalar s)
 {
@@ -23,6 +24,11 @@ SPRING_INLINE bool any(mask t)
     return t;
 }
 
+SPRING_INLINE mask not_mask(mask t)
+{
+    return !t;
+}
+
 SPRING_INLINE real select_real(mask t, real a, real b)
 {
     return t ? a : b;
@@ -35,13 +41,39 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
 
 SPRING_INLINE real vec_sqrt(real a)
 {
-    return (real)sqrt((double)a);
+    return scalar_sqrt(a);
 }
 
 SPRING_INLINE real vec_abs(real a)
 {
     return (real)fabs((double)a);
 }
+
+#ifndef SPRING_FLOAT
+SPRING_INLINE real_bits to_bits(real a)
+{
+    real_bits b;
+    memcpy(&b, &a, sizeof b);
+    return b;
+}
+
+SPRING_INLINE real from_bits(real_bits b)
+{
+    real a;
+    memcpy(&a, &b, sizeof a);
+    return a;
+}
+
+SPRING_INLINE real vec_load_float(const float *p)
+{
+    return *p;
+}
+
+SPRING_INLINE void vec_store_float(float *p, real r)
+{
+    *p = (float)r;
+}
+#endif
 
 /* See real_vector.h: the same bits. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
@@ -50,7 +82,7 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
     for (int k = 0; k < many; k++) {
 #ifndef SPRING_FLOAT
         if (a[k] >= 0x1p-84 && a[k] < 0x1p44) {
-            const real y = (real)(1 / sqrtf((float)a[k])), r = 1 - a[k] * (y * y);
+            const real y = (real)(1 / (float)spring_sqrt((double)(float)a[k])), r = 1 - a[k] * (y * y);
             a[k] = y + y * r * (0.5 + 0.375 * r);
             continue;
         }

@@ -2,6 +2,7 @@
 /* `real` as a vector of SPRING_VECTOR bytes; see real.h. */
 typedef scalar real __attribute__((vector_size(SPRING_VECTOR)));
 typedef scalar_bits mask __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
+typedef mask real_bits;
 
 SPRING_INLINE real splat(scalar s)
 {
@@ -37,6 +38,11 @@ SPRING_INLINE bool any(mask t)
         all |= part[i];
     return all != 0;
 #endif
+}
+
+SPRING_INLINE mask not_mask(mask t)
+{
+    return ~t;
 }
 
 SPRING_INLINE real select_real(mask t, real a, real b)
@@ -89,13 +95,50 @@ SPRING_INLINE real vec_sqrt(real a)
     scalar each[sizeof a / sizeof(scalar)];
     memcpy(each, &a, sizeof a);
     for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
-        each[i] = (scalar)sqrt((double)each[i]); /* rounding twice changes nothing for a square root */
+        each[i] = scalar_sqrt(each[i]);
     memcpy(&a, each, sizeof a);
     return a;
 #endif
 }
 
 #ifndef SPRING_FLOAT
+SPRING_INLINE real_bits to_bits(real a)
+{
+    return (real_bits)a;
+}
+
+SPRING_INLINE real from_bits(real_bits b)
+{
+    return (real)b;
+}
+
+typedef float real_in_float __attribute__((vector_size(SPRING_VECTOR / 2)));
+
+SPRING_INLINE real vec_load_float(const float *p) /* of any alignment */
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64
+    return (real)_mm512_cvtps_pd(_mm256_loadu_ps(p));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    return (real)_mm256_cvtps_pd(_mm_loadu_ps(p));
+#else
+    real_in_float r;
+    memcpy(&r, p, sizeof r);
+    return __builtin_convertvector(r, real);
+#endif
+}
+
+SPRING_INLINE void vec_store_float(float *p, real r)
+{
+#if SPRING_X86_64 && SPRING_VECTOR == 64
+    _mm256_storeu_ps(p, _mm512_cvtpd_ps((__m512d)r));
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    _mm_storeu_ps(p, _mm256_cvtpd_ps((__m256d)r));
+#else
+    const real_in_float rounded = __builtin_convertvector(r, real_in_float);
+    memcpy(p, &rounded, sizeof rounded);
+#endif
+}
+
 /* 1/sqrt(a) in float. */
 SPRING_INLINE real vec_seed(real a)
 {
@@ -110,7 +153,7 @@ SPRING_INLINE real vec_seed(real a)
     return (real)wasm_f64x2_promote_low_f32x4(wasm_f32x4_div(wasm_f32x4_const_splat(1), root));
 #else
     for (size_t i = 0; i < sizeof a / sizeof(scalar); i++)
-        a[i] = (scalar)(1 / sqrtf((float)a[i]));
+        a[i] = (scalar)(1 / (float)spring_sqrt((double)(float)a[i]));
     return a;
 #endif
 }
