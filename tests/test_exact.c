@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact solution against multiple precision, to the bound that spring.h states. */
+/* The exact solution against multiple precision, to the bounds that spring.h states.
+       test_exact [POINTS]     so many where the formula changes, instead of 10^5 */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "check.h"
 #include "harness/reference.h"
@@ -18,13 +21,16 @@ static double stated_bound(const spring_params *p, double t)
     return mpfr_get_d(ref.size, MPFR_RNDU) + DBL_MIN;
 }
 
-static void against_reference(spring_params p, spring_state start, double t)
+/* Returns the error, of the bound. */
+static double against_reference(spring_params p, spring_state start, double t)
 {
     spring_state got = start;
     spring_step_exact(&got, &p, t);
     reference_start(&ref, &p, start);
     reference_exact(&ref, &p, t);
-    CHECK_BELOW(reference_distance(&ref, got), stated_bound(&p, t), "the bound stated in spring.h");
+    const double error = reference_distance(&ref, got), bound = stated_bound(&p, t);
+    CHECK_BELOW(error, bound, "the bound stated in spring.h");
+    return error / bound;
 }
 
 /* Masses, stiffnesses and times of all sizes at one damping ratio; starts anywhere, along the fast root, and huge. */
@@ -74,7 +80,27 @@ static void backwards(void)
 }
 
 /* From rest under load: displacement P a and velocity H a. Both are relatively accurate where they do not change sign;
-   an oscillating spring passes through zero again, with the error eps omega t of its angle. */
+   an oscillating spring passes through zero again, with the error eps omega t of its angle. Returns the larger error, of
+   its bound. */
+static double response(spring_params p, double t)
+{
+    spring_state got = {0, 0};
+    spring_step_exact(&got, &p, t);
+    reference_start(&ref, &p, (spring_state){0, 0});
+    reference_exact(&ref, &p, t);
+    const double omega = sqrt(p.stiffness / p.mass), b = p.damping / p.mass / 2, time = fabs(t);
+    const double rate = b <= omega ? omega : t < 0 ? 2 * b : omega * omega / b; /* of what grows, or dies out last */
+    const double x = mpfr_get_d(ref.x, MPFR_RNDN), v = mpfr_get_d(ref.v, MPFR_RNDN);
+    const double largest = p.load / p.mass * fmin(time * time, 1 / (omega * omega)) * exp(b * (time - t) / 2);
+    const double swing = b <= omega ? largest : 0;
+    const double share = 8 * DBL_EPSILON * (1 + rate * time);
+    const double least = 2 * DBL_TRUE_MIN; /* denormal, and rounded twice */
+    const double bound_x = share * (fabs(x) + swing) + least, bound_v = share * (fabs(v) + swing * omega) + least;
+    CHECK_CLOSE(got.x, x, bound_x, "the response from rest");
+    CHECK_CLOSE(got.v, v, bound_v, "its velocity");
+    return fmax(fabs(got.x - x) / bound_x, fabs(got.v - v) / bound_v);
+}
+
 static void loaded(void)
 {
     for (int i = 0; i < 20000; i++) {
@@ -84,17 +110,172 @@ static void loaded(void)
             p.stiffness = p.mass * random_log(1e-12, 1e2) / time / time * (i % 4 == 3 ? 1e3 : 1);
         if (i % 3 > 0)
             p.damping = p.mass * random_log(1e-9, 1e3) / time;
-        spring_state got = {0, 0};
-        spring_step_exact(&got, &p, time);
-        reference_start(&ref, &p, (spring_state){0, 0});
-        reference_exact(&ref, &p, time);
-        const double omega = sqrt(p.stiffness / p.mass), b = p.damping / p.mass / 2;
-        const double x = mpfr_get_d(ref.x, MPFR_RNDN), v = mpfr_get_d(ref.v, MPFR_RNDN);
-        const double swing = b <= omega ? p.load / p.mass * fmin(time * time, 1 / (omega * omega)) : 0;
-        const double bound = 8 * DBL_EPSILON * (1 + (b <= omega ? omega : omega * omega / b) * time);
-        CHECK_CLOSE(got.x, x, bound * (fabs(x) + swing), "the response from rest");
-        CHECK_CLOSE(got.v, v, bound * (fabs(v) + swing * omega), "its velocity");
+        response(p, time);
     }
+}
+
+/* ---------------------------------------------------------------------------------------- where the formula changes */
+
+/* A threshold, missed by anything from an ulp to a hundredth. */
+static double about(double threshold)
+{
+    return threshold * (1 + (random_bits() % 2 ? 1 : -1) * random_log(1e-17, 1e-2));
+}
+
+/* A spring by its damping ratio; its mass is 1 in one of four. */
+static spring_params spring_of(double omega, double zeta)
+{
+    const double mass = random_bits() % 4 ? random_log(1e-3, 1e3) : 1;
+    return (spring_params){mass, mass * omega * omega, 2 * zeta * mass * omega, 0};
+}
+
+/* |r| t, by damping ratio, of a time with omega t = 1: of the angle, and of the roots. */
+static double angle_rate(double zeta)
+{
+    return sqrt(fabs(zeta - 1) * (zeta + 1));
+}
+
+static double fast_rate(double zeta)
+{
+    return zeta > 1 ? zeta + angle_rate(zeta) : zeta;
+}
+
+static double slow_rate(double zeta)
+{
+    return zeta > 1 ? 1 / fast_rate(zeta) : zeta;
+}
+
+typedef struct point {
+    spring_params p;
+    double t;
+} point;
+
+static point at(double omega, double zeta, double omega_t)
+{
+    return (point){spring_of(omega, zeta), omega_t / omega};
+}
+
+static double any_omega(void)
+{
+    return random_log(1e-5, 1e5);
+}
+
+static double any_zeta(void)
+{
+    return random_bits() % 2 ? random_log(1e-3, 0.999) : random_log(1.001, 1e3);
+}
+
+static point critical_damping(void)
+{
+    return at(any_omega(), about(1), random_log(1e-3, 1e3));
+}
+
+static point no_angle(void)
+{
+    const double zeta = any_zeta();
+    return at(any_omega(), zeta, about(0x1p-55) / angle_rate(zeta));
+}
+
+static point next_quadrant(void)
+{
+    const double zeta = random_log(1e-6, 0.999), eighth = 0.78539816339744828;
+    return at(any_omega(), zeta, about(eighth * (1 + 2 * floor(random_log(1, 300)))) / angle_rate(zeta));
+}
+
+static point large_angle(void)
+{
+    return at(any_omega(), random_log(1e-20, 1e-16), about(random_bits() % 2 ? 0x1p51 : 0x1p26));
+}
+
+static point next_power_of_two(void)
+{
+    const double zeta = any_zeta(), half_ln2 = 0.34657359027997264;
+    const double rate = random_bits() % 2 ? slow_rate(zeta) : zeta > 1 ? 2 * angle_rate(zeta) : zeta;
+    return at(any_omega(), zeta, about(half_ln2 * (1 + 2 * floor(random_log(1, 100)))) / rate);
+}
+
+static point ends_of_doubles(void)
+{
+    static const double logs[] = {708.4, 745.1, 750, 1416.8, 1490, 1500};
+    const double zeta = any_zeta(), end = logs[random_bits() % 6];
+    return at(any_omega(), zeta, about(end) / (random_bits() % 2 ? slow_rate(zeta) : fast_rate(zeta)));
+}
+
+static point ends_of_squares(void)
+{
+    static const double ends[] = {0x1p-400, 0x1p400};
+    const double zeta = random_bits() % 4 ? any_zeta() : about(1), end = about(ends[random_bits() % 2]);
+    point y = at(random_bits() % 2 ? end : end / zeta, zeta, 1);
+    y.t *= random_log(1e-3, 1e2);
+    return y;
+}
+
+static point ends_of_quotients(void)
+{
+    static const double ends[] = {0x1p-400, 0x1p400};
+    const double mass = about(ends[random_bits() % 2]), omega = any_omega(), zeta = about(1);
+    return (point){{mass, mass * omega * omega, 2 * zeta * mass * omega, 0}, random_log(1e-3, 1e2) / omega};
+}
+
+static point short_response(void)
+{
+    const double zeta = random_bits() % 4 ? any_zeta() : about(1);
+    return at(any_omega(), zeta, about(1) / fmax(1, fast_rate(zeta)));
+}
+
+static point no_slow_decay(void)
+{
+    const double zeta = random_log(2, 1e8);
+    return at(any_omega(), zeta, about(0x1p-55) / slow_rate(zeta));
+}
+
+static const struct change {
+    const char *name;
+    point (*draw)(void);
+} changes[] = {
+    {"critical damping", critical_damping},
+    {"angle of 2^-55", no_angle},
+    {"angle at an odd multiple of pi/4", next_quadrant},
+    {"angle of 2^26, 2^51", large_angle},
+    {"exponent at an odd multiple of ln(2)/2", next_power_of_two},
+    {"exponents where doubles end", ends_of_doubles},
+    {"frequencies of 2^-400, 2^400", ends_of_squares},
+    {"masses of 2^-400, 2^400", ends_of_quotients},
+    {"larger root times t of 1", short_response},
+    {"smaller root times t of 2^-55", no_slow_decay},
+};
+
+static unsigned long points = 100000;
+
+static spring_state any_start(double omega, double zeta)
+{
+    const double angle = random_uniform(0, 2 * pi), size = random_bits() % 4 ? 1 : random_log(1e-100, 1e100);
+    spring_state start = {size * cos(angle), size * omega * sin(angle)};
+    if (random_bits() % 4 == 0 && zeta > 1)
+        start.v = -omega * fast_rate(zeta) * start.x;
+    return start;
+}
+
+/* Forwards, backwards, and from rest under a load. */
+static void where_it_changes(void)
+{
+    enum { count = sizeof changes / sizeof changes[0] };
+    double worst[count] = {0}, worst_response[count] = {0};
+    for (unsigned long i = 0; i < points; i++) {
+        const unsigned long k = i % count;
+        const point y = changes[k].draw();
+        const double omega = sqrt(y.p.stiffness / y.p.mass), zeta = y.p.damping / y.p.mass / omega / 2;
+        const bool grows = fmax(1, fast_rate(zeta)) * omega * y.t > 100; /* backwards: over w, beyond doubles */
+        const double t = i / count % 4 == 0 && !grows ? -y.t : y.t;
+        worst[k] = fmax(worst[k], against_reference(y.p, any_start(omega, zeta), t));
+        spring_params p = y.p;
+        p.load = p.mass * omega * omega;
+        if (isnormal(p.load))
+            worst_response[k] = fmax(worst_response[k], response(p, t));
+    }
+    for (size_t k = 0; k < count; k++)
+        printf("# %-40s largest error %.3f of the bound, %.3f under load\n", changes[k].name, worst[k],
+               worst_response[k]);
 }
 
 static void stays_at_rest_under_load(void)
@@ -153,7 +334,7 @@ static void special_springs(void)
                 "e^-1000 underflows, 1e280 e^-1000 does not");
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static const test tests[] = {
         {"undamped", undamped},
@@ -161,10 +342,13 @@ int main(void)
         {"damping ratio 1 +- 1e-15 to 1 +- 1e-2", around_critical},
         {"backwards", backwards},
         {"response to a load", loaded},
+        {"where the formula changes", where_it_changes},
         {"at rest under load", stays_at_rest_under_load},
         {"series to the last term", series_to_the_last_term},
         {"special springs", special_springs},
     };
+    if (argc == 2)
+        points = strtoul(argv[1], NULL, 10);
     reference_init(&ref);
     const int status = RUN_TESTS("exact", tests);
     reference_clear(&ref);
