@@ -34,6 +34,7 @@ typedef struct subject {
     bool single; /* float */
     beside beside;
     bool settled, unaligned; /* ORDINARY */
+    bool mixed;              /* TEXTBOOK: every second spring overdamped */
 } subject;
 
 /* ------------------------------------------------------------------------------------------------------- the memory */
@@ -67,12 +68,22 @@ static void set(void *memory, bool single, size_t i, double value)
         ((double *)memory)[i] = value;
 }
 
+static double get(const void *memory, bool single, size_t i)
+{
+    return single ? (double)((const float *)memory)[i] : ((const double *)memory)[i];
+}
+
+/* Overdamped so far that over minutes no spring settles either. */
+static const double overdamped = 1000;
+
 static void fill(const array *a, const subject *s, double scale)
 {
+    const double odd = s->mixed && a == &all[GAMMA] ? overdamped : 1;
     const size_t element = s->single ? sizeof(float) : sizeof(double);
     char *memory = a->memory;
     for (size_t i = 0; i < period; i++)
-        set(memory, s->single, i, a->sharing == ZERO ? 0 : scale * a->mean * (1 + 0.1 * (double)(i % 7) / 7));
+        set(memory, s->single, i,
+            a->sharing == ZERO ? 0 : scale * a->mean * (i % 2 ? odd : 1) * (1 + 0.1 * (double)(i % 7) / 7));
     for (size_t i = period; i < s->count + alignment; i += period) /* vectors may reach beyond the last spring */
         memcpy(memory + i * element, memory, period * element);
 }
@@ -142,15 +153,15 @@ static void move_streams(const bench_limits *limits, const subject *s, uint64_t 
 
 static void textbook(const subject *s, uint64_t calls)
 {
-    double *x = all[X].memory, *v = all[V].memory;
-    const double *w = all[OMEGA2].memory, *g = all[GAMMA].memory, *a = all[ACCEL].memory;
-    const bool damped = s->gamma != NONE, loaded = s->accel != NONE;
+    const bool damped = s->gamma != NONE, loaded = s->accel != NONE, single = s->single;
     for (; calls > 0; calls--) {
         for (size_t i = 0; i < s->count; i++) {
-            const spring_state y = bench_textbook((spring_state){x[i], v[i]}, w[i], damped ? g[i] : 0,
-                                                  loaded ? a[i] : 0, dt, damped, loaded);
-            x[i] = y.x;
-            v[i] = y.v;
+            const spring_state y =
+                bench_textbook((spring_state){get(all[X].memory, single, i), get(all[V].memory, single, i)},
+                               get(all[OMEGA2].memory, single, i), damped ? get(all[GAMMA].memory, single, i) : 0,
+                               loaded ? get(all[ACCEL].memory, single, i) : 0, dt, damped, loaded);
+            set(all[X].memory, single, i, y.x);
+            set(all[V].memory, single, i, y.v);
         }
     }
 }
@@ -264,8 +275,18 @@ static void add_features(void)
 
 static void add_special(void)
 {
-    const subject exact = {SPRING_EXACT, in_cache, 1, OWN, .beside = TEXTBOOK};
-    add("", exact);
+    for (int single = 0; single < 2; single++) {
+        const subject undamped = {SPRING_EXACT, in_cache, 1, OWN, .single = single, .beside = TEXTBOOK};
+        subject exact = undamped;
+        add("", exact);
+        exact.gamma = OWN;
+        add("_own_gamma", exact);
+        exact.mixed = true;
+        add("_own_gamma_mixed", exact);
+        exact.mixed = false;
+        exact.accel = OWN;
+        add("_own_gamma_accel", exact);
+    }
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const subject s = {spring_method_at(i), in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
         if (is_accurate(s.method))

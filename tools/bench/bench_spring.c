@@ -101,8 +101,8 @@ INLINE spring_state plain_steps(plain_step *step, spring_state s, model m, doubl
 
 spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded)
 {
-    const double b = g / 2, split = sqrt(w - b * b);
-    const double E = damped ? exp(-b * t) : 1, C = cos(split * t), S = sin(split * t) / split;
+    const double b = g / 2, D = w - b * b, split = sqrt(fabs(D)), E = damped ? exp(-b * t) : 1;
+    const double C = D > 0 ? cos(split * t) : cosh(split * t), S = (D > 0 ? sin(split * t) : sinh(split * t)) / split;
     const double rest_x = loaded ? a / w : 0, y = s.x - rest_x;
     return (spring_state){rest_x + E * (C * y + S * (s.v + b * y)), E * (C * s.v - S * (w * y + b * s.v))};
 }
