@@ -37,7 +37,6 @@ def test_cycles():
     for item in 'spring', 'link':
         of_item = [row for row in rows if row['item'] == item]
         assert {(row['vector'], row['precision']) for row in of_item} == {
-            (vector, precision) for vector in ('128', '256', '512') for precision in ('double', 'float')
-            if (item, vector, precision) != ('link', '512', 'float')}  # a tile is one pass: no loop
+            (vector, precision) for vector in ('128', '256', '512') for precision in ('double', 'float')}
         assert len({row['processor'] for row in of_item}) >= 3
         assert all(0.05 < float(row['cycles_per_item']) < 200 and int(row['at_once']) > 1 for row in of_item)
