@@ -36,16 +36,16 @@
 /* The square root, correctly rounded; that of mingw-w64's C library is not. */
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
-static inline double spring_sqrt(double a)
-{
-    return _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(a)));
-}
 #else
 #include <math.h>
+#endif
 static inline double spring_sqrt(double a)
 {
+#if defined(__GNUC__) && defined(__SSE2__)
+    return _mm_cvtsd_f64(_mm_sqrt_sd(_mm_setzero_pd(), _mm_set_sd(a)));
+#else
     return sqrt(a);
-}
 #endif
+}
 
 #endif

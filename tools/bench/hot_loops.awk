@@ -41,7 +41,7 @@ function flush_function(   m, l, b, best, from, to, i, loops, start, thing, coun
             continue
         print "# LLVM-MCA-BEGIN " name "," thing[from] "," count[from]
         for (l = from; l <= end[from]; l++)
-            if (text[l] != "" && text[l] !~ /^[ \t]+ret/) # where the loop is left, not in its passes
+            if (text[l] != "" && text[l] !~ /^[ \t]+(ret|call)/) # where the loop is left, or what is rare: not in its passes
                 print text[l]
         print "# LLVM-MCA-END"
     }
