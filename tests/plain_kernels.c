@@ -22,13 +22,9 @@
 #endif
 #undef __clang__
 #undef __GNUC__
-#define SPRING_VECTOR      16
-#define SPRING_BATCH_TABLE plain_batch
-#define SPRING_SCENE_TABLE plain_scene
-#ifdef SPRING_FLOAT
-#define SPRING_EXACT_KERNEL spring_exact_v128 /* the exact solution is in double all the same */
-#else
-#define SPRING_EXACT_KERNEL plain_exact
+#define SPRING_VECTOR       16
+#define SPRING_BATCH_TABLE  plain_batch
+#define SPRING_SCENE_TABLE  plain_scene
+#define SPRING_EXACT_KERNEL plain_exact /* one, in double, for both precisions */
 extern exact_kernel plain_exact;
-#endif
 #include "kernels.h"
