@@ -7,9 +7,9 @@
  *           bounded over any number of steps. It is leapfrog seen half a step late: x and v + h/2 (a - w x) are a
  *           leapfrog run.
  * Order     1. Without damping it conserves v^2/2 + w x^2/2 - h w x v/2: the energy error is at most about z/2 of E,
- *           z = h spring_sqrt(w), and the phase is leapfrog's.
+ *           z = h sqrt(w), and the phase is leapfrog's.
  * Limit     trace 1 + (1 - h^2 w)/(1 + q), determinant 1/(1 + q): stable for h^2 w < 4 + 2 h g, that is
- *           h < (g + spring_sqrt(g^2 + 4 w))/w.
+ *           h < (g + sqrt(g^2 + 4 w))/w.
  * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
  * Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  */
@@ -56,7 +56,7 @@ void spring_step_symplectic_euler(spring_state *s, const spring_params *p, doubl
     symplectic_euler_one_step(s, p, dt);
 }
 
-/* (g + spring_sqrt(g^2 + 4 w))/w = 2 (b + spring_sqrt(b^2 + omega^2))/omega^2 */
+/* (g + sqrt(g^2 + 4 w))/w = 2 (b + sqrt(b^2 + omega^2))/omega^2 */
 static double symplectic_euler_stable_step(const spring_roots *r)
 {
     return r->omega > 0 ? 2 / r->omega * ((r->b + spring_hypot(r->b, r->omega)) / r->omega) : INFINITY;
