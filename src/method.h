@@ -32,6 +32,7 @@ typedef struct one_method {
     spring_step_fn *kernel;
     spring_loop *loop[2][2];                      /* by damped, loaded; NULL: n steps are one evaluation over n dt */
     double (*stable_step)(const spring_roots *r); /* [s] */
+    uint64_t digest;                              /* see self_test.c */
 } one_method;
 
 /* What is written once for all methods is included with SPRING_METHOD set to one, and names its parts so. */

@@ -4,6 +4,7 @@
  */
 #define SPRING_SHAPE_ONE
 #include "methods.h"
+#include "self_test.h"
 
 #define ONE_ROW(value, method) [value] = &method##_one,
 static const one_method *const methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(ONE_ROW)};
@@ -17,6 +18,11 @@ static const one_method *find_method(spring_method m)
 {
     const size_t index = (size_t)m; /* a negative value becomes a large one */
     return index < SPRING_METHOD_COUNT ? methods[index] : NULL;
+}
+
+uint64_t spring_expected_digest(spring_method m)
+{
+    return methods[m]->digest;
 }
 
 static bool finite_state(spring_state s)
@@ -145,6 +151,14 @@ const char *spring_status_string(spring_status s)
         return "index or count out of range";
     case SPRING_EUNSUPPORTED:
         return "not supported";
+    case SPRING_EROUNDING:
+        return "rounding is not to nearest";
+    case SPRING_EFLUSHED:
+        return "denormal numbers count as 0";
+    case SPRING_EFUSED:
+        return "products and sums are fused";
+    case SPRING_EBITS:
+        return "other bits than there should be";
     }
     return "unknown status";
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, under the name INVERSE_SQRT; with PLAIN as compilers without
-   vectors of GNU C see it. See test_inverse_sqrt.c. */
+/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, under the name INVERSE_SQRT; or without vectors of GNU C. See test_inverse_sqrt.c. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -8,11 +7,6 @@
 #include <string.h>
 
 #include "simd/targets.h"
-
-#ifdef PLAIN
-#undef __clang__
-#undef __GNUC__
-#endif
 
 #if SPRING_TARGET_EXISTS
 

@@ -62,14 +62,19 @@ enum { SPRING_METHOD_COUNT = 5 }; /* of its own, so that a switch over methods n
 enum { SPRING_CHECK_INTERVAL = 4096 };
 
 typedef enum spring_status {
-    SPRING_OK,          /* done */
-    SPRING_EINVAL,      /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
+    SPRING_OK,           /* done */
+    SPRING_EINVAL,       /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
                            quotient stiffness/mass, damping/mass, load/mass that is not finite */
-    SPRING_ENONFINITE,  /* the state would have become infinite or NaN: unstable step, or numbers too large */
-    SPRING_ENOMEM,      /* the memory given is too small */
-    SPRING_EALIGN,      /* the memory given is not aligned */
-    SPRING_ERANGE,      /* an index or a count is out of range */
-    SPRING_EUNSUPPORTED /* not offered for this kind of system */
+    SPRING_ENONFINITE,   /* the state would have become infinite or NaN: unstable step, or numbers too large */
+    SPRING_ENOMEM,       /* the memory given is too small */
+    SPRING_EALIGN,       /* the memory given is not aligned */
+    SPRING_ERANGE,       /* an index or a count is out of range */
+    SPRING_EUNSUPPORTED, /* not offered for this kind of system */
+    /* of spring_self_test(): */
+    SPRING_EROUNDING, /* rounding is not to nearest */
+    SPRING_EFLUSHED,  /* denormal numbers count as 0 */
+    SPRING_EFUSED,    /* a product and a sum are rounded once, not twice */
+    SPRING_EBITS      /* the bits of a short run are not those they should be */
 } spring_status;
 
 /* ------------------------------------------------------------------------------------------------ the kernels */
@@ -243,6 +248,17 @@ SPRING_API double spring_settling_time(const spring_state *s, const spring_param
 
 /** Are these parameters that spring_advance() accepts? See SPRING_EINVAL; NULL is not. */
 SPRING_API bool spring_params_valid(const spring_params *p);
+
+/**
+ * Has the library the arithmetic here that its bits depend on? Call it at the start of a program whose bits matter: a
+ * compiler, a flag, or another library that changes how the processor rounds may take it away.
+ *
+ * Tried are rounding, numbers below the smallest normal ones, and products beside sums, and a few steps of every method,
+ * single and in batches of both precisions. Takes some microseconds. It tells of the thread that calls it.
+ *
+ * @return SPRING_OK; SPRING_EROUNDING, SPRING_EFLUSHED, SPRING_EFUSED, SPRING_EBITS: the first of these that is so
+ */
+SPRING_API spring_status spring_self_test(void);
 
 /* ------------------------------------------------------------------------------------------------ the methods */
 

@@ -24,6 +24,24 @@
 #pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
 #endif
 
+#if defined(_MSC_VER)
+#pragma fp_contract(off)
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__)
+_Static_assert(0.1 != (double)0.1F,
+               "springstep needs constants in double: compile it without -fsingle-precision-constant");
+#endif
+
+/* Vectors of GNU C. On 32-bit ARM those of floats would be instructions that take denormal numbers for 0. */
+#ifndef SPRING_VECTORS
+#if defined(__GNUC__) && !defined(__arm__)
+#define SPRING_VECTORS 1
+#else
+#define SPRING_VECTORS 0
+#endif
+#endif
+
 /* Where a file may be compiled for instructions that the rest does without. */
 #ifndef SPRING_X86_64
 #if defined(__GNUC__) && defined(__x86_64__)

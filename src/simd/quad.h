@@ -7,7 +7,7 @@
 
 enum { quad_size = 4 };
 
-#if defined(SPRING_VECTOR) && defined(__GNUC__)
+#if defined(SPRING_VECTOR) && SPRING_VECTORS
 #include "quad_vector.h"
 #else
 #include "quad_number.h"

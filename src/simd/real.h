@@ -69,7 +69,7 @@ SPRING_INLINE scalar scalar_sqrt(scalar a)
     return (scalar)spring_sqrt((double)a); /* in float rounded twice, which changes nothing for a square root */
 }
 
-#if defined(SPRING_VECTOR) && defined(__GNUC__)
+#if defined(SPRING_VECTOR) && SPRING_VECTORS
 #include "real_vector.h"
 #else
 #include "real_number.h"

@@ -186,6 +186,7 @@ int main(void)
         {"heavy", {7e20, 2e19, 1e17, 3e18}, 0.3}, {"light", {3e-22, 7e-21, 1e-23, 2e-22}, 0.02},
         {"free", {1.3, 0, 0, 0.9}, 0.01},         {"dragged", {1.3, 0, 0.6, 0.9}, 0.01},
     };
+    printf("self-test: %s\n", spring_status_string(spring_self_test()));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
             const spring_method m = spring_method_at(j);

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* What spring_self_test() asks of a method. */
+#ifndef SPRINGSTEP_SELF_TEST_H
+#define SPRINGSTEP_SELF_TEST_H
+
+#include <springstep/spring.h>
+
+uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
+uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right; of a method for springs */
+
+#endif
