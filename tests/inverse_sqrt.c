@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, under the name INVERSE_SQRT; or without vectors of GNU C. See test_inverse_sqrt.c. */
+/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, or without vectors, under the name INVERSE_SQRT. See
+   test_inverse_sqrt.c. */
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>

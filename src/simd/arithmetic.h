@@ -28,10 +28,8 @@
 #pragma fp_contract(off)
 #endif
 
-#if defined(__GNUC__) && !defined(__clang__)
-_Static_assert(0.1 != (double)0.1F,
+_Static_assert((long long)9007199254740991.0 == 9007199254740991,
                "springstep needs constants in double: compile it without -fsingle-precision-constant");
-#endif
 
 /* Vectors of GNU C. On 32-bit ARM those of floats would be instructions that take denormal numbers for 0. */
 #ifndef SPRING_VECTORS
