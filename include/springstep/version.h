@@ -6,7 +6,9 @@
 
 #define SPRING_VERSION "0.1.0"
 
-#if defined(__GNUC__)
+#if defined(_WIN32) && defined(SPRING_BUILDS_DLL)
+#define SPRING_API __declspec(dllexport)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #define SPRING_API __attribute__((visibility("default")))
 #else
 #define SPRING_API
