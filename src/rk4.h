@@ -117,7 +117,7 @@ static const one_method rk4_one = {
     .kernel = spring_step_rk4,
     .loop = {{rk4_plain, rk4_loaded}, {rk4_damped, rk4_damped_loaded}},
     .stable_step = rk4_stable_step,
-    .digest = UINT64_C(0x81556f64f036340e),
+    .digest = UINT64_C(0x3642d6157857a437),
 };
 
 #elif defined(SPRING_SHAPE_BATCH)

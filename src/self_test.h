@@ -6,6 +6,6 @@
 #include <springstep/spring.h>
 
 uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
-uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right; of a method for springs */
+uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right */
 
 #endif

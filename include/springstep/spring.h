@@ -253,8 +253,9 @@ SPRING_API bool spring_params_valid(const spring_params *p);
  * Has the library the arithmetic here that its bits depend on? Call it at the start of a program whose bits matter: a
  * compiler, a flag, or another library that changes how the processor rounds may take it away.
  *
- * Tried are rounding, numbers below the smallest normal ones, and products beside sums, and a few steps of every method,
- * single and in batches of both precisions. Takes some microseconds. It tells of the thread that calls it.
+ * Tried are rounding, numbers below the smallest normal ones, products beside sums, and a few steps of every method: of
+ * one spring, of batches in both precisions, of a scene. Takes some microseconds, and 20 KB of the stack. It tells of the
+ * thread that calls it.
  *
  * @return SPRING_OK; SPRING_EROUNDING, SPRING_EFLUSHED, SPRING_EFUSED, SPRING_EBITS: the first of these that is so
  */
