@@ -9,7 +9,7 @@
  *     size_t bytes;
  *     spring_scene *scene;
  *     spring_scene_bytes(&def, &bytes);
- *     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);          // a multiple of SPRING_SCENE_ALIGN
+ *     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);          // Windows: _aligned_malloc(bytes, ...)
  *     spring_scene_init(memory, bytes, &def, &scene);
  *     const double dt = fmin(1.0 / 240, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG));
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
@@ -83,8 +83,8 @@ typedef struct spring_scene_def {
     uint32_t axes;                /* 1, 2 or 3; 0 means 3 */
     uint32_t flags;               /* SPRING_SCENE_... */
     uint32_t methods;             /* 1u << SPRING_EULER | ...: which will be used; 0: all but RK4 */
-    size_t particles;             /* from 1 to nearly 2^32 */
-    size_t links;                 /* less than 2^29 */
+    size_t particles;             /* from 1 to nearly 2^32; where addresses have 32 bits, at most 2^23 - 1 */
+    size_t links;                 /* less than 2^29; likewise */
     const double *position;       /* [particles*axes] x0 y0 z0 x1 ... [m] */
     const double *velocity;       /* [particles*axes] [m/s]; NULL: at rest */
     const double *mass;           /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */

@@ -14,7 +14,8 @@
  *  - Bits. Every stepper first forms w = stiffness/mass, g = damping/mass, a = load/mass, each rounded once, and works
  *    from those. A feature that is zero costs nothing and changes no bit. No fused multiply-add, no reordering, no
  *    function of the C library that is not exact: the same bits from every compiler, C library and processor that
- *    follow IEEE 754 (options that do not, such as -ffast-math, are refused where they can be seen).
+ *    follow IEEE 754. Options that do not, such as -ffast-math, are refused where they can be seen; spring_self_test()
+ *    notices the others.
  *  - All or nothing. spring_advance() either happens or leaves the state as it was, and says why.
  *  - dt may be negative, and is never clamped or refused for being unstable: spring_stable_step() tells, you decide.
  *  - Nothing allocates, prints, aborts or keeps anything: every function is re-entrant.

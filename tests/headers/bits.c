@@ -63,7 +63,7 @@ static void print_batches(const char *name, spring_method m, bool damped, bool l
         xf[i] = (float)(x[i] = (i - 70) / 83.0);
         vf[i] = (float)(v[i] = (30 - i) / 59.0);
         wf[i] = (float)(w[i] = (i % 7 + 3) / 1.3);
-        gf[i] = (float)(g[i] = i % 5 == 0 ? 0 : i % 5 == 1 ? 250 : (i % 11 + 1) / 19.0); /* some beyond the limits */
+        gf[i] = (float)(g[i] = i % 5 == 1 ? 0 : i % 5 == 2 ? 250 : (i % 11 + 1) / 19.0); /* some beyond the limits */
         af[i] = (float)(a[i] = (i % 13 - 6) / 1.7);
         if (denormal) {
             x[i] *= to_denormal, v[i] *= to_denormal, a[i] *= to_denormal;
@@ -185,6 +185,7 @@ int main(void)
         {"critical", {1.0, 4.0, 4.0, 0.3}, 0.01}, {"overdamped", {1.7, 0.3, 5.1, 0}, 0.1},
         {"heavy", {7e20, 2e19, 1e17, 3e18}, 0.3}, {"light", {3e-22, 7e-21, 1e-23, 2e-22}, 0.02},
         {"free", {1.3, 0, 0, 0.9}, 0.01},         {"dragged", {1.3, 0, 0.6, 0.9}, 0.01},
+        {"long", {1.3, 2.7, 1e-9, 0.3}, 1e6},
     };
     printf("self-test: %s\n", spring_status_string(spring_self_test()));
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
@@ -201,6 +202,12 @@ int main(void)
             print(spring_stable_step(&cases[i].p, m));
             printf("\n");
         }
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const spring_state s = {0.83, -0.59};
+        printf("%s settles", cases[i].name);
+        print(spring_settling_time(&s, &cases[i].p, 1e-3));
+        printf("\n");
+    }
 
     for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
         const spring_method m = spring_method_at(j);
