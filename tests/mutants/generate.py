@@ -141,7 +141,7 @@ def definitions(text):
 def other_number(text):
     """One more for a small whole number, a thousandth more for any other."""
     hexadecimal = text[:2].lower() == "0x"
-    digits = text.rstrip("uUlL" if hexadecimal else "uUlLfF")
+    digits = text.rstrip("uUlL" if hexadecimal and "p" not in text.lower() else "uUlLfF")
     value = float.fromhex(digits) if hexadecimal else float(digits)
     if value < 1000 and value == int(value):
         value = int(value) + 1
