@@ -3,14 +3,17 @@
  * Many springs: checks, choice of the kernel, and what does not fill a group of vectors.
  */
 #include "batch_kernels.h"
-#include "propagator.h"
 #include "simd/targets.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 enum { largest_vector = 16, largest_group = 8 * largest_vector }; /* springs: 64 bytes, in float */
 
 static const uint32_t known_bits = SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
 
-static bool shared(const spring_batch *b, uint32_t bit)
+static bool is_shared(const spring_batch *b, uint32_t bit)
 {
     return (b->shared & bit) != 0;
 }
@@ -24,7 +27,7 @@ static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_c
 /* Does an array of parameters, if there is one, leave the state alone? */
 static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, uint32_t bit)
 {
-    const size_t count = shared(b, bit) ? 1 : b->count;
+    const size_t count = is_shared(b, bit) ? 1 : b->count;
     return parameter == NULL ||
            (!overlap(b->x, b->count, parameter, count) && !overlap(b->v, b->count, parameter, count));
 }
@@ -32,7 +35,7 @@ static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, u
 /* A parameter of all springs has to be valid before anything happens; one spring's is that spring's business. */
 static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
-    return parameter == NULL || !shared(b, bit) || (isfinite(*parameter) && *parameter >= least);
+    return parameter == NULL || !is_shared(b, bit) || (isfinite(*parameter) && *parameter >= least);
 }
 
 static bool batch_valid(const spring_batch *b)
@@ -59,9 +62,9 @@ static spring_params spring_at(const spring_batch *b, size_t i)
 {
     return (spring_params){
         .mass = 1,
-        .stiffness = (double)element(b->omega2, i, shared(b, SPRING_SHARED_OMEGA2)),
-        .damping = (double)element(b->gamma, i, shared(b, SPRING_SHARED_GAMMA)),
-        .load = (double)element(b->accel, i, shared(b, SPRING_SHARED_ACCEL)),
+        .stiffness = (double)element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)),
+        .damping = (double)element(b->gamma, i, is_shared(b, SPRING_SHARED_GAMMA)),
+        .load = (double)element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL)),
     };
 }
 
@@ -117,7 +120,7 @@ static batch_array array_of(const spring_batch *b, const scalar *parameter, uint
 {
     if (parameter == NULL)
         return (batch_array){NULL, 0};
-    if (!shared(b, bit))
+    if (!is_shared(b, bit))
         return (batch_array){parameter, 1};
     for (size_t i = 0; i < largest_vector; i++)
         same[i] = *parameter;
@@ -150,7 +153,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
     batch_block block = {.dt = dt, .n = n};
     spring_propagator propagator;
-    if (m == SPRING_EXACT && shared(b, SPRING_SHARED_OMEGA2) && (!damped || shared(b, SPRING_SHARED_GAMMA))) {
+    if (m == SPRING_EXACT && is_shared(b, SPRING_SHARED_OMEGA2) && (!damped || is_shared(b, SPRING_SHARED_GAMMA))) {
         const spring_params p = spring_at(b, 0);
         propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
         block.propagator = &propagator;
@@ -168,8 +171,9 @@ scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
     if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
         return NAN;
-    const bool all_shared = shared(b, SPRING_SHARED_OMEGA2) && (b->gamma == NULL || shared(b, SPRING_SHARED_GAMMA)) &&
-                            (b->accel == NULL || shared(b, SPRING_SHARED_ACCEL));
+    const bool all_shared = is_shared(b, SPRING_SHARED_OMEGA2) &&
+                            (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA)) &&
+                            (b->accel == NULL || is_shared(b, SPRING_SHARED_ACCEL));
     const size_t count = all_shared && b->count > 0 ? 1 : b->count;
     double least = INFINITY;
     for (size_t i = 0; i < count; i++) {

@@ -26,6 +26,9 @@
 
 #include "roots.h"
 #include "simd/real.h"
+#ifndef SPRING_FLOAT
+#include "split.h"
+#endif
 
 typedef struct exact_coefficients {
     real half;           /* of E, see exact_halves */
@@ -44,8 +47,6 @@ SPRING_INLINE void exact_step(real *x, real *v, real a, const exact_coefficients
 }
 
 #ifndef SPRING_FLOAT
-#include "simd/elementary.h"
-
 /* 1 - e^x and e^x of -750 <= x <= 0 */
 typedef struct exact_decay {
     real lost, left;

@@ -17,6 +17,7 @@
 #define SPRINGSTEP_FORCE_KERNELS_H
 
 #include "scene_kernels.h"
+#include "simd/quad.h"
 
 /* ---------------------------------------------------------------------------------------------------------- bands */
 
@@ -198,8 +199,8 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
 }
 
 /* The bands' forces on particles from ... to - 1. Those before them have theirs: their forces are in the rings. */
-SPRING_INLINE void bands(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to, uint32_t axes,
-                         bool damped)
+SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to,
+                             uint32_t axes, bool damped)
 {
     ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
@@ -251,7 +252,7 @@ SPRING_INLINE bool edge_pulls(const scene_edges *l, size_t j, bool damped)
 }
 
 /* The edge list, from arrays of each axis. */
-SPRING_INLINE void edges(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
+SPRING_INLINE void all_edges(const scene_links *s, const scalar *x, const scalar *v, uint32_t axes, bool damped)
 {
     const scene_edges *const l = &s->edge_list;
     for (size_t j = 0; j < l->count; j++) {
@@ -379,7 +380,7 @@ SPRING_INLINE void take_forces(const scene_links *s, uint32_t axes, bool damped)
     }
 }
 
-SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *v, bool damped)
+SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, bool damped)
 {
     const size_t at_force = force_in_record(damped);
     if (s->axes == 3)
@@ -394,7 +395,7 @@ SPRING_INLINE void records(const scene_links *s, const scalar *x, const scalar *
 }
 
 /* The forces of a small scene, whose arrays are of quads. */
-SPRING_INLINE void quads(const scene_links *s, const scalar *x, const scalar *v, bool damped)
+SPRING_INLINE void all_quads(const scene_links *s, const scalar *x, const scalar *v, bool damped)
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(s->force + quad_size * i, quad_all(0));

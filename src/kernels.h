@@ -4,7 +4,6 @@
  * names SPRING_BATCH_TABLE and SPRING_SCENE_TABLE. Included once in each of kernels_v128.c, ..., kernelsf_v512.c.
  */
 #define SPRING_SHAPE_BATCH
-#include "simd/targets.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -12,24 +11,19 @@
 #include <stdint.h>
 #include <string.h>
 
-#if SPRING_TARGET_EXISTS
-
 /* How quads are passed depends on the target; they never are, and compilers warn all the same: gcc at the last line. */
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-SPRING_TARGET_BEGIN
+#include "simd/target_begin.h"
 
-#include "batch_kernels.h"
 #include "methods.h"
-#include "scene_kernels.h"
+#include "scene_table.h"
 
 #define BATCH_ROW(value, method) [value] = method##_batch,
-const batch_kernels SPRING_BATCH_TABLE = {.group = group, .method = {SPRING_METHODS(BATCH_ROW)}};
+SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group = group, .method = {SPRING_METHODS(BATCH_ROW)}};
 
-const scene_kernels SPRING_SCENE_TABLE = SCENE_KERNELS;
+SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = SCENE_KERNELS;
 
-SPRING_TARGET_END
-
-#endif
+#include "simd/target_end.h"

@@ -19,7 +19,7 @@
 #include "simd/real.h"
 
 #if defined(SPRING_SHAPE_BATCH)
-#include "batch_kernels.h"
+#include "batch_group.h"
 #elif defined(SPRING_SHAPE_SCENE)
 #include "scene_step.h"
 #endif

@@ -7,6 +7,7 @@
 #define SPRINGSTEP_MOTION_KERNELS_H
 
 #include "scene_kernels.h"
+#include "simd/quad.h"
 #include "solved_kick.h"
 
 /* A vector of coordinates on one axis. */
@@ -162,10 +163,10 @@ SPRING_INLINE mask last_stage_part(const scene_motion *s, const coordinates *c)
     return move_along(s, c, vec_load(s->sum_x + c->at) + dx, vec_load(s->sum_v + c->at) + dv);
 }
 
-#define MOTION_KERNEL(name)                                                                   \
-    static bool name(const scene_particles *p, const scene_motion *s, size_t from, size_t to) \
-    {                                                                                         \
-        return all_coordinates(p, s, from, to, name##_part);                                  \
+#define MOTION_KERNEL(name)                                                                          \
+    static bool move_##name(const scene_particles *p, const scene_motion *s, size_t from, size_t to) \
+    {                                                                                                \
+        return all_coordinates(p, s, from, to, name##_part);                                         \
     }
 
 MOTION_KERNEL(kick_drift)

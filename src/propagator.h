@@ -3,6 +3,8 @@
 #ifndef SPRINGSTEP_PROPAGATOR_H
 #define SPRINGSTEP_PROPAGATOR_H
 
+#include "simd/targets.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -13,10 +15,11 @@ typedef struct spring_propagator {
     double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
 } spring_propagator;
 
-spring_propagator spring_propagator_of(const spring_params *p, double t, bool loaded); /* without loaded, P = 0 */
+SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_params *p, double t,
+                                                       bool loaded); /* without loaded, P = 0 */
 
 /* spring_step_exact(), by value. */
-spring_state spring_exact(spring_state s, const spring_params *p, double t);
+SPRING_INTERNAL spring_state spring_exact(spring_state s, const spring_params *p, double t);
 
 /* Springs that the exact solution moves each by its own coefficients, in double, whatever they are stored in: bitwise
    identical to spring_exact(). One that would not stay finite, or has a negative rate, keeps its state. */
@@ -35,6 +38,9 @@ typedef struct exact_block {
 
 typedef bool exact_kernel(const exact_block *b); /* false: at least one spring has kept its state */
 
-extern exact_kernel spring_exact_v128, spring_exact_v256, spring_exact_v512; /* by bits of a vector */
+SPRING_INTERNAL exact_kernel spring_exact_v128; /* by bits of a vector */
+#if SPRING_LONG_VECTORS
+SPRING_INTERNAL exact_kernel spring_exact_v256, spring_exact_v512;
+#endif
 
 #endif

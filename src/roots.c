@@ -9,6 +9,7 @@
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
  */
 #include "roots.h"
+#include "split.h"
 
 /* n - q d, where q is n/d rounded: a number. */
 static double remainder_of(double n, double d, double q)

@@ -3,7 +3,10 @@
 #ifndef SPRINGSTEP_ROOTS_H
 #define SPRINGSTEP_ROOTS_H
 
-#include "simd/real.h"
+#include "simd/arithmetic.h"
+
+#include <math.h>
+#include <stdbool.h>
 
 #include <springstep/spring.h>
 
@@ -23,33 +26,9 @@ typedef struct spring_quotients {
 } spring_quotients;
 
 /* k, c, m: stiffness, damping, mass. By value: clang 14 would read two at once, and wait for a caller's two stores. */
-spring_quotients spring_quotients_of(double k, double c, double m);
+SPRING_INTERNAL spring_quotients spring_quotients_of(double k, double c, double m);
 
-spring_roots spring_roots_of(const spring_params *p);
-
-#ifndef SPRING_FLOAT
-#include "simd/elementary.h"
-
-/* split = sqrt |w - b^2|; overdamped: w < b^2 */
-typedef struct spring_split {
-    real split;
-    mask overdamped;
-} spring_split;
-
-/* rest: what rounding has taken from w - b^2 before. */
-SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
-{
-    real scale = splat(1), back = splat(1);
-    const mask large = (b > 0x1p400) | (w > 0x1p800), small = (b < 0x1p-400) & (w < 0x1p-800);
-    if (SPRING_UNLIKELY(any(large | small))) { /* squares, or their errors, might overflow or underflow */
-        scale = select_real(large, splat(0x1p-700), select_real(small, splat(0x1p600), scale));
-        back = select_real(large, splat(0x1p700), select_real(small, splat(0x1p-600), back));
-    }
-    const real c = b * scale, square = c * c;
-    const real D = (((w * scale) * scale - square) - square_error(c, square)) + (rest * scale) * scale;
-    return (spring_split){vec_sqrt(vec_abs(D)) * back, D < 0};
-}
-#endif
+SPRING_INTERNAL spring_roots spring_roots_of(const spring_params *p);
 
 static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an overdamped spring */
 {

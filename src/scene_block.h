@@ -7,6 +7,7 @@
 #define SPRINGSTEP_SCENE_BLOCK_H
 
 #include "scene_kernels.h"
+#include "simd/quad.h"
 
 enum {
     stage_buffer = 2,
@@ -84,8 +85,8 @@ struct spring_scene {
 };
 
 /* spring_scene_advance() with a given instruction set, for tests. */
-spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
-                                        uint64_t n);
+SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m,
+                                                        double dt, uint64_t n);
 
 /* A quantity of all particles, one axis: that of particle i at plan.step * i. */
 SPRING_INLINE scalar *scene_axis(const spring_scene *s, size_t offset, uint32_t axis)

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The kernels of a scene: loops over its links (force_kernels.h) and over its particles (motion_kernels.h), in the
- * vectors that real.h is set to.
- */
+/* What the kernels of a scene work on, and their table: loops over its links and over its particles. */
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
-#include "simd/quad.h"
+#include "simd/scalar.h"
+#include "simd/targets.h"
 #include "twins.h"
+
+#include <stdbool.h>
+#include <stddef.h>
 
 enum {
     padding = 16,    /* elements of the longest vector; so many stand before and behind a quantity */
@@ -93,76 +94,9 @@ typedef struct scene_kernels {
     scene_motion_kernel *last_stage;        /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
 } scene_kernels;
 
-extern const scene_kernels spring_scene_v128, spring_scene_v256, spring_scene_v512; /* by bits of a vector */
-
-#ifdef SPRING_VECTOR
-
-#include "force_kernels.h"
-#include "motion_kernels.h"
-
-/* ------------------------------------------------------------------------------------------------------ the table */
-
-#define BAND_KERNELS(axes)                                                                                            \
-    static void bands_##axes(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to)          \
-    {                                                                                                                 \
-        bands(s, x, v, from, to, axes, false);                                                                        \
-    }                                                                                                                 \
-    static void bands_##axes##_damped(const scene_links *s, const scalar *x, const scalar *v, size_t from, size_t to) \
-    {                                                                                                                 \
-        bands(s, x, v, from, to, axes, true);                                                                         \
-    }
-
-BAND_KERNELS(1)
-BAND_KERNELS(2)
-BAND_KERNELS(3)
-
-#define FORCE_KERNELS(kernel, axes)                                                              \
-    static void kernel##_##axes(const scene_links *s, const scalar *x, const scalar *v)          \
-    {                                                                                            \
-        kernel(s, x, v, axes, false);                                                            \
-    }                                                                                            \
-    static void kernel##_##axes##_damped(const scene_links *s, const scalar *x, const scalar *v) \
-    {                                                                                            \
-        kernel(s, x, v, axes, true);                                                             \
-    }
-
-FORCE_KERNELS(edges, 1)
-FORCE_KERNELS(edges, 2)
-FORCE_KERNELS(edges, 3)
-
-#define QUAD_KERNELS(kernel)                                                            \
-    static void kernel##_plain(const scene_links *s, const scalar *x, const scalar *v)  \
-    {                                                                                   \
-        kernel(s, x, v, false);                                                         \
-    }                                                                                   \
-    static void kernel##_damped(const scene_links *s, const scalar *x, const scalar *v) \
-    {                                                                                   \
-        kernel(s, x, v, true);                                                          \
-    }
-
-QUAD_KERNELS(records)
-QUAD_KERNELS(quads)
-
-/* clang-format off */
-#define FORCE_TABLE(kernel, axes) {kernel##_##axes, kernel##_##axes##_damped}
-#define SCENE_KERNELS { \
-    .small = SPRING_VECTOR <= sizeof(quad) ? &SPRING_SCENE_TABLE \
-             : sizeof(quad) == 32          ? &spring_scene_v256 \
-                                           : &spring_scene_v128, \
-    .bands = {FORCE_TABLE(bands, 1), FORCE_TABLE(bands, 2), FORCE_TABLE(bands, 3)}, \
-    .edges = {FORCE_TABLE(edges, 1), FORCE_TABLE(edges, 2), FORCE_TABLE(edges, 3)}, \
-    .records = {records_plain, records_damped}, \
-    .quads = {quads_plain, quads_damped}, \
-    .kick_drift = {{kick_drift, kick_drift_predict}, {kick_kick_drift, kick_kick_drift_predict}}, \
-    .solved_kick = solved_kick, \
-    .solved_kick_drift = solved_kick_drift, \
-    .stage = stage, \
-    .first_stage = first_stage, \
-    .next_stage = next_stage, \
-    .last_stage = last_stage, \
-}
-/* clang-format on */
-
+SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a vector */
+#if SPRING_LONG_VECTORS
+SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;
 #endif
 
 #endif

@@ -14,7 +14,7 @@
 #include <limits.h>
 
 #define SCENE_ROW(value, method) [value] = &method##_scene,
-const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(SCENE_ROW)};
+SPRING_TABLE const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(SCENE_ROW)};
 
 /* ------------------------------------------------------------------------------------------------------- steps */
 

@@ -40,7 +40,7 @@ typedef struct scene_method {
     unsigned stores; /* SCENE_STORES_... */
 } scene_method;
 
-extern const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT];
+SPRING_INTERNAL const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT];
 
 static inline bool scene_callback_uses_velocity(const spring_scene *s)
 {

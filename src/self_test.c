@@ -46,26 +46,27 @@ static uint64_t digest_of(uint64_t digest, double number)
     return digest;
 }
 
-enum { steps = 7 };
-static const double dt = 0.23, mass = 1.3, stiffness = 2.7, x0 = 0.3, v0 = -0.7;
+enum { test_steps = 7 };
+static const double test_dt = 0.23, test_mass = 1.3, test_stiffness = 2.7, test_x = 0.3, test_v = -0.7;
 
 /* In batches the second spring overflows, unless the method is stable whatever the step. */
 static uint64_t digest_of_springs(uint64_t digest, spring_method m)
 {
-    const spring_params p = {mass, stiffness, 0.6, 0.4};
-    spring_state s = {x0, v0};
-    spring_advance(&s, &p, m, dt, steps);
+    const spring_params p = {test_mass, test_stiffness, 0.6, 0.4};
+    spring_state s = {test_x, test_v};
+    spring_advance(&s, &p, m, test_dt, test_steps);
     digest = digest_of(digest_of(digest, s.x), s.v);
 
-    double x[] = {x0, x0}, v[] = {v0, v0};
-    const double w[] = {stiffness / mass, 1e150}, g[] = {0.6 / mass, 1e100}, a[] = {0.4 / mass, 0};
+    double x[] = {test_x, test_x}, v[] = {test_v, test_v};
+    const double w[] = {test_stiffness / test_mass, 1e150}, g[] = {0.6 / test_mass, 1e100}, a[] = {0.4 / test_mass, 0};
     const spring_batch b = {2, x, v, w, g, a, 0};
-    digest = digest_of(digest, spring_batch_advance(&b, m, dt, steps));
+    digest = digest_of(digest, spring_batch_advance(&b, m, test_dt, test_steps));
 
-    float xf[] = {(float)x0 * 0x1p-131F, (float)x0}, vf[] = {(float)v0 * 0x1p-131F, (float)v0}; /* the first denormal */
+    float xf[] = {(float)test_x * 0x1p-131F, (float)test_x},
+          vf[] = {(float)test_v * 0x1p-131F, (float)test_v}; /* the first denormal */
     const float wf[] = {(float)w[0], 1e30F}, gf[] = {(float)g[0], 1e20F};
     const spring_batchf bf = {2, xf, vf, wf, gf, NULL, 0};
-    digest = digest_of(digest, spring_batchf_advance(&bf, m, (float)dt, steps));
+    digest = digest_of(digest, spring_batchf_advance(&bf, m, (float)test_dt, test_steps));
     for (int i = 0; i < 2; i++)
         digest = digest_of(digest_of(digest_of(digest_of(digest, x[i]), v[i]), (double)xf[i]), (double)vf[i]);
     return digest;
@@ -73,22 +74,22 @@ static uint64_t digest_of_springs(uint64_t digest, spring_method m)
 
 static uint64_t digest_of_scene(uint64_t digest, spring_method m)
 {
-    const spring_link link = {.a = 0, .b = 1, .rest = 1.25, .stiffness = stiffness};
+    const spring_link link = {.a = 0, .b = 1, .rest = 1.25, .stiffness = test_stiffness};
     _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 14];
-    double position[] = {x0, v0, 1 - x0, 1 + v0};
+    double position[] = {test_x, test_v, 1 - test_x, 1 + test_v};
     const spring_scene_def def = {.axes = 2,
                                   .methods = 1u << m,
                                   .particles = 2,
                                   .links = 1,
                                   .position = position,
-                                  .mass_all = mass,
+                                  .mass_all = test_mass,
                                   .link = &link,
                                   .gravity = {0, -9.81},
                                   .drag = 0.6};
     spring_scene *s;
     if (spring_scene_init(memory, sizeof memory, &def, &s) != SPRING_OK)
         return 0;
-    spring_scene_advance(s, m, dt, steps);
+    spring_scene_advance(s, m, test_dt, test_steps);
     spring_scene_get(s, SPRING_POSITION, position, 0, 0, def.particles);
     for (int i = 0; i < 4; i++)
         digest = digest_of(digest, position[i]);

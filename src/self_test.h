@@ -3,9 +3,11 @@
 #ifndef SPRINGSTEP_SELF_TEST_H
 #define SPRINGSTEP_SELF_TEST_H
 
+#include "simd/arithmetic.h"
+
 #include <springstep/spring.h>
 
-uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
-uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right */
+SPRING_INTERNAL uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
+SPRING_INTERNAL uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right */
 
 #endif

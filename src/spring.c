@@ -7,7 +7,7 @@
 #include "self_test.h"
 
 #define ONE_ROW(value, method) [value] = &method##_one,
-static const one_method *const methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(ONE_ROW)};
+static const one_method *const all_methods[SPRING_METHOD_COUNT] = {SPRING_METHODS(ONE_ROW)};
 
 #define ORDER_ROW(value, method) value,
 static const spring_method table_order[] = {SPRING_METHODS(ORDER_ROW)};
@@ -17,12 +17,12 @@ _Static_assert(sizeof table_order / sizeof table_order[0] == SPRING_METHOD_COUNT
 static const one_method *find_method(spring_method m)
 {
     const size_t index = (size_t)m; /* a negative value becomes a large one */
-    return index < SPRING_METHOD_COUNT ? methods[index] : NULL;
+    return index < SPRING_METHOD_COUNT ? all_methods[index] : NULL;
 }
 
 uint64_t spring_expected_digest(spring_method m)
 {
-    return methods[m]->digest;
+    return all_methods[m]->digest;
 }
 
 static bool finite_state(spring_state s)

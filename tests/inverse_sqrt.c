@@ -9,9 +9,9 @@
 
 #include "simd/targets.h"
 
-#if SPRING_TARGET_EXISTS
+#if SPRING_VECTOR == 16 || SPRING_LONG_VECTORS
 
-SPRING_TARGET_BEGIN
+#include "simd/target_begin.h"
 
 #include "simd/real.h"
 
@@ -33,6 +33,6 @@ void INVERSE_SQRT(scalar *a, const int8_t *where, size_t count)
     }
 }
 
-SPRING_TARGET_END
+#include "simd/target_end.h"
 
 #endif

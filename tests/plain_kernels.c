@@ -13,8 +13,6 @@
 #include <springstep/batch.h>
 #include <springstep/scene.h>
 
-#include "propagator.h"
-
 #if defined(__clang__)
 #pragma clang diagnostic ignored "-Wbitwise-instead-of-logical" /* a mask is a bool here */
 #elif defined(__GNUC__)
@@ -22,6 +20,7 @@
 #endif
 #undef __clang__
 #undef __GNUC__
+#include "propagator.h"
 #define SPRING_VECTOR       16
 #define SPRING_BATCH_TABLE  plain_batch
 #define SPRING_SCENE_TABLE  plain_scene

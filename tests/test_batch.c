@@ -772,7 +772,7 @@ static void choose(const char *name)
     kernels = &spring_batch_v128;
     if (strcmp(name, "v128") == 0)
         return;
-#if SPRING_X86_64
+#if SPRING_LONG_VECTORS
     const bool wide = strcmp(name, "v512") == 0;
     kernels = wide ? &spring_batch_v512 : &spring_batch_v256;
     if (wide && !(__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")))

@@ -28,7 +28,7 @@ enum { vector_count = 3, block = 1024 };
 /* By ascending length; NULL: this processor lacks the instructions. */
 static inverse_sqrt_fn *in_vectors(int i)
 {
-#if SPRING_X86_64
+#if SPRING_LONG_VECTORS
     if (i == 1)
         return __builtin_cpu_supports("avx2") ? inverse_sqrt_v256 : NULL;
     if (i == 2)

@@ -28,7 +28,7 @@ enum { kernel_count = 4 };
 /* By ascending length of the vectors, and without vectors; NULL: this processor lacks the instructions. */
 SPRING_INLINE const scene_kernels *kernels_of(int i)
 {
-#if SPRING_X86_64
+#if SPRING_LONG_VECTORS
     if (i == 1)
         return __builtin_cpu_supports("avx2") ? &spring_scene_v256 : NULL;
     if (i == 2)

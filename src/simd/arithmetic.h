@@ -31,6 +31,12 @@
 _Static_assert((long long)9007199254740991.0 == 9007199254740991,
                "springstep needs constants in double: compile it without -fsingle-precision-constant");
 
+/* What the sources share and programs do not see: declarations, and definitions of tables. */
+#ifndef SPRING_INTERNAL
+#define SPRING_INTERNAL extern
+#define SPRING_TABLE
+#endif
+
 /* Vectors of GNU C. On 32-bit ARM those of floats would be instructions that take denormal numbers for 0. */
 #ifndef SPRING_VECTORS
 #if defined(__GNUC__) && !defined(__arm__)

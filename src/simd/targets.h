@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * Instruction sets: which functions are compiled for which, and which of them this processor has.
- *
- * Targets are set by pragma, not by flags of the build, so the sources of src compile alone, without flags.
- */
+/* Instruction sets: for which there are kernels, and which of them this processor has. */
 #ifndef SPRINGSTEP_TARGETS_H
 #define SPRINGSTEP_TARGETS_H
 
@@ -21,33 +17,6 @@
 #define SPRING_LONG_VECTORS 1
 #else
 #define SPRING_LONG_VECTORS 0
-#endif
-
-/* SPRING_TARGET_BEGIN ... SPRING_TARGET_END: functions between them use the instructions for vectors of SPRING_VECTOR
-   bytes. SPRING_TARGET_EXISTS: there are such instructions. */
-#if !defined(SPRING_VECTOR) || SPRING_VECTOR == 16
-#define SPRING_TARGET_EXISTS 1
-#define SPRING_TARGET_BEGIN
-#define SPRING_TARGET_END
-#elif !SPRING_LONG_VECTORS
-#define SPRING_TARGET_EXISTS 0
-#else
-#define SPRING_TARGET_EXISTS 1
-#if SPRING_VECTOR == 64
-#define SPRING_TARGET "avx512f,avx512dq,avx512vl"
-#else
-#define SPRING_TARGET "avx2"
-#endif
-#define SPRING_PRAGMA(text) _Pragma(#text)
-#if defined(__clang__)
-#define SPRING_TARGET_PRAGMA(set) SPRING_PRAGMA(clang attribute push(__attribute__((target(set))), apply_to = function))
-#define SPRING_TARGET_BEGIN       SPRING_TARGET_PRAGMA(SPRING_TARGET)
-#define SPRING_TARGET_END         _Pragma("clang attribute pop")
-#else
-#define SPRING_TARGET_PRAGMA(set) _Pragma("GCC push_options") SPRING_PRAGMA(GCC target(set))
-#define SPRING_TARGET_BEGIN       SPRING_TARGET_PRAGMA(SPRING_TARGET)
-#define SPRING_TARGET_END         _Pragma("GCC pop_options")
-#endif
 #endif
 
 /* Of three tables of kernels, for vectors of 16, 32 and 64 bytes, the widest that the processor has instructions for:

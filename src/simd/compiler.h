@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* What compilers are told beyond C. */
+#ifndef SPRINGSTEP_COMPILER_H
+#define SPRINGSTEP_COMPILER_H
+
+#if defined(__GNUC__)
+#define SPRING_INLINE              static inline __attribute__((always_inline)) /* constant flags vanish at -O1 too */
+#define SPRING_NOINLINE            static __attribute__((noinline))             /* kept out of the code that runs */
+#define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
+#define SPRING_PREFETCH(address)   __builtin_prefetch(address)
+#else
+#define SPRING_INLINE              static inline
+#define SPRING_NOINLINE            static
+#define SPRING_UNLIKELY(condition) (condition)
+#define SPRING_PREFETCH(address)   (void)(address)
+#endif
+
+/* Before a loop whose arrays are to live in registers. */
+#if defined(__clang__)
+#define SPRING_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define SPRING_UNROLL _Pragma("GCC unroll 8")
+#else
+#define SPRING_UNROLL
+#endif
+
+/* Before a loop with a long body, which is to be there once. */
+#if defined(__clang__)
+#define SPRING_ROLLED _Pragma("clang loop unroll(disable)")
+#elif defined(__GNUC__)
+#define SPRING_ROLLED _Pragma("GCC unroll 1")
+#else
+#define SPRING_ROLLED
+#endif
+
+/* For tools/bench/instructions, which looks for it in the assembly: the innermost loop around this is a hot one, and a
+   pass through it does so many ("link", 8) of a thing. It stands behind what ends a pass early. */
+#ifdef SPRING_MCA
+#define SPRING_HOT_LOOP(thing, count) __asm__ volatile("# hot loop: " thing " %c0" : : "i"(count))
+#else
+#define SPRING_HOT_LOOP(thing, count) ((void)0)
+#endif
+
+#endif

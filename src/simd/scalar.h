@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* The number that springs are stored in: double, or with SPRING_FLOAT float. */
+#ifndef SPRINGSTEP_SCALAR_H
+#define SPRINGSTEP_SCALAR_H
+
+#include <stdint.h>
+
+#ifdef SPRING_FLOAT
+typedef float scalar;
+typedef int32_t scalar_bits;
+#else
+typedef double scalar;
+typedef int64_t scalar_bits;
+#endif
+
+#endif
