@@ -56,11 +56,17 @@ static double euler_stable_step(const spring_roots *r)
     return INFINITY;
 }
 
+static step_terms euler_terms(step_rates r)
+{
+    return exponential_terms(r, 1);
+}
+
 static const one_method euler_one = {
     .info = {.name = "euler", .order = 1, .forces_per_step = 1, .springs = true, .scenes = true, .label = "Euler"},
     .kernel = spring_step_euler,
     .loop = {{euler_plain, euler_loaded}, {euler_damped, euler_damped_loaded}},
     .stable_step = euler_stable_step,
+    .terms = euler_terms,
     .digest = UINT64_C(0x6787cf92808bbfe2),
 };
 

@@ -89,6 +89,15 @@ static double leapfrog_stable_step(const spring_roots *r)
     return 2 / r->omega; /* IEEE 754: infinite without stiffness */
 }
 
+static step_terms leapfrog_terms(step_rates r)
+{
+    const double a = r.a, c = r.c, q = r.G / 2, W = a * c;
+    return (step_terms){
+        .share = 0.5,
+        .term = {{1, 0, 0, 1}, {q, a, -c, -q}, {-W / 2, 0, 0, -W / 2}, {-q * W / 2, -q * q * a, c * W / 4, q * W / 2}},
+    };
+}
+
 static const one_method leapfrog_one = {
     .info = {.name = "leapfrog",
              .order = 2,
@@ -100,6 +109,7 @@ static const one_method leapfrog_one = {
     .kernel = spring_step_leapfrog,
     .loop = {{leapfrog_plain, leapfrog_loaded}, {leapfrog_damped, leapfrog_damped_loaded}},
     .stable_step = leapfrog_stable_step,
+    .terms = leapfrog_terms,
     .digest = UINT64_C(0x4f14f334987d813a),
 };
 

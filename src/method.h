@@ -17,6 +17,7 @@
 #include "rates.h"
 #include "roots.h"
 #include "simd/real.h"
+#include "step_terms.h"
 
 #if defined(SPRING_SHAPE_BATCH)
 #include "batch_group.h"
@@ -32,6 +33,7 @@ typedef struct one_method {
     spring_step_fn *kernel;
     spring_loop *loop[2][2];                      /* by damped, loaded; NULL: n steps are one evaluation over n dt */
     double (*stable_step)(const spring_roots *r); /* [s] */
+    step_terms_fn *terms;                         /* NULL: a step has no error but rounding */
     uint64_t digest;                              /* see self_test.c */
 } one_method;
 

@@ -112,11 +112,17 @@ static double rk4_stable_step(const spring_roots *r)
     return INFINITY;
 }
 
+static step_terms rk4_terms(step_rates r)
+{
+    return exponential_terms(r, 4);
+}
+
 static const one_method rk4_one = {
     .info = {.name = "rk4", .order = 4, .forces_per_step = 4, .springs = true, .scenes = true, .label = "RK4"},
     .kernel = spring_step_rk4,
     .loop = {{rk4_plain, rk4_loaded}, {rk4_damped, rk4_damped_loaded}},
     .stable_step = rk4_stable_step,
+    .terms = rk4_terms,
     .digest = UINT64_C(0x3642d6157857a437),
 };
 

@@ -3,6 +3,7 @@
  * One spring: checks, dispatch, and the questions one can ask of it.
  */
 #define SPRING_SHAPE_ONE
+#include "accuracy.h"
 #include "methods.h"
 #include "self_test.h"
 
@@ -77,6 +78,47 @@ double spring_stable_step(const spring_params *p, spring_method m)
         return NAN;
     const spring_roots r = spring_roots_of(p);
     return method->stable_step(&r);
+}
+
+/* Of valid parameters; in (x, v/Omega), Omega the larger of omega and 1/duration. */
+static accuracy accuracy_of(const spring_params *p, const one_method *method, double duration)
+{
+    const spring_rates r = spring_rates_of(p);
+    const double angle = spring_sqrt(r.w) * duration;
+    return (accuracy){
+        .terms = method->terms,
+        .order = method->info.order,
+        .whole = {.a = fmax(angle, 1), .c = fmin(angle, 1) * angle, .G = r.g * duration},
+    };
+}
+
+static bool positive(double a)
+{
+    return a > 0 && isfinite(a);
+}
+
+double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance)
+{
+    const one_method *method = find_method(m);
+    if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) ||
+        !positive(tolerance))
+        return NAN;
+    if (method->terms == NULL)
+        return duration;
+    const accuracy of = accuracy_of(p, method, duration);
+    return duration / spring_accurate_steps(&of, tolerance);
+}
+
+double spring_step_error(const spring_params *p, spring_method m, double duration, double dt)
+{
+    const one_method *method = find_method(m);
+    if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) || !positive(dt))
+        return NAN;
+    if (method->terms == NULL)
+        return 0;
+    const accuracy of = accuracy_of(p, method, duration);
+    const double steps = duration / dt, slack = 1 + 4 * DBL_EPSILON; /* of the quotient: n steps of duration/n are n */
+    return spring_error_of(&of, steps, fmax(1, floor(steps * slack)));
 }
 
 static spring_params params_of(double omega, double damping_ratio)

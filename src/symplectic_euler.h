@@ -62,6 +62,11 @@ static double symplectic_euler_stable_step(const spring_roots *r)
     return r->omega > 0 ? 2 / r->omega * ((r->b + spring_hypot(r->b, r->omega)) / r->omega) : INFINITY;
 }
 
+static step_terms symplectic_euler_terms(step_rates r)
+{
+    return (step_terms){.share = 1, .term = {{1, 0, 0, 1}, {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
+}
+
 static const one_method symplectic_euler_one = {
     .info = {.name = "symplectic-euler",
              .order = 1,
@@ -74,6 +79,7 @@ static const one_method symplectic_euler_one = {
     .loop = {{symplectic_euler_plain, symplectic_euler_loaded},
              {symplectic_euler_damped, symplectic_euler_damped_loaded}},
     .stable_step = symplectic_euler_stable_step,
+    .terms = symplectic_euler_terms,
     .digest = UINT64_C(0x6cfdd78e15b74620),
 };
 

@@ -207,6 +207,38 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 
 /**
+ * The step that is accurate enough: the error of a method stays within a tolerance, for every start.
+ *
+ * The error of n steps of h is, over the size |(x, v/Omega)| of the start and for the worst start,
+ *
+ *     E = the largest |(x, v/Omega) - exact| after any i <= n steps,   Omega = max(omega, 1/duration)
+ *
+ * where x is measured from the rest position. The answer is duration/n with the least n for which that is at most the
+ * tolerance, and is so for every larger n. It is computed from the method's matrix, without a run. The worst start of a
+ * heavily damped spring is along its fast root, which then rules: for a start at rest longer steps would do.
+ *
+ * @param[in] duration   > 0 [s]
+ * @param[in] tolerance  > 0, relative to the start
+ * @return step [s]. 0: none, since the rounding of n steps, sqrt(n) eps, exceeds the tolerance. `duration` for the exact
+ *         solution. NaN for bad input, and a method that is not for one spring
+ * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
+ *                (tests/test_accurate_step.c)
+ * @par Source    src/accuracy.c derives the error
+ */
+SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance);
+
+/**
+ * The error E of a step that one has: see spring_accurate_step().
+ *
+ * @param[in] duration  > 0 [s]; of at least one step
+ * @param[in] dt        > 0 [s]
+ * @return E without rounding; 0 for the exact solution, INFINITY where it overflows. NaN for bad input, and a method that
+ *         is not for one spring
+ * @par Accuracy  E < 0.5 is within 0.999 ... 1.05 of that of a run (tests/test_accurate_step.c)
+ */
+SPRING_API double spring_step_error(const spring_params *p, spring_method m, double duration, double dt);
+
+/**
  * Parameters from how the spring should feel: undamped frequency and damping ratio, mass 1 kg.
  *
  * @param[in] hertz          undamped frequency >= 0 [Hz]

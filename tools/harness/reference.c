@@ -293,6 +293,116 @@ void reference_mode(spring_method m, long double omega, double h, uint64_t n, lo
     affine_clear(&f);
 }
 
+/* ------------------------------------------------------------------------------------------------ the worst error */
+
+static void unrounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
+{
+    iterate_rates r;
+    mpfr_t h;
+    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+    mpfr_set_d(r.w, p->stiffness, nearest);
+    mpfr_div_d(r.w, r.w, p->mass, nearest);
+    mpfr_set_d(r.g, p->damping, nearest);
+    mpfr_div_d(r.g, r.g, p->mass, nearest);
+    mpfr_set_zero(r.a, 1);
+    mpfr_set_d(h, dt, nearest);
+    step_map(f, m, &r, h);
+    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+}
+
+typedef struct wide_matrix {
+    long double m[2][2];
+} wide_matrix;
+
+/* a - b, in (x, v/frequency); b may be NULL */
+static wide_matrix wide_difference(const affine *a, const affine *b, double frequency)
+{
+    wide_matrix wide;
+    mpfr_t d;
+    mpfr_init2(d, precision);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+            mpfr_set(d, a->m[i][j], nearest);
+            if (b != NULL)
+                mpfr_sub(d, d, b->m[i][j], nearest);
+            if (i < j)
+                mpfr_mul_d(d, d, frequency, nearest);
+            else if (i > j)
+                mpfr_div_d(d, d, frequency, nearest);
+            wide.m[i][j] = mpfr_get_ld(d, nearest);
+        }
+    mpfr_clear(d);
+    return wide;
+}
+
+/* a b + c d, where c may be NULL */
+static wide_matrix wide_products(const wide_matrix *a, const wide_matrix *b, const wide_matrix *c, const wide_matrix *d)
+{
+    wide_matrix sum;
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) {
+            sum.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j];
+            if (c != NULL)
+                sum.m[i][j] += c->m[i][0] * d->m[0][j] + c->m[i][1] * d->m[1][j];
+        }
+    return sum;
+}
+
+static double wide_norm(const wide_matrix *a)
+{
+    return (double)((hypotl(a->m[0][0] + a->m[1][1], a->m[0][1] - a->m[1][0]) +
+                     hypotl(a->m[0][0] - a->m[1][1], a->m[0][1] + a->m[1][0])) /
+                    2);
+}
+
+double reference_worst_error(const spring_params *p, spring_method m, double frequency, double h, uint64_t n,
+                             uint64_t stride)
+{
+    enum { BLOCK = 1024 };
+    affine step, last, leap, leap_exact, block, block_exact, now, now_exact;
+    affine *const all[] = {&step, &last, &leap, &leap_exact, &block, &block_exact, &now, &now_exact};
+    const size_t count = sizeof all / sizeof all[0];
+    for (size_t i = 0; i < count; i++)
+        affine_init(all[i]);
+    spring_params unloaded = *p;
+    unloaded.load = 0;
+    unrounded_step_map(&step, p, m, h);
+    solution_map(&now_exact, &unloaded, h);
+    affine_set(&last, &step);
+    affine_power(&last, n);
+    affine_set(&leap, &step);
+    affine_power(&leap, stride);
+    affine_set(&leap_exact, &now_exact);
+    affine_power(&leap_exact, stride);
+    affine_set(&block, &leap);
+    affine_power(&block, BLOCK);
+    affine_set(&block_exact, &leap_exact);
+    affine_power(&block_exact, BLOCK);
+    affine_set(&now, &now_exact); /* last exact, for a moment */
+    affine_power(&now, n);
+    wide_matrix error = wide_difference(&last, &now, frequency);
+    double most = wide_norm(&error);
+
+    const wide_matrix R = wide_difference(&leap, NULL, frequency), F = wide_difference(&leap_exact, NULL, frequency);
+    const wide_matrix D = wide_difference(&leap, &leap_exact, frequency);
+    affine_set(&now, &leap);
+    affine_set(&now_exact, &leap_exact);
+    for (uint64_t i = stride; i <= n;) {
+        error = wide_difference(&now, &now_exact, frequency);
+        wide_matrix exact = wide_difference(&now_exact, NULL, frequency);
+        for (int k = 0; k < BLOCK && i <= n; k++, i += stride) {
+            most = fmax(most, wide_norm(&error));
+            error = wide_products(&R, &error, &D, &exact);
+            exact = wide_products(&F, &exact, NULL, NULL);
+        }
+        affine_compose(&now, &block, &now);
+        affine_compose(&now_exact, &block_exact, &now_exact);
+    }
+    for (size_t i = 0; i < count; i++)
+        affine_clear(all[i]);
+    return most;
+}
+
 /* ------------------------------------------------------------------------------------------------ steps as a turn */
 
 /* With g^2 = det M and cos(angle) = trace/(2 g):   M = g (cos(angle) + sin(angle) J) */

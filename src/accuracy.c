@@ -1,0 +1,421 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How wrong n steps of a method are on a linear spring, whatever the start, and how many steps are accurate enough.
+ *
+ * Method    On (x, v/Omega) a step is a matrix R, and the exact solution over a step is F = e^Z, so
+ *
+ *               E(n) = max over i <= n of |R^i - F^i|, the spectral norm.
+ *
+ *           R - F is small beside R: it is a power series in the step whose first terms cancel exactly, those up to the
+ *           order, and is summed without them. What is carried from i to i + k steps is the advance F^i - 1 and the
+ *           error R^i - F^i, by products that cancel nothing:
+ *
+ *               R^(i+k) - F^(i+k) = R^i (R^k - F^k) + (R^i - F^i) F^k
+ *
+ *           The maximum is looked for at every i while they are few; at so many times that there are enough of them in
+ *           a period while periods are few; else at times in geometric progression, and there over all phases of the
+ *           oscillation (envelope_at()), which is never below the error, and above it by a few parts in a hundred.
+ * Search    E grows with the step, and is searched for the tolerance by its power law. Where damping is solved for,
+ *           coarse steps may jump over a fast decay and be better than fine ones (symplectic Euler with heavy damping).
+ *           So the search begins at a step that is short beside every time scale, where the power law holds, and goes
+ *           from there to coarser ones no faster than by half, until one is not accurate enough.
+ * Rounding  n steps add about sqrt(n) eps.
+ * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
+ *           (tests/test_accurate_step.c)
+ * Source    Golub, Van Loan, Matrix Computations (2013), section 9.3 (the exponential by scaling and squaring);
+ *           Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.3 (how errors add up)
+ */
+#include "accuracy.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "roots.h"
+
+static const spring_matrix identity = {1, 0, 0, 1};
+
+/* i steps: F^i - 1 and R^i - F^i. */
+typedef struct run {
+    spring_matrix advance, error;
+} run;
+
+static spring_matrix plus(spring_matrix p, spring_matrix q)
+{
+    return matrix_sum(p, 1, q);
+}
+
+/* |p| + |q|, with the matrix as the map z -> p z + q conj(z) of complex numbers z = x + i v/Omega. */
+typedef struct turns {
+    double p[2], q[2];
+} turns;
+
+static turns turns_of(spring_matrix m)
+{
+    return (turns){{(m.xx + m.vv) / 2, (m.vx - m.xv) / 2}, {(m.xx - m.vv) / 2, (m.vx + m.xv) / 2}};
+}
+
+static double norm_of(spring_matrix m)
+{
+    const turns t = turns_of(m);
+    const double p = t.p[0] * t.p[0] + t.p[1] * t.p[1], q = t.q[0] * t.q[0] + t.q[1] * t.q[1];
+    return spring_sqrt(p) + spring_sqrt(q);
+}
+
+/* The run of i + k steps, of those of i and of k. */
+static run joined(run i, run k)
+{
+    const spring_matrix step = plus(i.advance, i.error);
+    return (run){
+        plus(plus(i.advance, k.advance), matrix_product(i.advance, k.advance)),
+        plus(plus(k.error, matrix_product(step, k.error)), plus(i.error, matrix_product(i.error, k.advance))),
+    };
+}
+
+/* -------------------------------------------------------------------------------------------------------- one step */
+
+static step_rates rates_of(const accuracy *of, double steps)
+{
+    return (step_rates){of->whole.a / steps, of->whole.c / steps, of->whole.G / steps};
+}
+
+/* Up to this size of Z the power series are summed. */
+static const double series_limit = 1;
+
+/* The first term that is left out is 1/22! of the sum. */
+enum { SERIES_TERMS = 22 };
+
+static double size_of(step_rates r)
+{
+    return fmax(r.a, r.G);
+}
+
+/* e^Z - 1: the series of Z/2^k, and (1 + P)^2 - 1 = 2 P + P^2, k times. */
+static spring_matrix exact_advance(step_rates r)
+{
+    int halvings = 0;
+    for (; size_of(r) > series_limit; halvings++)
+        r = (step_rates){r.a / 2, r.c / 2, r.G / 2};
+    const spring_matrix Z = matrix_of(r);
+    spring_matrix power = Z, sum = Z;
+    for (int k = 2; k < SERIES_TERMS; k++) {
+        power = next_power(power, Z, k);
+        sum = plus(sum, power);
+    }
+    for (; halvings > 0; halvings--)
+        sum = plus(plus(sum, sum), matrix_product(sum, sum));
+    return sum;
+}
+
+/* R - F by the series; with q = share G
+       (1 + q) (R - F) = sum over k > order of term[k] - Z^k/k! - q Z^(k-1)/(k-1)! */
+static spring_matrix short_error(const step_terms *t, step_rates r, int order)
+{
+    const spring_matrix Z = matrix_of(r);
+    const double q = t->share * r.G;
+    spring_matrix power = identity, sum = {0};
+    for (int k = 1; k < SERIES_TERMS; k++) {
+        const spring_matrix before = power;
+        power = next_power(power, Z, k);
+        if (k <= order)
+            continue;
+        const spring_matrix exact = matrix_sum(power, q, before);
+        sum = plus(sum, k < STEP_TERMS ? matrix_sum(t->term[k], -1, exact) : matrix_sum((spring_matrix){0}, -1, exact));
+    }
+    return matrix_sum((spring_matrix){0}, 1 / (1 + q), sum);
+}
+
+/* R - F = (R - 1) - (F - 1) */
+static spring_matrix long_error(const step_terms *t, step_rates r, spring_matrix advance)
+{
+    const double q = t->share * r.G;
+    spring_matrix sum = matrix_sum(t->term[1], -q, identity);
+    for (int k = 2; k < STEP_TERMS; k++)
+        sum = plus(sum, t->term[k]);
+    return matrix_sum(matrix_sum((spring_matrix){0}, 1 / (1 + q), sum), -1, advance);
+}
+
+static run one_step(const accuracy *of, step_rates r)
+{
+    const step_terms t = of->terms(r);
+    const spring_matrix advance = exact_advance(r);
+    return (run){advance, size_of(r) <= series_limit ? short_error(&t, r, of->order) : long_error(&t, r, advance)};
+}
+
+/* ------------------------------------------------------------------------------------------ the phase of oscillations */
+
+/* The part of a step without trace, over its imaginary eigenvalue: J of e^(angle J), J^2 = -1. */
+typedef struct rotation {
+    bool turns;               /* both the steps and the exact solution oscillate */
+    spring_matrix exact;      /* J of F */
+    spring_matrix difference; /* J of R minus that */
+} rotation;
+
+static spring_matrix without_trace(spring_matrix m)
+{
+    const double p = (m.xx - m.vv) / 2;
+    return (spring_matrix){p, m.xv, m.vx, -p};
+}
+
+/* With F' and R' = F' + D' the parts without trace and s the eigenvalues,
+       J_R - J_F = D'/s_R + F' (1/s_R - 1/s_F),   s_R^2 - s_F^2 = det D' + the part of det(F' + D') of first order */
+static rotation rotation_of(run step)
+{
+    const spring_matrix F = without_trace(step.advance), D = without_trace(step.error);
+    const double square = -(F.xx * F.xx + F.xv * F.vx);
+    const double more = -(2 * F.xx * D.xx + F.xv * D.vx + D.xv * F.vx + D.xx * D.xx + D.xv * D.vx);
+    if (!(square > 0 && square + more > 0))
+        return (rotation){0};
+    const double exact = spring_sqrt(square), steps = spring_sqrt(square + more);
+    const spring_matrix none = {0};
+    const double change = -more / (exact * steps * (exact + steps));
+    return (rotation){true, matrix_sum(none, 1 / exact, F), matrix_sum(matrix_sum(none, 1 / steps, D), change, F)};
+}
+
+/* The largest |c cos t + s sin t| over t. */
+static double semiaxis(const double c[2], const double s[2])
+{
+    const double cc = c[0] * c[0] + c[1] * c[1], ss = s[0] * s[0] + s[1] * s[1], cs = c[0] * s[0] + c[1] * s[1];
+    return spring_sqrt((cc + ss + spring_hypot(fabs(cc - ss), 2 * fabs(cs))) / 2);
+}
+
+/* The largest |R^i e^(t J_R) - F^i e^(t J_F)| over the phase t, or a little more: as if both turns of the difference
+   were largest at once. */
+static double envelope_at(run i, const rotation *j)
+{
+    if (!j->turns)
+        return norm_of(i.error);
+    const spring_matrix R = plus(identity, plus(i.advance, i.error));
+    const spring_matrix sine = plus(matrix_product(i.error, j->exact), matrix_product(R, j->difference));
+    const turns c = turns_of(i.error), s = turns_of(sine);
+    return semiaxis(c.p, s.p) + semiaxis(c.q, s.q);
+}
+
+/* --------------------------------------------------------------------------------------------------- the largest error */
+
+/* The largest value of a smooth function, from samples in order: of the parabola through three, where the middle one is
+   largest. */
+typedef struct peak {
+    double t[2], value[2]; /* the last two, newest first */
+    double most;
+} peak;
+
+static void peak_add(peak *p, double t, double value)
+{
+    p->most = fmax(p->most, value);
+    if (p->value[0] > p->value[1] && p->value[0] > value) {
+        const double before = p->t[0] - p->t[1], after = t - p->t[0];
+        const double rise = (p->value[0] - p->value[1]) / before, fall = (p->value[0] - value) / after;
+        const double curve = (rise + fall) / (before + after), slope = (rise * after - fall * before) / (before + after);
+        p->most = fmax(p->most, p->value[0] + slope * slope / (4 * curve));
+    }
+    p->t[1] = p->t[0];
+    p->value[1] = p->value[0];
+    p->t[0] = t;
+    p->value[0] = value;
+}
+
+enum {
+    MOST_SAMPLES = 1024,
+    RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three is off by 1e-5 */
+    FIRST_PERIODS = 10,    /* of more: an error that decays from the start is largest at a phase, not in its envelope */
+    MOST_DOUBLINGS = 110 /* of the steps: 10^33 */
+};
+
+/* level[j]: 2^j steps, up to n. Returns their number. */
+static int doublings_of(run level[MOST_DOUBLINGS], run step, double n)
+{
+    int count = 1;
+    level[0] = step;
+    for (double i = 2; i <= n && count < MOST_DOUBLINGS; i *= 2, count++)
+        level[count] = joined(level[count - 1], level[count - 1]);
+    return count;
+}
+
+static run run_of(const run *level, int levels, double n)
+{
+    run all = {0};
+    for (int j = levels; j-- > 0;)
+        if (n >= ldexp(1, j)) {
+            n -= ldexp(1, j);
+            all = joined(all, level[j]);
+        }
+    return all;
+}
+
+/* At every stride-th step of from ... to, where `now` is the first of them; the error there, or its envelope. */
+static double most_at_strides(const run *level, int levels, run now, double from, double to, double stride,
+                              const rotation *phase)
+{
+    const run leap = run_of(level, levels, stride);
+    peak p = {0};
+    double i = from + stride;
+    for (; i <= to; i += stride) {
+        now = joined(now, leap);
+        const double value = envelope_at(now, phase);
+        if (stride > 1)
+            peak_add(&p, i, value);
+        else
+            p.most = fmax(p.most, value); /* there is nothing in between */
+    }
+    const double left = to - (i - stride);
+    if (left > 0)
+        now = joined(now, run_of(level, levels, left));
+    const double last = envelope_at(now, phase);
+    return isfinite(last) ? fmax(p.most, last) : INFINITY;
+}
+
+/* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and where the largest of them has been found. */
+typedef struct power_samples {
+    const rotation *phase;
+    run before, best_before; /* the sample before the last, before the largest */
+    double i_before, from, to; /* its steps; the interval around the largest */
+    double most;
+    bool rising; /* the largest was the last one: the next one ends its interval */
+} power_samples;
+
+static void power_sample(power_samples *s, double i, run now)
+{
+    const double value = envelope_at(now, s->phase);
+    if (s->rising)
+        s->to = i;
+    s->rising = value > s->most;
+    if (s->rising) {
+        s->most = value;
+        s->best_before = s->before;
+        s->from = s->i_before;
+        s->to = i;
+    }
+    s->before = now;
+    s->i_before = i;
+}
+
+/* At times in geometric progression after `from` steps, and at the last step. */
+static double most_at_powers(const run *level, int levels, double from, double n, const rotation *phase)
+{
+    power_samples s = {.phase = phase};
+    for (int j = 0; j < levels; j++) {
+        const double i = ldexp(1, j);
+        if (2 * i <= from)
+            continue;
+        if (from > 0 && s.i_before == 0) { /* nothing before this is looked at */
+            s.before = level[j];
+            s.i_before = i;
+        }
+        power_sample(&s, i, level[j]);
+        if (j < 2)
+            continue;
+        const run half = joined(level[j], level[j - 1]);
+        if (i * 5 / 4 < n)
+            power_sample(&s, i * 5 / 4, joined(level[j], level[j - 2]));
+        if (i * 3 / 2 < n)
+            power_sample(&s, i * 3 / 2, half);
+        if (i * 7 / 4 < n)
+            power_sample(&s, i * 7 / 4, joined(half, level[j - 2]));
+    }
+    power_sample(&s, n, run_of(level, levels, n));
+    const double dense = 32, stride = fmax(1, floor((s.to - s.from) / dense));
+    return fmax(s.most, most_at_strides(level, levels, s.best_before, s.from, s.to, stride, phase));
+}
+
+/* After this many times of decay an error that grows with the time is below a hundredth of its maximum. */
+static const double decays = 8;
+
+/* The steps in which the slower of R and F decays so far, or n: det R = 1 - loss of R's trace and determinant. */
+static double steps_that_count(run step, double G, double n)
+{
+    const spring_matrix R = plus(step.advance, step.error); /* - 1 */
+    const double loss = -(R.xx + R.vv + (R.xx * R.vv - R.xv * R.vx)) / 2;
+    const double rate = fmin(loss, G / 2);
+    return rate * n > decays ? ceil(decays / rate) : n;
+}
+
+double spring_error_of(const accuracy *of, double steps, double n)
+{
+    const step_rates r = rates_of(of, steps);
+    const run step = one_step(of, r);
+    if (!isfinite(norm_of(step.error)) || !(n < ldexp(1, MOST_DOUBLINGS)))
+        return INFINITY;
+    run level[MOST_DOUBLINGS];
+    const run start = {0};
+    const rotation no_phase = {0};
+    if (n <= MOST_SAMPLES)
+        return most_at_strides(&step, 1, start, 0, n, 1, &no_phase);
+    const int levels = doublings_of(level, step, n);
+    /* r.a^2 is not w h^2 for slow springs, which do not decay either; overdamped springs have no one rate */
+    const double square = r.a * r.c - r.G / 2 * (r.G / 2);
+    if (!(square > 0))
+        return most_at_powers(level, levels, 0, n, &no_phase);
+    const double period = 6.283185307179586 / spring_sqrt(square), count = steps_that_count(step, r.G, n);
+    if (count <= fmax(MOST_SAMPLES, period * RESOLVED_PERIODS))
+        return most_at_strides(level, levels, start, 0, count, ceil(count / MOST_SAMPLES), &no_phase);
+    const double early = fmin(period * FIRST_PERIODS, count);
+    const double stride = ceil(early / (MOST_SAMPLES * FIRST_PERIODS / RESOLVED_PERIODS));
+    const rotation phase = rotation_of(step);
+    return fmax(most_at_strides(level, levels, start, 0, floor(early), stride, &no_phase),
+                most_at_powers(level, levels, early, n, &phase));
+}
+
+/* ---------------------------------------------------------------------------------------------------------- the search */
+
+/* a^(1/order) of the orders that are powers of two, and near it of the others. */
+static double root_of(double a, int order)
+{
+    for (; order > 1; order /= 2)
+        a = spring_sqrt(a);
+    return a;
+}
+
+/* The number of steps at which the errors of all that count would add up to the tolerance. */
+static double first_guess(const accuracy *of, double tolerance, double shortest)
+{
+    double n = shortest;
+    for (int tries = 0; tries < 8; tries++) {
+        const step_rates r = rates_of(of, n);
+        const run step = one_step(of, r);
+        const double count = steps_that_count(step, r.G, n) / decays * 3;
+        const double next = n * root_of(norm_of(step.error) * fmin(count, n) / tolerance, of->order);
+        if (!(next > shortest) || fabs(next - n) <= n / 16)
+            return fmax(next, shortest);
+        n = next;
+    }
+    return n;
+}
+
+double spring_accurate_steps(const accuracy *of, double tolerance)
+{
+    const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS - 1)));
+    const double asymptotic = ceil(2 * size_of(of->whole)); /* steps from which on the power law holds */
+    const double resolution = 0x1p-13;                      /* of n */
+    const int few = 32;                                     /* steps: every number of them is tried */
+    double n = fmin(ceil(first_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
+    if (!(most >= 1))
+        return INFINITY;
+    n = fmax(n, 1);
+    for (int tries = 0;; tries++) {
+        const double error = spring_error_of(of, n, n);
+        if (error <= tolerance)
+            good = n;
+        else
+            bad = n;
+        if (bad >= most)
+            return INFINITY;
+        const double finest = fmax(1, floor(good * resolution));
+        if (good < INFINITY && good - bad <= finest)
+            return good;
+        const double law = ceil(n * root_of(fmin(error, 0x1p60) / tolerance, of->order));
+        if (good == INFINITY) {
+            n = fmin(fmax(law, ceil(n * 1.01)), most);
+        } else if (bad == 0) {
+            /* beyond the power law, slower the nearer it comes to the tolerance: a maximum must not be jumped over */
+            const double factor = 1 + fmax(0.05, 0.5 * (1 - error / tolerance));
+            const double slowly = n <= few ? n - 1 : ceil(n / factor);
+            n = fmax(1, fmin(fmax(law, fmin(asymptotic, n)), n - finest));
+            if (n + finest < asymptotic || n < slowly)
+                n = fmax(n, fmin(slowly, good - 1));
+        } else {
+            const bool stuck = tries > 12;
+            const double near = error <= tolerance ? fmin(law, good - finest) : fmax(law, bad + finest);
+            n = stuck || !(near > bad && near < good) ? bad + floor((good - bad) / 2) : near;
+        }
+    }
+}
