@@ -205,7 +205,8 @@ static void peak_add(peak *p, double t, double value)
     if (p->value[0] > p->value[1] && p->value[0] > value) {
         const double before = p->t[0] - p->t[1], after = t - p->t[0];
         const double rise = (p->value[0] - p->value[1]) / before, fall = (p->value[0] - value) / after;
-        const double curve = (rise + fall) / (before + after), slope = (rise * after - fall * before) / (before + after);
+        const double curve = (rise + fall) / (before + after),
+                     slope = (rise * after - fall * before) / (before + after);
         p->most = fmax(p->most, p->value[0] + slope * slope / (4 * curve));
     }
     p->t[1] = p->t[0];
@@ -218,7 +219,7 @@ enum {
     MOST_SAMPLES = 1024,
     RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three is off by 1e-5 */
     FIRST_PERIODS = 10,    /* of more: an error that decays from the start is largest at a phase, not in its envelope */
-    MOST_DOUBLINGS = 110 /* of the steps: 10^33 */
+    MOST_DOUBLINGS = 110   /* of the steps: 10^33 */
 };
 
 /* level[j]: 2^j steps, up to n. Returns their number. */
@@ -267,7 +268,7 @@ static double most_at_strides(const run *level, int levels, run now, double from
 /* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and where the largest of them has been found. */
 typedef struct power_samples {
     const rotation *phase;
-    run before, best_before; /* the sample before the last, before the largest */
+    run before, best_before;   /* the sample before the last, before the largest */
     double i_before, from, to; /* its steps; the interval around the largest */
     double most;
     bool rising; /* the largest was the last one: the next one ends its interval */
@@ -332,6 +333,8 @@ static double steps_that_count(run step, double G, double n)
 double spring_error_of(const accuracy *of, double steps, double n)
 {
     const step_rates r = rates_of(of, steps);
+    if (!isfinite(size_of(r)))
+        return INFINITY;
     const run step = one_step(of, r);
     if (!isfinite(norm_of(step.error)) || !(n < ldexp(1, MOST_DOUBLINGS)))
         return INFINITY;
@@ -387,10 +390,9 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
     const double asymptotic = ceil(2 * size_of(of->whole)); /* steps from which on the power law holds */
     const double resolution = 0x1p-13;                      /* of n */
     const int few = 32;                                     /* steps: every number of them is tried */
-    double n = fmin(ceil(first_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
-    if (!(most >= 1))
+    if (!(asymptotic < most))
         return INFINITY;
-    n = fmax(n, 1);
+    double n = fmin(ceil(first_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
     for (int tries = 0;; tries++) {
         const double error = spring_error_of(of, n, n);
         if (error <= tolerance)
@@ -407,11 +409,9 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
             n = fmin(fmax(law, ceil(n * 1.01)), most);
         } else if (bad == 0) {
             /* beyond the power law, slower the nearer it comes to the tolerance: a maximum must not be jumped over */
-            const double factor = 1 + fmax(0.05, 0.5 * (1 - error / tolerance));
+            const double factor = 1 + fmax(tolerance < 0.5 ? 0.05 : 0.25, 0.5 * (1 - error / tolerance));
             const double slowly = n <= few ? n - 1 : ceil(n / factor);
-            n = fmax(1, fmin(fmax(law, fmin(asymptotic, n)), n - finest));
-            if (n + finest < asymptotic || n < slowly)
-                n = fmax(n, fmin(slowly, good - 1));
+            n = fmin(fmax(law, n > asymptotic ? asymptotic : slowly), n - finest);
         } else {
             const bool stuck = tries > 12;
             const double near = error <= tolerance ? fmin(law, good - finest) : fmax(law, bad + finest);
