@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How many steps of a method a scene needs; see plan.h.
+ *
+ * Method    The reference is a run by the method of the highest order that the scene supports, and one with twice as
+ *           many steps: fine + (fine - coarse)/(2^order - 1), by Richardson's extrapolation; what that adds is taken for
+ *           the uncertainty. Then for each method steps are halved until the error is small enough, and the number of
+ *           them is bisected, in whole steps a frame.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "common/timing.h"
+#include "plan.h"
+#include "scene/disturbances.h"
+
+static const double frames_a_second = 60;
+static const double push_duration = 0.02; /* [s] of the poke that water gets, as in spring-scene */
+
+struct plan_scene {
+    preset preset;
+    disturbances *poke; /* NULL: none */
+    uint64_t frames;
+    double frame;       /* [s] */
+    size_t numbers;     /* of the positions */
+    double *reference;  /* [frames*numbers] */
+    double motion;      /* [m] the largest distance of the reference from the start */
+    double uncertainty; /* of the reference, over the motion */
+};
+
+static void *room(size_t count)
+{
+    double *all = calloc(count, sizeof *all);
+    if (all == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    return all;
+}
+
+static double distance(const double *a, const double *b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
+static void positions_of(const plan_scene *s, const spring_scene *scene, double *out)
+{
+    spring_scene_get(scene, SPRING_POSITION, out, 0, 0, s->preset.def.particles);
+}
+
+static spring_scene *start(const plan_scene *s, spring_method m)
+{
+    size_t bytes;
+    return preset_start(&s->preset, m, &bytes);
+}
+
+static bool supports(const plan_scene *s, spring_method m)
+{
+    if (!spring_method_describe(m)->scenes)
+        return false;
+    spring_scene *scene = start(s, m);
+    const bool can =
+        spring_scene_advance(scene, m, s->frame, 0) == SPRING_OK && spring_scene_stable_step(scene, m) >= 0;
+    free(scene);
+    return can;
+}
+
+static double stable_step(const plan_scene *s, spring_method m)
+{
+    spring_scene *scene = start(s, m);
+    const double step = spring_scene_stable_step(scene, m);
+    free(scene);
+    return step;
+}
+
+/* Of so many steps a frame, for all frames: force evaluations times what there is to do in one. */
+static double work_of(const plan_scene *s, spring_method m, double substeps)
+{
+    return substeps * (double)s->frames * spring_method_describe(m)->forces_per_step *
+           (double)(s->preset.def.particles + s->preset.def.links);
+}
+
+/* Positions at the ends of all frames. */
+static bool run(const plan_scene *s, spring_method m, uint64_t substeps, double *out)
+{
+    spring_scene *scene = start(s, m);
+    bool holds = true;
+    for (uint64_t i = 0; i < s->frames && holds; i++) {
+        holds = spring_scene_advance(scene, m, s->frame / (double)substeps, substeps) == SPRING_OK;
+        positions_of(s, scene, &out[i * s->numbers]);
+    }
+    free(scene);
+    return holds;
+}
+
+/* Infinite where the state overflows. */
+static double error_of(const plan_scene *s, spring_method m, uint64_t substeps)
+{
+    spring_scene *scene = start(s, m);
+    double *now = room(s->numbers), most = 0;
+    for (uint64_t i = 0; i < s->frames && most < INFINITY; i++) {
+        const bool holds = spring_scene_advance(scene, m, s->frame / (double)substeps, substeps) == SPRING_OK;
+        positions_of(s, scene, now);
+        const double error = distance(now, &s->reference[i * s->numbers], s->numbers) / s->motion;
+        most = holds && isfinite(error) ? fmax(most, error) : INFINITY;
+    }
+    free(now);
+    free(scene);
+    return most;
+}
+
+/* ------------------------------------------------------------------------------------------------------ the reference */
+
+static spring_method best_method(const plan_scene *s)
+{
+    spring_method best = SPRING_LEAPFROG;
+    for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
+        const spring_method m = spring_method_at(place);
+        if (spring_method_describe(m)->order > spring_method_describe(best)->order && supports(s, m))
+            best = m;
+    }
+    return best;
+}
+
+static void measure_motion(plan_scene *s)
+{
+    double *first = room(s->numbers);
+    spring_scene *scene = start(s, SPRING_LEAPFROG);
+    positions_of(s, scene, first);
+    free(scene);
+    s->motion = 0;
+    for (uint64_t i = 0; i < s->frames; i++)
+        s->motion = fmax(s->motion, distance(first, &s->reference[i * s->numbers], s->numbers));
+    free(first);
+}
+
+static void run_reference(plan_scene *s, double error, double work)
+{
+    const spring_method m = best_method(s);
+    const double below = ldexp(1, spring_method_describe(m)->order) - 1, share = 20;
+    uint64_t substeps = (uint64_t)ceil(s->frame / fmin(stable_step(s, m), s->frame)) * 2;
+    double *coarse = room(s->frames * s->numbers), *fine = room(s->frames * s->numbers);
+    bool known = run(s, m, substeps, coarse);
+    for (;; substeps *= 2) {
+        known = run(s, m, 2 * substeps, fine) && known;
+        double off = 0;
+        for (uint64_t i = 0; i < s->frames; i++)
+            off = fmax(off, distance(&fine[i * s->numbers], &coarse[i * s->numbers], s->numbers) / below);
+        for (size_t i = 0; i < s->frames * s->numbers; i++)
+            s->reference[i] = fine[i] + (fine[i] - coarse[i]) / below;
+        measure_motion(s);
+        s->uncertainty = off / s->motion;
+        if (s->uncertainty <= error / share || work_of(s, m, 4 * (double)substeps) > work)
+            break;
+        double *other = coarse;
+        coarse = fine;
+        fine = other;
+    }
+    free(coarse);
+    free(fine);
+    if (!known || !(s->motion > 0) || !isfinite(s->uncertainty))
+        cli_fail(CLI_FAILED, "the reference of this scene overflows, or does not move");
+}
+
+plan_scene *plan_scene_new(const preset_settings *settings, double duration, double error, double work)
+{
+    plan_scene *s = calloc(1, sizeof *s);
+    if (s == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    preset_init(&s->preset, settings);
+    if (settings->kind == PRESET_WATER) {
+        disturbance poke = disturbances_poke(&s->preset, settings, push_duration);
+        s->poke = disturbances_new(&s->preset, &poke, 1);
+        s->preset.def.force = disturbances_force;
+        s->preset.def.user = s->poke;
+    }
+    s->frames = (uint64_t)fmax(rint(duration * frames_a_second), 1);
+    s->frame = duration / (double)s->frames;
+    s->numbers = s->preset.def.particles * s->preset.def.axes;
+    s->reference = room(s->frames * s->numbers);
+    run_reference(s, error, work);
+    return s;
+}
+
+void plan_scene_free(plan_scene *s)
+{
+    free(s->reference);
+    if (s->poke != NULL)
+        disturbances_free(s->poke);
+    preset_clear(&s->preset);
+    free(s);
+}
+
+uint64_t plan_scene_frames(const plan_scene *s)
+{
+    return s->frames;
+}
+
+const preset *plan_scene_preset(const plan_scene *s)
+{
+    return &s->preset;
+}
+
+/* --------------------------------------------------------------------------------------------------------- the search */
+
+/* [s] The shorter of two runs, without what sets them up. */
+static double time_of(const plan_scene *s, spring_method m, uint64_t substeps)
+{
+    double best = INFINITY;
+    for (int i = 0; i < 2; i++) {
+        spring_scene *scene = start(s, m);
+        const double before = timing_busy();
+        spring_scene_advance(scene, m, s->frame / (double)substeps, substeps * s->frames);
+        best = fmin(best, timing_busy() - before);
+        free(scene);
+    }
+    return best * 1e-9;
+}
+
+plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double work, bool timed)
+{
+    plan_row row = {.method = m, .predicted = NAN, .measured = NAN, .uncertainty = NAN, .time = INFINITY};
+    if (!supports(s, m))
+        return row;
+    uint64_t few = 0, enough = 1;
+    double before = NAN, now = error_of(s, m, enough);
+    while (!(now <= error)) {
+        if (work_of(s, m, 2 * (double)enough) > work)
+            return row;
+        few = enough;
+        before = now;
+        enough *= 2;
+        now = error_of(s, m, enough);
+    }
+    const double halved = few > 0 ? before / ldexp(1, spring_method_describe(m)->order) : NAN;
+    uint64_t of = few > 0 ? 2 * few : 1;
+    while (enough - few > 1) {
+        const uint64_t middle = few + (enough - few) / 2;
+        const double there = error_of(s, m, middle);
+        if (there <= error) {
+            enough = middle;
+            now = there;
+        } else {
+            few = middle;
+        }
+    }
+    const double scale = pow((double)of / (double)enough, spring_method_describe(m)->order);
+    row.steps = (double)(enough * s->frames);
+    row.dt = s->frame / (double)enough;
+    row.evaluations = row.steps * spring_method_describe(m)->forces_per_step;
+    row.predicted = isfinite(halved) ? halved * scale : NAN;
+    row.measured = now;
+    row.uncertainty = s->uncertainty;
+    if (timed)
+        row.time = time_of(s, m, enough);
+    return row;
+}

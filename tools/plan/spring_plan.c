@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-plan: an error and a duration in, methods and their steps out, the cheapest first; for one spring, or a preset
+ * scene.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "common/timing.h"
+#include "plan.h"
+
+/* ---------------------------------------------------------------------------------------------- the command line */
+
+static double error = NAN, duration = NAN;
+static double mass = NAN, stiffness = NAN, damping = NAN, hertz = NAN, damping_ratio = NAN, drag = NAN;
+static int kind = -1;
+static uint64_t size;
+static bool presets, quick;
+
+static const cli_option options[] = {
+    {"error", CLI_POSITIVE, .real = &error, .value = "E",
+     .help = "the largest error, of the size of the motion: 0.01 is 1 %"},
+    {"duration", CLI_POSITIVE, .real = &duration, .value = "T", .help = "for so long [s]"},
+    {"mass", CLI_POSITIVE, .real = &mass, .value = "M", .help = "[kg] (default: 1; of a scene, a particle's)"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &stiffness, .value = "K",
+     .help = "[N/m] of the spring, or of a scene's links"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &damping, .value = "C",
+     .help = "[N s/m] of the spring, or of a scene's links (default: 0)"},
+    {"hertz", CLI_NOT_NEGATIVE, .real = &hertz, .value = "F", .help = "the spring by its undamped frequency [Hz]"},
+    {"damping-ratio", CLI_NOT_NEGATIVE, .real = &damping_ratio, .value = "Z",
+     .help = "with --hertz: 1 is critical (default: 0)"},
+    {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .value = "S",
+     .help = "a scene of spring-scene instead: rope, cloth, jelly, chain or water"},
+    {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
+     .help = "particles along an edge of the scene"},
+    {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
+    {"presets", CLI_FLAG, .flag = &presets,
+     .help = "instead: the steps that a frame of 1/60 s needs in each scene, with each\n"
+             "method, for errors of 10, 1 and 0.1 % in the first second"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "with --presets: no run that takes long"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-plan",
+    .summary = "Which method, and which step, for an error that is small enough.",
+    .details =
+        "Columns: method, dt_s, steps, force_evaluations, predicted_error, measured_error, time_s (on this\n"
+        "machine, without setting up) and uncertainty (of the measured error); the cheapest method first. A\n"
+        "comment says it in words. A method of which no number of steps is known to be enough comes last, with\n"
+        "0 steps: rounding would be too large, or the runs take too long.\n\n"
+        "Of a spring the error is the largest at any step, in (x, v/omega) and relative to the start, for the\n"
+        "worst start; the prediction is the library's, spring_step_error(). Of a scene it is the largest at any\n"
+        "frame: the Euclidean distance of all positions from a reference over the largest distance of that from\n"
+        "the start. The reference is extrapolated from two runs of the method of highest order, which are made\n"
+        "finer until the uncertainty is a twentieth of the error, or the runs take too long; predicted is what\n"
+        "the error of a coarser step and the order lead to. Steps are whole numbers a frame.\n\n"
+        "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
+        "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
+        "spring-plan --error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1\n"
+        "spring-plan --error 0.05 --duration 1 --scene cloth",
+    .options = options,
+};
+
+static void refuse(const char *option, double value, const char *should)
+{
+    if (!isnan(value))
+        cli_fail(CLI_USAGE, "--%s: \"%g\" %s", option, value, should);
+}
+
+static void check_usage(void)
+{
+    if (presets) {
+        if (kind >= 0)
+            cli_fail(CLI_USAGE, "--presets: takes every scene; --scene should not be given");
+        refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
+        refuse("duration", duration, "is not for --presets, which takes a second");
+        refuse("stiffness", stiffness, "is not for --presets");
+        refuse("hertz", hertz, "is not for --presets");
+        return;
+    }
+    if (isnan(error))
+        cli_fail(CLI_USAGE, "--error: missing; it should be an error such as 0.01");
+    if (isnan(duration))
+        cli_fail(CLI_USAGE, "--duration: missing; it should be a time in seconds");
+    if (kind >= 0) {
+        refuse("hertz", hertz, "is of one spring, not of a scene");
+        refuse("damping-ratio", damping_ratio, "is of one spring, not of a scene");
+        return;
+    }
+    refuse("drag", drag, "is for a scene; of one spring it should be --damping");
+    if (size > 0)
+        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for a scene", size);
+    if (isnan(hertz) == isnan(stiffness))
+        cli_fail(CLI_USAGE, "--stiffness: either it, or --hertz, or --scene should be given");
+    if (isnan(hertz)) {
+        refuse("damping-ratio", damping_ratio, "goes with --hertz; with --stiffness it should be --damping");
+    } else {
+        refuse("damping", damping, "goes with --stiffness; with --hertz it should be --damping-ratio");
+        refuse("mass", mass, "goes with --stiffness; with --hertz the mass does not count");
+    }
+}
+
+static double or_else(double value, double otherwise)
+{
+    return isnan(value) ? otherwise : value;
+}
+
+/* -------------------------------------------------------------------------------------------------------- the rows */
+
+static plan_row rows[SPRING_METHOD_COUNT];
+static int row_count;
+
+static int cheaper(const void *a, const void *b)
+{
+    const double x = ((const plan_row *)a)->time, y = ((const plan_row *)b)->time;
+    return (x > y) - (x < y);
+}
+
+static void plan_one_spring(void)
+{
+    const spring_params p = isnan(hertz) ? (spring_params){or_else(mass, 1), stiffness, or_else(damping, 0), 0}
+                                         : spring_params_hertz(hertz, or_else(damping_ratio, 0));
+    if (!spring_params_valid(&p))
+        cli_fail(CLI_USAGE, "stiffness/mass and damping/mass of this spring are not finite");
+    for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
+        const spring_method m = spring_method_at(place);
+        if (spring_method_describe(m)->springs)
+            rows[row_count++] = plan_spring(&p, m, duration, error);
+        cli_progress((place + 1.0) / SPRING_METHOD_COUNT);
+    }
+}
+
+static void plan_one_scene(cli_table *table)
+{
+    const double work = 1e9; /* a second or two */
+    preset_settings settings = preset_defaults((preset_kind)kind);
+    settings.size = size > 0 ? size : settings.size;
+    settings.mass = or_else(mass, settings.mass);
+    settings.end_mass = isnan(settings.end_mass) ? settings.end_mass : settings.mass;
+    settings.stiffness = or_else(stiffness, settings.stiffness);
+    settings.damping = or_else(damping, settings.damping);
+    settings.drag = or_else(drag, settings.drag);
+    plan_scene *s = plan_scene_new(&settings, duration, error, work);
+    const preset *r = plan_scene_preset(s);
+    cli_comment(table, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
+    for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
+        const spring_method m = spring_method_at(place);
+        if (spring_method_describe(m)->scenes)
+            rows[row_count++] = plan_scene_row(s, m, error, work, true);
+        cli_progress((place + 1.0) / SPRING_METHOD_COUNT);
+    }
+    if (row_count > 0 && rows[0].uncertainty > error)
+        cli_warn("the reference is uncertain by %g, more than the error that is asked for", rows[0].uncertainty);
+    plan_scene_free(s);
+}
+
+static const plan_row *first_stepper(void)
+{
+    for (int i = 0; i < row_count; i++)
+        if (rows[i].steps > 0 && spring_method_describe(rows[i].method)->order > 0)
+            return &rows[i];
+    return NULL;
+}
+
+/* The first row in words, and of one spring the first stepper too. */
+static void say(cli_table *table)
+{
+    const plan_row *first = &rows[0], *stepper = first_stepper();
+    char steps[160] = "no stepper is known to be accurate enough";
+    if (stepper != NULL)
+        snprintf(steps, sizeof steps, "%s in %.0f step%s of %.4g s, %.3g s on this machine",
+                 spring_method_describe(stepper->method)->label, stepper->steps, stepper->steps == 1 ? "" : "s",
+                 stepper->dt, stepper->time);
+    if (first->steps > 0 && first != stepper)
+        cli_comment(
+            table,
+            "plan: for an error of %g after %g s the exact solution is the cheapest, %.3g s on this machine; of the "
+            "steppers, %s.",
+            error, duration, first->time, steps);
+    else
+        cli_comment(table, "plan: for an error of %g after %g s %s%s.", error, duration, stepper != NULL ? "take " : "",
+                    steps);
+}
+
+static void write_rows(cli_table *table)
+{
+    cli_columns(table, "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty");
+    for (int i = 0; i < row_count; i++) {
+        const plan_row *r = &rows[i];
+        cli_row(table, "%s\t%.17g\t%.0f\t%.0f\t%.17g\t%.17g\t%.4g\t%.3g", spring_method_name(r->method), r->dt,
+                r->steps, r->evaluations, r->predicted, r->measured, r->time, r->uncertainty);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ all presets */
+
+static double stable_substeps(const plan_scene *s, spring_method m)
+{
+    const double frame = 1.0 / 60;
+    size_t bytes;
+    spring_scene *scene = preset_start(plan_scene_preset(s), m, &bytes);
+    const double step = spring_scene_stable_step(scene, m);
+    free(scene);
+    return step > 0 ? floor(frame / step) + 1 : 0;
+}
+
+static void write_presets(cli_table *table)
+{
+    static const double errors[] = {0.1, 0.01, 0.001};
+    const double finest = 0.001, work = quick ? 3e7 : 1e9;
+    cli_columns(table, "scene method error substeps dt_s measured_error uncertainty stable_substeps");
+    for (int each = 0; each < preset_kinds; each++) {
+        const preset_settings settings = preset_defaults((preset_kind)each);
+        plan_scene *s = plan_scene_new(&settings, 1, finest, work);
+        for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
+            const spring_method m = spring_method_at(place);
+            if (!spring_method_describe(m)->scenes)
+                continue;
+            for (int k = 0; k < 3; k++) {
+                const plan_row r = plan_scene_row(s, m, errors[k], work, false);
+                cli_row(table, "%s\t%s\t%g\t%.0f\t%.17g\t%.17g\t%.3g\t%.0f", preset_names[each], spring_method_name(m),
+                        errors[k], r.steps / (double)plan_scene_frames(s), r.dt, r.measured, r.uncertainty,
+                        stable_substeps(s, m));
+            }
+        }
+        plan_scene_free(s);
+        cli_progress((each + 1.0) / preset_kinds);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    cli_parse(&program, argc, argv);
+    check_usage();
+    cli_table *table = cli_open_output();
+    if (presets) {
+        write_presets(table);
+    } else {
+        timing_stamp(table);
+        if (kind >= 0)
+            plan_one_scene(table);
+        else
+            plan_one_spring();
+        qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
+        say(table);
+        write_rows(table);
+    }
+    cli_finish();
+    return 0;
+}
