@@ -5,7 +5,7 @@ import re
 import shlex
 
 import pytest
-from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, ORDER, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
+from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, ORDER, PLAN, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
                    VALIDATE, WORK, each_tool, is_failure, run, table)
 
 METHOD = f'one of {", ".join(METHODS)}'
@@ -23,6 +23,7 @@ COLUMNS = {  # the fixed ones, in their order; others may follow
     STABILITY: 'method omega_dt damping_ratio error',  # of --map
     ROUNDING: 'method sum start steps dt_s state_error energy_error',
     SCENE: 't_s energy_J kinetic_J elastic_J gravity_J max_displacement_m',
+    PLAN: 'scene method error substeps dt_s measured_error uncertainty stable_substeps',  # of --presets
     MAP: 'scene method particles links substeps dt_s stable_step_s energy_error verdict',
 }
 NOT_AN_OPTION = ['foo', '', '-', '--', '-x', '-output', '-output=x', '--bogus', '--bogus=1', '--meth', '--outpu',
@@ -117,6 +118,19 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{ROUNDING} --method rk4', ['--sum', 'missing', 'one of plain, compensated']),
         (f'{SCENE} --scene rope', ['--method', 'missing', STEPPER]),
         (f'{SCENE} --method rk4', ['--scene', 'missing', 'rope']),
+        (f'{PLAN} --duration 1 --hertz 1', ['--error', 'missing', 'such as 0.01']),
+        (f'{PLAN} --error 0.1 --hertz 1', ['--duration', 'missing', 'seconds']),
+        (f'{PLAN} --error 0.1 --duration 1', ['--stiffness', '--hertz', '--scene']),
+        (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --stiffness 1', ['--stiffness', '--hertz', '--scene']),
+        (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --damping 1', ['--damping', '"1"', '--damping-ratio']),
+        (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --mass 2', ['--mass', '"2"', 'does not count']),
+        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1 --damping-ratio 1', ['--damping-ratio', '"1"', '--damping']),
+        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1 --drag 1', ['--drag', '"1"', '--damping']),
+        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1 --size 9', ['--size', '"9"', 'for a scene']),
+        (f'{PLAN} --error 0.1 --duration 1 --scene rope --hertz 1', ['--hertz', '"1"', 'one spring']),
+        (f'{PLAN} --error 0 --duration 1 --hertz 1', ['--error', '"0"', POSITIVE]),
+        (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['stiffness', 'not finite']),
+        (f'{PLAN} --presets --error 0.1', ['--error', '"0.1"', '--presets']),
         (f'{WORK} --problem ideal-2', ['--problem', '"ideal-2"', 'ideal-10000']),
         (f'{BENCH} --part scenery', ['--part', '"scenery"', 'batch']),
     ]],

@@ -8,6 +8,7 @@ import pytest
 BY_METHOD = ORDER, RUN, ENERGY = 'spring-order', 'spring-run', 'spring-energy'  # these have --method, --arithmetic
 VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-rounding'
 SCENE, MAP = 'spring-scene', 'spring-scene-map'
+PLAN = 'spring-plan'  # with --presets it measures no time
 BENCH, WORK = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
 SHORT = {  # for every tool that gives the same bytes twice a run that takes no time
     ORDER: ['--method', 'euler', '--n-max', '50'],
@@ -18,6 +19,7 @@ SHORT = {  # for every tool that gives the same bytes twice a run that takes no 
     ROUNDING: ['--method', 'rk4', '--sum', 'plain', '--steps', '1e4'],
     SCENE: ['--scene', 'rope', '--method', 'leapfrog', '--duration', '0.1'],
     MAP: ['--scene', 'chain', '--method', 'rk4', '--quick'],
+    PLAN: ['--presets', '--scene', 'chain', '--quick'],
 }
 each_tool = pytest.mark.parametrize('tool', SHORT)
 

@@ -17,6 +17,7 @@
 #include "scene/disturbances.h"
 
 static const double frames_a_second = 60;
+static const double law_holds = 0.5;      /* an error below this falls by the order of the method */
 static const double push_duration = 0.02; /* [s] of the poke that water gets, as in spring-scene */
 
 struct plan_scene {
@@ -225,18 +226,16 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
     plan_row row = {.method = m, .predicted = NAN, .measured = NAN, .uncertainty = NAN, .time = INFINITY};
     if (!supports(s, m))
         return row;
+    const int order = spring_method_describe(m)->order;
     uint64_t few = 0, enough = 1;
-    double before = NAN, now = error_of(s, m, enough);
+    double now = error_of(s, m, enough);
     while (!(now <= error)) {
         if (work_of(s, m, 2 * (double)enough) > work)
             return row;
         few = enough;
-        before = now;
         enough *= 2;
         now = error_of(s, m, enough);
     }
-    const double halved = few > 0 ? before / ldexp(1, spring_method_describe(m)->order) : NAN;
-    uint64_t of = few > 0 ? 2 * few : 1;
     while (enough - few > 1) {
         const uint64_t middle = few + (enough - few) / 2;
         const double there = error_of(s, m, middle);
@@ -247,11 +246,13 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
             few = middle;
         }
     }
-    const double scale = pow((double)of / (double)enough, spring_method_describe(m)->order);
+    const uint64_t coarser = (enough + 1) / 2;
+    const double of_coarser = coarser < enough ? error_of(s, m, coarser) : NAN;
     row.steps = (double)(enough * s->frames);
     row.dt = s->frame / (double)enough;
     row.evaluations = row.steps * spring_method_describe(m)->forces_per_step;
-    row.predicted = isfinite(halved) ? halved * scale : NAN;
+    if (of_coarser < law_holds)
+        row.predicted = of_coarser * pow((double)coarser / (double)enough, order);
     row.measured = now;
     row.uncertainty = s->uncertainty;
     if (timed)

@@ -38,8 +38,8 @@ static const cli_option options[] = {
      .help = "particles along an edge of the scene"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
     {"presets", CLI_FLAG, .flag = &presets,
-     .help = "instead: the steps that a frame of 1/60 s needs in each scene, with each\n"
-             "method, for errors of 10, 1 and 0.1 % in the first second"},
+     .help = "instead: the steps that a frame of 1/60 s needs in each scene, or in\n"
+             "--scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "with --presets: no run that takes long"},
     {.name = NULL},
 };
@@ -74,8 +74,6 @@ static void refuse(const char *option, double value, const char *should)
 static void check_usage(void)
 {
     if (presets) {
-        if (kind >= 0)
-            cli_fail(CLI_USAGE, "--presets: takes every scene; --scene should not be given");
         refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
         refuse("duration", duration, "is not for --presets, which takes a second");
         refuse("stiffness", stiffness, "is not for --presets");
@@ -214,6 +212,8 @@ static void write_presets(cli_table *table)
     const double finest = 0.001, work = quick ? 3e7 : 1e9;
     cli_columns(table, "scene method error substeps dt_s measured_error uncertainty stable_substeps");
     for (int each = 0; each < preset_kinds; each++) {
+        if (kind >= 0 && each != kind)
+            continue;
         const preset_settings settings = preset_defaults((preset_kind)each);
         plan_scene *s = plan_scene_new(&settings, 1, finest, work);
         for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
@@ -222,9 +222,9 @@ static void write_presets(cli_table *table)
                 continue;
             for (int k = 0; k < 3; k++) {
                 const plan_row r = plan_scene_row(s, m, errors[k], work, false);
-                cli_row(table, "%s\t%s\t%g\t%.0f\t%.17g\t%.17g\t%.3g\t%.0f", preset_names[each], spring_method_name(m),
-                        errors[k], r.steps / (double)plan_scene_frames(s), r.dt, r.measured, r.uncertainty,
-                        stable_substeps(s, m));
+                cli_row(table, "%s\t%s\t%.17g\t%.0f\t%.17g\t%.17g\t%.17g\t%.0f", preset_names[each],
+                        spring_method_name(m), errors[k], r.steps / (double)plan_scene_frames(s), r.dt, r.measured,
+                        r.uncertainty, stable_substeps(s, m));
             }
         }
         plan_scene_free(s);
