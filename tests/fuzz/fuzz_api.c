@@ -80,6 +80,15 @@ static void check_questions(const input *in, spring_method m)
     must(good || isnan(settling), "no settling time from bad input");
     must(!good || !(in->x_tol >= 0) || settling >= 0, "a settling time is a time, 0 or infinite");
     must(good || !spring_at_rest(&in->s, &in->p, in->x_tol, in->v_tol), "nothing is at rest from bad input");
+    const double duration = in->x_tol, tolerance = in->v_tol;
+    const double step = spring_accurate_step(&in->p, m, duration, tolerance);
+    const double error = spring_step_error(&in->p, m, duration, in->dt);
+    const bool can = spring_params_valid(&in->p) && info != NULL && info->springs && duration > 0 && isfinite(duration);
+    must(can && tolerance > 0 && isfinite(tolerance) ? step >= 0 && step <= duration : isnan(step),
+         "an accurate step is a part of the duration, or 0; NaN from bad input");
+    must(can && in->dt > 0 && isfinite(in->dt) ? error >= 0 : isnan(error), "an error is 0, more, or infinite");
+    must(!(step >= DBL_MIN) || spring_step_error(&in->p, m, duration, step) <= tolerance * (1 + 1e-6),
+         "the accurate step is accurate");
     const spring_params made[] = {spring_params_hertz(in->s.x, in->s.v), spring_params_half_life(in->s.x, in->s.v)};
     for (int i = 0; i < 2; i++) {
         const bool refused = isnan(made[i].mass);
