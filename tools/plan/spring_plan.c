@@ -118,16 +118,21 @@ static int cheaper(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void plan_one_spring(void)
+static spring_params chosen_spring(void)
 {
     const spring_params p = isnan(hertz) ? (spring_params){or_else(mass, 1), stiffness, or_else(damping, 0), 0}
                                          : spring_params_hertz(hertz, or_else(damping_ratio, 0));
     if (!spring_params_valid(&p))
         cli_fail(CLI_USAGE, "stiffness/mass and damping/mass of this spring are not finite");
+    return p;
+}
+
+static void plan_one_spring(const spring_params *p)
+{
     for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
         const spring_method m = spring_method_at(place);
         if (spring_method_describe(m)->springs)
-            rows[row_count++] = plan_spring(&p, m, duration, error);
+            rows[row_count++] = plan_spring(p, m, duration, error);
         cli_progress((place + 1.0) / SPRING_METHOD_COUNT);
     }
 }
@@ -236,15 +241,17 @@ int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     check_usage();
+    const bool one = !presets && kind < 0;
+    const spring_params p = one ? chosen_spring() : (spring_params){0};
     cli_table *table = cli_open_output();
     if (presets) {
         write_presets(table);
     } else {
         timing_stamp(table);
-        if (kind >= 0)
-            plan_one_scene(table);
+        if (one)
+            plan_one_spring(&p);
         else
-            plan_one_spring();
+            plan_one_scene(table);
         qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
         say(table);
         write_rows(table);
