@@ -32,48 +32,49 @@
 
 #include "roots.h"
 
-static const spring_matrix identity = {1, 0, 0, 1};
+static const spring_matrix matrix_identity = {1, 0, 0, 1};
 
 /* i steps: F^i - 1 and R^i - F^i. */
-typedef struct run {
+typedef struct step_run {
     spring_matrix advance, error;
-} run;
+} step_run;
 
-static spring_matrix plus(spring_matrix p, spring_matrix q)
+static spring_matrix matrix_plus(spring_matrix p, spring_matrix q)
 {
     return matrix_sum(p, 1, q);
 }
 
 /* |p| + |q|, with the matrix as the map z -> p z + q conj(z) of complex numbers z = x + i v/Omega. */
-typedef struct turns {
+typedef struct turn_pair {
     double p[2], q[2];
-} turns;
+} turn_pair;
 
-static turns turns_of(spring_matrix m)
+static turn_pair turn_pair_of(spring_matrix m)
 {
-    return (turns){{(m.xx + m.vv) / 2, (m.vx - m.xv) / 2}, {(m.xx - m.vv) / 2, (m.vx + m.xv) / 2}};
+    return (turn_pair){{(m.xx + m.vv) / 2, (m.vx - m.xv) / 2}, {(m.xx - m.vv) / 2, (m.vx + m.xv) / 2}};
 }
 
-static double norm_of(spring_matrix m)
+static double matrix_norm(spring_matrix m)
 {
-    const turns t = turns_of(m);
+    const turn_pair t = turn_pair_of(m);
     const double p = t.p[0] * t.p[0] + t.p[1] * t.p[1], q = t.q[0] * t.q[0] + t.q[1] * t.q[1];
     return spring_sqrt(p) + spring_sqrt(q);
 }
 
 /* The run of i + k steps, of those of i and of k. */
-static run joined(run i, run k)
+static step_run runs_joined(step_run i, step_run k)
 {
-    const spring_matrix step = plus(i.advance, i.error);
-    return (run){
-        plus(plus(i.advance, k.advance), matrix_product(i.advance, k.advance)),
-        plus(plus(k.error, matrix_product(step, k.error)), plus(i.error, matrix_product(i.error, k.advance))),
+    const spring_matrix step = matrix_plus(i.advance, i.error);
+    return (step_run){
+        matrix_plus(matrix_plus(i.advance, k.advance), matrix_product(i.advance, k.advance)),
+        matrix_plus(matrix_plus(k.error, matrix_product(step, k.error)),
+                    matrix_plus(i.error, matrix_product(i.error, k.advance))),
     };
 }
 
 /* -------------------------------------------------------------------------------------------------------- one step */
 
-static step_rates rates_of(const accuracy *of, double steps)
+static step_rates rates_of_step(const accuracy *of, double steps)
 {
     return (step_rates){of->whole.a / steps, of->whole.c / steps, of->whole.G / steps};
 }
@@ -84,7 +85,7 @@ static const double series_limit = 1;
 /* The first term that is left out is 1/22! of the sum. */
 enum { SERIES_TERMS = 22 };
 
-static double size_of(step_rates r)
+static double rates_size(step_rates r)
 {
     return fmax(r.a, r.G);
 }
@@ -93,16 +94,16 @@ static double size_of(step_rates r)
 static spring_matrix exact_advance(step_rates r)
 {
     int halvings = 0;
-    for (; size_of(r) > series_limit; halvings++)
+    for (; rates_size(r) > series_limit; halvings++)
         r = (step_rates){r.a / 2, r.c / 2, r.G / 2};
     const spring_matrix Z = matrix_of(r);
     spring_matrix power = Z, sum = Z;
     for (int k = 2; k < SERIES_TERMS; k++) {
         power = next_power(power, Z, k);
-        sum = plus(sum, power);
+        sum = matrix_plus(sum, power);
     }
     for (; halvings > 0; halvings--)
-        sum = plus(plus(sum, sum), matrix_product(sum, sum));
+        sum = matrix_plus(matrix_plus(sum, sum), matrix_product(sum, sum));
     return sum;
 }
 
@@ -112,14 +113,15 @@ static spring_matrix short_error(const step_terms *t, step_rates r, int order)
 {
     const spring_matrix Z = matrix_of(r);
     const double q = t->share * r.G;
-    spring_matrix power = identity, sum = {0};
+    spring_matrix power = matrix_identity, sum = {0};
     for (int k = 1; k < SERIES_TERMS; k++) {
         const spring_matrix before = power;
         power = next_power(power, Z, k);
         if (k <= order)
             continue;
         const spring_matrix exact = matrix_sum(power, q, before);
-        sum = plus(sum, k < STEP_TERMS ? matrix_sum(t->term[k], -1, exact) : matrix_sum((spring_matrix){0}, -1, exact));
+        sum = matrix_plus(sum, k < STEP_TERMS ? matrix_sum(t->term[k], -1, exact)
+                                              : matrix_sum((spring_matrix){0}, -1, exact));
     }
     return matrix_sum((spring_matrix){0}, 1 / (1 + q), sum);
 }
@@ -128,29 +130,30 @@ static spring_matrix short_error(const step_terms *t, step_rates r, int order)
 static spring_matrix long_error(const step_terms *t, step_rates r, spring_matrix advance)
 {
     const double q = t->share * r.G;
-    spring_matrix sum = matrix_sum(t->term[1], -q, identity);
+    spring_matrix sum = matrix_sum(t->term[1], -q, matrix_identity);
     for (int k = 2; k < STEP_TERMS; k++)
-        sum = plus(sum, t->term[k]);
+        sum = matrix_plus(sum, t->term[k]);
     return matrix_sum(matrix_sum((spring_matrix){0}, 1 / (1 + q), sum), -1, advance);
 }
 
-static run one_step(const accuracy *of, step_rates r)
+static step_run run_of_one_step(const accuracy *of, step_rates r)
 {
     const step_terms t = of->terms(r);
     const spring_matrix advance = exact_advance(r);
-    return (run){advance, size_of(r) <= series_limit ? short_error(&t, r, of->order) : long_error(&t, r, advance)};
+    return (step_run){advance,
+                      rates_size(r) <= series_limit ? short_error(&t, r, of->order) : long_error(&t, r, advance)};
 }
 
 /* ------------------------------------------------------------------------------------------ the phase of oscillations */
 
 /* The part of a step without trace, over its imaginary eigenvalue: J of e^(angle J), J^2 = -1. */
-typedef struct rotation {
+typedef struct phase_rotation {
     bool turns;               /* both the steps and the exact solution oscillate */
     spring_matrix exact;      /* J of F */
     spring_matrix difference; /* J of R minus that */
-} rotation;
+} phase_rotation;
 
-static spring_matrix without_trace(spring_matrix m)
+static spring_matrix matrix_without_trace(spring_matrix m)
 {
     const double p = (m.xx - m.vv) / 2;
     return (spring_matrix){p, m.xv, m.vx, -p};
@@ -158,21 +161,22 @@ static spring_matrix without_trace(spring_matrix m)
 
 /* With F' and R' = F' + D' the parts without trace and s the eigenvalues,
        J_R - J_F = D'/s_R + F' (1/s_R - 1/s_F),   s_R^2 - s_F^2 = det D' + the part of det(F' + D') of first order */
-static rotation rotation_of(run step)
+static phase_rotation phase_rotation_of(step_run step)
 {
-    const spring_matrix F = without_trace(step.advance), D = without_trace(step.error);
+    const spring_matrix F = matrix_without_trace(step.advance), D = matrix_without_trace(step.error);
     const double square = -(F.xx * F.xx + F.xv * F.vx);
     const double more = -(2 * F.xx * D.xx + F.xv * D.vx + D.xv * F.vx + D.xx * D.xx + D.xv * D.vx);
     if (!(square > 0 && square + more > 0))
-        return (rotation){0};
+        return (phase_rotation){0};
     const double exact = spring_sqrt(square), steps = spring_sqrt(square + more);
     const spring_matrix none = {0};
     const double change = -more / (exact * steps * (exact + steps));
-    return (rotation){true, matrix_sum(none, 1 / exact, F), matrix_sum(matrix_sum(none, 1 / steps, D), change, F)};
+    return (phase_rotation){true, matrix_sum(none, 1 / exact, F),
+                            matrix_sum(matrix_sum(none, 1 / steps, D), change, F)};
 }
 
 /* The largest |c cos t + s sin t| over t. */
-static double semiaxis(const double c[2], const double s[2])
+static double largest_semiaxis(const double c[2], const double s[2])
 {
     const double cc = c[0] * c[0] + c[1] * c[1], ss = s[0] * s[0] + s[1] * s[1], cs = c[0] * s[0] + c[1] * s[1];
     return spring_sqrt((cc + ss + spring_hypot(fabs(cc - ss), 2 * fabs(cs))) / 2);
@@ -180,26 +184,26 @@ static double semiaxis(const double c[2], const double s[2])
 
 /* The largest |R^i e^(t J_R) - F^i e^(t J_F)| over the phase t, or a little more: as if both turns of the difference
    were largest at once. */
-static double envelope_at(run i, const rotation *j)
+static double envelope_at(step_run i, const phase_rotation *j)
 {
     if (!j->turns)
-        return norm_of(i.error);
-    const spring_matrix R = plus(identity, plus(i.advance, i.error));
-    const spring_matrix sine = plus(matrix_product(i.error, j->exact), matrix_product(R, j->difference));
-    const turns c = turns_of(i.error), s = turns_of(sine);
-    return semiaxis(c.p, s.p) + semiaxis(c.q, s.q);
+        return matrix_norm(i.error);
+    const spring_matrix R = matrix_plus(matrix_identity, matrix_plus(i.advance, i.error));
+    const spring_matrix sine = matrix_plus(matrix_product(i.error, j->exact), matrix_product(R, j->difference));
+    const turn_pair c = turn_pair_of(i.error), s = turn_pair_of(sine);
+    return largest_semiaxis(c.p, s.p) + largest_semiaxis(c.q, s.q);
 }
 
 /* --------------------------------------------------------------------------------------------------- the largest error */
 
 /* The largest value of a smooth function, from samples in order: of the parabola through three, where the middle one is
    largest. */
-typedef struct peak {
+typedef struct error_peak {
     double t[2], value[2]; /* the last two, newest first */
     double most;
-} peak;
+} error_peak;
 
-static void peak_add(peak *p, double t, double value)
+static void error_peak_add(error_peak *p, double t, double value)
 {
     p->most = fmax(p->most, value);
     if (p->value[0] > p->value[1] && p->value[0] > value) {
@@ -223,58 +227,58 @@ enum {
 };
 
 /* level[j]: 2^j steps, up to n. Returns their number. */
-static int doublings_of(run level[MOST_DOUBLINGS], run step, double n)
+static int doublings_of(step_run level[MOST_DOUBLINGS], step_run step, double n)
 {
     int count = 1;
     level[0] = step;
     for (double i = 2; i <= n && count < MOST_DOUBLINGS; i *= 2, count++)
-        level[count] = joined(level[count - 1], level[count - 1]);
+        level[count] = runs_joined(level[count - 1], level[count - 1]);
     return count;
 }
 
-static run run_of(const run *level, int levels, double n)
+static step_run step_run_of(const step_run *level, int levels, double n)
 {
-    run all = {0};
+    step_run all = {0};
     for (int j = levels; j-- > 0;)
         if (n >= ldexp(1, j)) {
             n -= ldexp(1, j);
-            all = joined(all, level[j]);
+            all = runs_joined(all, level[j]);
         }
     return all;
 }
 
 /* At every stride-th step of from ... to, where `now` is the first of them; the error there, or its envelope. */
-static double most_at_strides(const run *level, int levels, run now, double from, double to, double stride,
-                              const rotation *phase)
+static double most_at_strides(const step_run *level, int levels, step_run now, double from, double to, double stride,
+                              const phase_rotation *phase)
 {
-    const run leap = run_of(level, levels, stride);
-    peak p = {0};
+    const step_run leap = step_run_of(level, levels, stride);
+    error_peak p = {0};
     double i = from + stride;
     for (; i <= to; i += stride) {
-        now = joined(now, leap);
+        now = runs_joined(now, leap);
         const double value = envelope_at(now, phase);
         if (stride > 1)
-            peak_add(&p, i, value);
+            error_peak_add(&p, i, value);
         else
             p.most = fmax(p.most, value); /* there is nothing in between */
     }
     const double left = to - (i - stride);
     if (left > 0)
-        now = joined(now, run_of(level, levels, left));
+        now = runs_joined(now, step_run_of(level, levels, left));
     const double last = envelope_at(now, phase);
     return isfinite(last) ? fmax(p.most, last) : INFINITY;
 }
 
 /* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and where the largest of them has been found. */
 typedef struct power_samples {
-    const rotation *phase;
-    run before, best_before;   /* the sample before the last, before the largest */
-    double i_before, from, to; /* its steps; the interval around the largest */
+    const phase_rotation *phase;
+    step_run before, best_before; /* the sample before the last, before the largest */
+    double i_before, from, to;    /* its steps; the interval around the largest */
     double most;
     bool rising; /* the largest was the last one: the next one ends its interval */
 } power_samples;
 
-static void power_sample(power_samples *s, double i, run now)
+static void power_sample(power_samples *s, double i, step_run now)
 {
     const double value = envelope_at(now, s->phase);
     if (s->rising)
@@ -291,7 +295,7 @@ static void power_sample(power_samples *s, double i, run now)
 }
 
 /* At times in geometric progression after `from` steps, and at the last step. */
-static double most_at_powers(const run *level, int levels, double from, double n, const rotation *phase)
+static double most_at_powers(const step_run *level, int levels, double from, double n, const phase_rotation *phase)
 {
     power_samples s = {.phase = phase};
     for (int j = 0; j < levels; j++) {
@@ -305,42 +309,42 @@ static double most_at_powers(const run *level, int levels, double from, double n
         power_sample(&s, i, level[j]);
         if (j < 2)
             continue;
-        const run half = joined(level[j], level[j - 1]);
+        const step_run half = runs_joined(level[j], level[j - 1]);
         if (i * 5 / 4 < n)
-            power_sample(&s, i * 5 / 4, joined(level[j], level[j - 2]));
+            power_sample(&s, i * 5 / 4, runs_joined(level[j], level[j - 2]));
         if (i * 3 / 2 < n)
             power_sample(&s, i * 3 / 2, half);
         if (i * 7 / 4 < n)
-            power_sample(&s, i * 7 / 4, joined(half, level[j - 2]));
+            power_sample(&s, i * 7 / 4, runs_joined(half, level[j - 2]));
     }
-    power_sample(&s, n, run_of(level, levels, n));
+    power_sample(&s, n, step_run_of(level, levels, n));
     const double dense = 32, stride = fmax(1, floor((s.to - s.from) / dense));
     return fmax(s.most, most_at_strides(level, levels, s.best_before, s.from, s.to, stride, phase));
 }
 
 /* After this many times of decay an error that grows with the time is below a hundredth of its maximum. */
-static const double decays = 8;
+static const double decays_that_count = 8;
 
 /* The steps in which the slower of R and F decays so far, or n: det R = 1 - loss of R's trace and determinant. */
-static double steps_that_count(run step, double G, double n)
+static double steps_that_count(step_run step, double G, double n)
 {
-    const spring_matrix R = plus(step.advance, step.error); /* - 1 */
+    const spring_matrix R = matrix_plus(step.advance, step.error); /* - 1 */
     const double loss = -(R.xx + R.vv + (R.xx * R.vv - R.xv * R.vx)) / 2;
     const double rate = fmin(loss, G / 2);
-    return rate * n > decays ? ceil(decays / rate) : n;
+    return rate * n > decays_that_count ? ceil(decays_that_count / rate) : n;
 }
 
 double spring_error_of(const accuracy *of, double steps, double n)
 {
-    const step_rates r = rates_of(of, steps);
-    if (!isfinite(size_of(r)))
+    const step_rates r = rates_of_step(of, steps);
+    if (!isfinite(rates_size(r)))
         return INFINITY;
-    const run step = one_step(of, r);
-    if (!isfinite(norm_of(step.error)) || !(n < ldexp(1, MOST_DOUBLINGS)))
+    const step_run step = run_of_one_step(of, r);
+    if (!isfinite(matrix_norm(step.error)) || !(n < ldexp(1, MOST_DOUBLINGS)))
         return INFINITY;
-    run level[MOST_DOUBLINGS];
-    const run start = {0};
-    const rotation no_phase = {0};
+    step_run level[MOST_DOUBLINGS];
+    const step_run start = {0};
+    const phase_rotation no_phase = {0};
     if (n <= MOST_SAMPLES)
         return most_at_strides(&step, 1, start, 0, n, 1, &no_phase);
     const int levels = doublings_of(level, step, n);
@@ -353,7 +357,7 @@ double spring_error_of(const accuracy *of, double steps, double n)
         return most_at_strides(level, levels, start, 0, count, ceil(count / MOST_SAMPLES), &no_phase);
     const double early = fmin(period * FIRST_PERIODS, count);
     const double stride = ceil(early / (MOST_SAMPLES * FIRST_PERIODS / RESOLVED_PERIODS));
-    const rotation phase = rotation_of(step);
+    const phase_rotation phase = phase_rotation_of(step);
     return fmax(most_at_strides(level, levels, start, 0, floor(early), stride, &no_phase),
                 most_at_powers(level, levels, early, n, &phase));
 }
@@ -361,7 +365,7 @@ double spring_error_of(const accuracy *of, double steps, double n)
 /* ---------------------------------------------------------------------------------------------------------- the search */
 
 /* a^(1/order) of the orders that are powers of two, and near it of the others. */
-static double root_of(double a, int order)
+static double order_root(double a, int order)
 {
     for (; order > 1; order /= 2)
         a = spring_sqrt(a);
@@ -369,14 +373,14 @@ static double root_of(double a, int order)
 }
 
 /* The number of steps at which the errors of all that count would add up to the tolerance. */
-static double first_guess(const accuracy *of, double tolerance, double shortest)
+static double steps_guess(const accuracy *of, double tolerance, double shortest)
 {
     double n = shortest;
     for (int tries = 0; tries < 8; tries++) {
-        const step_rates r = rates_of(of, n);
-        const run step = one_step(of, r);
-        const double count = steps_that_count(step, r.G, n) / decays * 3;
-        const double next = n * root_of(norm_of(step.error) * fmin(count, n) / tolerance, of->order);
+        const step_rates r = rates_of_step(of, n);
+        const step_run step = run_of_one_step(of, r);
+        const double count = steps_that_count(step, r.G, n) / decays_that_count * 3;
+        const double next = n * order_root(matrix_norm(step.error) * fmin(count, n) / tolerance, of->order);
         if (!(next > shortest) || fabs(next - n) <= n / 16)
             return fmax(next, shortest);
         n = next;
@@ -387,12 +391,12 @@ static double first_guess(const accuracy *of, double tolerance, double shortest)
 double spring_accurate_steps(const accuracy *of, double tolerance)
 {
     const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS - 1)));
-    const double asymptotic = ceil(2 * size_of(of->whole)); /* steps from which on the power law holds */
-    const double resolution = 0x1p-13;                      /* of n */
-    const int few = 32;                                     /* steps: every number of them is tried */
+    const double asymptotic = ceil(2 * rates_size(of->whole)); /* steps from which on the power law holds */
+    const double resolution = 0x1p-13;                         /* of n */
+    const int few = 32;                                        /* steps: every number of them is tried */
     if (!(asymptotic < most))
         return INFINITY;
-    double n = fmin(ceil(first_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
+    double n = fmin(ceil(steps_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
     for (int tries = 0;; tries++) {
         const double error = spring_error_of(of, n, n);
         if (error <= tolerance)
@@ -404,7 +408,7 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
         const double finest = fmax(1, floor(good * resolution));
         if (good < INFINITY && good - bad <= finest)
             return good;
-        const double law = ceil(n * root_of(fmin(error, 0x1p60) / tolerance, of->order));
+        const double law = ceil(n * order_root(fmin(error, 0x1p60) / tolerance, of->order));
         if (good == INFINITY) {
             n = fmin(fmax(law, ceil(n * 1.01)), most);
         } else if (bad == 0) {
