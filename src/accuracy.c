@@ -19,7 +19,7 @@
  *           coarse steps may jump over a fast decay and be better than fine ones (symplectic Euler with heavy damping).
  *           So the search begins at a step that is short beside every time scale, where the power law holds, and goes
  *           from there to coarser ones no faster than by half, until one is not accurate enough.
- * Rounding  n steps add about sqrt(n) eps.
+ * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are not counted, and never enough.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
  *           (tests/test_accurate_step.c)
  * Source    Golub, Van Loan, Matrix Computations (2013), section 9.3 (the exponential by scaling and squaring);
@@ -223,15 +223,15 @@ enum {
     MOST_SAMPLES = 1024,
     RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three is off by 1e-5 */
     FIRST_PERIODS = 10,    /* of more: an error that decays from the start is largest at a phase, not in its envelope */
-    MOST_DOUBLINGS = 110   /* of the steps: 10^33 */
+    MOST_DOUBLINGS = 53    /* of the steps: a year of them */
 };
 
 /* level[j]: 2^j steps, up to n. Returns their number. */
-static int doublings_of(step_run level[MOST_DOUBLINGS], step_run step, double n)
+static int doublings_of(step_run level[MOST_DOUBLINGS + 1], step_run step, double n)
 {
     int count = 1;
     level[0] = step;
-    for (double i = 2; i <= n && count < MOST_DOUBLINGS; i *= 2, count++)
+    for (double i = 2; i <= n && count <= MOST_DOUBLINGS; i *= 2, count++)
         level[count] = runs_joined(level[count - 1], level[count - 1]);
     return count;
 }
@@ -340,9 +340,9 @@ double spring_error_of(const accuracy *of, double steps, double n)
     if (!isfinite(rates_size(r)))
         return INFINITY;
     const step_run step = run_of_one_step(of, r);
-    if (!isfinite(matrix_norm(step.error)) || !(n < ldexp(1, MOST_DOUBLINGS)))
+    if (!isfinite(matrix_norm(step.error)) || !(n <= ldexp(1, MOST_DOUBLINGS)))
         return INFINITY;
-    step_run level[MOST_DOUBLINGS];
+    step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};
     const phase_rotation no_phase = {0};
     if (n <= MOST_SAMPLES)
@@ -390,7 +390,7 @@ static double steps_guess(const accuracy *of, double tolerance, double shortest)
 
 double spring_accurate_steps(const accuracy *of, double tolerance)
 {
-    const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS - 1)));
+    const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS)));
     const double asymptotic = ceil(2 * rates_size(of->whole)); /* steps from which on the power law holds */
     const double resolution = 0x1p-13;                         /* of n */
     const int few = 32;                                        /* steps: every number of them is tried */

@@ -219,8 +219,8 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  *
  * @param[in] duration   > 0 [s]
  * @param[in] tolerance  > 0, relative to the start
- * @return step [s]. 0: none, since the rounding of n steps, sqrt(n) eps, exceeds the tolerance. `duration` for the exact
- *         solution. NaN for bad input, and a method that is not for one spring
+ * @return step [s]. 0: none, since the rounding of n steps, sqrt(n) eps, exceeds the tolerance, or n is more than 2^53.
+ *         `duration` for the exact solution. NaN for bad input, and a method that is not for one spring
  * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
  *                (tests/test_accurate_step.c)
  * @par Source    src/accuracy.c derives the error
@@ -232,7 +232,7 @@ SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, 
  *
  * @param[in] duration  > 0 [s]; of at least one step
  * @param[in] dt        > 0 [s]
- * @return E without rounding; 0 for the exact solution, INFINITY where it overflows. NaN for bad input, and a method that
+ * @return E without rounding; 0 for the exact solution, INFINITY where it overflows, and for more than 2^53 steps. NaN for bad input, and a method that
  *         is not for one spring
  * @par Accuracy  E < 0.5 is within 0.999 ... 1.05 of that of a run (tests/test_accurate_step.c)
  */
