@@ -135,6 +135,22 @@ static void against_runs(void)
             against_runs_of(&regimes[i], *m);
 }
 
+/* Steps of any length that nobody has asked for, unless they are useless. */
+static void errors_of_any_step(void)
+{
+    for (int i = 0; i < 1400; i++)
+        for (const spring_method *m = steppers(); *m != no_method; m++) {
+            const watched w = regimes[i % REGIMES].make();
+            const double n = floor(random_log(1, 20000)),
+                         known = spring_step_error(&w.p, *m, w.duration, w.duration / n);
+            const double error = measured(&w, *m, n), useless = 0.5;
+            if (error < useless)
+                CHECK(known >= 0.999 * error && known <= 1.05 * error, "as large as it is");
+            else
+                CHECK(known > useless * 0.999, "large");
+        }
+}
+
 /* The tolerance holds for every larger number of steps, and not for one less, or 1/4000 fewer of many. With heavy
    damping symplectic Euler is better at coarse steps than at finer ones: |1/(1 + G) - e^-G| is largest, 0.2036, at
    G = 2.51. */
@@ -255,6 +271,7 @@ int main(void)
         {"other units", units},
         {"the least number of steps", least_number_of_steps},
         {"extreme numbers", extreme_numbers},
+        {"errors of any step", errors_of_any_step},
         {"against runs in multiple precision", against_runs},
     };
     return RUN_TESTS("accurate_step", tests);
