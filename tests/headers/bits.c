@@ -172,6 +172,24 @@ static void print_scenes(spring_method m)
     print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
 }
 
+/* Few steps, many that oscillate or do not, and a few periods of many. */
+static void print_accuracy(spring_method m)
+{
+    static const struct {
+        spring_params p;
+        double duration, tolerance;
+    } asked[] = {{{1.3, 2.7, 0.1, 0}, 3, 1e-2},  {{1.3, 2.7, 0, 0}, 2000, 1e-3}, {{1.3, 2.7, 0.02, 0}, 900, 1e-4},
+                 {{1.3, 2.7, 0.6, 0}, 20, 1e-5}, {{1.3, 2.7, 370, 0}, 1, 1e-3},  {{1.3, 1e-4, 0, 0}, 3, 1e-5},
+                 {{1.3, 0, 0.6, 0.4}, 11, 1e-4}};
+    printf("accuracy %s", spring_method_name(m));
+    for (size_t i = 0; i < sizeof asked / sizeof asked[0]; i++) {
+        const double step = spring_accurate_step(&asked[i].p, m, asked[i].duration, asked[i].tolerance);
+        print(step);
+        print(spring_step_error(&asked[i].p, m, asked[i].duration, 2.7 * step));
+    }
+    printf("\n");
+}
+
 int main(void)
 {
     static const struct {
@@ -235,5 +253,11 @@ int main(void)
     print(clock.pending);
     print(clock.dropped);
     printf("\n");
+
+    for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
+        const spring_method m = spring_method_at(j);
+        if (spring_method_describe(m)->springs)
+            print_accuracy(m);
+    }
     return 0;
 }
