@@ -3,6 +3,8 @@
 #ifndef SPRINGSTEP_STEP_TERMS_H
 #define SPRINGSTEP_STEP_TERMS_H
 
+#include "simd/arithmetic.h"
+
 /* Of (x, v/Omega), Omega any frequency. */
 typedef struct spring_matrix {
     double xx, xv, vx, vv;
