@@ -58,6 +58,7 @@ static double first_time(const motion *m, bool is_true(const motion *, double), 
 /* A time from which something is true: `from` plus a span, doubled as often as it takes; infinite if that does. */
 static double some_time(const motion *m, bool is_true(const motion *, double), double from, double span)
 {
+    span = fmax(span, DBL_MIN); /* 1/rate may have underflowed */
     while (span < INFINITY && !is_true(m, from + span))
         span *= 2;
     return from + span;
