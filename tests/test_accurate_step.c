@@ -73,13 +73,13 @@ static const struct regime {
 
 enum { REGIMES = sizeof regimes / sizeof regimes[0], SPRINGS = 300 };
 
-/* The measured error of n steps. More than 2^17 of them are sampled, a hundred times in the shortest time scale: what is
+/* The measured error of n steps. More than 2^14 of them are sampled, a hundred times in the shortest time scale: what is
    missed of a maximum is at most 5e-4 of it. */
 static double measured(const watched *w, spring_method m, double n)
 {
     const double omega = sqrt(w->p.stiffness / w->p.mass), g = w->p.damping / w->p.mass;
     const double scales = fmax(1, fmax(omega, g) * w->duration);
-    const double stride = n <= 0x1p17 ? 1 : fmax(1, floor(n / (100 * scales)));
+    const double stride = n <= 0x1p14 ? 1 : fmax(1, floor(n / (100 * scales)));
     return reference_worst_error(&w->p, m, fmax(omega, 1 / w->duration), w->duration / n, (uint64_t)n,
                                  (uint64_t)stride);
 }
