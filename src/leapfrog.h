@@ -163,7 +163,7 @@ static double leapfrog_scene_stable_step(const scene_bounds *b)
 static const scene_method leapfrog_scene = {
     .step = leapfrog_scene_step,
     .stable_step = leapfrog_scene_stable_step,
-    .stores = SCENE_STORES_PREDICTED,
+    .predicts = true,
 };
 #endif
 

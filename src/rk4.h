@@ -136,8 +136,10 @@ static scene_outcome rk4_scene_step(const scene_step *s)
     const double times[] = {s->middle, s->middle, s->end};
     const scalar lengths[] = {s->h / 2, s->h / 2, s->h}; /* from the start to the next stage */
     scene_motion end = scene_motion_of(s), stage = scene_motion_of(s);
-    stage.x = scene_stage_x(s);
-    stage.v = scene_stage_v(s);
+    stage.x = scene_stage(s, 0);
+    stage.v = scene_stage(s, 1);
+    stage.sum_x = end.sum_x = scene_stage(s, 2);
+    stage.sum_v = end.sum_v = scene_stage(s, 3);
     stage.weight = 2;
     for (int k = 0; k < 3; k++) {
         stage.kick = stage.drift = lengths[k];
@@ -161,7 +163,7 @@ static double rk4_scene_stable_step(const scene_bounds *b)
 static const scene_method rk4_scene = {
     .step = rk4_scene_step,
     .stable_step = rk4_scene_stable_step,
-    .stores = SCENE_STORES_STAGE | SCENE_STORES_SUMS,
+    .stages = 4,
 };
 #endif
 

@@ -9,10 +9,7 @@
 #include "scene_kernels.h"
 #include "simd/quad.h"
 
-enum {
-    stage_buffer = 2,
-    most_buffers = 3, /* of positions and velocities: two that take turns for rule "all or nothing", one for stages */
-};
+enum { buffers = 2 }; /* of positions and velocities: they take turns for rule "all or nothing" */
 
 /* A band of links and its slots, one for each particle of the tiles that hold its lower ends. For each slot a byte says
    whether it is occupied by a link. Each slot has coefficients (stiffness, rest length, damping); or, where all links are
@@ -37,10 +34,10 @@ typedef struct scene_plan {
     size_t edges;                                     /* links that lie in no band */
     uint32_t bands;
     band_plan band[most_bands]; /* by ascending offset */
-    size_t x[most_buffers], v[most_buffers];
-    size_t force[2];     /* at the state in each buffer, or the same for both, see scene_force_of() */
-    size_t predicted;    /* velocities, where they cannot lie where the forces will */
-    size_t sum_x, sum_v; /* of stages */
+    size_t x[buffers], v[buffers];
+    size_t force[buffers];   /* at the state in each buffer, or the same for both, see scene_force_of() */
+    size_t predicted;        /* velocities, where they cannot lie where the forces will */
+    size_t stages, quantity; /* what a method stores for its stages, and how many bytes from one to the next */
     size_t inverse_mass;
     size_t occupied, band_stiffness, band_rest, band_damping, rings;
     size_t edge_a, edge_b, edge_stiffness, edge_rest, edge_damping;

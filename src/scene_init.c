@@ -38,8 +38,7 @@ static uint32_t default_methods(void)
 {
     uint32_t methods = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if (spring_scene_methods[m]->step != NULL &&
-            (spring_scene_methods[m]->stores & (SCENE_STORES_STAGE | SCENE_STORES_SUMS)) == 0)
+        if (spring_scene_methods[m]->step != NULL && spring_scene_methods[m]->stages == 0)
             methods |= 1u << m;
     return methods;
 }
@@ -49,14 +48,22 @@ static uint32_t methods_of(const spring_scene_def *def)
     return def->methods == 0 ? default_methods() : def->methods;
 }
 
-/* SCENE_STORES_... of these methods together. */
-static unsigned stores_of(uint32_t methods)
+/* The most that one of them needs. */
+static unsigned stages_of(uint32_t methods)
 {
-    unsigned stores = 0;
+    unsigned stages = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if ((methods & 1u << m) != 0)
-            stores |= spring_scene_methods[m]->stores;
-    return stores;
+        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->stages > stages)
+            stages = spring_scene_methods[m]->stages;
+    return stages;
+}
+
+static bool any_predicts(uint32_t methods)
+{
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->predicts)
+            return true;
+    return false;
 }
 
 static def_error check_methods(uint32_t methods)
@@ -284,30 +291,27 @@ static bool any_damping(const spring_scene_def *def)
 
 static void plan_memory(const spring_scene_def *def, scene_plan *plan)
 {
-    const unsigned stores = stores_of(plan->methods);
     const bool rollback = (plan->flags & SPRING_SCENE_NO_UNDO) == 0,
                editable = (plan->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || any_damping(def);
     const bool velocity_used = damped || (plan->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
-    const bool predicts = (stores & SCENE_STORES_PREDICTED) != 0 && velocity_used;
+    const bool predicts = any_predicts(plan->methods) && velocity_used;
     const bool records = plan->axes > 1 && !plan->small && plan->edges >= plan->particles;
-    const bool needed[most_buffers] = {true, rollback, (stores & SCENE_STORES_STAGE) != 0};
     const size_t quantity =
         (plan->small ? quad_size * (plan->particles + quad_size) : plan->axes * plan->stride) + 2 * padding;
     plan->bytes = (sizeof(spring_scene) + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
-    for (uint32_t i = 0; i < most_buffers; i++)
-        if (needed[i]) {
-            plan->x[i] = reserve(plan, quantity, sizeof(scalar));
-            plan->v[i] = reserve(plan, quantity, sizeof(scalar));
-        }
+    for (uint32_t i = 0; i < (rollback ? buffers : 1); i++) {
+        plan->x[i] = reserve(plan, quantity, sizeof(scalar));
+        plan->v[i] = reserve(plan, quantity, sizeof(scalar));
+    }
+    plan->quantity = plan->v[0] - plan->x[0];
     plan->force[0] = reserve(plan, quantity, sizeof(scalar));
     plan->force[1] = predicts ? reserve(plan, quantity, sizeof(scalar)) : plan->force[0];
     if (predicts && damped && plan->edges > 0 && (plan->bands > 0 || !records))
         plan->predicted = reserve(plan, quantity, sizeof(scalar));
-    if ((stores & SCENE_STORES_SUMS) != 0) {
-        plan->sum_x = reserve(plan, quantity, sizeof(scalar));
-        plan->sum_v = reserve(plan, quantity, sizeof(scalar));
-    }
+    plan->stages = (size_t)plan->bytes;
+    for (unsigned i = stages_of(plan->methods); i > 0; i--)
+        reserve(plan, quantity, sizeof(scalar));
     if (def->mass != NULL || def->pinned != NULL)
         plan->inverse_mass = reserve(plan, plan->small ? quantity : plan->stride, sizeof(scalar));
     plan->occupied = reserve(plan, plan->band_slots, 1);

@@ -92,7 +92,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         step.known = scene_force_of(s, step.from);
         step.first = i == 0;
         step.last = i + 1 == n;
-        if (known == NO_FORCE || (known == PREDICTED_FORCE && (method->stores & SCENE_STORES_PREDICTED) == 0)) {
+        if (known == NO_FORCE || (known == PREDICTED_FORCE && !method->predicts)) {
             scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
                            t0 + done * dt);
             step.known = scene_force_of(s, step.to); /* those that were kept may have to be rolled back to */

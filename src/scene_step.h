@@ -27,17 +27,11 @@ typedef struct scene_outcome {
     known_force known; /* at the end */
 } scene_outcome;
 
-/* What a scene stores for a method, besides the state and the force. */
-enum {
-    SCENE_STORES_PREDICTED = 1, /* velocities and forces of a prediction, where forces depend on velocities */
-    SCENE_STORES_STAGE = 2,     /* positions and velocities of a stage */
-    SCENE_STORES_SUMS = 4       /* over the stages, of their slopes and accelerations */
-};
-
 typedef struct scene_method {
     scene_outcome (*step)(const scene_step *s); /* NULL: not for scenes */
     double (*stable_step)(const scene_bounds *b);
-    unsigned stores; /* SCENE_STORES_... */
+    bool predicts;   /* stores velocities and forces of a prediction, where forces depend on velocities */
+    unsigned stages; /* quantities of all particles that it stores for its stages */
 } scene_method;
 
 SPRING_INTERNAL const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT];
@@ -53,14 +47,10 @@ static inline bool scene_forces_use_velocity(const spring_scene *s)
     return s->damped_links > 0 || scene_callback_uses_velocity(s);
 }
 
-static inline scalar *scene_stage_x(const scene_step *s)
+/* Of the quantities that are stored for stages one. */
+static inline scalar *scene_stage(const scene_step *s, unsigned i)
 {
-    return scene_axis(s->scene, s->scene->plan.x[stage_buffer], 0);
-}
-
-static inline scalar *scene_stage_v(const scene_step *s)
-{
-    return scene_axis(s->scene, s->scene->plan.v[stage_buffer], 0);
+    return scene_axis(s->scene, s->scene->plan.stages + i * s->scene->plan.quantity, 0);
 }
 
 /* Where velocities are predicted: where the forces at them will be, if they are kept and these may overwrite those as
@@ -87,8 +77,6 @@ static inline scene_motion scene_motion_of(const scene_step *step)
         .x = scene_axis(s, p->x[step->to], 0),
         .v = scene_axis(s, p->v[step->to], 0),
         .slope = scene_axis(s, p->v[step->from], 0),
-        .sum_x = scene_axis(s, p->sum_x, 0),
-        .sum_v = scene_axis(s, p->sum_v, 0),
     };
 }
 
