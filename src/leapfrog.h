@@ -149,7 +149,7 @@ static scene_outcome leapfrog_scene_step(const scene_step *s)
     last.v0 = first.v;
     const bool finite =
         scene_sweep(s, &first, s->kernels->kick_drift[keeps && !s->first][predicts],
-                    predicts ? first.predicted : first.v, &last, keeps && !s->last ? NULL : s->kernels->solved_kick);
+                    predicts ? first.predicted : first.v, 1, &last, keeps && !s->last ? NULL : s->kernels->solved_kick);
     return (scene_outcome){.finite = finite, .known = !keeps ? NO_FORCE : predicts ? PREDICTED_FORCE : FORCE};
 }
 

@@ -133,8 +133,7 @@ static const one_method rk4_one = {
 #elif defined(SPRING_SHAPE_SCENE)
 static scene_outcome rk4_scene_step(const scene_step *s)
 {
-    const double times[] = {s->middle, s->middle, s->end};
-    const scalar lengths[] = {s->h / 2, s->h / 2, s->h}; /* from the start to the next stage */
+    static const double parts[] = {0.5, 0.5, 1}; /* of the step, to the next stage */
     scene_motion end = scene_motion_of(s), stage = scene_motion_of(s);
     stage.x = scene_stage(s, 0);
     stage.v = scene_stage(s, 1);
@@ -142,10 +141,10 @@ static scene_outcome rk4_scene_step(const scene_step *s)
     stage.sum_v = end.sum_v = scene_stage(s, 3);
     stage.weight = 2;
     for (int k = 0; k < 3; k++) {
-        stage.kick = stage.drift = lengths[k];
+        stage.kick = stage.drift = (scalar)parts[k] * s->h;
         if (!scene_move(s, &stage, k == 0 ? s->kernels->first_stage : s->kernels->next_stage))
             return (scene_outcome){.finite = false};
-        scene_evaluate(s, stage.x, stage.v, times[k]);
+        scene_evaluate(s, stage.x, stage.v, parts[k]);
         stage.slope = stage.v;
         stage.force = end.force = scene_force_of(s->scene, s->to);
     }

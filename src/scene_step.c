@@ -82,19 +82,18 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .force = &force,
                        .particles = scene_prepare_particles(s),
                        .from = s->buffer,
-                       .to = rollback ? 1 - s->buffer : s->buffer};
-    step.h = (scalar)dt;
+                       .to = rollback ? 1 - s->buffer : s->buffer,
+                       .h = (scalar)dt,
+                       .t0 = t0,
+                       .dt = dt};
     known_force known = s->known;
     for (uint64_t i = 0; i < n; i++) {
-        const double done = (double)(before + i);
-        step.middle = t0 + (done + 0.5) * dt;
-        step.end = t0 + (double)(before + i + 1) * dt;
+        step.done = (double)(before + i);
         step.known = scene_force_of(s, step.from);
         step.first = i == 0;
         step.last = i + 1 == n;
         if (known == NO_FORCE || (known == PREDICTED_FORCE && !method->predicts)) {
-            scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0),
-                           t0 + done * dt);
+            scene_evaluate(&step, scene_axis(s, s->plan.x[step.from], 0), scene_axis(s, s->plan.v[step.from], 0), 0);
             step.known = scene_force_of(s, step.to); /* those that were kept may have to be rolled back to */
         }
         const scene_outcome outcome = method->step(&step);

@@ -7,8 +7,7 @@
 
 typedef struct scene_force scene_force;
 
-/* One step, from a buffer whose forces are known to a buffer, which may be the same. Its times are no sums of steps,
-   and the end of one is the begin of the next, to the bit. */
+/* One step, from a buffer whose forces are known to a buffer, which may be the same. */
 typedef struct scene_step {
     const scene_kernels *kernels;
     const spring_scene *scene;
@@ -18,7 +17,7 @@ typedef struct scene_step {
     bool first, last;    /* of a call */
     const scalar *known; /* the forces at the start */
     scalar h;            /* [s] */
-    double middle, end;  /* [s] */
+    double t0, dt, done; /* the step starts at t0 + done dt */
 } scene_step;
 
 /* A step ends where the first number is not finite: a callback is shown nothing else. */
@@ -182,10 +181,11 @@ static inline void scene_find_forces(const scene_kernels *kernels, const spring_
         scene_call_back(s, x, v, t, force);
 }
 
-/* Those at the end of a step. */
-static inline void scene_evaluate(const scene_step *s, const scalar *x, const scalar *v, double t)
+/* Those after a part of a step. Times are no sums of steps, and the end of one is the begin of the next, to the bit. */
+static inline void scene_evaluate(const scene_step *s, const scalar *x, const scalar *v, double part)
 {
-    scene_find_forces(s->kernels, s->scene, s->force, x, v, t, scene_force_of(s->scene, s->to));
+    scene_find_forces(s->kernels, s->scene, s->force, x, v, s->t0 + (s->done + part) * s->dt,
+                      scene_force_of(s->scene, s->to));
 }
 
 /* Particles that are moved on all axes before the next: their masses, 8 KB, stay in the first cache, and in one pass
@@ -202,18 +202,18 @@ static inline bool scene_move(const scene_step *s, const scene_motion *m, scene_
     return true;
 }
 
-/* A motion, the forces at its end with velocities v, and, if not NULL, a motion by them, which leaves positions alone:
+/* A motion, the forces at its end, after a part of the step, with velocities v, and, if not NULL, a motion by them, which leaves positions alone:
    one pass over memory where there are bands only. Then the forces on a particle are known as soon as those after it
    have moved that its links reach, and it is moved on while it is in the cache. */
 static inline bool scene_sweep(const scene_step *s, const scene_motion *before, scene_motion_kernel *move_before,
-                               const scalar *v, const scene_motion *after, scene_motion_kernel *move_after)
+                               const scalar *v, double part, const scene_motion *after, scene_motion_kernel *move_after)
 {
     const spring_scene *scene = s->scene;
     const scene_plan *p = &scene->plan;
     if (p->small || p->edges > 0 || scene->force != NULL || p->bands == 0) {
         if (!scene_move(s, before, move_before))
             return false;
-        scene_evaluate(s, before->x, v, s->end);
+        scene_evaluate(s, before->x, v, part);
         return move_after == NULL || scene_move(s, after, move_after);
     }
     const size_t ahead = (p->band[p->bands - 1].offset + chunk - 1) / chunk * chunk;
