@@ -19,6 +19,14 @@ spring_state spring_exact(spring_state s, const spring_params *p, double t)
     return s;
 }
 
+double spring_expm1(double x)
+{
+    const double beyond = 750; /* 0, or infinite */
+    const exponential y = exponential_of(x > beyond ? beyond : x < -beyond ? -beyond : x);
+    const double power = power_of_two(y.k);
+    return (power - 1) + power * y.e;
+}
+
 void spring_step_exact(spring_state *s, const spring_params *p, double dt)
 {
     *s = spring_exact(*s, p, dt);

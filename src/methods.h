@@ -4,6 +4,7 @@
 #include "symplectic_euler.h"
 #include "leapfrog.h"
 #include "rk4.h"
+#include "rkn8.h"
 #include "exact.h"
 
 #define SPRING_METHODS(ROW)                        \
@@ -11,4 +12,5 @@
     ROW(SPRING_SYMPLECTIC_EULER, symplectic_euler) \
     ROW(SPRING_LEAPFROG, leapfrog)                 \
     ROW(SPRING_RK4, rk4)                           \
+    ROW(SPRING_RKN8, rkn8)                         \
     ROW(SPRING_EXACT, exact)

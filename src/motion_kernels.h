@@ -13,6 +13,7 @@
 /* A vector of coordinates on one axis. */
 typedef struct coordinates {
     size_t at;         /* in the arrays of a quantity */
+    size_t mass;       /* in those of masses */
     real inverse_mass; /* 0: pinned */
     real gravity;
     real drag;          /* [1/s] */
@@ -63,6 +64,7 @@ SPRING_INLINE bool all_coordinates(const scene_particles *particles, const scene
                     select_real(vec_load(lane_number) < splat((scalar)(p.count - i)), inverse_mass, splat(0));
             coordinates c = {
                 .at = a * p.stride + i,
+                .mass = i * p.mass_step,
                 .inverse_mass = inverse_mass,
                 .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
                 .drag = p.drag * inverse_mass,
@@ -163,6 +165,64 @@ SPRING_INLINE mask last_stage_part(const scene_motion *s, const coordinates *c)
     return move_along(s, c, vec_load(s->sum_x + c->at) + dx, vec_load(s->sum_v + c->at) + dv);
 }
 
+/* The acceleration of a stage, number `stage` from 1 on, by the force found there: of x, or with drag of
+   y = e^(drag t/2) (x - x0), t from the start of the step. */
+SPRING_INLINE real nystrom_slope(const scene_motion *s, const coordinates *c, size_t stage)
+{
+    const real free = free_acceleration(s, c);
+    if (!c->dragged || stage == 1)
+        return free;
+    const real half = c->drag / 2, moved = vec_load(s->stage_x + c->at) - vec_load(s->x0 + c->at);
+    return vec_load(s->growth + c->mass) * (free + half * half * moved);
+}
+
+/* Of slopes that are stored. */
+SPRING_INLINE real nystrom_sum(const scene_motion *s, const coordinates *c, const scalar *weight, size_t count)
+{
+    real sum = weight[0] * vec_load(s->slopes + c->at);
+    SPRING_UNROLL
+    for (size_t i = 1; i < count; i++)
+        sum += weight[i] * vec_load(s->slopes + i * s->slope_step + c->at);
+    return sum;
+}
+
+SPRING_INLINE mask nystrom_stage(const scene_motion *s, const coordinates *c, size_t stage)
+{
+    const real slope = nystrom_slope(s, c, stage), last = s->weight_x[stage - 1] * slope;
+    const real sum = stage > 1 ? nystrom_sum(s, c, s->weight_x, stage - 1) + last : last;
+    const real moved = s->drift * vec_load(s->v0 + c->at) + s->square * sum;
+    const real x = vec_load(s->x0 + c->at) + (c->dragged ? vec_load(s->decay + c->mass) * moved : moved);
+    vec_store(s->slopes + (stage - 1) * s->slope_step + c->at, slope);
+    vec_store(s->x + c->at, x);
+    return not_finite(x);
+}
+
+SPRING_INLINE mask nystrom_end_part(const scene_motion *s, const coordinates *c)
+{
+    const size_t stored = nystrom_stages;
+    const real slope = nystrom_slope(s, c, stored + 1), x0 = vec_load(s->x0 + c->at), v0 = vec_load(s->v0 + c->at);
+    const real moved = s->drift * v0 + s->square * nystrom_sum(s, c, s->weight_x, stored);
+    const real kick = s->kick * (nystrom_sum(s, c, s->weight_v, stored) + s->weight_v[stored] * slope);
+    if (!c->dragged)
+        return move_to(s, c, x0 + moved, v0 + kick);
+    const real decay = vec_load(s->decay + c->mass), loss = vec_load(s->loss + c->mass);
+    return move_to(s, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
+}
+
+#define NYSTROM_STAGE(stage)                                                                     \
+    SPRING_INLINE mask nystrom_stage_##stage##_part(const scene_motion *s, const coordinates *c) \
+    {                                                                                            \
+        return nystrom_stage(s, c, stage);                                                       \
+    }
+
+NYSTROM_STAGE(1)
+NYSTROM_STAGE(2)
+NYSTROM_STAGE(3)
+NYSTROM_STAGE(4)
+NYSTROM_STAGE(5)
+NYSTROM_STAGE(6)
+NYSTROM_STAGE(7)
+
 #define MOTION_KERNEL(name)                                                                          \
     static bool move_##name(const scene_particles *p, const scene_motion *s, size_t from, size_t to) \
     {                                                                                                \
@@ -179,5 +239,13 @@ MOTION_KERNEL(stage)
 MOTION_KERNEL(first_stage)
 MOTION_KERNEL(next_stage)
 MOTION_KERNEL(last_stage)
+MOTION_KERNEL(nystrom_stage_1)
+MOTION_KERNEL(nystrom_stage_2)
+MOTION_KERNEL(nystrom_stage_3)
+MOTION_KERNEL(nystrom_stage_4)
+MOTION_KERNEL(nystrom_stage_5)
+MOTION_KERNEL(nystrom_stage_6)
+MOTION_KERNEL(nystrom_stage_7)
+MOTION_KERNEL(nystrom_end)
 
 #endif

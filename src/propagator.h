@@ -21,6 +21,9 @@ SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_params *p, d
 /* spring_step_exact(), by value. */
 SPRING_INTERNAL spring_state spring_exact(spring_state s, const spring_params *p, double t);
 
+/* e^x - 1 */
+SPRING_INTERNAL double spring_expm1(double x);
+
 /* Springs that the exact solution moves each by its own coefficients, in double, whatever they are stored in: bitwise
    identical to spring_exact(). One that would not stay finite, or has a negative rate, keeps its state. */
 typedef struct exact_array {

@@ -35,9 +35,10 @@ typedef struct scene_plan {
     uint32_t bands;
     band_plan band[most_bands]; /* by ascending offset */
     size_t x[buffers], v[buffers];
-    size_t force[buffers];   /* at the state in each buffer, or the same for both, see scene_force_of() */
-    size_t predicted;        /* velocities, where they cannot lie where the forces will */
-    size_t stages, quantity; /* what a method stores for its stages, and how many bytes from one to the next */
+    size_t force[buffers];       /* at the state in each buffer, or the same for both, see scene_force_of() */
+    size_t predicted;            /* velocities, where they cannot lie where the forces will */
+    size_t stages, stage_step;   /* quantities that a method stores for its stages; elements from one to the next */
+    size_t factors, factor_step; /* what a method stores of each mass where there is drag, likewise */
     size_t inverse_mass;
     size_t occupied, band_stiffness, band_rest, band_damping, rings;
     size_t edge_a, edge_b, edge_stiffness, edge_rest, edge_damping;

@@ -58,6 +58,15 @@ static unsigned stages_of(uint32_t methods)
     return stages;
 }
 
+static unsigned factors_of(uint32_t methods)
+{
+    unsigned factors = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->factors > factors)
+            factors = spring_scene_methods[m]->factors;
+    return factors;
+}
+
 static bool any_predicts(uint32_t methods)
 {
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
@@ -160,6 +169,25 @@ static def_error check_links(const spring_scene_def *def)
     return no_error;
 }
 
+static bool any_damping(const spring_scene_def *def)
+{
+    for (size_t i = 0; i < def->links; i++)
+        if (def->link[i].damping > 0)
+            return true;
+    return false;
+}
+
+/* Forces that depend on velocities, for methods that do without. */
+static def_error check_velocities(const spring_scene_def *def)
+{
+    const bool called = def->force != NULL && (def->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((def->methods & 1u << m) != 0 && spring_method_describe((spring_method)m)->positions_only &&
+            (called || any_damping(def)))
+            return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
+    return no_error;
+}
+
 static def_error check(const spring_scene_def *def)
 {
     if (def == NULL)
@@ -169,6 +197,8 @@ static def_error check(const spring_scene_def *def)
         found = check_particles(def);
     if (found.status == SPRING_OK)
         found = check_links(def);
+    if (found.status == SPRING_OK)
+        found = check_velocities(def);
     return found;
 }
 
@@ -281,14 +311,6 @@ static size_t reserve(scene_plan *plan, size_t elements, size_t size)
     return (size_t)offset;
 }
 
-static bool any_damping(const spring_scene_def *def)
-{
-    for (size_t i = 0; i < def->links; i++)
-        if (def->link[i].damping > 0)
-            return true;
-    return false;
-}
-
 static void plan_memory(const spring_scene_def *def, scene_plan *plan)
 {
     const bool rollback = (plan->flags & SPRING_SCENE_NO_UNDO) == 0,
@@ -304,16 +326,18 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
         plan->x[i] = reserve(plan, quantity, sizeof(scalar));
         plan->v[i] = reserve(plan, quantity, sizeof(scalar));
     }
-    plan->quantity = plan->v[0] - plan->x[0];
     plan->force[0] = reserve(plan, quantity, sizeof(scalar));
     plan->force[1] = predicts ? reserve(plan, quantity, sizeof(scalar)) : plan->force[0];
     if (predicts && damped && plan->edges > 0 && (plan->bands > 0 || !records))
         plan->predicted = reserve(plan, quantity, sizeof(scalar));
-    plan->stages = (size_t)plan->bytes;
-    for (unsigned i = stages_of(plan->methods); i > 0; i--)
-        reserve(plan, quantity, sizeof(scalar));
-    if (def->mass != NULL || def->pinned != NULL)
-        plan->inverse_mass = reserve(plan, plan->small ? quantity : plan->stride, sizeof(scalar));
+    plan->stage_step = quantity;
+    plan->stages = reserve(plan, stages_of(plan->methods) * quantity, sizeof(scalar));
+    const bool each = def->mass != NULL || def->pinned != NULL;
+    const size_t masses = !each ? padding : plan->small ? quantity : plan->stride;
+    if (each)
+        plan->inverse_mass = reserve(plan, masses, sizeof(scalar));
+    plan->factor_step = masses;
+    plan->factors = reserve(plan, def->drag > 0 ? factors_of(plan->methods) * masses : 0, sizeof(scalar));
     plan->occupied = reserve(plan, plan->band_slots, 1);
     plan->rings = reserve(plan, plan->band_force, sizeof(scalar));
     plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));

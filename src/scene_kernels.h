@@ -11,9 +11,10 @@
 #include <stddef.h>
 
 enum {
-    padding = 16,    /* elements of the longest vector; so many stand before and behind a quantity */
-    most_bands = 32, /* a block with diagonals and bending links has 16 */
-    tile = 64        /* slots of a band whose forces are computed at once, in the first cache: a multiple of padding */
+    padding = 16,       /* elements of the longest vector; so many stand before and behind a quantity */
+    most_bands = 32,    /* a block with diagonals and bending links has 16 */
+    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
+    tile = 64 /* slots of a band whose forces are computed at once, in the first cache: a multiple of padding */
 };
 
 /* Links whose upper end is `offset` particles after the lower one. Arrays are of whole tiles of slots. */
@@ -68,6 +69,14 @@ typedef struct scene_motion {
     const scalar *slope;   /* the velocity of the stage that the force belongs to; v0 at first */
     scalar *sum_x, *sum_v; /* weighted sums of the slopes of stages, and of their accelerations */
     scalar weight;         /* of this stage */
+    /* of Runge-Kutta-Nystrom methods: */
+    scalar square;                       /* [s^2] of the step */
+    scalar *slopes;                      /* accelerations of the stages ... */
+    size_t slope_step;                   /* ... elements from one to the next */
+    const scalar *weight_x, *weight_v;   /* of each of them */
+    const scalar *stage_x;               /* positions of the stage that the force belongs to */
+    const scalar *growth, *decay, *loss; /* of each mass, e^(drag t/2) at that stage, its inverse at the next, and
+                                                e^(-drag kick/2) - 1 */
 } scene_motion;
 
 /* From positions, and velocities if links are damped. s->force may be v for bands, and for records without bands. */
@@ -92,6 +101,9 @@ typedef struct scene_kernels {
     scene_motion_kernel *first_stage;       /* the same, and the sums are slope and a(slope) */
     scene_motion_kernel *next_stage;        /* the same, and they are added to the sums, times weight */
     scene_motion_kernel *last_stage;        /* v = v0 + kick (sum_v + a(slope));   x = x0 + drift (sum_x + slope) */
+    scene_motion_kernel
+        *nystrom_stage[nystrom_stages]; /* slopes[i] = a; x = x0 + drift v0 + square sum weight_x slopes */
+    scene_motion_kernel *nystrom_end;   /* the same, and v = v0 + kick sum weight_v slopes */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a vector */

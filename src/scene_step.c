@@ -63,6 +63,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         return SPRING_EINVAL;
     if ((s->plan.methods & 1u << m) == 0)
         return SPRING_EUNSUPPORTED;
+    if (spring_method_describe(m)->positions_only && scene_forces_use_velocity(s))
+        return SPRING_EUNSUPPORTED;
     if (n == 0 || (scalar)dt == 0)
         return SPRING_OK;
     if (s->lost && !finite_scene(s)) /* the caller has not set it anew */

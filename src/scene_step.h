@@ -29,8 +29,9 @@ typedef struct scene_outcome {
 typedef struct scene_method {
     scene_outcome (*step)(const scene_step *s); /* NULL: not for scenes */
     double (*stable_step)(const scene_bounds *b);
-    bool predicts;   /* stores velocities and forces of a prediction, where forces depend on velocities */
-    unsigned stages; /* quantities of all particles that it stores for its stages */
+    bool predicts;    /* stores velocities and forces of a prediction, where forces depend on velocities */
+    unsigned stages;  /* quantities of all particles that it stores for its stages */
+    unsigned factors; /* numbers of each mass that it stores where there is drag */
 } scene_method;
 
 SPRING_INTERNAL const scene_method *const spring_scene_methods[SPRING_METHOD_COUNT];
@@ -49,7 +50,13 @@ static inline bool scene_forces_use_velocity(const spring_scene *s)
 /* Of the quantities that are stored for stages one. */
 static inline scalar *scene_stage(const scene_step *s, unsigned i)
 {
-    return scene_axis(s->scene, s->scene->plan.stages + i * s->scene->plan.quantity, 0);
+    return scene_axis(s->scene, s->scene->plan.stages, 0) + i * s->scene->plan.stage_step;
+}
+
+/* Of the numbers that are stored of each mass one, in the order of scene_particles.inverse_mass. */
+static inline scalar *scene_factor(const scene_step *s, unsigned i)
+{
+    return scene_array(s->scene, s->scene->plan.factors) + i * s->scene->plan.factor_step;
 }
 
 /* Where velocities are predicted: where the forces at them will be, if they are kept and these may overwrite those as

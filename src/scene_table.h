@@ -72,6 +72,9 @@ QUAD_KERNELS(all_quads)
     .first_stage = move_first_stage, \
     .next_stage = move_next_stage, \
     .last_stage = move_last_stage, \
+    .nystrom_stage = {move_nystrom_stage_1, move_nystrom_stage_2, move_nystrom_stage_3, move_nystrom_stage_4, \
+                      move_nystrom_stage_5, move_nystrom_stage_6, move_nystrom_stage_7}, \
+    .nystrom_end = move_nystrom_end, \
 }
 /* clang-format on */
 

@@ -50,14 +50,15 @@ typedef struct spring_params {
 
 /* Values are only ever appended; tables show methods in the order of spring_method_at(). */
 typedef enum spring_method {
-    SPRING_EULER,           /* order 1; for comparison: an undamped spring gains energy at every step size */
-    SPRING_LEAPFROG,        /* order 2; one force a step, bounded energy error: the default for games and long runs */
-    SPRING_RK4,             /* order 4; the smallest error for short runs; slowly loses energy */
-    SPRING_EXACT,           /* the exact solution; for one linear spring no stepper beats it */
-    SPRING_SYMPLECTIC_EULER /* order 1, bounded energy error: what many game engines run; leapfrog costs the same */
+    SPRING_EULER,            /* order 1; for comparison: an undamped spring gains energy at every step size */
+    SPRING_LEAPFROG,         /* order 2; one force a step, bounded energy error: the default for games and long runs */
+    SPRING_RK4,              /* order 4; the smallest error for short runs; slowly loses energy */
+    SPRING_EXACT,            /* the exact solution; for one linear spring no stepper beats it */
+    SPRING_SYMPLECTIC_EULER, /* order 1, bounded energy error: what many game engines run; leapfrog costs the same */
+    SPRING_RKN8 /* order 8; scenes alone, without damped links: the fewest forces for three digits and more */
 } spring_method;
 
-enum { SPRING_METHOD_COUNT = 5 }; /* of its own, so that a switch over methods needs no case for it */
+enum { SPRING_METHOD_COUNT = 6 }; /* of its own, so that a switch over methods needs no case for it */
 
 /* Steps after which a state that is not finite any more is noticed, at the latest. */
 enum { SPRING_CHECK_INTERVAL = 4096 };
@@ -305,6 +306,7 @@ typedef struct spring_method_info {
     bool springs;        /* offered for one spring and batches */
     bool scenes;         /* offered for scenes */
     const char *label;   /* as in a text: "RK4" */
+    bool positions_only; /* not for scenes with damped links or with a callback that may use velocities */
 } spring_method_info;
 
 typedef void spring_step_fn(spring_state *s, const spring_params *p, double dt);

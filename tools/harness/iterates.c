@@ -4,10 +4,12 @@
  *
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler,
  *           RK4); Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
- *           (symplectic Euler, leapfrog)
+ *           (symplectic Euler, leapfrog); Dormand, El-Mikkawy, Prince, High-order embedded Runge-Kutta-Nystrom
+ *           formulae, IMA J. Numer. Anal. 7 (1987)
  */
 #include "harness/iterates.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,6 +178,118 @@ static void rk4_scene(const iterate_scene *s, double t, double h, double *x, dou
     }
 }
 
+/* ------------------------------------------------------------------------------------------------ RKN 8(6)9 */
+
+/* Of the nine stages; the last one's are the weights of the positions at the end. */
+enum { RKN_STAGES = 9 };
+typedef struct quotient {
+    long of, by;
+} quotient;
+static const quotient rkn_at[RKN_STAGES] = {{0, 1},  {1, 20}, {1, 10}, {3, 10}, {1, 2},
+                                            {7, 10}, {9, 10}, {1, 1},  {1, 1}};
+/* clang-format off */
+static const quotient rkn_from[RKN_STAGES][RKN_STAGES - 1] = {
+    {{0, 1}},
+    {{1, 800}},
+    {{1, 600}, {1, 300}},
+    {{9, 200}, {-9, 100}, {9, 100}},
+    {{-66701, 197352}, {28325, 32892}, {-2665, 5482}, {2170, 24669}},
+    {{227015747, 304251000}, {-54897451, 30425100}, {12942349, 10141700}, {-9499, 304251}, {539, 9250}},
+    {{-1131891597, 901789000}, {41964921, 12882700}, {-6663147, 3220675}, {270954, 644135}, {-108, 5875},
+     {114, 1645}},
+    {{13836959, 3667458}, {-17731450, 1833729}, {1063919505, 156478208}, {-33213845, 39119552}, {13335, 28544},
+     {-705, 14272}, {1645, 57088}},
+    {{223, 7938}, {0, 1}, {1175, 8064}, {925, 6048}, {41, 448}, {925, 14112}, {1175, 72576}, {0, 1}},
+};
+static const quotient rkn_kick[RKN_STAGES - 1] = {
+    {223, 7938}, {0, 1}, {5875, 36288}, {4625, 21168}, {41, 224}, {4625, 21168}, {5875, 36288}, {223, 7938}};
+/* clang-format on */
+
+/* sum += h q value */
+static void add_quotient(mpfr_t sum, quotient q, const mpfr_t h, const mpfr_t value)
+{
+    mpfr_t part;
+    mpfr_init2(part, mpfr_get_prec(sum));
+    mpfr_mul_si(part, h, q.of, nearest);
+    mpfr_div_si(part, part, q.by, nearest);
+    mpfr_fma(sum, part, value, sum, nearest);
+    mpfr_clear(part);
+}
+
+/* Of y = e^(g t/2) (x - x0), whose y'' = e^(g t/2) (a - w x) + (g/2)^2 y. */
+static void rkn8_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t slope[RKN_STAGES - 1], y, dy, growth, square, half, position, zero;
+    mpfr_inits2(mpfr_get_prec(x), y, dy, growth, square, half, position, zero, (mpfr_ptr)NULL);
+    mpfr_set_zero(zero, 1);
+    mpfr_sqr(square, h, nearest);
+    mpfr_div_ui(half, r->g, 2, nearest);
+    for (int i = 0; i < RKN_STAGES; i++) {
+        mpfr_set_zero(y, 1);
+        add_quotient(y, rkn_at[i], h, v);
+        for (int j = 0; j < i; j++)
+            add_quotient(y, rkn_from[i][j], square, slope[j]);
+        mpfr_set_zero(growth, 1);
+        add_quotient(growth, rkn_at[i], h, half);
+        mpfr_exp(growth, growth, nearest);
+        mpfr_div(position, y, growth, nearest);
+        mpfr_add(position, x, position, nearest);
+        if (i + 1 == RKN_STAGES)
+            break;
+        mpfr_init2(slope[i], mpfr_get_prec(x));
+        spring_acceleration(slope[i], r, position, zero);
+        mpfr_mul(slope[i], slope[i], growth, nearest);
+        mpfr_sqr(dy, half, nearest);
+        mpfr_fma(slope[i], dy, y, slope[i], nearest);
+    }
+    mpfr_set(dy, v, nearest);
+    for (int j = 0; j < RKN_STAGES - 1; j++) {
+        add_quotient(dy, rkn_kick[j], h, slope[j]);
+        mpfr_clear(slope[j]);
+    }
+    mpfr_mul(y, y, half, nearest);
+    mpfr_sub(dy, dy, y, nearest);
+    mpfr_div(v, dy, growth, nearest);
+    mpfr_set(x, position, nearest);
+    mpfr_clears(y, dy, growth, square, half, position, zero, (mpfr_ptr)NULL);
+}
+
+static double value_of(quotient q)
+{
+    return (double)q.of / (double)q.by;
+}
+
+/* Forces do not depend on velocities. The last stage is kept: it is the first of the next step. */
+static void rkn8_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    const size_t n = s->count;
+    double *const kept = s->room, *const stage = kept + n, *const slope = stage + n;
+    if (s->step == 0 || s->changes)
+        s->acceleration(s->data, t, x, v, kept);
+    memcpy(slope, kept, n * sizeof *slope);
+    for (int i = 1; i < RKN_STAGES; i++) {
+        const double at = h * value_of(rkn_at[i]);
+        for (size_t k = 0; k < n; k++) {
+            double y = at * v[k];
+            for (int j = 0; j < i; j++)
+                y += h * h * value_of(rkn_from[i][j]) * slope[(size_t)j * n + k];
+            stage[k] = x[k] + exp(-s->drag[k] / 2 * at) * y;
+        }
+        s->acceleration(s->data, t + at, stage, v, kept);
+        for (size_t k = 0; k < n && i + 1 < RKN_STAGES; k++) {
+            const double growth = exp(s->drag[k] / 2 * at), half = s->drag[k] / 2;
+            slope[(size_t)i * n + k] = growth * (kept[k] + half * half * (stage[k] - x[k]));
+        }
+    }
+    for (size_t k = 0; k < n; k++) {
+        double dy = v[k];
+        for (int j = 0; j < RKN_STAGES - 1; j++)
+            dy += h * value_of(rkn_kick[j]) * slope[(size_t)j * n + k];
+        v[k] = exp(-s->drag[k] / 2 * h) * dy - s->drag[k] / 2 * (stage[k] - x[k]);
+        x[k] = stage[k];
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- the methods */
 
 static const iterate iterates[] = {
@@ -184,6 +298,7 @@ static const iterate iterates[] = {
     [SPRING_RK4] = {.spring = rk4_spring, .scene = rk4_scene, .vectors = 6},
     [SPRING_EXACT] = {.spring = NULL}, /* takes no steps */
     [SPRING_SYMPLECTIC_EULER] = {.spring = symplectic_euler_spring, .scene = symplectic_euler_scene, .vectors = 1},
+    [SPRING_RKN8] = {.spring = rkn8_spring, .scene = rkn8_scene, .vectors = 2 + RKN_STAGES - 1},
 };
 _Static_assert(sizeof iterates / sizeof iterates[0] == SPRING_METHOD_COUNT, "each method has an entry");
 
