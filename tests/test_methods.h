@@ -44,6 +44,12 @@ static inline const spring_method *steppers(void)
     return list_methods(list, steps_springs);
 }
 
+/* Does a scene keep the force at the end of a step of it for the next? */
+static inline bool keeps_force(spring_method m)
+{
+    return m == SPRING_LEAPFROG || m == SPRING_RKN8;
+}
+
 /* Without damping no step of it is stable, as with Euler's method. */
 static inline bool never_stable(spring_method m)
 {

@@ -85,6 +85,7 @@ static void build_bands(model *m, uint32_t axes, unsigned features, size_t most_
             add_band(m, offsets[o], features);
     for (int i = 0; i < 5 && features & STRAY; i++)
         m->link[m->def.links++] = (spring_link){particles - 1, (uint32_t)i, 0.8, 9.7, 0};
+    use_all_methods(&m->def);
 }
 
 static void many_bands(void)

@@ -10,10 +10,11 @@
 
 static const double push_friction = 0.31, push_spring = 0.2; /* [N s/m], [N] */
 
-/* F(t, x, v) on an axis of a particle. */
-static double push(double t, size_t i, uint32_t axis, double x, double v)
+/* F(t, x, v) on an axis of a particle; with the promise F(t, x). */
+static double push(const model *m, double t, size_t i, uint32_t axis, double x, double v)
 {
-    return 0.8 * sin(1.3 * t + (double)i + axis) - push_friction * v - push_spring * sin(x);
+    const bool rubs = (m->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    return 0.8 * sin(1.3 * t + (double)i + axis) - (rubs ? push_friction * v : 0) - push_spring * sin(x);
 }
 
 static void push_all(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
@@ -22,7 +23,7 @@ static void push_all(void *user, double t, size_t particles, const scalar *const
     const model *m = user;
     for (uint32_t a = 0; a < m->def.axes; a++)
         for (size_t i = 0; i < particles; i++)
-            force[a][i] += (scalar)push(t, i, a, (double)x[a][i], (double)v[a][i]);
+            force[a][i] += (scalar)push(m, t, i, a, (double)x[a][i], (double)v[a][i]);
 }
 
 /* Of everything but drag; 0 where pinned. */
@@ -34,7 +35,7 @@ static void acceleration(const void *data, double t, const double *x, const doub
     plain_forces(&m->def, axes, x, v, a, NULL);
     for (size_t j = 0; j < m->def.particles * axes; j++) {
         if (m->def.force != NULL)
-            a[j] += push(t, j / axes, (uint32_t)(j % axes), x[j], v[j]);
+            a[j] += push(m, t, j / axes, (uint32_t)(j % axes), x[j], v[j]);
         a[j] = pinned_in(&m->def, j / axes) ? 0 : a[j] / mass_in(&m->def, j / axes) + m->def.gravity[j % axes];
     }
 }
@@ -118,8 +119,10 @@ static void against_definitions(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < EDITABLE; features++) {
             build(&m, grids[features % 3], axes, features);
-            m.def.force = features % 5 < 2 ? push_all : NULL;
+            m.def.force = features % 5 < 3 ? push_all : NULL;
             m.def.user = &m;
+            if (features % 5 == 2)
+                m.def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY;
             const method_list all = use_all_methods(&m.def);
             for (const spring_method *method = all.at; *method != no_method; method++)
                 check_iterate(&m, *method);
@@ -424,6 +427,8 @@ static void check_order(const model *m)
     const method_list all = methods_of(m->def);
     for (const spring_method *method = all.at; *method != no_method; method++) {
         const int order = spring_method_describe(*method)->order;
+        if (order > 4) /* between rounding and the order is no room with such motions: see test_rkn8.c */
+            continue;
         const int steps =
             looks * (1 + 512 / (order * order * order)); /* so that the next order and rounding are small */
         error e[3];

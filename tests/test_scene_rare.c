@@ -26,6 +26,7 @@ static void weak_links(void)
                 m.link[i].stiffness = dampers ? 0 : number;
                 m.link[i].damping = dampers ? number : 0;
             }
+            use_all_methods(&m.def);
             spring_scene *s = scene_of(&m.def);
             CHECK((s->plan.bands == 0) == (how / 2 != 0), "without order there are no bands");
             get_state(s, m.def.particles, &y);

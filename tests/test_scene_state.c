@@ -50,7 +50,7 @@ static void check_calls(const spring_scene_def *def, wind *w, spring_method meth
     spring_scene *s = scene_of(def);
     CHECK(spring_scene_advance(s, method, dt, 1) == SPRING_OK, "stable");
     const size_t first = w->calls;
-    CHECK(first == a_step + (still && leapfrog), "the first step of leapfrog has no force from the step before");
+    CHECK(first == a_step + (still && keeps_force(method)), "the first step has no force from the step before");
     CHECK(spring_scene_advance(s, method, dt, 7) == SPRING_OK, "stable");
     CHECK(w->calls - first == 7 * a_step, "as often as scene.h says");
     CHECK(w->good, "an array for each axis, NULL beyond");
@@ -68,7 +68,7 @@ static void check_calls(const spring_scene_def *def, wind *w, spring_method meth
                                               : dt / 2),
                         rounded, "nodes 0, 1/2, 1/2, 1");
     }
-    if (leapfrog)
+    if (keeps_force(method))
         CHECK_CLOSE(w->times[w->calls - 1], 8 * dt, 2 * DBL_EPSILON * 8 * dt, "its last force is at the end");
     free(s);
 }
@@ -790,8 +790,7 @@ static void absent_is_zero(void)
         for (unsigned features = 0; features <= DAMPED; features += DAMPED) {
             build(&m, sheet, axes, features);
             const spring_scene_def plain = m.def;
-            m.def.force = add_nothing;
-            const method_list all = use_all_methods(&m.def);
+            const method_list all = methods_of(plain);
             for (const spring_method *k = all.at; *k != no_method; k++) {
                 m.def = plain;
                 m.def.velocity = NULL;
@@ -801,7 +800,9 @@ static void absent_is_zero(void)
                 m.def.mass = equal;
                 m.def.pinned = unpinned;
                 m.def.force = add_nothing;
-                m.def.flags = features & DAMPED ? SPRING_SCENE_FORCE_IGNORES_VELOCITY : 0; /* else none are kept */
+                m.def.methods = 1u << *k;
+                if (features & DAMPED || spring_method_describe(*k)->positions_only) /* else none are kept */
+                    m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
                 spring_scene *longer = scene_of(&m.def);
                 spring_scene_advance(longer, *k, 0.0137, 11);
                 CHECK(same_bits(longer, shorter, m.def.particles, axes), "a feature of zero is absent");

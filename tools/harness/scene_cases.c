@@ -464,83 +464,84 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 
 /* ------------------------------------------------------------------------------------------------ the catalogue */
 
-#define STEPS(first, second, fourth) .steps = {first, second, fourth} /* order */
+#define STEPS(first, second, fourth, eighth) .steps = {first, second, fourth, eighth} /* order */
 #define CHAIN(n, first, last)                                                                                   \
     .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .formula = "modes", .iterate = chain_modes, \
     .slowest = first, .fastest = last
 #define PAIR(axes)                                                                             \
     .build = build_pair, .count = axes, .omega = 2.97, .length = 1, .formula = "reduced-mass", \
     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972
-#define LONG  .duration = 16, STEPS(1024, 512, 512)
-#define BRIEF .duration = 0.125, STEPS(4, 4, 4)
+#define LONG  .duration = 16, STEPS(1024, 512, 512, 64)
+#define BRIEF .duration = 0.125, STEPS(4, 4, 4, 4)
 /* A mode for some eighths of a second, by methods of order 2 or more. RK4 takes about half its stable step, 2.61/sqrt(8
    k/m) with structural links, with all families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step
    alone makes the frequency of mode (3, 1) at 15 x 15 wrong by z^2/24, more than half a percent. .length and .omega
    follow from the mode. */
-#define MODE(name, purpose, eighths, second, fourth, takes_long)                                                      \
-    {                                                                                                                 \
-        name, purpose, build_mode, .duration = (eighths) / 8.0, STEPS(0, (eighths) * (second), (eighths) * (fourth)), \
-                                   .formula = "dispersion", .slow = (takes_long)                                      \
+#define MODE(name, purpose, eighths, second, fourth, eighth, takes_long)                                       \
+    {                                                                                                          \
+        name, purpose, build_mode, .duration = (eighths) / 8.0,                                                \
+                                   STEPS(0, (eighths) * (second), (eighths) * (fourth), (eighths) * (eighth)), \
+                                   .formula = "dispersion", .slow = (takes_long)                               \
     }
 #define WAVE(mode, N, eighths, takes_long)                                                                         \
-    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43,         \
+    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, 36,     \
          takes_long),                                                                                              \
         MODE("water-mode-" mode "-mirrored-" N, "the same with all families of links, mirrored at the edges",      \
-             (eighths) / 2, 121, 75, takes_long),                                                                  \
+             (eighths) / 2, 121, 75, 62, takes_long),                                                              \
         MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges", (eighths) / 2, \
-             121, 75, takes_long)
+             121, 75, 62, takes_long)
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
-    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32), .omega = 1, .length = 1,
+    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32, 4), .omega = 1, .length = 1,
      .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .external = true},
     {"duffing-period", "the same for one period, back to the start", build_duffing,
-     .duration = 4.768022029102460806304518, STEPS(4096, 512, 128), .omega = 1, .length = 1, .callback = 1, .known = 2,
-     .digits = {1, 0}},
+     .duration = 4.768022029102460806304518, STEPS(4096, 512, 128, 16), .omega = 1, .length = 1, .callback = 1,
+     .known = 2, .digits = {1, 0}},
     {"pendulum", "a pendulum that starts next to its highest point", build_pendulum, .duration = 10,
-     STEPS(10240, 1280, 160), .omega = 1, .length = 3, .callback = 1, .known = 1,
+     STEPS(10240, 1280, 160, 0), .omega = 1, .length = 3, .callback = 1, .known = 1,
      .digits = {-2.650674563598209613232602}, .external = true},
     {"pendulum-period", "the same for one period, past the highest point", build_pendulum,
-     .duration = 16.15553937239337476376028, STEPS(16384, 2048, 256), .omega = 1, .length = 3, .callback = 1,
+     .duration = 16.15553937239337476376028, STEPS(16384, 2048, 256, 0), .omega = 1, .length = 3, .callback = 1,
      .known = 2, .digits = {3, 0}},
-    {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280),
+    {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280, 160),
      .omega = 1, .length = 4, .callback = 100, .known = 2, .digits = {-0.92175345784461174225, 5.2692478469465402339},
      .external = true},
-    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200), .omega = 1, .length = 4,
-     .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797}, .external = true,
-     .slow = true},
-    {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
-     .duration = 20, STEPS(81920, 10240, 1280), .omega = 1, .length = 2, .callback = 17, .known = 2,
-     .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
-    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20, STEPS(327680, 40960, 2560),
-     .omega = 1, .length = 2, .callback = 205, .known = 2, .digits = {-1.6012968795428539088, 0.19832667633866208454},
+    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200, 400), .omega = 1,
+     .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
      .external = true, .slow = true},
+    {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
+     .duration = 20, STEPS(81920, 10240, 1280, 0), .omega = 1, .length = 2, .callback = 17, .known = 2,
+     .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
+    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
+     STEPS(327680, 40960, 2560, 0), .omega = 1, .length = 2, .callback = 205, .known = 2,
+     .digits = {-1.6012968795428539088, 0.19832667633866208454}, .external = true, .slow = true},
     {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
-     STEPS(16384, 2048, 512), .omega = 50, .length = 1, .callback = 12, .known = 2,
+     STEPS(16384, 2048, 512, 64), .omega = 50, .length = 1, .callback = 12, .known = 2,
      .digits = {0.51767820806882268094, 0.53980860868328140544}, .external = true},
-    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 81920, 2560), .omega = 50,
-     .length = 1, .callback = 12, .known = 2, .digits = {0.75633242161029198993, 0.71735962155453710255},
+    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 81920, 2560, 320),
+     .omega = 50, .length = 1, .callback = 12, .known = 2, .digits = {0.75633242161029198993, 0.71735962155453710255},
      .external = true, .slow = true},
     {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
-     STEPS(81920, 10240, 640), .omega = 3, .length = 1, .callback = 256, .known = 2,
+     STEPS(81920, 10240, 640, 0), .omega = 3, .length = 1, .callback = 256, .known = 2,
      .digits = {-0.62718670506653073014, -1.3013155502098116779}, .external = true},
     {"resonant-drive", "a drive in the callback, sampled at every stage", build_resonance, .duration = 20,
-     STEPS(20480, 2560, 640), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
+     STEPS(20480, 2560, 640, 80), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
      .solution = solve_resonance, .external = true},
     /* links */
-    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024),
+    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024, 192),
      .omega = 6, .length = 1, .external = true},
-    {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32, STEPS(0, 4096, 1024),
-     .omega = 6325, .length = 0.1, .external = true, .slow = true},
-    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16, STEPS(0, 4096, 1024),
-     .omega = 2038, .length = 0.5, .external = true, .slow = true},
+    {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
+     STEPS(0, 4096, 1024, 128), .omega = 6325, .length = 0.1, .external = true, .slow = true},
+    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
+     STEPS(0, 4096, 1024, 128), .omega = 2038, .length = 0.5, .external = true, .slow = true},
     {"patchwork", "rows of links of which none is like the next, on a line", build_patchwork, .count = 1,
-     .duration = 0.5, STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
+     .duration = 0.5, STEPS(512, 128, 64, 0), .omega = 21, .length = 0.3, .external = true},
     {"patchwork-2d", "the same in the plane, falling", build_patchwork, .count = 2, .duration = 0.5,
-     STEPS(512, 128, 64), .omega = 21, .length = 0.3, .external = true},
-    {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128), .omega = 100,
+     STEPS(512, 128, 64, 0), .omega = 21, .length = 0.3, .external = true},
+    {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128, 0), .omega = 100,
      .length = 0.2, .external = true, .slow = true},
-    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128), .omega = 21, .length = 0.1,
+    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128, 16), .omega = 21, .length = 0.1,
      .external = true, .slow = true},
     /* linear chains, with fixed ends */
     {"chain-1", "one mass between walls", CHAIN(1, 2.038, 2.039), LONG},
@@ -555,7 +556,7 @@ const scene_case scene_cases[] = {
     {"pair-3d", "the same in space, adrift", PAIR(3), LONG},
     {"pair-briefly", "the same, so few steps that rounding errors cannot cancel", PAIR(3), BRIEF},
     {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
-     STEPS(1024, 256, 64), .omega = 2.97, .length = 1, .formula = "reduced-mass", .solution = solve_damped_pair,
+     STEPS(1024, 256, 64, 0), .omega = 2.97, .length = 1, .formula = "reduced-mass", .solution = solve_damped_pair,
      .external = true},
     /* standing waves */
     WAVE("1-1", "15", 4, false),
@@ -570,7 +571,7 @@ const scene_case scene_cases[] = {
     WAVE("2-1", "35", 6, true),
     WAVE("2-2", "35", 6, true),
     WAVE("3-1", "35", 6, true),
-    MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43, false),
+    MODE("sheet-mode-1-1-tension-15", "a standing wave of a sheet in space, under tension", 8, 70, 43, 36, false),
 };
 
 uint64_t scene_case_steps(const scene_case *c, spring_method m)
@@ -578,7 +579,7 @@ uint64_t scene_case_steps(const scene_case *c, spring_method m)
     const spring_method_info *info = spring_method_describe(m);
     if (!info->scenes)
         return 0;
-    return c->steps[info->order < 2 ? 0 : info->order < 4 ? 1 : 2];
+    return c->steps[info->order < 2 ? 0 : info->order < 4 ? 1 : info->order < 8 ? 2 : 3];
 }
 
 const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];

@@ -43,15 +43,25 @@ void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_
                                 .mass_all = mass,
                                 .pinned = p->pinned,
                                 .link = p->link};
-    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if (spring_method_describe((spring_method)m)->scenes)
-            p->def.methods |= 1u << m;
+}
+
+/* The methods that take a definition. */
+static uint32_t methods_of(spring_scene_def def)
+{
+    uint32_t methods = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++) {
+        def.methods = 1u << m;
+        if (spring_scene_check(&def, NULL, NULL) == SPRING_OK)
+            methods |= def.methods;
+    }
+    return methods;
 }
 
 void scene_problem_init(scene_problem *p, const scene_case *c)
 {
     *p = (scene_problem){.moving = 0};
     c->build(c, p);
+    p->def.methods = methods_of(p->def);
     const size_t axes = p->def.axes, particles = p->def.particles;
     p->coordinate = scene_room(axes * particles, sizeof *p->coordinate);
     p->room = numbers(4 * axes * particles);

@@ -34,7 +34,7 @@ struct scene_case {
     void (*build)(const scene_case *c, scene_problem *p);
     size_t count;        /* of what there can be any number of */
     double duration;     /* [s] */
-    uint64_t steps[3];   /* of methods of order 1, 2, and 4 or more: see scene_case_steps() */
+    uint64_t steps[4];   /* of methods of order 1, 2, 4, and 8 or more: see scene_case_steps() */
     double omega;        /* [1/s] */
     double length;       /* [m] of the motion: tolerances are relative to it */
     double callback;     /* [m/s^2] largest sum of the sizes of all terms in the callback, over mass */

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT */
+/* RKN8 on one spring in a scene, whose mass is a power of two so that w and g are what the references work from:
+   rounding, order and error constant, energy, stable step. What is true of every method tests of scenes ask. */
+#include <math.h>
+#include <stdlib.h>
+
+#include <springstep/scene.h>
+
+#include "check.h"
+#include "harness/reference.h"
+
+/* n steps of dt from a state. */
+static spring_state advanced(spring_params p, double dt, uint64_t n, spring_state from)
+{
+    const double position[] = {0, from.x}, velocity[] = {0, from.v};
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 0, p.stiffness, 0};
+    const spring_scene_def def = {.axes = 1,
+                                  .methods = 1u << SPRING_RKN8,
+                                  .particles = 2,
+                                  .links = 1,
+                                  .position = position,
+                                  .velocity = velocity,
+                                  .mass_all = p.mass,
+                                  .pinned = pinned,
+                                  .link = &link,
+                                  .gravity = {p.load / p.mass},
+                                  .drag = p.damping};
+    size_t bytes = 0;
+    spring_scene *s;
+    spring_state end = {NAN, NAN};
+    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "a valid definition");
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    CHECK(spring_scene_init(memory, bytes, &def, &s) == SPRING_OK, "a valid definition");
+    CHECK(spring_scene_advance(s, SPRING_RKN8, dt, n) == SPRING_OK, "finite numbers");
+    spring_scene_get(s, SPRING_POSITION, &end.x, 0, 1, 1);
+    spring_scene_get(s, SPRING_VELOCITY, &end.v, 0, 1, 1);
+    free(memory);
+    return end;
+}
+
+static double omega_of(const spring_params *p)
+{
+    return sqrt(p->stiffness / p->mass);
+}
+
+/* Against the same method in exact arithmetic: springs of all sizes, steps up to just below the stable one, and
+   back. */
+static void against_iterate(void)
+{
+    for (int i = 0; i < 400; i++) {
+        spring_params p = {.mass = ldexp(1, (int)(random_bits() % 12) - 6), .stiffness = random_log(1e-3, 1e3)};
+        const double omega = omega_of(&p);
+        if (i % 2 != 0)
+            p.damping = p.mass * omega * random_log(1e-4, 5);
+        if (i % 4 >= 2)
+            p.load = p.stiffness * random_uniform(-2, 2);
+        const spring_state start = {random_uniform(-1, 1), omega * random_uniform(-1, 1)};
+        const uint64_t n = 1 + random_bits() % 300;
+        const double z = i % 5 == 0 ? 3.13 : random_log(1e-3, 3.1);
+        const double forward = z / omega,
+                     back = -fmin(z, 0.01) / (omega + p.damping / p.mass); /* where drag is growth */
+        const double dt = i % 7 == 0 ? back : forward;
+        double rounded, truncated;
+        reference ref;
+        reference_init(&ref);
+        reference_start(&ref, &p, start);
+        reference_bounds *bounds = reference_bounds_new(&p, start);
+        reference_bounds_add(bounds, &p, SPRING_RKN8, dt, n);
+        reference_bounds_end(bounds, &rounded, &truncated);
+        reference_iterate(&ref, &p, SPRING_RKN8, dt, n);
+        CHECK_BELOW(reference_distance(&ref, advanced(p, dt, n, start)), rounded, "rounding of n steps, reference.h");
+        reference_clear(&ref);
+    }
+}
+
+static double error_of(spring_params p, double duration, uint64_t n, spring_state start)
+{
+    reference exact;
+    reference_init(&exact);
+    reference_start(&exact, &p, start);
+    reference_exact(&exact, &p, duration);
+    const double error = reference_distance(&exact, advanced(p, duration / (double)n, n, start));
+    reference_clear(&exact);
+    return error;
+}
+
+/* With and without drag and load, by steps of z = 0.7 and less. */
+static void order(void)
+{
+    static const double dampings[] = {0, 0.02, 0.3}, loads[] = {0, 1.9};
+    const spring_state start = {0.8, -0.9};
+    for (int d = 0; d < 3; d++)
+        for (int l = 0; l < 2; l++) {
+            const spring_params p = {0.5, 2.7, dampings[d], loads[l]};
+            const double omega = omega_of(&p), duration = 14 / omega;
+            double error[3];
+            for (int i = 0; i < 3; i++)
+                error[i] = error_of(p, duration, (uint64_t)20 << i, start);
+            CHECK_CLOSE(log2(error[0] / error[1]), 8, 0.1, "slope");
+            CHECK_CLOSE(log2(error[1] / error[2]), 8, 0.1, "slope");
+        }
+}
+
+/* The phase is off by C omega^9 h^8 T, C = 2.1716e-8 from the trace and the determinant of the step's matrix, and the
+   ellipse by less than 1.1e-8 z^8. */
+static void error_constant(void)
+{
+    const spring_params p = {.mass = 0.5, .stiffness = 2.7};
+    const spring_state start = {0.8, -0.9};
+    const double C = 2.1716e-8, omega = omega_of(&p), size = hypot(start.x, start.v / omega);
+    for (uint64_t n = 400; n <= 800; n *= 2) {
+        const double angle = 160, z = angle / (double)n, law = C * angle * pow(z, 8) * size;
+        CHECK_CLOSE(error_of(p, angle / omega, n, start), law, (0.01 + 0.5 * z * z) * law,
+                    "half of the ellipse over the angle, and the next order");
+    }
+}
+
+/* A step multiplies the energy by the determinant of its matrix, 1 - 3.7436e-8 z^10 + 4.6927e-9 z^12 - ..., but for
+   what the ellipse is off. */
+static void energy_law(void)
+{
+    const spring_params p = {.mass = 0.5, .stiffness = 2.7};
+    const spring_state start = {0.8, -0.9};
+    const double omega = omega_of(&p), before = spring_energy(&start, &p);
+    for (double z = 0.6; z < 1.7; z *= 1.3) {
+        const uint64_t n = 20000;
+        const spring_state end = advanced(p, z / omega, n, start);
+        const double lost =
+            3.743628e-8 * pow(z, 10) - 4.692673e-9 * pow(z, 12) + 1.228181e-10 * pow(z, 14) - 7.815e-13 * pow(z, 16);
+        const double want = before * exp((double)n * log1p(-lost));
+        CHECK_CLOSE(spring_energy(&end, &p), want, before * (2.2e-8 * pow(z, 9) / sin(z) + 1e-14 * sqrt((double)n)),
+                    "the ellipse, off by 2.0e-8 z^8 z/sin z and the next order; rounding");
+        CHECK(want < before * (1 - 1e-7) || z < 0.8, "there is something to be seen");
+    }
+}
+
+/* |eigenvalues| of a step at h omega = z, damping ratio `ratio`: is none above 1? */
+static bool stable(double z, double ratio)
+{
+    spring_params p = {.mass = 0.5, .stiffness = 2.7};
+    const double omega = omega_of(&p), rounding = 1e-14;
+    p.damping = 2 * ratio * p.mass * omega;
+    const spring_state a = advanced(p, z / omega, 1, (spring_state){1, 0}),
+                       b = advanced(p, z / omega, 1, (spring_state){0, omega});
+    const double trace = a.x + b.v / omega, det = (a.x * b.v - a.v * b.x) / omega;
+    return fabs(det) <= 1 + rounding && fabs(trace) <= 1 + det + rounding;
+}
+
+/* Without drag up to 3.1402, where two eigenvalues meet at -1; with drag up to that and, as a scene has it, to g h =
+   40. */
+static void stable_step(void)
+{
+    for (double ratio = 0; ratio < 100; ratio = ratio * 1.5 + 0.01)
+        for (double z = fmin(3.14, 20 / ratio); z > 0.01; z *= 0.97)
+            CHECK(stable(z, ratio), "no eigenvalue beyond 1");
+    CHECK(!stable(3.141, 0), "it is the limit");
+    CHECK(stable(3.2, 0) && !stable(3.3, 0), "that of a narrow gap, and the next one");
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"against the method in exact arithmetic", against_iterate},
+        {"order 8, with drag and without", order},
+        {"the error constant", error_constant},
+        {"the energy that is lost", energy_law},
+        {"the stable step", stable_step},
+    };
+    return RUN_TESTS("rkn8", tests);
+}
