@@ -96,6 +96,7 @@ static void still_force(void)
     for (uint32_t axes = 1; axes <= 3; axes++) {
         wind w = calm(axes, 0);
         build(&m, sheet, axes, OWN | MASSES | PINNED | DRAG);
+        m.def.methods = 1u << SPRING_LEAPFROG;
         m.def.force = blow;
         m.def.user = &w;
         spring_scene *predicted = scene_of(&m.def);

@@ -5,7 +5,7 @@ import os
 import re
 
 import pytest
-from tools import SCENE, STEPPERS, column, is_failure, order, parse, run, table
+from tools import SCENE, SCENE_STEPPERS, column, is_failure, order, parse, run, table
 
 SHEET = 2 * 25 * 24 + 2 * 24**2 + 2 * 25 * 23  # structural, shear and bend links
 BLOCK = 3 * 7 * 8**2 + (2 * 3 * 7**2 * 8 + 4 * 7**3) + 3 * 6 * 8**2
@@ -33,7 +33,7 @@ def scene(name, *args, method='leapfrog'):
 
 # --- scenes ---------------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize('method', STEPPERS)
+@pytest.mark.parametrize('method', SCENE_STEPPERS)
 @pytest.mark.parametrize('name', SCENES)
 def test_each_scene_with_each_method(name, method):
     result = run(SCENE, '--scene', name, '--method', method, '--duration', '0.1')
@@ -79,7 +79,7 @@ def orders_seen(frames_of, method, power, *args):
     return math.log2(errors[0] / errors[1])
 
 
-@pytest.mark.parametrize('method', STEPPERS)
+@pytest.mark.parametrize('method', SCENE_STEPPERS)
 def test_order(method, frames_of):
     """A rope that begins to fall: its acceleration at the start lets every method show its order in the positions."""
     power = 10 if order(method) <= 4 else 7  # higher orders meet rounding

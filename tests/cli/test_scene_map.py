@@ -5,7 +5,7 @@ import math
 
 import pytest
 from test_scene import SCENES
-from tools import MAP, STEPPERS, table
+from tools import MAP, SCENE_STEPPERS, table
 
 
 @pytest.fixture(scope='module')
@@ -14,7 +14,7 @@ def quick():
 
 
 def test_scenes_and_methods(quick):
-    assert {(row['scene'], row['method']) for row in quick} == set(itertools.product(SCENES, STEPPERS))
+    assert {(row['scene'], row['method']) for row in quick} == set(itertools.product(SCENES, SCENE_STEPPERS))
     assert {(row['scene'], (int(row['particles']), int(row['links']))) for row in quick} == set(SCENES.items())
     assert all(abs(float(row['dt_s']) * int(row['substeps']) * 60 - 1) <= 1e-15 for row in quick)
 

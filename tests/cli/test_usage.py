@@ -96,6 +96,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (ORDER, '--method rk4 --n-max 4', ['--n-max', '"4"', 'at least --n-min', '5']),
         (ORDER, '--method rk4 --fit --n-max 9', ['--fit', '--n-max']),
         (ROUNDING, '--method euler --sum compensated', ['--sum', '"compensated"', 'leapfrog and rk4', 'plain']),
+        (SCENE, '--method rkn8 --damping 0.1', ['--method', '"rkn8"', 'damped']),
         (SCENE, '--poke -1,1,0,1,1', ['--poke', '"-1"', 'at least 0 s']),
         (SCENE, '--poke 0,1,0,1,0', ['--poke', '"0"', 'greater than 0']),
         (SCENE, '--drop-box -1,1', ['--drop-box', '"-1"', 'at least 0 s']),

@@ -62,6 +62,7 @@ def choices(tool, option):
 
 METHODS = choices(RUN, '--method')
 STEPPERS = [method for method in METHODS if method != 'exact']
+SCENE_STEPPERS = choices(SCENE, '--method')
 
 
 STAGES = 'rk4 --arithmetic stages'
@@ -69,6 +70,5 @@ STAGES = 'rk4 --arithmetic stages'
 
 @functools.cache
 def order(method):
-    """Of a stepper, by the power law of its errors."""
-    fit, = table(ORDER, '--method', method, '--fit')
-    return round(-float(fit['exponent']))
+    row, = (row for row in table('spring-methods') if row['method'] == method)
+    return int(row['order'])

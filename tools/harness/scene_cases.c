@@ -529,7 +529,7 @@ const scene_case scene_cases[] = {
      STEPS(20480, 2560, 640, 80), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
      .solution = solve_resonance, .external = true},
     /* links */
-    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024, 192),
+    {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024, 56),
      .omega = 6, .length = 1, .external = true},
     {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
      STEPS(0, 4096, 1024, 128), .omega = 6325, .length = 0.1, .external = true, .slow = true},

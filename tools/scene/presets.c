@@ -152,6 +152,8 @@ spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes)
     size_t index;
     spring_scene *scene;
     const spring_status status = spring_scene_check(&def, &field, &index);
+    if (status == SPRING_EUNSUPPORTED)
+        cli_fail(CLI_USAGE, "--method: \"%s\" is not for scenes whose links are damped", spring_method_name(m));
     if (status != SPRING_OK)
         cli_fail(CLI_USAGE,
                  "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
