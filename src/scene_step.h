@@ -146,29 +146,39 @@ static inline void scene_prepare_force(const spring_scene *s, scene_force *f)
     }
 }
 
-/* What a callback adds, at time t. It is shown each axis by itself. */
-static inline void scene_call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+/* What a callback adds in a small scene, at time t: it is shown each axis by itself. */
+SPRING_NOINLINE void scene_call_back_small(const spring_scene *s, const scalar *x, const scalar *v, double t,
+                                           scalar *sum)
 {
-    const scene_plan *p = &s->plan;
-    const size_t n = p->particles;
+    const size_t n = s->plan.particles;
     const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
     scalar *force[3] = {NULL};
-    for (uint32_t a = 0; a < p->axes; a++) {
-        scalar *const all = sum + a * p->stride;
-        scalar *const shown = p->small ? scene_array(s, p->callback) + 3 * a * n : NULL;
-        position[a] = p->small ? shown : x + a * p->stride;
-        velocity[a] = p->small ? shown + n : v + a * p->stride;
-        force[a] = p->small ? shown + 2 * n : all;
-        for (size_t i = 0; p->small && i < n; i++) {
-            shown[i] = x[p->step * i + a];
-            shown[n + i] = v[p->step * i + a];
-            shown[2 * n + i] = all[p->step * i];
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        scalar *const shown = scene_array(s, s->plan.callback) + 3 * a * n;
+        position[a] = shown;
+        velocity[a] = shown + n;
+        force[a] = shown + 2 * n;
+        for (size_t i = 0; i < n; i++) {
+            shown[i] = x[quad_size * i + a];
+            shown[n + i] = v[quad_size * i + a];
+            shown[2 * n + i] = sum[quad_size * i + a];
         }
     }
     s->force(s->user, t, n, position, velocity, force);
-    for (uint32_t a = 0; p->small && a < p->axes; a++)
+    for (uint32_t a = 0; a < s->plan.axes; a++)
         for (size_t i = 0; i < n; i++)
-            sum[a * p->stride + p->step * i] = force[a][i];
+            sum[quad_size * i + a] = force[a][i];
+}
+
+/* And in any other. */
+static inline void scene_call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+{
+    const size_t stride = s->plan.stride;
+    const bool second = s->plan.axes > 1, third = s->plan.axes > 2;
+    const scalar *const position[3] = {x, second ? x + stride : NULL, third ? x + 2 * stride : NULL};
+    const scalar *const velocity[3] = {v, second ? v + stride : NULL, third ? v + 2 * stride : NULL};
+    scalar *const force[3] = {sum, second ? sum + stride : NULL, third ? sum + 2 * stride : NULL};
+    s->force(s->user, t, s->plan.particles, position, velocity, force);
 }
 
 /* The forces of links and callback at time t on positions x and velocities v, arrays of all axes. */
@@ -180,12 +190,15 @@ static inline void scene_find_forces(const scene_kernels *kernels, const spring_
     f->links.force = force;
     if (p->small)
         kernels->quads[damped](&f->links, x, v);
-    else if (p->bands > 0 || p->records == 0)
+    else if (p->bands > 0)
         kernels->bands[p->axes - 1][damped](&f->links, x, v, 0, p->particles);
+    else if (p->records == 0)
+        for (uint32_t a = 0; a < p->axes; a++)
+            memset(force + a * p->stride, 0, p->particles * sizeof *force);
     if (!p->small && p->edges > 0)
         (p->records != 0 ? kernels->records : kernels->edges[p->axes - 1])[damped](&f->links, x, v);
     if (s->force != NULL)
-        scene_call_back(s, x, v, t, force);
+        (p->small ? scene_call_back_small : scene_call_back)(s, x, v, t, force);
 }
 
 /* Those after a part of a step. Times are no sums of steps, and the end of one is the begin of the next, to the bit. */
@@ -209,9 +222,9 @@ static inline bool scene_move(const scene_step *s, const scene_motion *m, scene_
     return true;
 }
 
-/* A motion, the forces at its end, after a part of the step, with velocities v, and, if not NULL, a motion by them, which leaves positions alone:
-   one pass over memory where there are bands only. Then the forces on a particle are known as soon as those after it
-   have moved that its links reach, and it is moved on while it is in the cache. */
+/* A motion, the forces at its end, after a part of the step, with velocities v, and, if not NULL, a motion by them,
+   which leaves positions alone: one pass over memory where there are bands only. Then the forces on a particle are
+   known as soon as those after it have moved that its links reach, and it is moved on while it is in the cache. */
 static inline bool scene_sweep(const scene_step *s, const scene_motion *before, scene_motion_kernel *move_before,
                                const scalar *v, double part, const scene_motion *after, scene_motion_kernel *move_after)
 {
