@@ -26,6 +26,7 @@
 #if defined(SPRING_SHAPE_ONE)
 static const one_method rkn8_one = {
     .info = {.name = "rkn8", .order = 8, .forces_per_step = 8, .scenes = true, .label = "RKN8", .positions_only = true},
+    .digest = UINT64_C(0x74494ed0e40a48e5),
 };
 
 #elif defined(SPRING_SHAPE_BATCH)

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <springstep/batch.h>
 #include <springstep/scene.h>
 
 #include "check.h"
@@ -158,6 +159,23 @@ static void stable_step(void)
     CHECK(stable(3.2, 0) && !stable(3.3, 0), "that of a narrow gap, and the next one");
 }
 
+/* Where the exact solution is. */
+static void not_for_springs(void)
+{
+    const spring_params p = {.mass = 0.5, .stiffness = 2.7};
+    const spring_state start = {0.8, -0.9};
+    const double omega2 = 5.4;
+    spring_state s = start;
+    CHECK(spring_advance(&s, &p, SPRING_RKN8, 0.1, 3) == SPRING_EUNSUPPORTED, "one spring");
+    CHECK_STATE(s, start, "as it was");
+    const spring_batch batch = {.count = 1, .x = &s.x, .v = &s.v, .omega2 = &omega2};
+    CHECK(spring_batch_advance(&batch, SPRING_RKN8, 0.1, 3) == SPRING_EUNSUPPORTED, "a batch");
+    CHECK_STATE(s, start, "as it was");
+    CHECK(isnan(spring_stable_step(&p, SPRING_RKN8)) && isnan(spring_batch_stable_step(&batch, SPRING_RKN8)) &&
+              spring_method_kernel(SPRING_RKN8) == NULL,
+          "nothing to be stable");
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -166,6 +184,7 @@ int main(void)
         {"the error constant", error_constant},
         {"the energy that is lost", energy_law},
         {"the stable step", stable_step},
+        {"not for one spring, nor batches", not_for_springs},
     };
     return RUN_TESTS("rkn8", tests);
 }

@@ -246,7 +246,21 @@ static void methods_store_what_they_use(void)
     }
 }
 
-/* A method for springs knows damping, so it takes every scene; what is not for scenes takes none. */
+static void do_nothing(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                       scalar *const force[3])
+{
+    (void)user, (void)t, (void)particles, (void)x, (void)v, (void)force;
+}
+
+static bool any_damping(const spring_scene_def *def)
+{
+    for (size_t i = 0; i < def->links; i++)
+        if (def->link[i].damping > 0)
+            return true;
+    return false;
+}
+
+/* A method takes every scene, or those without damped links and callbacks that may use velocities, or none. */
 static void methods_of_a_scene(void)
 {
     static model m;
@@ -258,8 +272,16 @@ static void methods_of_a_scene(void)
             m.def.methods = 1u << spring_method_at(i);
             const spring_status status = spring_scene_check(&m.def, &field, NULL);
             CHECK(info->scenes || status == SPRING_EUNSUPPORTED, "not for scenes");
-            CHECK(!info->scenes || !(info->springs || features == 0) || status == SPRING_OK, "for this scene");
+            CHECK(!info->scenes || (status == SPRING_OK) == !(info->positions_only && any_damping(&m.def)),
+                  "for this scene");
             CHECK(status == SPRING_OK || strcmp(field, "methods") == 0, "nothing else is wrong");
+            spring_scene_def called = m.def;
+            called.force = do_nothing;
+            CHECK(status != SPRING_OK ||
+                      (spring_scene_check(&called, &field, NULL) == SPRING_OK) == !info->positions_only,
+                  "it may use velocities");
+            called.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+            CHECK(spring_scene_check(&called, &field, NULL) == status, "it does not");
         }
     }
 }

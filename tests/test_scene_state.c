@@ -618,6 +618,36 @@ static void damping_taken_away(void)
     free(s);
 }
 
+/* A method of positions only refuses what it cannot do, when it has become so, and changes nothing. */
+static void velocities_refused(void)
+{
+    static model m;
+    wind w = calm(2, 0);
+    build(&m, sheet, 2, EDITABLE | DRAG);
+    m.def.methods = 1u << SPRING_RKN8 | 1u << SPRING_LEAPFROG;
+    spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
+    for (int round = 0; round < 2; round++) {
+        CHECK(spring_scene_advance(s, SPRING_RKN8, 0.009, 3) == SPRING_OK &&
+                  spring_scene_advance(other, SPRING_RKN8, 0.009, 3) == SPRING_OK,
+              "no velocities");
+        spring_link damped = m.link[5];
+        damped.damping = 0.1;
+        spring_scene_set_link(s, 5, &damped);
+        CHECK(spring_scene_advance(s, SPRING_RKN8, 0.009, 3) == SPRING_EUNSUPPORTED &&
+                  spring_scene_advance(s, SPRING_RKN8, 0.009, 0) == SPRING_EUNSUPPORTED,
+              "a damped link");
+        spring_scene_set_link(s, 5, &m.link[5]);
+        spring_scene_set_force(s, blow, &w);
+        CHECK(spring_scene_advance(s, SPRING_RKN8, 0.009, 3) == SPRING_EUNSUPPORTED && w.calls == 0,
+              "a callback that has promised nothing");
+        spring_scene_set_force(s, NULL, NULL);
+        CHECK(same_bits(s, other, m.def.particles, 2) && spring_scene_time(s) == spring_scene_time(other),
+              "nothing has changed");
+    }
+    free(s);
+    free(other);
+}
+
 /* On two axes, with edges in records: a call that fails leaves nothing behind, also where damping is taken away then,
    and records have another size. */
 static void damping_taken_away_after_failure(void)
@@ -833,6 +863,7 @@ int main(void)
         {"moving pins", moving_pins},
         {"edited links", edited_links},
         {"damping taken away", damping_taken_away},
+        {"forces that use velocities are refused", velocities_refused},
         {"damping taken away after a failure", damping_taken_away_after_failure},
         {"a cut rope", cut_rope},
         {"bad edits", bad_edits},
