@@ -55,7 +55,7 @@ typedef enum spring_method {
     SPRING_RK4,              /* order 4; the smallest error for short runs; slowly loses energy */
     SPRING_EXACT,            /* the exact solution; for one linear spring no stepper beats it */
     SPRING_SYMPLECTIC_EULER, /* order 1, bounded energy error: what many game engines run; leapfrog costs the same */
-    SPRING_RKN8 /* order 8; scenes alone, without damped links: the fewest forces for three digits and more */
+    SPRING_RKN8              /* order 8; for scenes without damped links: many digits of a smooth motion */
 } spring_method;
 
 enum { SPRING_METHOD_COUNT = 6 }; /* of its own, so that a switch over methods needs no case for it */
