@@ -58,17 +58,6 @@ static spring_scene *start(const plan_scene *s, spring_method m)
     return preset_start(&s->preset, m, &bytes);
 }
 
-static bool supports(const plan_scene *s, spring_method m)
-{
-    if (!spring_method_describe(m)->scenes)
-        return false;
-    spring_scene *scene = start(s, m);
-    const bool can =
-        spring_scene_advance(scene, m, s->frame, 0) == SPRING_OK && spring_scene_stable_step(scene, m) >= 0;
-    free(scene);
-    return can;
-}
-
 static double stable_step(const plan_scene *s, spring_method m)
 {
     spring_scene *scene = start(s, m);
@@ -120,7 +109,7 @@ static spring_method best_method(const plan_scene *s)
     spring_method best = SPRING_LEAPFROG;
     for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
         const spring_method m = spring_method_at(place);
-        if (spring_method_describe(m)->order > spring_method_describe(best)->order && supports(s, m))
+        if (spring_method_describe(m)->order > spring_method_describe(best)->order && preset_takes(&s->preset, m))
             best = m;
     }
     return best;
@@ -224,7 +213,7 @@ static double time_of(const plan_scene *s, spring_method m, uint64_t substeps)
 plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double work, bool timed)
 {
     plan_row row = {.method = m, .predicted = NAN, .measured = NAN, .uncertainty = NAN, .time = INFINITY};
-    if (!supports(s, m))
+    if (!preset_takes(&s->preset, m))
         return row;
     const int order = spring_method_describe(m)->order;
     uint64_t few = 0, enough = 1;

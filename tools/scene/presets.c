@@ -144,6 +144,13 @@ void preset_clear(preset *r)
     free(r->link);
 }
 
+bool preset_takes(const preset *r, spring_method m)
+{
+    spring_scene_def def = r->def;
+    def.methods = 1u << m;
+    return spring_scene_check(&def, NULL, NULL) == SPRING_OK;
+}
+
 spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes)
 {
     spring_scene_def def = r->def;

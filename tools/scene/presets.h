@@ -63,6 +63,9 @@ typedef struct preset {
 void preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);
 
+/** Is the method for this scene? */
+bool preset_takes(const preset *r, spring_method m);
+
 /** The scene, for one method and for leapfrog, whose stable step is a measure for all; in memory of its own of so many
     bytes: release it with free(). Exits with a message if it is not valid. */
 spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes);
