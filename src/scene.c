@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What can be asked of a scene, and changed in it. */
 #include "scene_links.h"
+#include "scene_step.h"
 
 /* How a link is drawn out: its length, and how fast that grows. On one axis both have the sign of the link. */
 typedef struct drawn {
@@ -142,12 +143,19 @@ spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *for
     return SPRING_OK;
 }
 
+/* ----------------------------------------------------------------------------------------------------- links */
+
+static bool is_editable(const spring_scene *s)
+{
+    return (s->plan.flags & SPRING_SCENE_EDITABLE) != 0;
+}
+
 spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link)
 {
     if (s == NULL || link == NULL)
         return SPRING_EINVAL;
-    if ((s->plan.flags & SPRING_SCENE_EDITABLE) == 0)
-        return SPRING_EUNSUPPORTED;
+    if (!is_editable(s))
+        return SPRING_EDISABLED;
     if (index >= s->plan.links)
         return SPRING_ERANGE;
     const slotted_link old = scene_link(s, index);
@@ -160,5 +168,142 @@ spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_
     scene_place(s, index, link);
     s->known = NO_FORCE;
     s->bounds_known = false;
+    return SPRING_OK;
+}
+
+spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link)
+{
+    if (s == NULL || link == NULL)
+        return SPRING_EINVAL;
+    if (index >= s->plan.links)
+        return SPRING_ERANGE;
+    const slotted_link at = scene_link(s, index);
+    const bool reversed = s->plan.axes == 1 && signbit(*at.rest);
+    *link = (spring_link){
+        .a = reversed ? at.b : at.a,
+        .b = reversed ? at.a : at.b,
+        .rest = fabs((double)*at.rest),
+        .stiffness = (double)*at.stiffness,
+        .damping = at.damping != NULL ? (double)*at.damping : 0,
+    };
+    return SPRING_OK;
+}
+
+size_t spring_scene_find_link(const spring_scene *s, uint32_t a, uint32_t b)
+{
+    for (size_t i = 0; s != NULL && i < s->plan.links; i++) {
+        const slotted_link at = scene_link(s, i);
+        if ((at.a == a && at.b == b) || (at.a == b && at.b == a))
+            return i;
+    }
+    return SIZE_MAX;
+}
+
+/* --------------------------------------------------------------------------------------------- masses and pins */
+
+/* What set_pinned and set_mass have in common: for each of these particles an inverse mass that is proposed for it. */
+typedef struct proposal {
+    size_t first, count;
+    const uint8_t *pinned; /* NULL: as they are */
+    const double *mass;    /* NULL: as they are */
+} proposal;
+
+static bool is_pinned_now(const spring_scene *s, size_t i)
+{
+    return scene_array(s, s->plan.inverse_mass)[s->plan.step * i] == 0;
+}
+
+/* Of a particle while it is not pinned; 0: none that is valid. */
+static scalar free_inverse_mass(const spring_scene *s, const proposal *p, size_t i)
+{
+    return p->mass != NULL ? (scalar)(1 / p->mass[i - p->first]) : scene_array(s, s->plan.free_inverse_mass)[i];
+}
+
+static bool will_be_pinned(const spring_scene *s, const proposal *p, size_t i)
+{
+    return p->pinned != NULL ? p->pinned[i - p->first] != 0 : is_pinned_now(s, i);
+}
+
+/* Of any particle. */
+static double proposed_inverse_mass(const spring_scene *s, const proposal *p, size_t i)
+{
+    if (i < p->first || i - p->first >= p->count)
+        return inverse_mass_at(s, i);
+    return will_be_pinned(s, p, i) ? 0 : (double)free_inverse_mass(s, p, i);
+}
+
+/* Could the scene be defined so? */
+static bool proposal_valid(const spring_scene *s, const proposal *p)
+{
+    bool grows = false; /* an inverse mass */
+    for (size_t i = p->first; i < p->first + p->count; i++) {
+        const double inverse = proposed_inverse_mass(s, p, i);
+        if (p->mass != NULL && !scene_mass_valid(p->mass[i - p->first]))
+            return false;
+        if (!will_be_pinned(s, p, i) && (inverse == 0 || !scene_fits(s->drag * inverse)))
+            return false;
+        grows = grows || inverse > inverse_mass_at(s, i);
+    }
+    for (size_t i = 0; grows && i < s->plan.links; i++) {
+        spring_link link;
+        spring_scene_get_link(s, i, &link);
+        if (scene_link_overflows(&link, proposed_inverse_mass(s, p, link.a), proposed_inverse_mass(s, p, link.b)))
+            return false;
+    }
+    return true;
+}
+
+static spring_status propose(spring_scene *s, const proposal *p, const void *array)
+{
+    if (s == NULL || array == NULL)
+        return SPRING_EINVAL;
+    if (!is_editable(s))
+        return SPRING_EDISABLED;
+    if (p->first > s->plan.particles || p->count > s->plan.particles - p->first)
+        return SPRING_ERANGE;
+    if (!proposal_valid(s, p))
+        return SPRING_EINVAL;
+    for (size_t i = p->first; i < p->first + p->count; i++) {
+        const bool pinned = will_be_pinned(s, p, i);
+        const scalar inverse = free_inverse_mass(s, p, i);
+        for (uint32_t a = 0; a < s->plan.axes && pinned && !is_pinned_now(s, i); a++)
+            scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * i] = 0;
+        scene_array(s, s->plan.free_inverse_mass)[i] = inverse;
+        scene_place_inverse_mass(s, i, pinned ? 0 : inverse);
+    }
+    s->known = NO_FORCE;
+    s->bounds_known = false;
+    return SPRING_OK;
+}
+
+spring_status spring_scene_set_pinned(spring_scene *s, size_t first, size_t count, const uint8_t *pinned)
+{
+    return propose(s, &(proposal){.first = first, .count = count, .pinned = pinned}, pinned);
+}
+
+spring_status spring_scene_set_mass(spring_scene *s, size_t first, size_t count, const double *mass)
+{
+    return propose(s, &(proposal){.first = first, .count = count, .mass = mass}, mass);
+}
+
+spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration)
+{
+    if (s == NULL)
+        return SPRING_EINVAL;
+    if (particle >= s->plan.particles)
+        return SPRING_ERANGE;
+    if (inverse_mass_at(s, particle) != 0)
+        return SPRING_EINVAL;
+    scalar velocity[3] = {0};
+    for (uint32_t a = 0; a < s->plan.axes && target != NULL; a++) {
+        const double x = (double)scene_quantity(s, SPRING_POSITION, a)[s->plan.step * particle];
+        velocity[a] = (scalar)((target[a] - x) / duration);
+        if (!(duration > 0) || !isfinite(target[a]) || !isfinite(velocity[a]))
+            return SPRING_EINVAL;
+    }
+    for (uint32_t a = 0; a < s->plan.axes; a++)
+        scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * particle] = velocity[a];
+    if (s->known != FORCE || scene_forces_use_velocity(s))
+        s->known = NO_FORCE;
     return SPRING_OK;
 }

@@ -40,6 +40,7 @@ typedef struct scene_plan {
     size_t stages, stage_step;   /* quantities that a method stores for its stages; elements from one to the next */
     size_t factors, factor_step; /* what a method stores of each mass where there is drag, likewise */
     size_t inverse_mass;
+    size_t free_inverse_mass; /* of an editable scene: what it is while the particle is not pinned, 0 if not valid */
     size_t occupied, band_stiffness, band_rest, band_damping, rings;
     size_t edge_a, edge_b, edge_stiffness, edge_rest, edge_damping;
     size_t records;  /* see records() */

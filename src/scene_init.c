@@ -99,9 +99,12 @@ static scalar inverse_mass_of(const spring_scene_def *def, size_t i)
     return is_pinned(def, i) ? 0 : (scalar)(1 / mass_of(def, i));
 }
 
-static bool mass_valid(double mass)
+/* What it is when they are freed; 0: no valid mass. */
+static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
 {
-    return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
+    const double all = def->mass_all == 0 ? 1 : def->mass_all;
+    const double mass = def->mass != NULL && def->mass[i] > 0 ? def->mass[i] : all;
+    return scene_mass_valid(mass) ? (scalar)(1 / mass) : 0;
 }
 
 static def_error check_head(const spring_scene_def *def)
@@ -123,7 +126,7 @@ static def_error check_head(const spring_scene_def *def)
         return invalid("position", 0);
     if (def->link == NULL && def->links > 0)
         return invalid("link", 0);
-    if (def->mass == NULL && def->mass_all != 0 && !mass_valid(def->mass_all))
+    if (def->mass == NULL && def->mass_all != 0 && !scene_mass_valid(def->mass_all))
         return invalid("mass_all", 0);
     for (uint32_t a = 0; a < axes_of(def); a++)
         if (!scene_fits(def->gravity[a]))
@@ -141,7 +144,7 @@ static def_error check_particles(const spring_scene_def *def)
             if (def->velocity != NULL && !scene_fits(def->velocity[i * axes + a]))
                 return invalid("velocity", i);
         }
-        if (!is_pinned(def, i) && !mass_valid(mass_of(def, i)))
+        if (!is_pinned(def, i) && !scene_mass_valid(mass_of(def, i)))
             return invalid("mass", i);
         if (!scene_fits(def->drag * (double)inverse_mass_of(def, i)))
             return invalid("drag", i);
@@ -332,10 +335,12 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
         plan->predicted = reserve(plan, quantity, sizeof(scalar));
     plan->stage_step = quantity;
     plan->stages = reserve(plan, stages_of(plan->methods) * quantity, sizeof(scalar));
-    const bool each = def->mass != NULL || def->pinned != NULL;
+    const bool each = def->mass != NULL || def->pinned != NULL || editable;
     const size_t masses = !each ? padding : plan->small ? quantity : plan->stride;
     if (each)
         plan->inverse_mass = reserve(plan, masses, sizeof(scalar));
+    if (editable)
+        plan->free_inverse_mass = reserve(plan, plan->particles, sizeof(scalar));
     plan->factor_step = masses;
     plan->factors = reserve(plan, def->drag > 0 ? factors_of(plan->methods) * masses : 0, sizeof(scalar));
     plan->occupied = reserve(plan, plan->band_slots, 1);
@@ -403,12 +408,10 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
             v[s->plan.step * i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
         }
     }
-    if (s->plan.inverse_mass != 0) {
-        scalar *inverse_mass = scene_array(s, s->plan.inverse_mass);
-        for (size_t i = 0; i < def->particles; i++)
-            for (size_t k = 0; k < s->plan.step; k++)
-                inverse_mass[s->plan.step * i + k] = inverse_mass_of(def, i);
-    }
+    for (size_t i = 0; i < def->particles && s->plan.inverse_mass != 0; i++)
+        scene_place_inverse_mass(s, i, inverse_mass_of(def, i));
+    for (size_t i = 0; i < def->particles && s->plan.free_inverse_mass != 0; i++)
+        scene_array(s, s->plan.free_inverse_mass)[i] = free_inverse_mass_of(def, i);
 }
 
 static const band_plan *band_of(const scene_plan *plan, uint32_t offset)

@@ -52,6 +52,11 @@ static inline bool scene_not_negative(double value)
     return value >= 0 && scene_fits(value);
 }
 
+static inline bool scene_mass_valid(double mass)
+{
+    return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
+}
+
 /* The field of a link that is not valid, wherever it lies; NULL: none. */
 static inline const char *scene_link_invalid_field(const spring_link *link)
 {
@@ -80,6 +85,13 @@ static inline void scene_place_gravity(spring_scene *s, const double *gravity)
             else if (i % quad_size == a)
                 s->gravity_vectors[0][i] = (scalar)gravity[a];
     }
+}
+
+/* Of a quad all numbers, those of no axis too. */
+static inline void scene_place_inverse_mass(spring_scene *s, size_t i, scalar inverse)
+{
+    for (size_t k = 0; k < s->plan.step; k++)
+        scene_array(s, s->plan.inverse_mass)[s->plan.step * i + k] = inverse;
 }
 
 /* Write the coefficients of a link into its slot. */

@@ -62,7 +62,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     if (s == NULL || spring_method_describe(m) == NULL || !isfinite((scalar)dt))
         return SPRING_EINVAL;
     if ((s->plan.methods & 1u << m) == 0)
-        return SPRING_EUNSUPPORTED;
+        return spring_scene_methods[m]->step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
     if (spring_method_describe(m)->positions_only && scene_forces_use_velocity(s))
         return SPRING_EUNSUPPORTED;
     if (n == 0 || (scalar)dt == 0)

@@ -193,6 +193,8 @@ const char *spring_status_string(spring_status s)
         return "index or count out of range";
     case SPRING_EUNSUPPORTED:
         return "not supported";
+    case SPRING_EDISABLED:
+        return "the definition of the scene did not ask for this";
     case SPRING_EROUNDING:
         return "rounding is not to nearest";
     case SPRING_EFLUSHED:

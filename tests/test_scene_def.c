@@ -123,7 +123,7 @@ static void accepted(void)
     CHECK(spring_scene_advance(s, SPRING_EULER, 0.5, 2) == SPRING_OK &&
               spring_scene_advance(s, SPRING_LEAPFROG, 0.5, 1) == SPRING_OK,
           "Euler and leapfrog are there when no method is named");
-    CHECK(spring_scene_advance(s, SPRING_RK4, 0.5, 1) == SPRING_EUNSUPPORTED, "RK4 only for who asks for it");
+    CHECK(spring_scene_advance(s, SPRING_RK4, 0.5, 1) == SPRING_EDISABLED, "RK4 only for who asks for it");
     spring_scene_get(s, SPRING_POSITION, y, 0, 0, 1);
     CHECK(y[0] == 1 && y[1] == 2 + 1 + 2.5 && y[2] == 3,
           "three axes; Euler to 3 m and 4 m/s, half a kick, a drift: exact");
@@ -428,6 +428,18 @@ static uint32_t family_of(const int delta[3])
                                           : 0;
 }
 
+/* Where a link stands among those of its first particle, but for the index of the other one. */
+static int rank_of(const int delta[3])
+{
+    int across = 0; /* of a link across a face: 0 if that is xy, 1 xz, 2 yz; 3 of a link through a cell */
+    for (int a = 0; a < 3; a++)
+        across = delta[a] == 0 ? 2 - a : across;
+    if (delta[0] != 0 && delta[1] != 0 && delta[2] != 0)
+        across = 3;
+    const uint32_t family = family_of(delta);
+    return (int)family * 4 + (family == SPRING_GRID_SHEAR ? across : 0);
+}
+
 static void check_grid(const spring_grid *g)
 {
     static double position[3 * most];
@@ -470,6 +482,7 @@ static void check_grid(const spring_grid *g)
     CHECK(links == want, "all pairs of the families");
     static bool seen[most][most];
     memset(seen, 0, sizeof seen);
+    int last = 0;
     for (size_t i = 0; i < links; i++) {
         const uint32_t a = link[i].a, b = link[i].b;
         CHECK(a < b && b < particles, "from the lower to the upper");
@@ -477,6 +490,11 @@ static void check_grid(const spring_grid *g)
         seen[a][b] = true;
         const int delta[] = {at[b][0] - at[a][0], at[b][1] - at[a][1], at[b][2] - at[a][2]};
         CHECK((family_of(delta) & families) != 0, "of the families");
+        const int rank = rank_of(delta);
+        CHECK(i == 0 || a > link[i - 1].a ||
+                  (a == link[i - 1].a && (rank > last || (rank == last && b > link[i - 1].b))),
+              "in the order that scene.h names");
+        last = rank;
         const double length = g->spacing * sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]);
         const double stretch = g->stretch == 0 ? 1 : g->stretch;
         CHECK_CLOSE(link[i].rest * stretch, g->height ? 0 : length, 2 * DBL_EPSILON * length,

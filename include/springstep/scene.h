@@ -66,7 +66,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 
 /* flags: */
 
-/* spring_scene_set_link() is allowed. Each link has numbers of its own, equal to others or not. */
+/* spring_scene_set_link(), _set_pinned() and _set_mass() are allowed. Each link and each particle has numbers of its own,
+   equal to others or not. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
 /* No second copy of the state. An advance that fails in a step loses it: positions and velocities are NaN then, and no step
@@ -159,9 +160,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * @param[in] m   one of the methods of the definition
  * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag,
  *                symplectic Euler at half of it; 0, or in float what rounds to 0, does nothing
- * @return SPRING_OK; SPRING_EINVAL; SPRING_EUNSUPPORTED: the exact solution, a method that the definition does not
- *         have, or RKN8 where forces use velocities by now; SPRING_ENONFINITE: the state or the time would become infinite or NaN, noticed at the step where it
- *         does
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EDISABLED: a method that the definition does not have; SPRING_EUNSUPPORTED: the
+ *         exact solution, or RKN8 where forces use velocities by now; SPRING_ENONFINITE: the state or the time would
+ *         become infinite or NaN, noticed at the step where it does
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
  *                Solving Ordinary Differential Equations I (1993), section II.1; Dormand, El-Mikkawy, Prince, High-order
  *                embedded Runge-Kutta-Nystrom formulae, IMA J. Numer. Anal. 7 (1987)
@@ -207,9 +208,8 @@ typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantit
 /**
  * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
  *
- * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin,
- * set its velocity, (target - position)/(n dt) before n steps: where its position is set it jumps, and link damping
- * sees none of it.
+ * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin use
+ * spring_scene_drive(): where its position is set it jumps, and link damping sees none of it.
  *
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
  * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number to be set that is not finite;
@@ -233,9 +233,54 @@ SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_fo
  * Change a link of an editable scene; stiffness 0 and damping 0 cut it.
  *
  * @param[in] link  a and b as defined; swapped they mean the same, but on one axis, where that turns the link
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EUNSUPPORTED: the scene is not editable
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
+
+/**
+ * A link as it is now, in the precision of the scene; of more than one axis a and b may be swapped.
+ *
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: no such link
+ */
+SPRING_API spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link);
+
+/** The least index of a link between two particles, in either order, cut ones included; SIZE_MAX if there is none, and
+    for NULL. Looks at all links. */
+SPRING_API size_t spring_scene_find_link(const spring_scene *s, uint32_t a, uint32_t b);
+
+/**
+ * Pin particles first ... first + count - 1 of an editable scene, and free them: to grab one, pin it and drive it; to let
+ * it go, free it, and it flies on.
+ *
+ * A particle that was free stops where it is, one that was pinned keeps its velocity, and what does not change is left
+ * alone. A freed one has the mass last set, or that of the definition: mass[i] if it is positive, else mass_all. May look
+ * at all links.
+ *
+ * @param[in] pinned  [count]; non-zero: pinned
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or one that would be freed has no mass that the scene could have been defined
+ *         with; SPRING_ERANGE: there are not so many particles; SPRING_EDISABLED: the scene is not editable
+ */
+SPRING_API spring_status spring_scene_set_pinned(spring_scene *s, size_t first, size_t count, const uint8_t *pinned);
+
+/**
+ * Change the masses of particles first ... first + count - 1 of an editable scene; of a pinned one, what it will have when
+ * it is freed. May look at all links.
+ *
+ * @param[in] mass  [count] [kg]
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a mass that the scene could not have been defined with; SPRING_ERANGE: there
+ *         are not so many particles; SPRING_EDISABLED: the scene is not editable
+ */
+SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, size_t count, const double *mass);
+
+/**
+ * Give a pinned particle the velocity that brings it to a target, which the links see; beyond, it moves on. Any scene.
+ *
+ * @param[in] target    [axes] [m]; NULL: it stops
+ * @param[in] duration  > 0 [s]: of the steps about to be taken, n dt; not used without a target
+ * @return SPRING_OK; SPRING_EINVAL: NULL, numbers that are not finite, a velocity that is not, or a particle that is not
+ *         pinned; SPRING_ERANGE: no such particle
+ */
+SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration);
 
 /** The force along a link [N], > 0 pulls; its damping included. At length 0, where no force acts, that of its
     stiffness. NaN for bad input. */
@@ -283,6 +328,11 @@ SPRING_API spring_status spring_scenef_set(spring_scenef *s, spring_quantity q, 
 SPRING_API spring_status spring_scenef_set_gravity(spring_scenef *s, const double gravity[3]);
 SPRING_API spring_status spring_scenef_set_force(spring_scenef *s, spring_scenef_force_fn *force, void *user);
 SPRING_API spring_status spring_scenef_set_link(spring_scenef *s, size_t index, const spring_link *link);
+SPRING_API spring_status spring_scenef_get_link(const spring_scenef *s, size_t index, spring_link *link);
+SPRING_API size_t spring_scenef_find_link(const spring_scenef *s, uint32_t a, uint32_t b);
+SPRING_API spring_status spring_scenef_set_pinned(spring_scenef *s, size_t first, size_t count, const uint8_t *pinned);
+SPRING_API spring_status spring_scenef_set_mass(spring_scenef *s, size_t first, size_t count, const double *mass);
+SPRING_API spring_status spring_scenef_drive(spring_scenef *s, size_t particle, const double *target, double duration);
 SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 
 /* ------------------------------------------------------------------------------------ ropes, sheets and blocks */
@@ -323,6 +373,9 @@ SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particle
 
 /**
  * Fill the arrays of a definition, of either precision. They are the caller's, and may be changed before they are used.
+ *
+ * The links have a < b, and are sorted by a; those of one a are in the order structural, shear, bend; of these, shear
+ * across faces xy, xz, yz, then through the cell; and of these by b.
  *
  * @param[out] position  [particles*axes], from the origin along the axes
  * @param[out] pinned    [particles]; may be NULL

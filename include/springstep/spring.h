@@ -72,6 +72,7 @@ typedef enum spring_status {
     SPRING_EALIGN,       /* the memory given is not aligned */
     SPRING_ERANGE,       /* an index or a count is out of range */
     SPRING_EUNSUPPORTED, /* not offered for this kind of system */
+    SPRING_EDISABLED,    /* the definition of the scene did not ask for this */
     /* of spring_self_test(): */
     SPRING_EROUNDING, /* rounding is not to nearest */
     SPRING_EFLUSHED,  /* denormal numbers count as 0 */

@@ -331,7 +331,8 @@ static void advance(life *l)
     look(l->one.s, l->d, &before);
     const spring_status status = spring_scene_advance(l->one.s, m, dt, n);
     look(l->one.s, l->d, &after);
-    must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED || status == SPRING_ENONFINITE,
+    must(status == SPRING_OK || status == SPRING_EINVAL || status == SPRING_EUNSUPPORTED ||
+             status == SPRING_EDISABLED || status == SPRING_ENONFINITE,
          "no other status is documented");
     l->broken = l->broken && !finite(&before); /* what was set may be all that was lost */
     if (l->broken)
@@ -442,11 +443,83 @@ static void set_link(life *l)
     if (status == SPRING_OK) {
         must(l->d->def.flags & SPRING_SCENE_EDITABLE && index < l->d->def.links, "it may be changed");
         l->d->link[index] = link;
+        spring_link now;
+        must(spring_scene_get_link(l->one.s, index, &now) == SPRING_OK && now.rest == (scalar)link.rest &&
+                 spring_scene_find_link(l->one.s, link.b, link.a) <= index,
+             "it is found");
         return;
     }
-    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EUNSUPPORTED,
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EDISABLED,
          "no other status is documented");
     look(l->one.s, l->d, &after);
+    must(same(&before, &after), "an error changes nothing");
+}
+
+/* Pins, or masses, of a range of particles, in order or beyond them. */
+static void set_pins_or_masses(life *l)
+{
+    static state before, after;
+    definition *d = l->d;
+    const bool pins = choose(2);
+    const size_t first = choose(90), count = choose(90);
+    uint8_t pinned[90];
+    double mass[90];
+    for (size_t i = 0; i < 90; i++) {
+        pinned[i] = i % 3 == 0;
+        mass[i] = 0.5 + 0.25 * (double)(i % 7);
+    }
+    pinned[0] = (uint8_t)choose(2);
+    mass[0] = size();
+    look(l->one.s, d, &before);
+    const spring_status status = pins ? spring_scene_set_pinned(l->one.s, first, count, pinned)
+                                      : spring_scene_set_mass(l->one.s, first, count, mass);
+    must((pins ? spring_scene_set_pinned(l->other.s, first, count, pinned)
+               : spring_scene_set_mass(l->other.s, first, count, mass)) == status,
+         "the same answer");
+    look(l->one.s, d, &after);
+    if (status != SPRING_OK) {
+        must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EDISABLED,
+             "no other status is documented");
+        must(same(&before, &after), "an error changes nothing");
+        return;
+    }
+    must(d->def.flags & SPRING_SCENE_EDITABLE && first + count <= d->def.particles, "it was in order");
+    const double all = d->def.mass_all == 0 ? 1 : d->def.mass_all;
+    for (size_t i = 0; i < d->def.particles; i++)
+        d->mass[i] = d->def.mass != NULL && d->mass[i] > 0 ? d->mass[i] : all;
+    d->def.mass = d->mass;
+    for (size_t i = 0; i < count; i++) {
+        const size_t particle = first + i;
+        if (!pins)
+            d->mass[particle] = mass[i];
+        for (size_t a = 0; a < l->axes; a++) {
+            const size_t k = 3 * particle + a;
+            const bool stops = pins && pinned[i] != 0 && d->pinned[particle] == 0;
+            must(same_numbers(&after.x[k], &before.x[k], 1), "nothing jumps");
+            must(stops ? after.v[k] == 0 : same_numbers(&after.v[k], &before.v[k], 1), "it stops, or goes on");
+        }
+        if (pins)
+            d->pinned[particle] = pinned[i];
+    }
+}
+
+static void drive(life *l)
+{
+    static state before, after;
+    const size_t particle = choose(90);
+    const double target[3] = {number(), number(), number()}, duration = size();
+    const double *to = choose(4) == 0 ? NULL : target;
+    look(l->one.s, l->d, &before);
+    const spring_status status = spring_scene_drive(l->one.s, particle, to, duration);
+    must(spring_scene_drive(l->other.s, particle, to, duration) == status, "the same answer");
+    look(l->one.s, l->d, &after);
+    if (status == SPRING_OK) {
+        must(l->d->pinned[particle] != 0, "it is pinned");
+        for (size_t a = 0; a < l->axes; a++)
+            must(to == NULL ? after.v[3 * particle + a] == 0 : isfinite(after.v[3 * particle + a]), "its velocity");
+        return;
+    }
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE, "no other status is documented");
     must(same(&before, &after), "an error changes nothing");
 }
 
@@ -547,7 +620,7 @@ static void remake(life *l)
 static void live(life *l)
 {
     for (int call = 0; call < most_calls && next < end; call++) {
-        switch (choose(10)) {
+        switch (choose(14)) {
         case 0:
             set(l);
             break;
@@ -571,6 +644,12 @@ static void live(life *l)
             break;
         case 7:
             remake(l);
+            break;
+        case 8:
+            set_pins_or_masses(l);
+            break;
+        case 9:
+            drive(l);
             break;
         default:
             advance(l);
