@@ -142,14 +142,21 @@ static bool run(batch_kernel *kernel, size_t size, const spring_batch *b, batch_
     return done;
 }
 
-spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
-                                        uint64_t n)
+/* What concerns the whole batch. */
+static spring_status check_batch(const spring_batch *b, spring_method m, scalar dt)
 {
     const spring_method_info *info = spring_method_describe(m);
     if (b == NULL || !batch_valid(b) || info == NULL || !isfinite(dt))
         return SPRING_EINVAL;
-    if (b->count == 0 || n == 0 || dt == 0 || !info->springs)
-        return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
+    return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
+}
+
+spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
+                                        uint64_t n)
+{
+    const spring_status status = check_batch(b, m, dt);
+    if (status != SPRING_OK || b->count == 0 || n == 0 || dt == 0)
+        return status;
     const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
     batch_block block = {.dt = dt, .n = n};
     spring_propagator propagator;
@@ -165,6 +172,51 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
 spring_status spring_batch_advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
 {
     return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
+}
+
+static const scalar *from_spring(const spring_batch *b, const scalar *parameter, uint32_t bit, size_t first)
+{
+    return parameter == NULL || is_shared(b, bit) ? parameter : parameter + first;
+}
+
+/* Some of its springs, with their states at x and v. */
+static spring_batch part_of(const spring_batch *b, size_t first, size_t count, scalar *x, scalar *v)
+{
+    return (spring_batch){
+        .count = count,
+        .x = x,
+        .v = v,
+        .omega2 = from_spring(b, b->omega2, SPRING_SHARED_OMEGA2, first),
+        .gamma = from_spring(b, b->gamma, SPRING_SHARED_GAMMA, first),
+        .accel = from_spring(b, b->accel, SPRING_SHARED_ACCEL, first),
+        .shared = b->shared,
+    };
+}
+
+spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, scalar dt, uint64_t n,
+                                          uint8_t *failed)
+{
+    enum { part = 4 * largest_group };
+    spring_status worst = failed != NULL ? check_batch(b, m, dt) : SPRING_EINVAL;
+    if (worst != SPRING_OK)
+        return worst;
+    for (size_t first = 0; first < b->count; first += part) {
+        const size_t count = b->count - first < part ? b->count - first : part;
+        const spring_batch some = part_of(b, first, count, b->x + first, b->v + first);
+        scalar x[part], v[part]; /* from which each is advanced once more, by itself, to see which do not */
+        memcpy(x, some.x, count * sizeof *x);
+        memcpy(v, some.v, count * sizeof *v);
+        memset(failed + first, 0, count);
+        const spring_status status = spring_batch_advance(&some, m, dt, n);
+        if (status == SPRING_OK)
+            continue;
+        for (size_t i = 0; i < count; i++) {
+            const spring_batch one = part_of(b, first + i, 1, x + i, v + i);
+            failed[first + i] = spring_batch_advance(&one, m, dt, n) != SPRING_OK;
+        }
+        worst = worst == SPRING_EINVAL ? worst : status;
+    }
+    return worst;
 }
 
 scalar spring_batch_stable_step(const spring_batch *b, spring_method m)

@@ -7,13 +7,14 @@
 #include <springstep/scene.h>
 
 #ifdef SPRING_FLOAT
-#define spring_batch              spring_batchf
-#define spring_batch_advance      spring_batchf_advance
-#define spring_batch_advance_with spring_batchf_advance_with
-#define spring_batch_stable_step  spring_batchf_stable_step
-#define spring_batch_v128         spring_batchf_v128
-#define spring_batch_v256         spring_batchf_v256
-#define spring_batch_v512         spring_batchf_v512
+#define spring_batch                spring_batchf
+#define spring_batch_advance        spring_batchf_advance
+#define spring_batch_advance_with   spring_batchf_advance_with
+#define spring_batch_advance_marked spring_batchf_advance_marked
+#define spring_batch_stable_step    spring_batchf_stable_step
+#define spring_batch_v128           spring_batchf_v128
+#define spring_batch_v256           spring_batchf_v256
+#define spring_batch_v512           spring_batchf_v512
 
 #define spring_scene              spring_scenef
 #define spring_scene_advance      spring_scenef_advance

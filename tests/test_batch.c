@@ -187,8 +187,19 @@ static void check_batch(const spring *s, size_t count, features f, spring_method
         expected.of[1][b.v - got.of[1] + (ptrdiff_t)i] = want[i].v;
         status = worse(want[i].status, status);
     }
+    const place start = got;
     CHECK(advance(&b, m, dt, n) == status, why);
     check_place(&got, &expected, why);
+
+    uint8_t failed[most + 1];
+    memset(failed, 77, sizeof failed);
+    got = start;
+    CHECK(spring_batch_advance_marked(&b, m, dt, n, failed) == status, why);
+    check_place(&got, &expected, why);
+    bool marks = failed[count] == 77;
+    for (size_t i = 0; i < count; i++)
+        marks = marks && failed[i] == (want[i].status != SPRING_OK);
+    CHECK(marks, "those that have kept their state are marked");
 }
 
 static scalar any_sign(scalar zero_or_more)
@@ -539,6 +550,9 @@ static void nothing_to_do(void)
             CHECK(advance(&b, method, 0, 5) == SPRING_OK, "dt = 0");
             CHECK(advance(&b, method, -(scalar)0, UINT64_MAX) == SPRING_OK, "dt = -0");
             CHECK(advance(&empty, method, step, 5) == SPRING_OK, "no springs, no arrays");
+            uint8_t failed[129] = {77};
+            CHECK(spring_batch_advance_marked(&b, method, step, 0, failed) == SPRING_OK && failed[0] == 0,
+                  "none failed");
         }
         check_place(&got, &want, "changes nothing");
     }
@@ -558,7 +572,9 @@ static spring_status ask(const spring_batch *b, spring_method m, scalar dt)
 
 static void refuse(const spring_batch *b, spring_method m, scalar dt, const char *why)
 {
+    uint8_t failed = 77;
     CHECK(ask(b, m, dt) == SPRING_EINVAL, why);
+    CHECK(spring_batch_advance_marked(b, m, dt, 3, &failed) == SPRING_EINVAL && failed == 77, why);
     bool same = true;
     for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
         same = same && memory[i] == (scalar)0.5 + (scalar)i / 1024;
@@ -601,6 +617,7 @@ static void overlaps(void)
 static void bad_batches(void)
 {
     CHECK(ask(&good, SPRING_LEAPFROG, step) == SPRING_OK, "good input");
+    CHECK(spring_batch_advance_marked(&good, SPRING_LEAPFROG, step, 3, NULL) == SPRING_EINVAL, "no marks");
     refuse(NULL, SPRING_LEAPFROG, step, "no batch");
     spring_batch b = good;
     b.x = NULL;
