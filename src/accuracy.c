@@ -381,9 +381,10 @@ static double steps_guess(const accuracy *of, double tolerance, double shortest)
         const step_run step = run_of_one_step(of, r);
         const double count = steps_that_count(step, r.G, n) / decays_that_count * 3;
         const double next = n * order_root(matrix_norm(step.error) * fmin(count, n) / tolerance, of->order);
-        if (!(next > shortest) || fabs(next - n) <= n / 16)
-            return fmax(next, shortest);
-        n = next;
+        const bool close = !(next > shortest) || fabs(next - n) <= n / 16;
+        n = fmax(next, shortest);
+        if (close)
+            break;
     }
     return n;
 }

@@ -191,6 +191,9 @@ static void check_batch(const spring *s, size_t count, features f, spring_method
     CHECK(advance(&b, m, dt, n) == status, why);
     check_place(&got, &expected, why);
 
+    static unsigned turn;
+    if (turn++ % 4 != 0) /* the rest is the same for all kernels */
+        return;
     uint8_t failed[most + 1];
     memset(failed, 77, sizeof failed);
     got = start;
