@@ -8,7 +8,11 @@
 enum { quad_size = 4 };
 
 #if defined(SPRING_VECTOR) && SPRING_VECTORS
+#if SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
+#include "quad_pair.h"
+#else
 #include "quad_vector.h"
+#endif
 #else
 #include "quad_number.h"
 #endif

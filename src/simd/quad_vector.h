@@ -36,15 +36,8 @@ SPRING_INLINE quad quad_sqrt(quad a)
 {
 #if SPRING_X86_64 && defined(SPRING_FLOAT)
     return (quad)_mm_sqrt_ps((__m128)a);
-#elif SPRING_X86_64 && SPRING_VECTOR >= 32
-    return (quad)_mm256_sqrt_pd((__m256d)a);
 #elif SPRING_X86_64
-    __m128d half[2];
-    memcpy(half, &a, sizeof half);
-    half[0] = _mm_sqrt_pd(half[0]);
-    half[1] = _mm_sqrt_pd(half[1]);
-    memcpy(&a, half, sizeof half);
-    return a;
+    return (quad)_mm256_sqrt_pd((__m256d)a);
 #else
     return quad_of(scalar_sqrt(a[0]), scalar_sqrt(a[1]), scalar_sqrt(a[2]), scalar_sqrt(a[3]));
 #endif
