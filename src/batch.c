@@ -35,7 +35,7 @@ static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, u
 /* A parameter of all springs has to be valid before anything happens; one spring's is that spring's business. */
 static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
-    return parameter == NULL || !is_shared(b, bit) || (isfinite(*parameter) && *parameter >= least);
+    return parameter == NULL || !is_shared(b, bit) || (spring_finite(*parameter) && *parameter >= least);
 }
 
 static bool batch_valid(const spring_batch *b)
@@ -73,7 +73,7 @@ static spring_status reason(const spring_batch *b)
 {
     for (size_t i = 0; i < b->count; i++) {
         const spring_params p = spring_at(b, i);
-        if (!isfinite(b->x[i]) || !isfinite(b->v[i]) || !spring_params_valid(&p))
+        if (!spring_finite(b->x[i]) || !spring_finite(b->v[i]) || !spring_params_valid(&p))
             return SPRING_EINVAL;
     }
     return SPRING_ENONFINITE;
@@ -146,7 +146,7 @@ static bool run(batch_kernel *kernel, size_t size, const spring_batch *b, batch_
 static spring_status check_batch(const spring_batch *b, spring_method m, scalar dt)
 {
     const spring_method_info *info = spring_method_describe(m);
-    if (b == NULL || !batch_valid(b) || info == NULL || !isfinite(dt))
+    if (b == NULL || !batch_valid(b) || info == NULL || !spring_finite(dt))
         return SPRING_EINVAL;
     return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
 }
@@ -166,7 +166,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
         block.propagator = &propagator;
     }
     batch_kernel *kernel = kernels->method[m];
-    return run(kernel, kernels->group, b, block) ? SPRING_OK : reason(b);
+    return run(kernel, kernels->group_size, b, block) ? SPRING_OK : reason(b);
 }
 
 spring_status spring_batch_advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
@@ -233,7 +233,7 @@ scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
         const double limit = spring_stable_step(&p, m);
         if (!(limit >= least))
             least = limit;
-        if (isnan(limit))
+        if (limit != limit)
             return NAN;
     }
     return (scalar)least;

@@ -43,7 +43,7 @@ SPRING_NOINLINE bool store_valid(const batch_block *b, size_t i, const real *x, 
     memcpy(v1, v, many * sizeof *v);
     bool all = true;
     for (size_t j = 0; j < many * lanes; j++) {
-        if (isfinite(x1[j]) && isfinite(v1[j]) && !negative(b->w, i + j) && !negative(b->g, i + j)) {
+        if (spring_finite(x1[j]) && spring_finite(v1[j]) && !negative(b->w, i + j) && !negative(b->g, i + j)) {
             b->x[i + j] = x1[j];
             b->v[i + j] = v1[j];
         } else {

@@ -26,7 +26,7 @@ typedef struct batch_block {
 typedef bool batch_kernel(const batch_block *b); /* false: at least one spring has kept its state */
 
 typedef struct batch_kernels {
-    size_t group; /* springs that are advanced together */
+    size_t group_size; /* springs that are advanced together */
     batch_kernel *method[SPRING_METHOD_COUNT];
 } batch_kernels;
 

@@ -17,8 +17,8 @@ uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint
 {
     if (alpha != NULL)
         *alpha = 0;
-    if (clock == NULL || !(clock->pending >= 0) || !(frame_dt >= 0) || !(dt > 0) || !isfinite(dt) ||
-        !isfinite(clock->pending + frame_dt))
+    if (clock == NULL || !(clock->pending >= 0) || !(frame_dt >= 0) || !(dt > 0) || !spring_finite(dt) ||
+        !spring_finite(clock->pending + frame_dt))
         return 0;
     const double total = clock->pending + frame_dt;
     const double remainder = fmod(total, dt);

@@ -32,7 +32,7 @@ static uint32_t count_of(const spring_grid *g, int axis)
     return g->count[axis] == 0 ? 1 : g->count[axis];
 }
 
-static uint32_t axes_of(const spring_grid *g)
+static uint32_t axes_of_grid(const spring_grid *g)
 {
     return g->height ? 1 : g->axes == 0 ? 3 : g->axes;
 }
@@ -52,19 +52,19 @@ static bool valid(const spring_grid *g)
     const uint32_t families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND;
     const uint32_t faces = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y |
                            SPRING_GRID_FIRST_Z | SPRING_GRID_LAST_Z;
-    if (g == NULL || axes_of(g) > 3 || (g->height && g->axes > 1) || (g->families & ~families) != 0 ||
+    if (g == NULL || axes_of_grid(g) > 3 || (g->height && g->axes > 1) || (g->families & ~families) != 0 ||
         (g->pinned & ~faces) != 0)
         return false;
-    for (int a = (int)axes_of(g); a < 3 && !g->height; a++) /* nothing may lie along an axis that is not there */
+    for (int a = (int)axes_of_grid(g); a < 3 && !g->height; a++) /* nothing may lie along an axis that is not there */
         if (count_of(g, a) > 1)
             return false;
     const double longest = 4; /* spacings: no link is longer */
     for (int a = 0; a < 3; a++)
-        if (!isfinite(count_of(g, a) * g->spacing))
+        if (!spring_finite(count_of(g, a) * g->spacing))
             return false;
-    return g->spacing > 0 && isfinite(longest * g->spacing / stretch_of(g)) && g->stretch >= 0 &&
-           isfinite(g->stretch) && g->stiffness >= 0 && isfinite(g->stiffness) && g->damping >= 0 &&
-           isfinite(g->damping);
+    return g->spacing > 0 && spring_finite(longest * g->spacing / stretch_of(g)) && g->stretch >= 0 &&
+           spring_finite(g->stretch) && g->stiffness >= 0 && spring_finite(g->stiffness) && g->damping >= 0 &&
+           spring_finite(g->damping);
 }
 
 /* Links in one direction: as many as there are places for them along each axis. */
@@ -133,7 +133,7 @@ spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *
     const spring_status status = spring_grid_size(g, &particles, &links);
     if (status != SPRING_OK || position == NULL)
         return status != SPRING_OK ? status : SPRING_EINVAL;
-    const uint32_t axes = axes_of(g);
+    const uint32_t axes = axes_of_grid(g);
     for (uint32_t i = 0; i < particles; i++) {
         const uint32_t nx = count_of(g, 0), ny = count_of(g, 1);
         const uint32_t at[3] = {i % nx, i / nx % ny, i / nx / ny};

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The methods, in the order in which tables, help texts and figures show them. To add one: its header, and its row. */
+#ifndef SPRINGSTEP_METHODS_H
+#define SPRINGSTEP_METHODS_H
+
 #include "euler.h"
 #include "symplectic_euler.h"
 #include "leapfrog.h"
@@ -14,3 +17,5 @@
     ROW(SPRING_RK4, rk4)                           \
     ROW(SPRING_RKN8, rkn8)                         \
     ROW(SPRING_EXACT, exact)
+
+#endif

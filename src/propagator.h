@@ -41,9 +41,11 @@ typedef struct exact_block {
 
 typedef bool exact_kernel(const exact_block *b); /* false: at least one spring has kept its state */
 
+#ifndef SPRING_NO_BATCH
 SPRING_INTERNAL exact_kernel spring_exact_v128; /* by bits of a vector */
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL exact_kernel spring_exact_v256, spring_exact_v512;
+#endif
 #endif
 
 #endif

@@ -25,8 +25,8 @@ SPRING_INLINE spring_rates spring_rates_of(const spring_params *p)
 /* r is what spring_rates_of() made of p. */
 SPRING_INLINE bool spring_rates_valid(const spring_params *p, const spring_rates *r)
 {
-    return p->mass > 0 && isfinite(p->mass) && p->stiffness >= 0 && isfinite(r->w) && p->damping >= 0 &&
-           isfinite(r->g) && isfinite(r->a);
+    return p->mass > 0 && spring_finite(p->mass) && p->stiffness >= 0 && spring_finite(r->w) && p->damping >= 0 &&
+           spring_finite(r->g) && spring_finite(r->a);
 }
 #endif
 

@@ -29,7 +29,7 @@ typedef struct graph {
     uint32_t *next;   /* in its chain */
 } graph;
 
-static spring_status check(size_t particles, size_t links, const spring_link *link)
+static spring_status links_status(size_t particles, size_t links, const spring_link *link)
 {
     if (particles >= UINT32_MAX || links > UINT32_MAX / 8)
         return SPRING_ERANGE;
@@ -200,7 +200,7 @@ spring_status spring_links_renumber(size_t particles, size_t links, spring_link 
 {
     if (order == NULL || work == NULL || (link == NULL && links > 0))
         return SPRING_EINVAL;
-    const spring_status status = check(particles, links, link);
+    const spring_status status = links_status(particles, links, link);
     if (status != SPRING_OK)
         return status;
     graph g = {particles, links, link, work, NULL, NULL, NULL, NULL};

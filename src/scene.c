@@ -53,7 +53,7 @@ double spring_scene_tension(const spring_scene *s, size_t index)
     if (s == NULL || index >= s->plan.links)
         return NAN;
     const slotted_link link = scene_link(s, index);
-    const bool reversed = s->plan.axes == 1 && signbit(*link.rest);
+    const bool reversed = s->plan.axes == 1 && spring_sign_bit((double)*link.rest);
     const drawn d = draw(s, &link);
     const double pull = (double)*link.stiffness * (d.length - (double)*link.rest) +
                         (link.damping != NULL ? (double)*link.damping * d.rate : 0);
@@ -111,7 +111,7 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
         return status;
     for (size_t i = 0; i < count; i++)
         for (uint32_t a = 0; a < s->plan.axes; a++)
-            if (!isfinite((scalar)in[i * stride + a]))
+            if (!spring_finite((scalar)in[i * stride + a]))
                 return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->plan.axes; a++) {
         scalar *to = scene_quantity(s, q, a) + s->plan.step * first;
@@ -127,7 +127,7 @@ spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3])
     if (s == NULL || gravity == NULL)
         return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->plan.axes; a++)
-        if (!isfinite((scalar)gravity[a]))
+        if (!spring_finite((scalar)gravity[a]))
             return SPRING_EINVAL;
     scene_place_gravity(s, gravity);
     return SPRING_OK;

@@ -44,7 +44,7 @@ SPRING_INLINE slotted_link scene_link(const spring_scene *s, size_t index)
 
 static inline bool scene_fits(double value) /* is finite as a scalar, too */
 {
-    return isfinite((scalar)value);
+    return spring_finite((scalar)value);
 }
 
 static inline bool scene_not_negative(double value)

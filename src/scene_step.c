@@ -38,7 +38,7 @@ static bool finite_scene(const spring_scene *s)
     for (uint32_t a = 0; a < s->plan.axes; a++) {
         const scalar *x = scene_quantity(s, SPRING_POSITION, a), *v = scene_quantity(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->plan.particles; i++)
-            if (!isfinite(x[s->plan.step * i]) || !isfinite(v[s->plan.step * i]))
+            if (!spring_finite(x[s->plan.step * i]) || !spring_finite(v[s->plan.step * i]))
                 return false;
     }
     return true;
@@ -59,7 +59,7 @@ static void invalidate(spring_scene *s)
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
                                         uint64_t n)
 {
-    if (s == NULL || spring_method_describe(m) == NULL || !isfinite((scalar)dt))
+    if (s == NULL || spring_method_describe(m) == NULL || !spring_finite((scalar)dt))
         return SPRING_EINVAL;
     if ((s->plan.methods & 1u << m) == 0)
         return spring_scene_methods[m]->step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
@@ -74,7 +74,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
-    if (!isfinite(t0 + (double)(before + n) * dt))
+    if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     const scene_method *method = spring_scene_methods[m];
     scene_force force;

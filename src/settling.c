@@ -119,7 +119,7 @@ static double settling_creeping(const motion *m)
 
 double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
 {
-    if (s == NULL || !isfinite(s->x) || !isfinite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
+    if (s == NULL || !spring_finite(s->x) || !spring_finite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
         return NAN;
     motion m = {
         .start = {s->x, s->v},
@@ -130,7 +130,7 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
     if (m.roots.w == 0)
         return p->load == 0 ? settling_creeping(&m) : INFINITY;
     m.start.x -= p->load / p->stiffness;
-    if (!isfinite(m.start.x))
+    if (!spring_finite(m.start.x))
         return INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }

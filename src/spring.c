@@ -21,20 +21,22 @@ static const one_method *find_method(spring_method m)
     return index < SPRING_METHOD_COUNT ? all_methods[index] : NULL;
 }
 
+#ifdef SPRING_WHOLE
 uint64_t spring_expected_digest(spring_method m)
 {
     return all_methods[m]->digest;
 }
+#endif
 
 static bool finite_state(spring_state s)
 {
-    return isfinite(s.x) && isfinite(s.v);
+    return spring_finite(s.x) && spring_finite(s.v);
 }
 
 spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     const one_method *method = find_method(m);
-    if (s == NULL || p == NULL || method == NULL || !isfinite(dt))
+    if (s == NULL || p == NULL || method == NULL || !spring_finite(dt))
         return SPRING_EINVAL;
     spring_state now = {s->x, s->v}; /* by field, see simd/arithmetic.h */
     const spring_rates r = spring_rates_of(p);
@@ -140,7 +142,7 @@ spring_params spring_params_half_life(double half_life, double damping_ratio)
     const double z = damping_ratio;
     const double rate =
         z <= 1 ? z : 1 / (z + spring_sqrt(z - 1) * spring_sqrt(z + 1)); /* of the envelope, in units of omega */
-    return params_of(half_life > 0 && isfinite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
+    return params_of(half_life > 0 && spring_finite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
 }
 
 bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol)

@@ -100,7 +100,7 @@ static double symplectic_euler_scene_stable_step(const scene_bounds *b)
 {
     const double excess = b->link_damping - b->least_drag;
     const double root = spring_hypot(fabs(excess), 2 * spring_sqrt(b->stiffness));
-    if (excess > 0 || root == 0 || isinf(root)) /* infinite: no step is known */
+    if (excess > 0 || root == 0 || root == INFINITY) /* infinite: no step is known */
         return 4 / (excess + root);
     return (root - excess) / b->stiffness;
 }

@@ -4,6 +4,9 @@
 #define SPRINGSTEP_ARITHMETIC_H
 
 #include <float.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(_M_FP_FAST)
@@ -68,6 +71,19 @@ static inline double spring_sqrt(double a)
 #else
     return sqrt(a);
 #endif
+}
+
+/* Not the macros of math.h: with mingw-w64 these warn that a double may become a float. */
+static inline bool spring_finite(double a)
+{
+    return a - a == 0;
+}
+
+static inline bool spring_sign_bit(double a)
+{
+    uint64_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return bits >> 63 != 0;
 }
 
 #endif

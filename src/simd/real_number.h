@@ -16,7 +16,7 @@ SPRING_INLINE mask not_finite(real a)
 
 SPRING_INLINE mask sign_bit(real a)
 {
-    return signbit(a) != 0;
+    return spring_sign_bit((double)a);
 }
 
 SPRING_INLINE bool any(mask t)

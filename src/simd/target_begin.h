@@ -5,6 +5,9 @@
  *
  * Targets are set by pragma, not by flags of the build, so the sources of src compile alone, without flags.
  */
+#ifndef SPRINGSTEP_TARGET_BEGIN_H
+#define SPRINGSTEP_TARGET_BEGIN_H
+
 #include "targets.h"
 
 #if SPRING_VECTOR == 16
@@ -18,4 +21,6 @@
 #else
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl")
+#endif
+
 #endif
