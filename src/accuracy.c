@@ -266,7 +266,7 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
     if (left > 0)
         now = runs_joined(now, step_run_of(level, levels, left));
     const double last = envelope_at(now, phase);
-    return isfinite(last) ? fmax(p.most, last) : INFINITY;
+    return spring_finite(last) ? fmax(p.most, last) : INFINITY;
 }
 
 /* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and where the largest of them has been found. */
@@ -337,10 +337,10 @@ static double steps_that_count(step_run step, double G, double n)
 double spring_error_of(const accuracy *of, double steps, double n)
 {
     const step_rates r = rates_of_step(of, steps);
-    if (!isfinite(rates_size(r)))
+    if (!spring_finite(rates_size(r)))
         return INFINITY;
     const step_run step = run_of_one_step(of, r);
-    if (!isfinite(matrix_norm(step.error)) || !(n <= ldexp(1, MOST_DOUBLINGS)))
+    if (!spring_finite(matrix_norm(step.error)) || !(n <= ldexp(1, MOST_DOUBLINGS)))
         return INFINITY;
     step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};

@@ -13,10 +13,10 @@ typedef struct accuracy {
 } accuracy;
 
 /* E of n steps of T/steps. Infinite where it overflows, and of more than 2^53 steps. */
-double spring_error_of(const accuracy *of, double steps, double n);
+SPRING_INTERNAL double spring_error_of(const accuracy *of, double steps, double n);
 
 /* The least number n of steps of T/n with E at most the tolerance, for it and for all that are larger; infinite where
    rounding exceeds the tolerance before, and where it is more than 2^53. */
-double spring_accurate_steps(const accuracy *of, double tolerance);
+SPRING_INTERNAL double spring_accurate_steps(const accuracy *of, double tolerance);
 
 #endif

@@ -186,7 +186,7 @@ SPRING_INLINE real nystrom_sum(const scene_motion *s, const coordinates *c, cons
     return sum;
 }
 
-SPRING_INLINE mask nystrom_stage(const scene_motion *s, const coordinates *c, size_t stage)
+SPRING_INLINE mask stage_of_nystrom(const scene_motion *s, const coordinates *c, size_t stage)
 {
     const real slope = nystrom_slope(s, c, stage), last = s->weight_x[stage - 1] * slope;
     const real sum = stage > 1 ? nystrom_sum(s, c, s->weight_x, stage - 1) + last : last;
@@ -212,7 +212,7 @@ SPRING_INLINE mask nystrom_end_part(const scene_motion *s, const coordinates *c)
 #define NYSTROM_STAGE(stage)                                                                     \
     SPRING_INLINE mask nystrom_stage_##stage##_part(const scene_motion *s, const coordinates *c) \
     {                                                                                            \
-        return nystrom_stage(s, c, stage);                                                       \
+        return stage_of_nystrom(s, c, stage);                                                    \
     }
 
 NYSTROM_STAGE(1)

@@ -178,7 +178,7 @@ spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_
     if (index >= s->plan.links)
         return SPRING_ERANGE;
     const slotted_link at = scene_link(s, index);
-    const bool reversed = s->plan.axes == 1 && signbit(*at.rest);
+    const bool reversed = s->plan.axes == 1 && spring_sign_bit((double)*at.rest);
     *link = (spring_link){
         .a = reversed ? at.b : at.a,
         .b = reversed ? at.a : at.b,
@@ -298,7 +298,7 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
     for (uint32_t a = 0; a < s->plan.axes && target != NULL; a++) {
         const double x = (double)scene_quantity(s, SPRING_POSITION, a)[s->plan.step * particle];
         velocity[a] = (scalar)((target[a] - x) / duration);
-        if (!(duration > 0) || !isfinite(target[a]) || !isfinite(velocity[a]))
+        if (!(duration > 0) || !spring_finite(target[a]) || !spring_finite(velocity[a]))
             return SPRING_EINVAL;
     }
     for (uint32_t a = 0; a < s->plan.axes; a++)

@@ -96,7 +96,7 @@ static accuracy accuracy_of(const spring_params *p, const one_method *method, do
 
 static bool positive(double a)
 {
-    return a > 0 && isfinite(a);
+    return a > 0 && spring_finite(a);
 }
 
 double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance)
