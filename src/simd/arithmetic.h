@@ -4,9 +4,6 @@
 #define SPRINGSTEP_ARITHMETIC_H
 
 #include <float.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <string.h>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(_M_FP_FAST)
@@ -57,6 +54,10 @@ _Static_assert((long long)9007199254740991.0 == 9007199254740991,
 #define SPRING_X86_64 0
 #endif
 #endif
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
 
 /* The square root, correctly rounded; that of mingw-w64's C library is not. */
 #if defined(__GNUC__) && defined(__SSE2__)
