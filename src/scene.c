@@ -253,6 +253,15 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
     return true;
 }
 
+/* Does it change anything but the mass that a pinned particle would have? */
+static bool proposal_moves(const spring_scene *s, const proposal *p)
+{
+    bool moves = false;
+    for (size_t i = p->first; i < p->first + p->count; i++)
+        moves = moves || proposed_inverse_mass(s, p, i) != inverse_mass_at(s, i);
+    return moves;
+}
+
 static spring_status propose(spring_scene *s, const proposal *p, const void *array)
 {
     if (s == NULL || array == NULL)
@@ -263,6 +272,10 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         return SPRING_ERANGE;
     if (!proposal_valid(s, p))
         return SPRING_EINVAL;
+    if (proposal_moves(s, p)) {
+        s->known = NO_FORCE;
+        s->bounds_known = false;
+    }
     for (size_t i = p->first; i < p->first + p->count; i++) {
         const bool pinned = will_be_pinned(s, p, i);
         const scalar inverse = free_inverse_mass(s, p, i);
@@ -271,8 +284,6 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         scene_array(s, s->plan.free_inverse_mass)[i] = inverse;
         scene_place_inverse_mass(s, i, pinned ? 0 : inverse);
     }
-    s->known = NO_FORCE;
-    s->bounds_known = false;
     return SPRING_OK;
 }
 
@@ -296,14 +307,18 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
         return SPRING_EINVAL;
     scalar velocity[3] = {0};
     for (uint32_t a = 0; a < s->plan.axes && target != NULL; a++) {
-        const double x = (double)scene_quantity(s, SPRING_POSITION, a)[s->plan.step * particle];
-        velocity[a] = (scalar)((target[a] - x) / duration);
-        if (!(duration > 0) || !spring_finite(target[a]) || !spring_finite(velocity[a]))
+        const double way = target[a] - (double)scene_quantity(s, SPRING_POSITION, a)[s->plan.step * particle];
+        velocity[a] = (scalar)(way / duration);
+        if (!(duration > 0) || !spring_finite(duration) || !spring_finite(way) || !spring_finite(velocity[a]))
             return SPRING_EINVAL;
     }
-    for (uint32_t a = 0; a < s->plan.axes; a++)
-        scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * particle] = velocity[a];
-    if (s->known != FORCE || scene_forces_use_velocity(s))
+    bool same = true;
+    for (uint32_t a = 0; a < s->plan.axes; a++) {
+        scalar *v = scene_quantity(s, SPRING_VELOCITY, a) + s->plan.step * particle;
+        same = same && *v == velocity[a];
+        *v = velocity[a];
+    }
+    if (!same && scene_forces_use_velocity(s))
         s->known = NO_FORCE;
     return SPRING_OK;
 }

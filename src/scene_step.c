@@ -255,15 +255,15 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
     const scalar *all = force_of_state(s);
     for (size_t i = 0; i < s->plan.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
-        double speed = 0, acceleration = 0; /* squared */
+        double speed = 0, acceleration = 0;
         for (uint32_t a = 0; a < s->plan.axes; a++) {
             const double v = (double)scene_quantity(s, SPRING_VELOCITY, a)[s->plan.step * i];
             const double force = (double)all[a * s->plan.stride + s->plan.step * i] - s->drag * v;
             const double felt = inverse > 0 ? inverse * force + s->gravity[a] : 0;
-            speed += v * v;
-            acceleration += felt * felt;
+            speed = spring_hypot(speed, fabs(v));
+            acceleration = spring_hypot(acceleration, fabs(felt));
         }
-        if (!(spring_sqrt(speed) <= v_tol) || !(spring_sqrt(acceleration) <= a_tol))
+        if (!(speed <= v_tol) || !(acceleration <= a_tol))
             return false;
     }
     return true;

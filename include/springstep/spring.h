@@ -289,7 +289,7 @@ SPRING_API bool spring_params_valid(const spring_params *p);
  * compiler, a flag, or another library that changes how the processor rounds may take it away.
  *
  * Tried are rounding, numbers below the smallest normal ones, products beside sums, and a few steps of every method: of
- * one spring, of batches in both precisions, of a scene. Takes some microseconds, and 20 KB of the stack. It tells of the
+ * one spring, of batches in both precisions, of a scene. Takes tens of microseconds, and up to 50 KB of the stack. It tells of the
  * thread that calls it.
  *
  * @return SPRING_OK; SPRING_EROUNDING, SPRING_EFLUSHED, SPRING_EFUSED, SPRING_EBITS: the first of these that is so
