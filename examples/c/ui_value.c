@@ -65,7 +65,7 @@ int main(void)
         }
         const double frame_time = i % 7 == 3 ? 1.0 / 25 : 1.0 / 60; /* now and then one takes longer */
         t += frame_time;
-        printf("%.3f s  goal %5.1f  drawn %9.5f%s\n", t, goal, frame(&u, frame_time), u.asleep ? "  asleep" : "");
+        printf("%.4f s  goal %5.1f  drawn %9.5f%s\n", t, goal, frame(&u, frame_time), u.asleep ? "  asleep" : "");
     }
     return 0;
 }
