@@ -16,7 +16,7 @@
  *
  * What holds for every function here, beside what spring.h says:
  *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory;
- *    README.md says what each feature takes in bytes and time.
+ *    docs/scenes.md says what each feature takes in bytes and time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
  *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another
  *    place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a
@@ -91,7 +91,7 @@ typedef struct spring_scene_def {
     const double *mass;           /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
     double mass_all;              /* [kg]; 0 means 1 */
     const uint8_t *pinned;        /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
-    const spring_link *link;      /* [links]; best in the order of their particles, see README.md */
+    const spring_link *link;      /* [links]; best in the order of their particles, see docs/scenes.md */
     double gravity[3];            /* [m/s^2]; elements beyond the axes are ignored */
     double drag;                  /* [N s/m] >= 0, on every particle */
     spring_scene_force_fn *force; /* NULL: none */
