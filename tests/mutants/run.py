@@ -6,7 +6,7 @@ usage: run.py [--list | --sample] [-o FILE] [PATTERN]...
 
   PATTERN   only mutants whose names contain one of these
   --list    run nothing: names, and where they are
-  --sample  a fixed small part of them
+  --sample  a fixed small part of them, without those of equivalent.tsv: what no test kills takes longest
   -o FILE   the table, instead of standard output. A FILE that is there is continued: a mutant is not run again while
             the code of its function is what it was, unless it had survived.
 
@@ -332,11 +332,15 @@ def head(present):
             f"# present: {present}\n" + "\t".join(COLUMNS))
 
 
-def chosen(mutants, options):
+def in_sample(mutant, equivalent):
+    return mutant.name not in equivalent and zlib.crc32(mutant.name.encode()) % SAMPLED[mutant.by] == 0
+
+
+def chosen(mutants, options, equivalent):
     for mutant in mutants:
         if options.patterns and not any(pattern in mutant.name for pattern in options.patterns):
             continue
-        if not options.sample or zlib.crc32(mutant.name.encode()) % SAMPLED[mutant.by] == 0:
+        if not options.sample or in_sample(mutant, equivalent):
             yield mutant
 
 
@@ -349,7 +353,7 @@ def main():
     options = parser.parse_args()
     mutants = {mutant.name: mutant for mutant in (*written_by_hand(), *generated())}
     equivalent = known_equivalents(mutants)
-    wanted = list(chosen(mutants.values(), options))
+    wanted = list(chosen(mutants.values(), options, equivalent))
     if options.list:
         for mutant in wanted:
             print(f"{mutant.name}\t{mutant.file}:{mutant.line}")
