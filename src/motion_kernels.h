@@ -172,27 +172,27 @@ SPRING_INLINE real nystrom_slope(const scene_motion *s, const coordinates *c, si
     const real free = free_acceleration(s, c);
     if (!c->dragged || stage == 1)
         return free;
-    const real half = c->drag / 2, moved = vec_load(s->stage_x + c->at) - vec_load(s->x0 + c->at);
-    return vec_load(s->growth + c->mass) * (free + half * half * moved);
+    const real half = c->drag / 2, moved = vec_load(s->nystrom->stage_x + c->at) - vec_load(s->x0 + c->at);
+    return vec_load(s->nystrom->growth + c->mass) * (free + half * half * moved);
 }
 
 /* Of slopes that are stored. */
 SPRING_INLINE real nystrom_sum(const scene_motion *s, const coordinates *c, const scalar *weight, size_t count)
 {
-    real sum = weight[0] * vec_load(s->slopes + c->at);
+    real sum = weight[0] * vec_load(s->nystrom->slopes + c->at);
     SPRING_UNROLL
     for (size_t i = 1; i < count; i++)
-        sum += weight[i] * vec_load(s->slopes + i * s->slope_step + c->at);
+        sum += weight[i] * vec_load(s->nystrom->slopes + i * s->nystrom->slope_step + c->at);
     return sum;
 }
 
 SPRING_INLINE mask stage_of_nystrom(const scene_motion *s, const coordinates *c, size_t stage)
 {
-    const real slope = nystrom_slope(s, c, stage), last = s->weight_x[stage - 1] * slope;
-    const real sum = stage > 1 ? nystrom_sum(s, c, s->weight_x, stage - 1) + last : last;
-    const real moved = s->drift * vec_load(s->v0 + c->at) + s->square * sum;
-    const real x = vec_load(s->x0 + c->at) + (c->dragged ? vec_load(s->decay + c->mass) * moved : moved);
-    vec_store(s->slopes + (stage - 1) * s->slope_step + c->at, slope);
+    const real slope = nystrom_slope(s, c, stage), last = s->nystrom->weight_x[stage - 1] * slope;
+    const real sum = stage > 1 ? nystrom_sum(s, c, s->nystrom->weight_x, stage - 1) + last : last;
+    const real moved = s->drift * vec_load(s->v0 + c->at) + s->nystrom->square * sum;
+    const real x = vec_load(s->x0 + c->at) + (c->dragged ? vec_load(s->nystrom->decay + c->mass) * moved : moved);
+    vec_store(s->nystrom->slopes + (stage - 1) * s->nystrom->slope_step + c->at, slope);
     vec_store(s->x + c->at, x);
     return not_finite(x);
 }
@@ -201,11 +201,12 @@ SPRING_INLINE mask nystrom_end_part(const scene_motion *s, const coordinates *c)
 {
     const size_t stored = nystrom_stages;
     const real slope = nystrom_slope(s, c, stored + 1), x0 = vec_load(s->x0 + c->at), v0 = vec_load(s->v0 + c->at);
-    const real moved = s->drift * v0 + s->square * nystrom_sum(s, c, s->weight_x, stored);
-    const real kick = s->kick * (nystrom_sum(s, c, s->weight_v, stored) + s->weight_v[stored] * slope);
+    const real moved = s->drift * v0 + s->nystrom->square * nystrom_sum(s, c, s->nystrom->weight_x, stored);
+    const real kick =
+        s->kick * (nystrom_sum(s, c, s->nystrom->weight_v, stored) + s->nystrom->weight_v[stored] * slope);
     if (!c->dragged)
         return move_to(s, c, x0 + moved, v0 + kick);
-    const real decay = vec_load(s->decay + c->mass), loss = vec_load(s->loss + c->mass);
+    const real decay = vec_load(s->nystrom->decay + c->mass), loss = vec_load(s->nystrom->loss + c->mass);
     return move_to(s, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
 }
 

@@ -85,24 +85,24 @@ static scene_outcome rkn8_scene_step(const scene_step *s)
     if (s->first && s->particles.drag != 0)
         rkn8_find_factors(s);
     scene_motion end = scene_motion_of(s), stage = scene_motion_of(s);
-    stage.square = end.square = s->h * s->h;
-    stage.slopes = end.slopes = scene_stage(s, 0);
-    stage.slope_step = end.slope_step = s->scene->plan.stage_step;
+    scene_nystrom of = {.square = s->h * s->h,
+                        .slopes = scene_stage(s, 0),
+                        .slope_step = s->scene->plan.stage_step,
+                        .stage_x = scene_stage(s, rkn8_stages)};
+    end.nystrom = stage.nystrom = &of;
     stage.x = scene_stage(s, rkn8_stages);
-    stage.stage_x = end.stage_x = stage.x;
     for (unsigned k = 0; k < rkn8_stages; k++) {
         stage.drift = (scalar)rkn8_c[k] * s->h;
-        stage.weight_x = rkn8_a[k];
-        stage.growth = end.growth;
-        stage.decay = end.decay = scene_factor(s, rkn8_decay + k);
+        of.weight_x = rkn8_a[k];
+        of.decay = scene_factor(s, rkn8_decay + k);
         if (!scene_sweep(s, &stage, s->kernels->nystrom_stage[k], stage.v0, rkn8_c[k], NULL, NULL))
             return (scene_outcome){.finite = false};
         stage.force = end.force = scene_force_of(s->scene, s->to);
-        end.growth = scene_factor(s, k);
+        of.growth = scene_factor(s, k);
     }
-    end.weight_x = rkn8_b;
-    end.weight_v = rkn8_b_v;
-    end.loss = scene_factor(s, rkn8_loss);
+    of.weight_x = rkn8_b;
+    of.weight_v = rkn8_b_v;
+    of.loss = scene_factor(s, rkn8_loss);
     return (scene_outcome){.finite = scene_sweep(s, &end, s->kernels->nystrom_end, end.v, 1, NULL, NULL),
                            .known = FORCE};
 }

@@ -59,6 +59,17 @@ typedef struct scene_particles {
     scalar drag;
 } scene_particles;
 
+/* What stages of Runge-Kutta-Nystrom methods use besides. */
+typedef struct scene_nystrom {
+    scalar square;                       /* [s^2] of the step */
+    scalar *slopes;                      /* accelerations of the stages ... */
+    size_t slope_step;                   /* ... elements from one to the next */
+    const scalar *weight_x, *weight_v;   /* of each of them */
+    const scalar *stage_x;               /* positions of the stage that the force belongs to */
+    const scalar *growth, *decay, *loss; /* of each mass, e^(drag t/2) at that stage, its inverse at the next, and
+                                            e^(-drag kick/2) - 1 */
+} scene_nystrom;
+
 /* A part of a step. A kernel uses what its line in scene_kernels says. */
 typedef struct scene_motion {
     scalar kick, drift; /* [s] how long forces act on v, and v on x */
@@ -69,14 +80,7 @@ typedef struct scene_motion {
     const scalar *slope;   /* the velocity of the stage that the force belongs to; v0 at first */
     scalar *sum_x, *sum_v; /* weighted sums of the slopes of stages, and of their accelerations */
     scalar weight;         /* of this stage */
-    /* of Runge-Kutta-Nystrom methods: */
-    scalar square;                       /* [s^2] of the step */
-    scalar *slopes;                      /* accelerations of the stages ... */
-    size_t slope_step;                   /* ... elements from one to the next */
-    const scalar *weight_x, *weight_v;   /* of each of them */
-    const scalar *stage_x;               /* positions of the stage that the force belongs to */
-    const scalar *growth, *decay, *loss; /* of each mass, e^(drag t/2) at that stage, its inverse at the next, and
-                                                e^(-drag kick/2) - 1 */
+    const scene_nystrom *nystrom;
 } scene_motion;
 
 /* From positions, and velocities if links are damped. s->force may be v for bands, and for records without bands. */
