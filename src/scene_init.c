@@ -48,31 +48,24 @@ static uint32_t methods_of(const spring_scene_def *def)
     return def->methods == 0 ? default_methods() : def->methods;
 }
 
-/* The most that one of them needs. */
-static unsigned stages_of(uint32_t methods)
-{
-    unsigned stages = 0;
-    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->stages > stages)
-            stages = spring_scene_methods[m]->stages;
-    return stages;
-}
+/* What these methods store in a scene: the most that one of them does. */
+typedef struct storage_needs {
+    bool predicts;
+    unsigned stages, factors;
+} storage_needs;
 
-static unsigned factors_of(uint32_t methods)
+static storage_needs needs_of(uint32_t methods)
 {
-    unsigned factors = 0;
-    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->factors > factors)
-            factors = spring_scene_methods[m]->factors;
-    return factors;
-}
-
-static bool any_predicts(uint32_t methods)
-{
-    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if ((methods & 1u << m) != 0 && spring_scene_methods[m]->predicts)
-            return true;
-    return false;
+    storage_needs most = {0};
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++) {
+        const scene_method *method = spring_scene_methods[m];
+        if ((methods & 1u << m) == 0)
+            continue;
+        most.predicts = most.predicts || method->predicts;
+        most.stages = method->stages > most.stages ? method->stages : most.stages;
+        most.factors = method->factors > most.factors ? method->factors : most.factors;
+    }
+    return most;
 }
 
 static def_error check_methods(uint32_t methods)
@@ -320,7 +313,8 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
                editable = (plan->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || any_damping(def);
     const bool velocity_used = damped || (plan->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
-    const bool predicts = any_predicts(plan->methods) && velocity_used;
+    const storage_needs needs = needs_of(plan->methods);
+    const bool predicts = needs.predicts && velocity_used;
     const bool records = plan->axes > 1 && !plan->small && plan->edges >= plan->particles;
     const size_t quantity =
         (plan->small ? quad_size * (plan->particles + quad_size) : plan->axes * plan->stride) + 2 * padding;
@@ -334,7 +328,7 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
     if (predicts && damped && plan->edges > 0 && (plan->bands > 0 || !records))
         plan->predicted = reserve(plan, quantity, sizeof(scalar));
     plan->stage_step = quantity;
-    plan->stages = reserve(plan, stages_of(plan->methods) * quantity, sizeof(scalar));
+    plan->stages = reserve(plan, needs.stages * quantity, sizeof(scalar));
     const bool each = def->mass != NULL || def->pinned != NULL || editable;
     const size_t masses = !each ? padding : plan->small ? quantity : plan->stride;
     if (each)
@@ -342,7 +336,7 @@ static void plan_memory(const spring_scene_def *def, scene_plan *plan)
     if (editable)
         plan->free_inverse_mass = reserve(plan, plan->particles, sizeof(scalar));
     plan->factor_step = masses;
-    plan->factors = reserve(plan, def->drag > 0 ? factors_of(plan->methods) * masses : 0, sizeof(scalar));
+    plan->factors = reserve(plan, def->drag > 0 ? needs.factors * masses : 0, sizeof(scalar));
     plan->occupied = reserve(plan, plan->band_slots, 1);
     plan->rings = reserve(plan, plan->band_force, sizeof(scalar));
     plan->band_stiffness = reserve(plan, plan->band_coefficients, sizeof(scalar));

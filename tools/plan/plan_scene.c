@@ -161,12 +161,7 @@ plan_scene *plan_scene_new(const preset_settings *settings, double duration, dou
     if (s == NULL)
         cli_fail(CLI_FAILED, "out of memory");
     preset_init(&s->preset, settings);
-    if (settings->kind == PRESET_WATER) {
-        disturbance poke = disturbances_poke(&s->preset, settings, push_duration);
-        s->poke = disturbances_new(&s->preset, &poke, 1);
-        s->preset.def.force = disturbances_force;
-        s->preset.def.user = s->poke;
-    }
+    s->poke = disturbances_poke_water(&s->preset, settings, push_duration);
     s->frames = (uint64_t)fmax(rint(duration * frames_a_second), 1);
     s->frame = duration / (double)s->frames;
     s->numbers = s->preset.def.particles * s->preset.def.axes;
@@ -178,8 +173,7 @@ plan_scene *plan_scene_new(const preset_settings *settings, double duration, dou
 void plan_scene_free(plan_scene *s)
 {
     free(s->reference);
-    if (s->poke != NULL)
-        disturbances_free(s->poke);
+    disturbances_free(s->poke);
     preset_clear(&s->preset);
     free(s);
 }

@@ -104,6 +104,8 @@ disturbances *disturbances_new(const preset *r, disturbance *list, size_t count)
 
 void disturbances_free(disturbances *p)
 {
+    if (p == NULL)
+        return;
     free(p->list);
     free(p->first);
     free(p->share);
@@ -138,4 +140,15 @@ void disturbances_force(void *user, double t, size_t particles, const double *co
         for (size_t k = p->first[i]; k < p->first[i + 1]; k++)
             down[p->share[k].particle] -= strength * p->share[k].part;
     }
+}
+
+disturbances *disturbances_poke_water(preset *r, const preset_settings *s, double duration)
+{
+    if (s->kind != PRESET_WATER)
+        return NULL;
+    disturbance poke = disturbances_poke(r, s, duration);
+    disturbances *p = disturbances_new(r, &poke, 1);
+    r->def.force = disturbances_force;
+    r->def.user = p;
+    return p;
 }

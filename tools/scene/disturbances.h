@@ -35,7 +35,10 @@ typedef struct disturbances disturbances;
 
 /** Prepare disturbances of one duration, in any order; the list is sorted. Exits with a message without memory. */
 disturbances *disturbances_new(const preset *r, disturbance *list, size_t count);
-void disturbances_free(disturbances *p);
+void disturbances_free(disturbances *p); /* NULL: nothing */
+
+/** Pokes the scene if it is water, by its callback; NULL if it is none. */
+disturbances *disturbances_poke_water(preset *r, const preset_settings *s, double duration);
 
 /** The callback of a scene; user points to the disturbances. It adds to the last axis, and looks at the time alone. */
 void disturbances_force(void *user, double t, size_t particles, const double *const position[3],

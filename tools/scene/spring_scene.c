@@ -444,8 +444,7 @@ int main(int argc, char **argv)
     free(v.xyz);
     free(v.saved);
     free(scene);
-    if (p != NULL)
-        disturbances_free(p);
+    disturbances_free(p);
     preset_clear(&r);
     return survived ? 0 : CLI_FAILED;
 }

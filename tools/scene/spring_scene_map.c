@@ -127,12 +127,7 @@ static void begin(subject *s, const preset_settings *settings)
 {
     *s = (subject){.frames = quick ? 60 : 240};
     preset_init(&s->preset, settings);
-    if (settings->kind == PRESET_WATER) {
-        disturbance poke = disturbances_poke(&s->preset, settings, disturbance_time);
-        s->poke = disturbances_new(&s->preset, &poke, 1);
-        s->preset.def.force = disturbances_force;
-        s->preset.def.user = s->poke;
-    }
+    s->poke = disturbances_poke_water(&s->preset, settings, disturbance_time);
     s->energy = calloc(s->frames, sizeof *s->energy);
     if (s->energy == NULL)
         cli_fail(CLI_FAILED, "out of memory");
@@ -141,8 +136,7 @@ static void begin(subject *s, const preset_settings *settings)
 static void end(subject *s)
 {
     free(s->energy);
-    if (s->poke != NULL)
-        disturbances_free(s->poke);
+    disturbances_free(s->poke);
     preset_clear(&s->preset);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Runs a program for WASI. With a list of functions: does a module export them, and import nothing?
-//     node run_wasi.mjs MODULE [LIST]
+//     node wasi.mjs MODULE [LIST]
 import { readFileSync } from "node:fs";
 import { WASI } from "node:wasi";
 
