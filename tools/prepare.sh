@@ -1,10 +1,11 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
-# What tools/report and tools/test have in common: install what is missing, configure, compile. Sourced by both.
+# What the commands of tools/ have in common: install what is missing, configure, compile. Sourced by them.
 
 set -euo pipefail
 
-me=tools/$(basename "$0")
+command=$(basename "$0")
+me=tools/$command
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
 
@@ -29,10 +30,11 @@ present() {
     esac
 }
 
+# What every command needs, and what this one does: report, test ...
 missing_packages() {
-    local kind name package optional
-    while read -r kind name package optional; do
-        if [[ -n $kind && $kind != '#'* && -z $optional ]] && ! present "$kind" "$name"; then
+    local kind name package for
+    while read -r kind name package for; do
+        if [[ -n $kind && $kind != '#'* && ${for:-$command} == "$command" ]] && ! present "$kind" "$name"; then
             echo "$package"
         fi
     done <"$root/tools/packages.txt"
