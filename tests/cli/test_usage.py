@@ -102,6 +102,8 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--drop-box -1,1', ['--drop-box', '"-1"', 'at least 0 s']),
         (SCENE, '--drop-box 0,0', ['--drop-box', '"0"', 'greater than 0 kg']),
         (SCENE, '--rain 1e7', ['--rain', '"1e+07"', 'at most 1e+06']),
+        (SCENE, '--steps-per-frame 2 --dt 0.1', ['--steps-per-frame', '"2"', '--dt']),
+        (SCENE, '--frame-rate 50', ['--frame-rate', '"50"', '--steps-per-frame']),
         (SCENE, '--axes 3', ['--axes', '"3"', 'for water', 'rope it should be 2']),
         (SCENE, '--scene water --axes 2', ['--axes', '"2"', '1 or 3']),
         (SCENE, '--scene water --stretch 1', ['--stretch', '"1"', 'greater than 1']),

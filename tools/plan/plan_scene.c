@@ -14,7 +14,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "plan.h"
-#include "scene/disturbances.h"
+#include "scene/start.h"
 
 static const double frames_a_second = 60;
 static const double law_holds = 0.5;      /* an error below this falls by the order of the method */
@@ -55,7 +55,7 @@ static void positions_of(const plan_scene *s, const spring_scene *scene, double 
 static spring_scene *start(const plan_scene *s, spring_method m)
 {
     size_t bytes;
-    return preset_start(&s->preset, m, &bytes);
+    return start_scene(&s->preset, m, &bytes);
 }
 
 static double stable_step(const plan_scene *s, spring_method m)
@@ -160,8 +160,8 @@ plan_scene *plan_scene_new(const preset_settings *settings, double duration, dou
     plan_scene *s = calloc(1, sizeof *s);
     if (s == NULL)
         cli_fail(CLI_FAILED, "out of memory");
-    preset_init(&s->preset, settings);
-    s->poke = disturbances_poke_water(&s->preset, settings, push_duration);
+    start_preset(&s->preset, settings);
+    s->poke = start_poke(&s->preset, settings, push_duration);
     s->frames = (uint64_t)fmax(rint(duration * frames_a_second), 1);
     s->frame = duration / (double)s->frames;
     s->numbers = s->preset.def.particles * s->preset.def.axes;

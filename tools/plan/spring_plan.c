@@ -11,6 +11,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "plan.h"
+#include "scene/start.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */
 
@@ -206,7 +207,7 @@ static double stable_substeps(const plan_scene *s, spring_method m)
 {
     const double frame = 1.0 / 60;
     size_t bytes;
-    spring_scene *scene = preset_start(plan_scene_preset(s), m, &bytes);
+    spring_scene *scene = start_scene(plan_scene_preset(s), m, &bytes);
     const double step = spring_scene_stable_step(scene, m);
     free(scene);
     return step > 0 ? floor(frame / step) + 1 : 0;

@@ -15,19 +15,19 @@
 #include <unistd.h>
 
 #include "common/cli.h"
-#include "common/random.h"
-#include "disturbances.h"
-#include "presets.h"
+#include "harness/scene_run.h"
+#include "start.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */
 
 static const char *const links[] = {"all", "structural", NULL};
 
 static int kind, method, link_choice;
-static uint64_t size, axes, seed = 1;
-static double dt, duration = 5, fps = 60, disturbance_time = 0.02, rain;
+static uint64_t size, axes, seed = 1, steps_per_frame;
+static double dt, frame_rate, duration = 5, fps = 60, disturbance_time = 0.02, rain;
 static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
+static bool hash_alone;
 
 /* Physical parameters of the same name as in preset_settings. */
 enum { LENGTH, MASS, END_MASS, STIFFNESS, DAMPING, DRAG, GRAVITY, STRETCH, parameters };
@@ -44,6 +44,10 @@ static const cli_option options[] = {
     {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
      .help = "step [s] (default: the frame in as many steps as make it at most half\n"
              "the stable step of leapfrog, and an eighth of --push-duration)"},
+    {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
+     .help = "instead of --dt: the step is 1/(R N) s"},
+    {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R",
+     .help = "frames a second that --steps-per-frame divides (default: 60)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move\n"
@@ -77,7 +81,8 @@ static const cli_option options[] = {
     {"poke", CLI_REALS, .real = poke, .least = 5, .value = "T,X,Y,FORCE,AREA",
      .help = "push down at the time T [s] around (X, Y) [m] with FORCE [N] at most,\n"
              "spread over a round AREA [m^2]; once: the last --poke counts"},
-    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "drops per second (default: 0)"},
+    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE",
+     .help = "a drop in every 1/RATE seconds (default: 0, none)"},
     {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another rain for every N (default: 1)"},
     {"drop-box", CLI_REALS, .real = box, .least = 2, .value = "T,MASS",
      .help = "a box of MASS [kg] falls from 1 m, at 9.81 m/s^2, and hits the middle\n"
@@ -89,6 +94,10 @@ static const cli_option options[] = {
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on.\n"
              "DIR is created; older frames in it of the same numbers are replaced"},
     {"positions", CLI_FILE, .file = &positions, .value = "FILE", .help = "write the positions of all frames to FILE"},
+    {"hash", CLI_FLAG, .flag = &hash_alone,
+     .help = "print nothing but 16 digits, of the state at the end: FNV-1a, 64 bits,\n"
+             "over the doubles of all positions, then all velocities, lowest byte\n"
+             "first; of a scene that blows up, of the last state before"},
     {.name = NULL},
 };
 
@@ -102,11 +111,12 @@ static const cli_program program = {
                "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
                "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
                "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
-               "A disturbance that begins at T has the force FORCE sin^4(pi (t - T)/D) up to T + D; for the chain "
-               "it is\n"
-               "along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 m^2, and\n"
+               "A disturbance that begins at T has the force FORCE (4 u (1 - u))^4, u = (t - T)/D, for 0 < u < 1; for "
+               "the\n"
+               "chain it is along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 "
+               "m^2, and\n"
                "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
-               "one particle at 10 m/s; drops come at random times to random points.\n\n"
+               "one particle at 10 m/s, anywhere and at any time within its 1/RATE seconds.\n\n"
                "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
                "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows "
                "end,\n"
@@ -150,9 +160,6 @@ static preset_settings chosen_settings(void)
 
 /* -------------------------------------------------------------------------------------------------- disturbances */
 
-static const double box_height = 1, drop_speed = 10; /* [m], [m/s] */
-static const double mean_of_profile = 3.0 / 8;       /* of sin^4 over its duration */
-
 static void check_poke(const preset *r)
 {
     const double *far = &r->start[3 * (r->def.particles - 1)];
@@ -174,39 +181,30 @@ static void check_box(void)
         cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", box[1]);
 }
 
-/* Writes the drops to `list`, unless that is NULL; returns how many there are. */
 static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 {
-    const double *far = &r->start[3 * (r->def.particles - 1)], edge = s->length / 16;
-    uint64_t state = seed;
+    uint64_t random = seed;
     size_t count = 0;
-    for (double t = 0;; count++) {
-        t -= log(1 - random_unit(&state)) / rain;
-        const double x = far[0] * random_unit(&state), y = far[1] * random_unit(&state);
-        if (!(t < duration))
-            return count;
-        if (list != NULL)
-            list[count] = (disturbance){.start = t,
-                                        .duration = disturbance_time,
-                                        .x = x,
-                                        .y = y,
-                                        .area = edge * edge,
-                                        .peak = s->mass * drop_speed / (mean_of_profile * disturbance_time)};
+    for (uint64_t i = 0; (double)i / rain < duration; i++) {
+        const disturbance drop =
+            disturbances_drop(r, s, (double)i / rain, (double)(i + 1) / rain, disturbance_time, &random);
+        if (drop.start < duration)
+            list[count++] = drop;
     }
+    return count;
 }
 
-static disturbances *chosen_disturbances(const preset *r, const preset_settings *s)
+static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
 {
-    const double most_drops = 1e5, area = s->length * s->length / 64;
-    const double *far = &r->start[3 * (r->def.particles - 1)];
+    const double most_drops = 1e5;
     const bool water_alone = s->kind == PRESET_WATER && isnan(poke[0]) && isnan(box[0]) && rain == 0;
     if (!(rain * duration <= most_drops))
         cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
                  most_drops, duration, most_drops / duration);
-    const size_t drops = rain > 0 ? fall(r, s, NULL) : 0;
-    disturbance *list = malloc((drops + 2) * sizeof *list);
+    const size_t most = (size_t)(rain * duration) + 4; /* a drop that has begun, a rounded one, a poke, a box */
+    disturbance *list = malloc(most * sizeof *list);
     if (list == NULL)
-        cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
+        cli_fail(CLI_FAILED, "no memory for %zu drops", most);
     size_t count = rain > 0 ? fall(r, s, list) : 0;
     if (!isnan(poke[0])) {
         check_poke(r);
@@ -216,12 +214,9 @@ static disturbances *chosen_disturbances(const preset *r, const preset_settings 
         list[count++] = disturbances_poke(r, s, disturbance_time);
     if (!isnan(box[0])) {
         check_box();
-        const double momentum = box[1] * sqrt(2 * 9.81 * box_height);
-        list[count++] = (disturbance){
-            box[0], disturbance_time,  far[0] / 2, far[1] / 2, momentum / (mean_of_profile * disturbance_time),
-            area,   DISTURBANCE_SQUARE};
+        list[count++] = disturbances_box(r, s, box[0], box[1], disturbance_time);
     }
-    disturbances *p = count > 0 ? disturbances_new(r, list, count) : NULL;
+    disturbances *p = start_disturbances(r, list, count);
     free(list);
     return p;
 }
@@ -299,8 +294,9 @@ static void write_row(view *v)
         const double *p = &v->xyz[3 * i], *q = &v->preset->start[3 * i];
         most = fmax(most, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
     }
-    cli_row(v->rows, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
-            e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most);
+    if (v->rows != NULL)
+        cli_row(v->rows, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
+                e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most);
 }
 
 static void write_pictures(const view *v, uint64_t frame)
@@ -312,29 +308,14 @@ static void write_pictures(const view *v, uint64_t frame)
         write_positions(v->positions, v->preset, t, v->xyz);
 }
 
-/* Takes n steps, or none if the state or its energy would overflow. */
-static bool take(view *v, uint64_t n)
-{
-    memcpy(v->saved, v->scene, v->bytes);
-    const spring_status status = spring_scene_advance(v->scene, (spring_method)method, dt, n);
-    const spring_scene_energies e = spring_scene_energy(v->scene);
-    const bool holds = status == SPRING_OK && isfinite(e.kinetic + e.elastic + e.gravity);
-    if (!holds) {
-        memcpy(v->scene, v->saved, v->bytes);
-        v->lost_at = spring_scene_time(v->scene) + (double)n * dt;
-    }
-    return holds;
-}
-
 /* Takes n steps, or as many as the scene survives; returns whether that is all of them. */
 static bool advance(view *v, uint64_t n)
 {
     const uint64_t leap = 1024;
     while (n > 0) {
         const uint64_t some = n < leap ? n : leap;
-        if (!take(v, some)) {
-            for (uint64_t i = 0; i < some && take(v, 1); i++)
-                ;
+        if (scene_run_steps(v->scene, v->saved, v->bytes, (spring_method)method, dt, some) < some) {
+            v->lost_at = spring_scene_time(v->scene) + dt;
             return false;
         }
         n -= some;
@@ -347,7 +328,7 @@ static bool advance(view *v, uint64_t n)
 static bool run(view *v, uint64_t steps, uint64_t frame_count)
 {
     uint64_t step = 0;
-    if (!take(v, 0))
+    if (!scene_run_holds(v->scene))
         return false;
     for (uint64_t frame = 0; frame <= frame_count; frame++) {
         const bool end = frame == frame_count;
@@ -372,6 +353,18 @@ static double default_step(spring_scene *scene, bool disturbed)
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
 }
 
+static void choose_step(spring_scene *scene, bool disturbed)
+{
+    if (steps_per_frame > 0 && dt > 0)
+        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --dt", steps_per_frame);
+    if (frame_rate > 0 && steps_per_frame == 0)
+        cli_fail(CLI_USAGE, "--frame-rate: \"%g\" does not count without --steps-per-frame", frame_rate);
+    if (steps_per_frame > 0)
+        dt = scene_run_step(frame_rate > 0 ? frame_rate : 60, steps_per_frame);
+    else if (dt == 0)
+        dt = default_step(scene, disturbed);
+}
+
 static void remark_on_step(spring_scene *scene, bool disturbed)
 {
     const double stable = spring_scene_stable_step(scene, (spring_method)method);
@@ -388,7 +381,7 @@ static void remark_on_step(spring_scene *scene, bool disturbed)
 
 static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64_t frame_count)
 {
-    view v = {.preset = r, .scene = scene, .bytes = bytes, .rows = cli_open_output()};
+    view v = {.preset = r, .scene = scene, .bytes = bytes, .rows = hash_alone ? NULL : cli_open_output()};
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
     if (frames != NULL)
         prepare_frames(frame_count);
@@ -396,12 +389,14 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     v.xyz = malloc(3 * r->def.particles * sizeof *v.xyz);
     if (v.saved == NULL || v.xyz == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu particles", r->def.particles);
+    if (v.positions != NULL)
+        cli_columns(v.positions, frame_columns);
+    if (hash_alone)
+        return v;
     cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
     cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method), dt,
                 spring_scene_stable_step(scene, (spring_method)method));
     cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
-    if (v.positions != NULL)
-        cli_columns(v.positions, frame_columns);
     return v;
 }
 
@@ -421,16 +416,11 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     const preset_settings settings = chosen_settings();
     preset r;
-    preset_init(&r, &settings);
+    start_preset(&r, &settings);
     disturbances *p = chosen_disturbances(&r, &settings);
-    if (p != NULL) {
-        r.def.force = disturbances_force;
-        r.def.user = p;
-    }
     size_t bytes;
-    spring_scene *scene = preset_start(&r, (spring_method)method, &bytes);
-    if (dt == 0)
-        dt = default_step(scene, p != NULL);
+    spring_scene *scene = start_scene(&r, (spring_method)method, &bytes);
+    choose_step(scene, p != NULL);
     check_amounts();
     remark_on_step(scene, p != NULL);
 
@@ -438,6 +428,8 @@ int main(int argc, char **argv)
                    frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
     view v = open_view(&r, scene, bytes, frame_count);
     const bool survived = run(&v, steps, frame_count);
+    if (hash_alone)
+        printf("%016" PRIx64 "\n", scene_run_hash(scene, r.def.particles, r.def.axes));
     cli_finish();
     if (!survived)
         cli_warn("the scene blows up: its energy overflows at t = %.17g s", v.lost_at);

@@ -13,8 +13,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "disturbances.h"
-#include "presets.h"
+#include "start.h"
 
 static const double frame_time = 1.0 / 60;   /* [s] */
 static const double disturbance_time = 0.02; /* [s] */
@@ -72,7 +71,7 @@ static double total(const spring_scene_energies *e)
 static spring_scene *start(const subject *s, spring_method m)
 {
     size_t bytes;
-    return preset_start(&s->preset, m, &bytes);
+    return start_scene(&s->preset, m, &bytes);
 }
 
 static void run_reference(subject *s)
@@ -126,8 +125,8 @@ static uint64_t next_number(uint64_t substeps)
 static void begin(subject *s, const preset_settings *settings)
 {
     *s = (subject){.frames = quick ? 60 : 240};
-    preset_init(&s->preset, settings);
-    s->poke = disturbances_poke_water(&s->preset, settings, disturbance_time);
+    start_preset(&s->preset, settings);
+    s->poke = start_poke(&s->preset, settings, disturbance_time);
     s->energy = calloc(s->frames, sizeof *s->energy);
     if (s->energy == NULL)
         cli_fail(CLI_FAILED, "out of memory");

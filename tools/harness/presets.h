@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Five scenes with all that they are made of, and how they look at the start.
+ * Five scenes with all that they are made of, and how they look at the start. Like disturbances.h and scene_run.h this
+ * takes nothing but the library and memory, so that a scene has the same bits in every program that has it.
  *
  *     rope   particles in a row, level, held at one end, with gravity: it swings down
  *     cloth  a level sheet that hangs on two of its corners, with gravity
@@ -59,16 +60,19 @@ typedef struct preset {
     spring_link *link; /* [links] */
 } preset;
 
-/** Make the definition of a scene, but for its methods. Exits with a message without memory. */
-void preset_init(preset *r, const preset_settings *s);
+/** Make the definition of a scene, but for its methods. SPRING_ERANGE: a scene cannot be of this size; SPRING_ENOMEM.
+    After either there is nothing to clear. */
+spring_status preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);
 
 /** Is the method for this scene? */
 bool preset_takes(const preset *r, spring_method m);
 
-/** The scene, for one method and for leapfrog, whose stable step is a measure for all; in memory of its own of so many
-    bytes: release it with free(). Exits with a message if it is not valid. */
-spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes);
+/** Make the scene, in memory of its own of so many bytes: release it with free(). Otherwise *scene is NULL.
+
+    @param methods  1u << SPRING_EULER | ...
+    @param flags    SPRING_SCENE_..., besides those of the definition */
+spring_status preset_start(const preset *r, uint32_t methods, uint32_t flags, spring_scene **scene, size_t *bytes);
 
 /** Positions [particles*3] x y z [m] as in `start`. */
 void preset_positions(const preset *r, const spring_scene *s, double *xyz);

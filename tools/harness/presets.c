@@ -2,11 +2,9 @@
 /* Five scenes with all that they are made of; see presets.h. */
 #include "presets.h"
 
-#include <math.h>
+#include <math.h> /* NAN, isnan() */
 #include <stdlib.h>
 #include <string.h>
-
-#include "common/cli.h"
 
 const char *const preset_names[] = {"rope", "cloth", "jelly", "chain", "water", NULL};
 
@@ -25,14 +23,6 @@ static const preset_settings defaults[] = {
 preset_settings preset_defaults(preset_kind kind)
 {
     return defaults[kind];
-}
-
-static void *room(size_t count, size_t size)
-{
-    void *memory = calloc(count, size);
-    if (memory == NULL)
-        cli_fail(CLI_FAILED, "no memory for a scene of this --size");
-    return memory;
 }
 
 static spring_grid grid_of(const preset_settings *s)
@@ -93,24 +83,34 @@ static void pluck(preset *r, double spacing)
 {
     const double end = r->count[0] - 1;
     for (uint32_t i = 0; i < r->count[0]; i++) {
-        const double aside = spacing * fmin(i, end - i) / end;
+        const double aside = spacing * (2 * i < end ? i : end - i) / end;
         r->position[i] += aside;
         r->start[3 * i] += aside;
     }
 }
 
-void preset_init(preset *r, const preset_settings *s)
+static spring_status allocate(preset *r, size_t particles, size_t links)
+{
+    r->start = calloc(3 * particles, sizeof *r->start);
+    r->position = calloc(3 * particles, sizeof *r->position);
+    r->pinned = calloc(particles, sizeof *r->pinned);
+    r->mass = calloc(particles, sizeof *r->mass);
+    r->link = calloc(links, sizeof *r->link);
+    if (r->start != NULL && r->position != NULL && r->pinned != NULL && r->mass != NULL && r->link != NULL)
+        return SPRING_OK;
+    preset_clear(r);
+    return SPRING_ENOMEM;
+}
+
+spring_status preset_init(preset *r, const preset_settings *s)
 {
     const spring_grid g = grid_of(s);
     size_t particles, links;
     if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
-        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have", s->size);
+        return SPRING_ERANGE;
     *r = (preset){.count = {g.count[0], g.count[1] > 0 ? g.count[1] : 1, g.count[2] > 0 ? g.count[2] : 1}};
-    r->start = room(3 * particles, sizeof *r->start);
-    r->position = room(3 * particles, sizeof *r->position);
-    r->pinned = room(particles, sizeof *r->pinned);
-    r->mass = room(particles, sizeof *r->mass);
-    r->link = room(links, sizeof *r->link);
+    if (allocate(r, particles, links) != SPRING_OK)
+        return SPRING_ENOMEM;
     spring_grid_fill(&g, r->position, r->pinned, r->link);
     fill_start(r, g.spacing);
     r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
@@ -133,6 +133,7 @@ void preset_init(preset *r, const preset_settings *s)
             r->mass[i] = i + 1 < particles ? s->mass : s->end_mass;
         r->def.mass = r->mass;
     }
+    return SPRING_OK;
 }
 
 void preset_clear(preset *r)
@@ -151,38 +152,35 @@ bool preset_takes(const preset *r, spring_method m)
     return spring_scene_check(&def, NULL, NULL) == SPRING_OK;
 }
 
-spring_scene *preset_start(const preset *r, spring_method m, size_t *bytes)
+spring_status preset_start(const preset *r, uint32_t methods, uint32_t flags, spring_scene **scene, size_t *bytes)
 {
     spring_scene_def def = r->def;
-    def.methods = 1u << m | 1u << SPRING_LEAPFROG;
-    const char *field;
-    size_t index;
-    spring_scene *scene;
-    const spring_status status = spring_scene_check(&def, &field, &index);
-    if (status == SPRING_EUNSUPPORTED)
-        cli_fail(CLI_USAGE, "--method: \"%s\" is not for scenes whose links are damped", spring_method_name(m));
+    def.methods = methods;
+    def.flags |= flags;
+    *scene = NULL;
+    spring_status status = spring_scene_bytes(&def, bytes);
     if (status != SPRING_OK)
-        cli_fail(CLI_USAGE,
-                 "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
-                 "drag/mass should be finite",
-                 field, index);
-    spring_scene_bytes(&def, bytes);
+        return status;
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
-    if (memory == NULL || spring_scene_init(memory, *bytes, &def, &scene) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
-    return scene;
+    if (memory == NULL)
+        return SPRING_ENOMEM;
+    status = spring_scene_init(memory, *bytes, &def, scene);
+    if (status != SPRING_OK)
+        free(memory);
+    return status;
 }
 
 void preset_positions(const preset *r, const spring_scene *s, double *xyz)
 {
-    static const int shown[4][3] = {{0}, {0}, {0, 2}, {0, 1, 2}}; /* by the number of axes: where each goes */
     const uint32_t axes = r->def.axes;
     const bool height = axes == 1 && r->count[1] > 1;
-    double *own = room(axes * r->def.particles, sizeof *own);
-    spring_scene_get(s, SPRING_POSITION, own, 0, 0, r->def.particles);
-    memcpy(xyz, r->start, 3 * r->def.particles * sizeof *xyz);
-    for (size_t i = 0; i < r->def.particles; i++)
-        for (uint32_t a = 0; a < axes; a++)
-            xyz[3 * i + (size_t)(height ? 2 : shown[axes][a])] = own[axes * i + a];
-    free(own);
+    spring_scene_get(s, SPRING_POSITION, xyz, 3, 0, r->def.particles);
+    if (axes == 3)
+        return;
+    for (size_t i = 0; i < r->def.particles; i++) {
+        const double first = xyz[3 * i], second = xyz[3 * i + 1], *start = &r->start[3 * i];
+        xyz[3 * i] = height ? start[0] : first;
+        xyz[3 * i + 1] = start[1];
+        xyz[3 * i + 2] = height ? first : axes == 2 ? second : start[2];
+    }
 }

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* Presets and disturbances for programs; see start.h. */
+#include "start.h"
+
+#include "common/cli.h"
+
+void start_preset(preset *r, const preset_settings *s)
+{
+    const spring_status status = preset_init(r, s);
+    if (status == SPRING_ERANGE)
+        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have", s->size);
+    if (status != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of this --size");
+}
+
+spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
+{
+    spring_scene_def def = r->def;
+    def.methods = 1u << m | 1u << SPRING_LEAPFROG;
+    const char *field;
+    size_t index;
+    spring_scene *scene;
+    const spring_status status = spring_scene_check(&def, &field, &index);
+    if (status == SPRING_EUNSUPPORTED)
+        cli_fail(CLI_USAGE, "--method: \"%s\" is not for scenes whose links are damped", spring_method_name(m));
+    if (status != SPRING_OK)
+        cli_fail(CLI_USAGE,
+                 "%s (number %zu) of this scene is not valid; mass, 1/mass, 2 stiffness/mass, 2 damping/mass and "
+                 "drag/mass should be finite",
+                 field, index);
+    if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
+    return scene;
+}
+
+disturbances *start_disturbances(preset *r, const disturbance *list, size_t count)
+{
+    if (count == 0)
+        return NULL;
+    disturbances *p = disturbances_new(r);
+    for (size_t i = 0; i < count; i++)
+        if (p == NULL || disturbances_add(p, r, &list[i]) != SPRING_OK)
+            cli_fail(CLI_FAILED, "no memory for the disturbances on a scene");
+    r->def.force = disturbances_force;
+    r->def.user = p;
+    return p;
+}
+
+disturbances *start_poke(preset *r, const preset_settings *s, double duration)
+{
+    if (s->kind != PRESET_WATER)
+        return NULL;
+    const disturbance poke = disturbances_poke(r, s, duration);
+    return start_disturbances(r, &poke, 1);
+}
