@@ -4,7 +4,7 @@ import math
 
 import pytest
 from test_methods import SCENES, SPRINGS, TABLE
-from tools import PLAN, SCENE, column, parse, run, table
+from tools import PLAN, SCENE, column, is_failure, parse, run, table
 
 FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
 COLUMNS = 'method dt_s steps force_evaluations predicted_error measured_error time_s'.split()
@@ -104,6 +104,57 @@ def test_measured_error_of_a_scene(tmp_path):
         assert abs(error / motion - float(row['measured_error'])) <= 2e-3 * error / motion + float(row['uncertainty'])
         if row['predicted_error'] != 'nan':
             assert 0.5 <= float(row['predicted_error']) / float(row['measured_error']) <= 2, 'the power law'
+
+
+def mesh_file(tmp_path, *lines):
+    path = tmp_path / 'mesh.obj'
+    path.write_text('\n'.join(lines) + '\n')
+    return path
+
+
+@pytest.mark.parametrize('elements, links', [
+    (['f 1 2 3'], 3),
+    (['f 1/1 2//7 3/1/7', 'f 3 2 4'], 5),  # which share an edge
+    (['f 1 2 4 3'], 6),  # both diagonals
+    (['l 1 2 4', 'l 4 2'], 2),
+    (['l -1 -4', 'f 1 2 3', 'vt 0.5 0.5', 'usemtl cloth'], 4),
+])
+def test_a_mesh(tmp_path, elements, links):
+    path = mesh_file(tmp_path, '# a square', 'v 0.5 1 0', 'v 1.5 1 -0.5', 'v 0 0 0.2', 'v 1 0 0.1', *elements)
+    args = f'--error 0.01 --duration 0.1 --mass 1.3 --stiffness 27 --drag 0.6 --mesh {path}'.split()
+    printed = run(PLAN, *args).stdout
+    assert f'# scene: {path}, 4 particles, {links} links\n' in printed
+    rows = parse(printed)
+    is_a_plan(rows, SCENES, 0.1)
+    assert all(float(row['measured_error']) <= 0.01 for row in rows)
+
+
+def test_a_mesh_hangs_by_its_highest_vertex(tmp_path):
+    """One link that is let go at its rest length is one spring; the distance it falls is twice its amplitude."""
+    path = mesh_file(tmp_path, 'v 0 0 0', 'v 0 -2 0', 'l 1 2')
+    spring = '--duration 5 --mass 1.3 --stiffness 2700'
+    steps, of_mesh = ({row['method']: int(row['steps']) for row in plan(*words)}['leapfrog']
+                      for words in [('--error 0.02', spring), ('--error 0.01', spring, '--mesh', str(path))])
+    assert abs(of_mesh / steps - 1) <= 0.1, 'in whole steps a frame, seen at frames'
+
+
+@pytest.mark.parametrize('line, message', [
+    ('v 1 2', 'line 2: a vertex should have three finite numbers'),
+    ('v 1 2 nan', 'line 2: a vertex should have three finite numbers'),
+    ('f 1 2 3', 'line 2: a corner should be the number of a vertex above'),
+    ('f 1 1', 'line 2: a face should have three corners'),
+    ('l 1 1', 'line 2: an edge should join two vertices'),
+    ('l 1', 'line 2: a line should have two ends'),
+    ('l 1 x', 'line 2: a corner should be the number of a vertex above'),
+    ('l 1 0', 'line 2: a corner should be the number of a vertex above'),
+    ('l ' + '1 ' * 65, 'line 2: a face should not have more than 64 corners'),
+    ('l ' + '1 ' * 5000, 'line 2: a line should not be longer than 4094 bytes'),
+    ('', 'should have faces or lines'),
+])
+def test_what_is_not_a_mesh(tmp_path, line, message):
+    path = mesh_file(tmp_path, 'v 0 0 0', line)
+    done = run(PLAN, *f'--error 0.1 --duration 1 --stiffness 3 --mesh {path}'.split())
+    is_failure(done, 2, str(path), message)
 
 
 def test_presets():

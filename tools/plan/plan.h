@@ -25,14 +25,14 @@ plan_row plan_spring(const spring_params *p, spring_method m, double duration, d
 typedef struct plan_scene plan_scene;
 
 /** Runs the reference until its uncertainty is a twentieth of the error, or it would take more work than that: force
-    evaluations times particles and links. Exits with a message where that overflows. */
-plan_scene *plan_scene_new(const preset_settings *settings, double duration, double error, double work);
+    evaluations times particles and links. Exits with a message where that overflows. The definition stays the caller's,
+    for as long as this lives. */
+plan_scene *plan_scene_new(const preset *scene, double duration, double error, double work);
 void plan_scene_free(plan_scene *s);
 
 /** A method that the scene does not support has no steps, and NaN for the rest. */
 plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double work, bool timed);
 
 uint64_t plan_scene_frames(const plan_scene *s);
-const preset *plan_scene_preset(const plan_scene *s);
 
 #endif

@@ -17,12 +17,10 @@
 #include "scene/start.h"
 
 static const double frames_a_second = 60;
-static const double law_holds = 0.5;      /* an error below this falls by the order of the method */
-static const double push_duration = 0.02; /* [s] of the poke that water gets, as in spring-scene */
+static const double law_holds = 0.5; /* an error below this falls by the order of the method */
 
 struct plan_scene {
-    preset preset;
-    disturbances *poke; /* NULL: none */
+    const preset *preset;
     uint64_t frames;
     double frame;       /* [s] */
     size_t numbers;     /* of the positions */
@@ -49,13 +47,13 @@ static double distance(const double *a, const double *b, size_t count)
 
 static void positions_of(const plan_scene *s, const spring_scene *scene, double *out)
 {
-    spring_scene_get(scene, SPRING_POSITION, out, 0, 0, s->preset.def.particles);
+    spring_scene_get(scene, SPRING_POSITION, out, 0, 0, s->preset->def.particles);
 }
 
 static spring_scene *start(const plan_scene *s, spring_method m)
 {
     size_t bytes;
-    return start_scene(&s->preset, m, &bytes);
+    return start_scene(s->preset, m, &bytes);
 }
 
 static double stable_step(const plan_scene *s, spring_method m)
@@ -70,7 +68,7 @@ static double stable_step(const plan_scene *s, spring_method m)
 static double work_of(const plan_scene *s, spring_method m, double substeps)
 {
     return substeps * (double)s->frames * spring_method_describe(m)->forces_per_step *
-           (double)(s->preset.def.particles + s->preset.def.links);
+           (double)(s->preset->def.particles + s->preset->def.links);
 }
 
 /* Positions at the ends of all frames. */
@@ -109,7 +107,7 @@ static spring_method best_method(const plan_scene *s)
     spring_method best = SPRING_LEAPFROG;
     for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
         const spring_method m = spring_method_at(place);
-        if (spring_method_describe(m)->order > spring_method_describe(best)->order && preset_takes(&s->preset, m))
+        if (spring_method_describe(m)->order > spring_method_describe(best)->order && preset_takes(s->preset, m))
             best = m;
     }
     return best;
@@ -155,16 +153,15 @@ static void run_reference(plan_scene *s, double error, double work)
         cli_fail(CLI_FAILED, "the reference of this scene overflows, or does not move");
 }
 
-plan_scene *plan_scene_new(const preset_settings *settings, double duration, double error, double work)
+plan_scene *plan_scene_new(const preset *scene, double duration, double error, double work)
 {
     plan_scene *s = calloc(1, sizeof *s);
     if (s == NULL)
         cli_fail(CLI_FAILED, "out of memory");
-    start_preset(&s->preset, settings);
-    s->poke = start_poke(&s->preset, settings, push_duration);
+    s->preset = scene;
     s->frames = (uint64_t)fmax(rint(duration * frames_a_second), 1);
     s->frame = duration / (double)s->frames;
-    s->numbers = s->preset.def.particles * s->preset.def.axes;
+    s->numbers = s->preset->def.particles * s->preset->def.axes;
     s->reference = room(s->frames * s->numbers);
     run_reference(s, error, work);
     return s;
@@ -173,19 +170,12 @@ plan_scene *plan_scene_new(const preset_settings *settings, double duration, dou
 void plan_scene_free(plan_scene *s)
 {
     free(s->reference);
-    disturbances_free(s->poke);
-    preset_clear(&s->preset);
     free(s);
 }
 
 uint64_t plan_scene_frames(const plan_scene *s)
 {
     return s->frames;
-}
-
-const preset *plan_scene_preset(const plan_scene *s)
-{
-    return &s->preset;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the search */
@@ -207,7 +197,7 @@ static double time_of(const plan_scene *s, spring_method m, uint64_t substeps)
 plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double work, bool timed)
 {
     plan_row row = {.method = m, .predicted = NAN, .measured = NAN, .uncertainty = NAN, .time = INFINITY};
-    if (!preset_takes(&s->preset, m))
+    if (!preset_takes(s->preset, m))
         return row;
     const int order = spring_method_describe(m)->order;
     uint64_t few = 0, enough = 1;

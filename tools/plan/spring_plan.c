@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-plan: an error and a duration in, methods and their steps out, the cheapest first; for one spring, or a preset
- * scene.
+ * spring-plan: an error and a duration in, methods and their steps out, the cheapest first; for one spring, a preset
+ * scene, or a mesh.
  */
 #include <float.h>
 #include <math.h>
@@ -10,6 +10,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
+#include "mesh.h"
 #include "plan.h"
 #include "scene/start.h"
 
@@ -19,6 +20,7 @@ static double error = NAN, duration = NAN;
 static double mass = NAN, stiffness = NAN, damping = NAN, hertz = NAN, damping_ratio = NAN, drag = NAN;
 static int kind = -1;
 static uint64_t size;
+static const char *mesh;
 static bool presets, quick;
 
 static const cli_option options[] = {
@@ -37,6 +39,10 @@ static const cli_option options[] = {
      .help = "a scene of spring-scene instead: rope, cloth, jelly, chain or water"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
+    {"mesh", CLI_FILE, .file = &mesh, .value = "FILE",
+     .help = "a scene of a mesh instead (Wavefront OBJ, y up): a particle a vertex, a link\n"
+             "along each edge and across each face of four corners; the highest\n"
+             "vertices are held, gravity pulls at the others; takes --stiffness"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
     {"presets", CLI_FLAG, .flag = &presets,
      .help = "instead: the steps that a frame of 1/60 s needs in each scene, or in\n"
@@ -63,7 +69,8 @@ static const cli_program program = {
         "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
         "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
         "spring-plan --error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1\n"
-        "spring-plan --error 0.05 --duration 1 --scene cloth",
+        "spring-plan --error 0.05 --duration 1 --scene cloth\n"
+        "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01",
     .options = options,
 };
 
@@ -75,6 +82,8 @@ static void refuse(const char *option, double value, const char *should)
 
 static void check_usage(void)
 {
+    if (mesh != NULL && (presets || kind >= 0))
+        cli_fail(CLI_USAGE, "--mesh: \"%s\" is a scene; --scene and --presets are others", mesh);
     if (presets) {
         refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
         refuse("duration", duration, "is not for --presets, which takes a second");
@@ -86,9 +95,13 @@ static void check_usage(void)
         cli_fail(CLI_USAGE, "--error: missing; it should be an error such as 0.01");
     if (isnan(duration))
         cli_fail(CLI_USAGE, "--duration: missing; it should be a time in seconds");
-    if (kind >= 0) {
+    if (mesh != NULL && isnan(stiffness))
+        cli_fail(CLI_USAGE, "--stiffness: missing; it should be that of the links of --mesh");
+    if (kind >= 0 || mesh != NULL) {
         refuse("hertz", hertz, "is of one spring, not of a scene");
         refuse("damping-ratio", damping_ratio, "is of one spring, not of a scene");
+        if (mesh != NULL && size > 0)
+            cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for --scene; a mesh has its size", size);
         return;
     }
     refuse("drag", drag, "is for a scene; of one spring it should be --damping");
@@ -139,19 +152,10 @@ static void plan_one_spring(const spring_params *p)
     }
 }
 
-static void plan_one_scene(cli_table *table)
+static void plan_one_scene(const preset *scene)
 {
     const double work = 1e9; /* a second or two */
-    preset_settings settings = preset_defaults((preset_kind)kind);
-    settings.size = size > 0 ? size : settings.size;
-    settings.mass = or_else(mass, settings.mass);
-    settings.end_mass = isnan(settings.end_mass) ? settings.end_mass : settings.mass;
-    settings.stiffness = or_else(stiffness, settings.stiffness);
-    settings.damping = or_else(damping, settings.damping);
-    settings.drag = or_else(drag, settings.drag);
-    plan_scene *s = plan_scene_new(&settings, duration, error, work);
-    const preset *r = plan_scene_preset(s);
-    cli_comment(table, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
+    plan_scene *s = plan_scene_new(scene, duration, error, work);
     for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
         const spring_method m = spring_method_at(place);
         if (spring_method_describe(m)->scenes)
@@ -161,6 +165,32 @@ static void plan_one_scene(cli_table *table)
     if (row_count > 0 && rows[0].uncertainty > error)
         cli_warn("the reference is uncertain by %g, more than the error that is asked for", rows[0].uncertainty);
     plan_scene_free(s);
+}
+
+/* A scene of spring-scene, with its poke if it is water. */
+static preset poked_preset(const preset_settings *settings, disturbances **poke)
+{
+    const double duration_of_poke = 0.02; /* [s] as in spring-scene */
+    preset scene;
+    start_preset(&scene, settings);
+    *poke = start_poke(&scene, settings, duration_of_poke);
+    return scene;
+}
+
+static preset chosen_scene(disturbances **poke)
+{
+    if (mesh != NULL) {
+        const mesh_settings settings = {or_else(mass, 1), stiffness, or_else(damping, 0), or_else(drag, 0)};
+        return mesh_read(mesh, &settings);
+    }
+    preset_settings settings = preset_defaults((preset_kind)kind);
+    settings.size = size > 0 ? size : settings.size;
+    settings.mass = or_else(mass, settings.mass);
+    settings.end_mass = isnan(settings.end_mass) ? settings.end_mass : settings.mass;
+    settings.stiffness = or_else(stiffness, settings.stiffness);
+    settings.damping = or_else(damping, settings.damping);
+    settings.drag = or_else(drag, settings.drag);
+    return poked_preset(&settings, poke);
 }
 
 static const plan_row *first_stepper(void)
@@ -191,8 +221,10 @@ static void say(cli_table *table)
                     steps);
 }
 
-static void write_rows(cli_table *table)
+static void write_plan(cli_table *table)
 {
+    qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
+    say(table);
     cli_columns(table, "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty");
     for (int i = 0; i < row_count; i++) {
         const plan_row *r = &rows[i];
@@ -203,18 +235,19 @@ static void write_rows(cli_table *table)
 
 /* ------------------------------------------------------------------------------------------------------ all presets */
 
-static double stable_substeps(const plan_scene *s, spring_method m)
+static double stable_substeps(const preset *r, spring_method m)
 {
     const double frame = 1.0 / 60;
     size_t bytes;
-    spring_scene *scene = start_scene(plan_scene_preset(s), m, &bytes);
+    spring_scene *scene = start_scene(r, m, &bytes);
     const double step = spring_scene_stable_step(scene, m);
     free(scene);
     return step > 0 ? floor(frame / step) + 1 : 0;
 }
 
-static void write_presets(cli_table *table)
+static void write_presets(void)
 {
+    cli_table *table = cli_open_output();
     static const double errors[] = {0.1, 0.01, 0.001};
     const double finest = 0.001, work = quick ? 3e7 : 1e9;
     cli_columns(table, "scene method error substeps dt_s measured_error uncertainty stable_substeps");
@@ -222,7 +255,9 @@ static void write_presets(cli_table *table)
         if (kind >= 0 && each != kind)
             continue;
         const preset_settings settings = preset_defaults((preset_kind)each);
-        plan_scene *s = plan_scene_new(&settings, 1, finest, work);
+        disturbances *poke;
+        preset scene = poked_preset(&settings, &poke);
+        plan_scene *s = plan_scene_new(&scene, 1, finest, work);
         for (int place = 0; place < SPRING_METHOD_COUNT; place++) {
             const spring_method m = spring_method_at(place);
             if (!spring_method_describe(m)->scenes)
@@ -231,33 +266,49 @@ static void write_presets(cli_table *table)
                 const plan_row r = plan_scene_row(s, m, errors[k], work, false);
                 cli_row(table, "%s\t%s\t%.17g\t%.0f\t%.17g\t%.17g\t%.17g\t%.0f", preset_names[each],
                         spring_method_name(m), errors[k], r.steps / (double)plan_scene_frames(s), r.dt, r.measured,
-                        r.uncertainty, stable_substeps(s, m));
+                        r.uncertainty, stable_substeps(&scene, m));
             }
         }
         plan_scene_free(s);
+        disturbances_free(poke);
+        preset_clear(&scene);
         cli_progress((each + 1.0) / preset_kinds);
     }
+}
+
+static void write_spring(void)
+{
+    const spring_params p = chosen_spring();
+    cli_table *table = cli_open_output();
+    timing_stamp(table);
+    plan_one_spring(&p);
+    write_plan(table);
+}
+
+static void write_scene(void)
+{
+    disturbances *poke = NULL;
+    preset scene = chosen_scene(&poke);
+    cli_table *table = cli_open_output();
+    timing_stamp(table);
+    cli_comment(table, "scene: %s, %zu particles, %zu links", mesh != NULL ? mesh : preset_names[kind],
+                scene.def.particles, scene.def.links);
+    plan_one_scene(&scene);
+    write_plan(table);
+    disturbances_free(poke);
+    preset_clear(&scene);
 }
 
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     check_usage();
-    const bool one = !presets && kind < 0;
-    const spring_params p = one ? chosen_spring() : (spring_params){0};
-    cli_table *table = cli_open_output();
-    if (presets) {
-        write_presets(table);
-    } else {
-        timing_stamp(table);
-        if (one)
-            plan_one_spring(&p);
-        else
-            plan_one_scene(table);
-        qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
-        say(table);
-        write_rows(table);
-    }
+    if (presets)
+        write_presets();
+    else if (kind >= 0 || mesh != NULL)
+        write_scene();
+    else
+        write_spring();
     cli_finish();
     return 0;
 }

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+/* Scenes from mesh files; see mesh.h. */
+#include "mesh.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+
+enum { longest_line = 4096, most_corners = 64 };
+
+/* A file, as far as it is read. */
+typedef struct mesh {
+    const char *path;
+    size_t line;
+    size_t vertices, links, vertex_capacity, link_capacity;
+    double (*position)[3]; /* [vertex_capacity] */
+    spring_link *link;     /* [link_capacity] */
+} mesh;
+
+static _Noreturn void refuse(const mesh *m, const char *what)
+{
+    cli_fail(CLI_USAGE, "--mesh: \"%s\", line %zu: %s", m->path, m->line, what);
+}
+
+static void *resized(void *array, size_t count, size_t size)
+{
+    void *memory = realloc(array, count * size);
+    if (memory == NULL)
+        cli_fail(CLI_FAILED, "no memory for this --mesh");
+    return memory;
+}
+
+/* The array, with room for one more than there are. */
+static void *grown(void *array, size_t *capacity, size_t count, size_t size)
+{
+    if (count < *capacity)
+        return array;
+    *capacity = 2 * count + 256;
+    return resized(array, *capacity, size);
+}
+
+static void add_vertex(mesh *m, char *at)
+{
+    m->position = grown(m->position, &m->vertex_capacity, m->vertices, sizeof *m->position);
+    for (int axis = 0; axis < 3; axis++) {
+        char *end;
+        const double x = strtod(at, &end);
+        if (end == at || !isfinite(x))
+            refuse(m, "a vertex should have three finite numbers");
+        m->position[m->vertices][axis] = x;
+        at = end;
+    }
+    m->vertices++;
+}
+
+static void add_link(mesh *m, uint32_t a, uint32_t b)
+{
+    if (a == b)
+        refuse(m, "an edge should join two vertices");
+    m->link = grown(m->link, &m->link_capacity, m->links, sizeof *m->link);
+    m->link[m->links++] = (spring_link){.a = a < b ? a : b, .b = a < b ? b : a};
+}
+
+/* 7, 7/1, 7//3 and 7/1/3 are the seventh vertex, -1 is the last one so far. */
+static uint32_t read_corner(const mesh *m, char **at)
+{
+    char *end;
+    const long long number = strtoll(*at, &end, 10), count = (long long)m->vertices;
+    if (end == *at || number == 0 || number > count || number < -count || strchr("/ \t\r\n", *end) == NULL)
+        refuse(m, "a corner should be the number of a vertex above");
+    *at = end + strcspn(end, " \t\r\n");
+    return (uint32_t)(number > 0 ? number - 1 : count + number);
+}
+
+static void add_edges(mesh *m, char *at, bool face)
+{
+    uint32_t corner[most_corners];
+    size_t corners = 0;
+    for (; at += strspn(at, " \t\r\n"), *at != '\0'; corners++) {
+        if (corners == most_corners)
+            refuse(m, "a face should not have more than 64 corners");
+        corner[corners] = read_corner(m, &at);
+    }
+    if (corners < (face ? 3 : 2))
+        refuse(m, face ? "a face should have three corners" : "a line should have two ends");
+    for (size_t i = 1; i < corners; i++)
+        add_link(m, corner[i - 1], corner[i]);
+    if (face)
+        add_link(m, corner[corners - 1], corner[0]);
+    if (face && corners == 4) {
+        add_link(m, corner[0], corner[2]);
+        add_link(m, corner[1], corner[3]);
+    }
+}
+
+static void read_lines(mesh *m)
+{
+    FILE *file = fopen(m->path, "r");
+    if (file == NULL)
+        cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
+    char line[longest_line];
+    while (fgets(line, sizeof line, file) != NULL) {
+        m->line++;
+        if (strchr(line, '\n') == NULL && !feof(file))
+            refuse(m, "a line should not be longer than 4094 bytes");
+        const bool is_space = line[0] != '\0' && strchr(" \t", line[1]) != NULL;
+        if (line[0] == 'v' && is_space)
+            add_vertex(m, line + 1);
+        else if ((line[0] == 'f' || line[0] == 'l') && is_space)
+            add_edges(m, line + 1, line[0] == 'f');
+    }
+    if (ferror(file))
+        cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
+    fclose(file);
+    if (m->links == 0)
+        cli_fail(CLI_USAGE, "--mesh: \"%s\" should have faces or lines", m->path);
+}
+
+static int by_ends(const void *left, const void *right)
+{
+    const spring_link *l = left, *r = right;
+    return l->a != r->a ? (l->a > r->a) - (l->a < r->a) : (l->b > r->b) - (l->b < r->b);
+}
+
+/* An edge of two faces comes twice. */
+static void join_once(mesh *m, const mesh_settings *settings)
+{
+    qsort(m->link, m->links, sizeof *m->link, by_ends);
+    size_t kept = 0;
+    for (size_t i = 0; i < m->links; i++) {
+        if (i > 0 && by_ends(&m->link[i], &m->link[i - 1]) == 0)
+            continue;
+        const double *a = m->position[m->link[i].a], *b = m->position[m->link[i].b];
+        m->link[kept] = m->link[i];
+        m->link[kept].rest = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
+        m->link[kept].stiffness = settings->stiffness;
+        m->link[kept].damping = settings->damping;
+        kept++;
+    }
+    m->links = kept;
+}
+
+/* Positions and links in an order that memory likes. */
+static double *renumber(mesh *m)
+{
+    uint32_t *order = resized(NULL, m->vertices, sizeof *order);
+    uint32_t *work = resized(NULL, 4 * m->vertices + 2 * m->links + 1, sizeof *work);
+    if (spring_links_renumber(m->vertices, m->links, m->link, order, NULL, work) != SPRING_OK)
+        cli_fail(CLI_USAGE, "--mesh: \"%s\" has more vertices or edges than a scene can have", m->path);
+    double *position = resized(NULL, 3 * m->vertices, sizeof *position);
+    for (size_t i = 0; i < m->vertices; i++)
+        memcpy(&position[3 * i], m->position[order[i]], sizeof m->position[0]);
+    free(order);
+    free(work);
+    return position;
+}
+
+static uint8_t *pin_highest(const double *position, size_t vertices)
+{
+    uint8_t *pinned = resized(NULL, vertices, sizeof *pinned);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < vertices; i++) {
+        low = fmin(low, position[3 * i + 1]);
+        high = fmax(high, position[3 * i + 1]);
+    }
+    const double rounding = 1e-6; /* of the numbers in a file */
+    for (size_t i = 0; i < vertices; i++)
+        pinned[i] = position[3 * i + 1] >= high - rounding * (high - low);
+    return pinned;
+}
+
+preset mesh_read(const char *path, const mesh_settings *settings)
+{
+    mesh m = {.path = path};
+    read_lines(&m);
+    join_once(&m, settings);
+    preset scene = {.position = renumber(&m), .link = m.link};
+    free(m.position);
+    scene.pinned = pin_highest(scene.position, m.vertices);
+    scene.def = (spring_scene_def){.axes = 3,
+                                   .particles = m.vertices,
+                                   .links = m.links,
+                                   .position = scene.position,
+                                   .mass_all = settings->mass,
+                                   .pinned = scene.pinned,
+                                   .link = scene.link,
+                                   .gravity = {0, -9.81, 0},
+                                   .drag = settings->drag};
+    return scene;
+}
