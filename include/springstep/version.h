@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The version of springstep, written here and nowhere else (meson.build reads it), and the mark of a public
-   function. */
+/* The version of springstep, written here and nowhere else (meson.build, CMakeLists.txt and packages read it), and the
+   mark of a public function. */
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
 
 #define SPRING_VERSION "0.1.0"
 
-#if defined(_WIN32) && defined(SPRING_BUILDS_DLL)
+/* Of the shared library: changes when programs that were compiled for the last release would not run any more. */
+#define SPRING_SOVERSION "0"
+
+#if defined(_WIN32) && defined(SPRING_BUILD_DLL)
 #define SPRING_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(SPRING_DLL) /* of a program that uses the DLL; without it calls take a detour */
+#define SPRING_API __declspec(dllimport)
 #elif defined(__GNUC__) && !defined(_WIN32)
 #define SPRING_API __attribute__((visibility("default")))
 #else
