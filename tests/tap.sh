@@ -7,6 +7,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 tap_count=0
 tap_failed=0
+tap_skipped=0
 
 # tap_point STATUS NAME [OUTPUT-FILE]: the output is shown where the point fails
 tap_point() {
@@ -45,6 +46,7 @@ refused() {
 # skipped NAME REASON
 skipped() {
     tap_count=$((tap_count + 1))
+    tap_skipped=$((tap_skipped + 1))
     echo "ok $tap_count - $1 # SKIP $2"
 }
 
