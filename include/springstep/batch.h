@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
+/** @file
  * springstep: many independent springs at once, as structures of arrays.
  *
  *     x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'
@@ -31,28 +31,35 @@
 extern "C" {
 #endif
 
-/* For spring_batch.shared: this array has one element, for all springs. */
+/** For spring_batch.shared: this array has one element, for all springs.
+ * @{ */
 #define SPRING_SHARED_OMEGA2 UINT32_C(1)
 #define SPRING_SHARED_GAMMA  UINT32_C(2)
 #define SPRING_SHARED_ACCEL  UINT32_C(4)
+/** @} */
 
-/* Zero-initialise what is not modelled. x and v overlap nothing; the others may be the same array. */
+/** A batch. Zero-initialise what is not modelled. x and v overlap nothing; the others may be the same array. */
 typedef struct spring_batch {
-    size_t count;
-    double *x, *v;        /* [count] displacement from the unloaded rest position [m], velocity [m/s] */
-    const double *omega2; /* [count] stiffness/mass [1/s^2] >= 0; required */
-    const double *gamma;  /* [count] damping/mass [1/s] >= 0; NULL: not modelled, not paid for */
-    const double *accel;  /* [count] load/mass [m/s^2];       NULL: not modelled, not paid for */
-    uint32_t shared;      /* SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL */
+    size_t count;         /**< springs */
+    double *x;            /**< [count] displacement from the unloaded rest position [m] */
+    double *v;            /**< [count] velocity [m/s] */
+    const double *omega2; /**< [count] stiffness/mass [1/s^2] >= 0; required */
+    const double *gamma;  /**< [count] damping/mass [1/s] >= 0; NULL: not modelled, not paid for */
+    const double *accel;  /**< [count] load/mass [m/s^2];       NULL: not modelled, not paid for */
+    uint32_t shared;      /**< SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL */
 } spring_batch;
 
-typedef struct spring_batchf { /* the same in float: half the memory, half the time */
+/** A batch in float: half the memory, half the time. */
+typedef struct spring_batchf {
+    /** As in spring_batch.
+     * @{ */
     size_t count;
     float *x, *v;
     const float *omega2;
     const float *gamma;
     const float *accel;
     uint32_t shared;
+    /** @} */
 } spring_batchf;
 
 /**

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Fixed steps from frames of any length. */
+/** @file
+ * Fixed steps from frames of any length.
+ */
 #ifndef SPRINGSTEP_CLOCK_H
 #define SPRINGSTEP_CLOCK_H
 
@@ -11,10 +13,10 @@
 extern "C" {
 #endif
 
-/* Frame time that has not become steps. All zero is the start. */
+/** Frame time that has not become steps. All zero is the start. */
 typedef struct spring_clock {
-    double pending; /* [s] waits for the next frame; always less than one step */
-    double dropped; /* [s] given up since the start, because a frame asked for more than max_steps */
+    double pending; /**< [s] waits for the next frame; always less than one step */
+    double dropped; /**< [s] given up since the start, because a frame asked for more than max_steps */
 } spring_clock;
 
 /**

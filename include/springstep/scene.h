@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
+/** @file
  * springstep: particles joined by springs (rope, cloth, jelly, water), in memory that the caller owns.
  *
  *     mass x'' = link forces + mass gravity - drag x' + F(t, x, x')
@@ -41,63 +41,67 @@
 extern "C" {
 #endif
 
-#define SPRING_SCENE_ALIGN 64 /* of the memory of a scene [bytes] */
+/** @defgroup scene_def The definition
+ * @{ */
 
-/* A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest) + damping
+#define SPRING_SCENE_ALIGN 64 /**< of the memory of a scene [bytes] */
+
+/** A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest) + damping
    (v_b - v_a); on more it pulls both ends along the line between them with stiffness (length - rest) + damping (rate of
    length). Where both ends are at the same place that line has no direction, and there is no force; nor is there
    a sensible one where the square of the length underflows, below some 1e-160 m, in float 1e-21 m. */
 typedef struct spring_link {
-    uint32_t a, b;    /*         indices of two different particles */
-    double rest;      /* [m]     length at which it does not pull >= 0 */
-    double stiffness; /* [N/m]   >= 0 */
-    double damping;   /* [N s/m] >= 0, along the link */
+    uint32_t a;       /**<         index of a particle */
+    uint32_t b;       /**<         index of another */
+    double rest;      /**< [m]     length at which it does not pull >= 0 */
+    double stiffness; /**< [N/m]   >= 0 */
+    double damping;   /**< [N s/m] >= 0, along the link */
 } spring_link;
 
-/* Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
+/** Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
    [m] and velocities [m/s]; arrays of the axes that the scene does not have are NULL, and all numbers are finite. It
    must depend on nothing but its arguments and *user, or advance(10) is not 10 times advance(1), and must not call a
    function on its own scene. After a change of what *user holds call spring_scene_set_force() again: a force may have
    been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY). */
 typedef void spring_scene_force_fn(void *user, double t, size_t particles, const double *const position[3],
                                    const double *const velocity[3], double *const force[3]);
+/** The same for a scene in float. */
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
-/* flags: */
-
-/* spring_scene_set_link(), _set_pinned() and _set_mass() are allowed. Each link and each particle has numbers of its own,
+/** spring_scene_set_link(), _set_pinned() and _set_mass() are allowed. Each link and each particle has numbers of its own,
    equal to others or not. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/* No second copy of the state. An advance that fails in a step loses it: positions and velocities are NaN then, and no step
+/** No second copy of the state. An advance that fails in a step loses it: positions and velocities are NaN then, and no step
    succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/* No callback uses velocities, or there is none and none is going to be set. (What it is shown as velocities may be
+/** No callback uses velocities, or there is none and none is going to be set. (What it is shown as velocities may be
    other numbers then.) Leapfrog keeps the force at the end of a step for the next then, which halves its work; and it
    needs no memory for a prediction where no link is damped or can be changed. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
-/* Zero-initialise what is not modelled. Every array is copied. */
+/** Zero-initialise what is not modelled. Every array is copied. */
 typedef struct spring_scene_def {
-    uint32_t axes;                /* 1, 2 or 3; 0 means 3 */
-    uint32_t flags;               /* SPRING_SCENE_... */
-    uint32_t methods;             /* 1u << SPRING_EULER | ...: which will be used; 0: all but RK4, RKN8 */
-    size_t particles;             /* from 1 to nearly 2^32; where addresses have 32 bits, at most 2^23 - 1 */
-    size_t links;                 /* less than 2^29; likewise */
-    const double *position;       /* [particles*axes] x0 y0 z0 x1 ... [m] */
-    const double *velocity;       /* [particles*axes] [m/s]; NULL: at rest */
-    const double *mass;           /* [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
-    double mass_all;              /* [kg]; 0 means 1 */
-    const uint8_t *pinned;        /* [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
-    const spring_link *link;      /* [links]; best in the order of their particles, see docs/scenes.md */
-    double gravity[3];            /* [m/s^2]; elements beyond the axes are ignored */
-    double drag;                  /* [N s/m] >= 0, on every particle */
-    spring_scene_force_fn *force; /* NULL: none */
-    void *user;                   /* handed to force */
+    uint32_t axes;                /**< 1, 2 or 3; 0 means 3 */
+    uint32_t flags;               /**< SPRING_SCENE_... */
+    uint32_t methods;             /**< 1u << SPRING_EULER | ...: which will be used; 0: all but RK4, RKN8 */
+    size_t particles;             /**< from 1 to nearly 2^32; where addresses have 32 bits, at most 2^23 - 1 */
+    size_t links;                 /**< less than 2^29; likewise */
+    const double *position;       /**< [particles*axes] x0 y0 z0 x1 ... [m] */
+    const double *velocity;       /**< [particles*axes] [m/s]; NULL: at rest */
+    const double *mass;           /**< [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
+    double mass_all;              /**< [kg]; 0 means 1 */
+    const uint8_t *pinned;        /**< [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
+    const spring_link *link;      /**< [links]; best in the order of their particles, see docs/scenes.md */
+    double gravity[3];            /**< [m/s^2]; elements beyond the axes are ignored */
+    double drag;                  /**< [N s/m] >= 0, on every particle */
+    spring_scene_force_fn *force; /**< NULL: none */
+    void *user;                   /**< handed to force */
 } spring_scene_def;
 
+/** A scene, in memory that the caller owns. */
 typedef struct spring_scene spring_scene;
 
 /**
@@ -129,6 +133,11 @@ SPRING_API spring_status spring_scene_bytes(const spring_scene_def *def, size_t 
  */
 SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def,
                                            spring_scene **scene);
+
+/** @} */
+
+/** @defgroup scene_steps Steps, and what to ask
+ * @{ */
 
 /**
  * Advance a scene by n steps.
@@ -193,8 +202,11 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 /** [s] since init; NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
 
+/** The energies of a scene. */
 typedef struct spring_scene_energies {
-    double kinetic, elastic, gravity; /* [J]; of pinned particles only what their links hold */
+    double kinetic; /**< [J] of particles that are not pinned */
+    double elastic; /**< [J] of all links */
+    double gravity; /**< [J] of particles that are not pinned; 0 at the origin */
 } spring_scene_energies;
 
 /** Energies of the links and of the particles that are not pinned; gravity is 0 at the origin. NaN for NULL. */
@@ -204,7 +216,16 @@ SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
     May evaluate the forces. False for bad input. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
-typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantity;
+/** @} */
+
+/** @defgroup scene_state State and changes
+ * @{ */
+
+/** What spring_scene_get() and spring_scene_set() copy. */
+typedef enum spring_quantity {
+    SPRING_POSITION, /**< [m] */
+    SPRING_VELOCITY  /**< [m/s] */
+} spring_quantity;
 
 /**
  * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
@@ -215,6 +236,7 @@ typedef enum spring_quantity { SPRING_POSITION, SPRING_VELOCITY } spring_quantit
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
  * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number to be set that is not finite;
  *         SPRING_ERANGE: there are not so many particles
+ * @{
  */
 SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out, size_t stride,
                                           size_t first, size_t count);
@@ -222,6 +244,7 @@ SPRING_API spring_status spring_scene_getf(const spring_scene *s, spring_quantit
                                            size_t first, size_t count);
 SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double *in, size_t stride,
                                           size_t first, size_t count);
+/** @} */
 
 /** Change gravity [m/s^2]; elements beyond the axes are ignored. SPRING_EINVAL for NULL or numbers that are not
    finite. */
@@ -287,10 +310,15 @@ SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, co
     stiffness. NaN for bad input. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
-/* ------------------------------------------------------------------------------------------------- the float twin */
+/** @} */
 
-/* spring_scene_def, but for the callback. */
+/** @defgroup scenef The float twin
+ * @{ */
+
+/** spring_scene_def, but for the callback. */
 typedef struct spring_scenef_def {
+    /** As in spring_scene_def.
+     * @{ */
     uint32_t axes;
     uint32_t flags;
     uint32_t methods;
@@ -306,11 +334,16 @@ typedef struct spring_scenef_def {
     double drag;
     spring_scenef_force_fn *force;
     void *user;
+    /** @} */
 } spring_scenef_def;
 
+/** A scene in float. */
 typedef struct spring_scenef spring_scenef;
+/** Its energies, in double. */
 typedef spring_scene_energies spring_scenef_energies;
 
+/** As spring_scene_..., for a scene in float.
+ * @{ */
 SPRING_API spring_status spring_scenef_check(const spring_scenef_def *def, const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_t *bytes);
 SPRING_API spring_status spring_scenef_init(void *memory, size_t bytes, const spring_scenef_def *def,
@@ -335,34 +368,43 @@ SPRING_API spring_status spring_scenef_set_pinned(spring_scenef *s, size_t first
 SPRING_API spring_status spring_scenef_set_mass(spring_scenef *s, size_t first, size_t count, const double *mass);
 SPRING_API spring_status spring_scenef_drive(spring_scenef *s, size_t particle, const double *target, double duration);
 SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
+/** @} */
 
-/* ------------------------------------------------------------------------------------ ropes, sheets and blocks */
+/** @} */
 
-/* links of a grid */
-#define SPRING_GRID_STRUCTURAL UINT32_C(1) /* to the next particle along each edge */
-#define SPRING_GRID_SHEAR      UINT32_C(2) /* across the faces and through the middle of each cell */
-#define SPRING_GRID_BEND       UINT32_C(4) /* to the particle after the next */
+/** @defgroup grids Ropes, sheets and blocks
+ * @{ */
 
-/* faces whose particles are pinned: first or last along x, y, z; of a sheet first and last along z are all of it */
+/** @name The links of a grid
+ * @{ */
+#define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< to the next particle along each edge */
+#define SPRING_GRID_SHEAR      UINT32_C(2) /**< across the faces and through the middle of each cell */
+#define SPRING_GRID_BEND       UINT32_C(4) /**< to the particle after the next */
+/** @} */
+
+/** The faces of a grid whose particles are pinned: first or last along x, y, z; of a sheet first and last along z are all of
+ * it.
+ * @{ */
 #define SPRING_GRID_FIRST_X UINT32_C(1)
 #define SPRING_GRID_LAST_X  UINT32_C(2)
 #define SPRING_GRID_FIRST_Y UINT32_C(4)
 #define SPRING_GRID_LAST_Y  UINT32_C(8)
 #define SPRING_GRID_FIRST_Z UINT32_C(16)
 #define SPRING_GRID_LAST_Z  UINT32_C(32)
+/** @} */
 
-/* Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly.
+/** Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly.
    Particle (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
 typedef struct spring_grid {
-    uint32_t count[3]; /* particles along x, y, z; 0 means 1 */
-    uint32_t axes;     /* of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
-    bool height;       /* a height field: axes = 1, across the grid; positions and rest lengths are 0 */
-    double spacing;    /* [m] > 0 from one particle to the next, of a height field too */
-    double stretch;    /* length over rest length of every link > 0; 0 means 1; above 1 is tension */
-    uint32_t families; /* SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
-    double stiffness;  /* [N/m] of every link */
-    double damping;    /* [N s/m] */
-    uint32_t pinned;   /* SPRING_GRID_FIRST_X | ... */
+    uint32_t count[3]; /**< particles along x, y, z; 0 means 1 */
+    uint32_t axes;     /**< of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
+    bool height;       /**< a height field: axes = 1, across the grid; positions and rest lengths are 0 */
+    double spacing;    /**< [m] > 0 from one particle to the next, of a height field too */
+    double stretch;    /**< length over rest length of every link > 0; 0 means 1; above 1 is tension */
+    uint32_t families; /**< SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
+    double stiffness;  /**< [N/m] of every link */
+    double damping;    /**< [N s/m] */
+    uint32_t pinned;   /**< SPRING_GRID_FIRST_X | ... */
 } spring_grid;
 
 /**
@@ -409,6 +451,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  */
 SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, spring_link *link, uint32_t *order,
                                                uint32_t *link_order, uint32_t *work);
+
+/** @} */
 
 #ifdef __cplusplus
 }

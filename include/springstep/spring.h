@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
+/** @file
  * springstep: one spring through time.
  *
  *     mass x'' = load - stiffness x - damping x'
@@ -32,56 +32,64 @@
 extern "C" {
 #endif
 
-/* What moves. Two numbers: copy it, send it, roll it back. */
+/** @defgroup values State, parameters, statuses
+ * @{ */
+
+/** What moves. Two numbers: copy it, send it, roll it back. */
 typedef struct spring_state {
-    double x; /* [m]   displacement from the unloaded rest position; to follow a goal, load = stiffness * goal */
-    double v; /* [m/s] velocity, at the same time as x */
+    double x; /**< [m]   displacement from the unloaded rest position; to follow a goal, load = stiffness * goal */
+    double v; /**< [m/s] velocity, at the same time as x */
 } spring_state;
 
-/* What stays. Zero-initialise what is not modelled. Many states may share one. A load that changes with time: set it
+/** What stays. Zero-initialise what is not modelled. Many states may share one. A load that changes with time: set it
    before each step to its value at t + dt/2 for second order; its value at t gives first order. No method gives more
    than second order from a load that is sampled once a step. */
 typedef struct spring_params {
-    double mass;      /* [kg]    > 0 */
-    double stiffness; /* [N/m]   >= 0; 0 is a free particle */
-    double damping;   /* [N s/m] >= 0; critical at 2 sqrt(mass stiffness) */
-    double load;      /* [N]     a force held constant over the step */
+    double mass;      /**< [kg]    > 0 */
+    double stiffness; /**< [N/m]   >= 0; 0 is a free particle */
+    double damping;   /**< [N s/m] >= 0; critical at 2 sqrt(mass stiffness) */
+    double load;      /**< [N]     a force held constant over the step */
 } spring_params;
 
-/* Values are only ever appended; tables show methods in the order of spring_method_at(). */
+/** Values are only ever appended; tables show methods in the order of spring_method_at(). */
 typedef enum spring_method {
-    SPRING_EULER,            /* order 1; for comparison: an undamped spring gains energy at every step size */
-    SPRING_LEAPFROG,         /* order 2; one force a step, bounded energy error: the default for games and long runs */
-    SPRING_RK4,              /* order 4; the smallest error for short runs; slowly loses energy */
-    SPRING_EXACT,            /* the exact solution; for one linear spring no stepper beats it */
-    SPRING_SYMPLECTIC_EULER, /* order 1, bounded energy error: what many game engines run; leapfrog costs the same */
-    SPRING_RKN8              /* order 8; for scenes without damped links: many digits of a smooth motion */
+    SPRING_EULER,    /**< order 1; for comparison: an undamped spring gains energy at every step size */
+    SPRING_LEAPFROG, /**< order 2; one force a step, bounded energy error: the default for games and long runs */
+    SPRING_RK4,      /**< order 4; the smallest error for short runs; slowly loses energy */
+    SPRING_EXACT,    /**< the exact solution; for one linear spring no stepper beats it */
+    SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error: what many game engines run; leapfrog costs the same */
+    SPRING_RKN8              /**< order 8; for scenes without damped links: many digits of a smooth motion */
 } spring_method;
 
-enum { SPRING_METHOD_COUNT = 6 }; /* of its own, so that a switch over methods needs no case for it */
+/** How many methods there are; of its own, so that a switch over methods needs no case for it. */
+enum { SPRING_METHOD_COUNT = 6 /**< methods */ };
 
-/* Steps after which a state that is not finite any more is noticed, at the latest. */
-enum { SPRING_CHECK_INTERVAL = 4096 };
+/** Steps after which a state that is not finite any more is noticed, at the latest. */
+enum { SPRING_CHECK_INTERVAL = 4096 /**< steps */ };
 
+/** What a function says of a call. */
 typedef enum spring_status {
-    SPRING_OK,           /* done */
-    SPRING_EINVAL,       /* bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
+    SPRING_OK,         /**< done */
+    SPRING_EINVAL,     /**< bad input: NULL, non-finite, mass <= 0, negative stiffness or damping, unknown method, or a
                            quotient stiffness/mass, damping/mass, load/mass that is not finite */
-    SPRING_ENONFINITE,   /* the state would have become infinite or NaN: unstable step, or numbers too large */
-    SPRING_ENOMEM,       /* the memory given is too small */
-    SPRING_EALIGN,       /* the memory given is not aligned */
-    SPRING_ERANGE,       /* an index or a count is out of range */
-    SPRING_EUNSUPPORTED, /* not offered for this kind of system */
-    SPRING_EDISABLED,    /* the definition of the scene did not ask for this */
+    SPRING_ENONFINITE, /**< the state would have become infinite or NaN: unstable step, or numbers too large */
+    SPRING_ENOMEM,     /**< the memory given is too small */
+    SPRING_EALIGN,     /**< the memory given is not aligned */
+    SPRING_ERANGE,     /**< an index or a count is out of range */
+    SPRING_EUNSUPPORTED, /**< not offered for this kind of system */
+    SPRING_EDISABLED,    /**< the definition of the scene did not ask for this */
     /* of spring_self_test(): */
-    SPRING_EROUNDING, /* rounding is not to nearest */
-    SPRING_EFLUSHED,  /* denormal numbers count as 0 */
-    SPRING_EFUSED,    /* a product and a sum are rounded once, not twice */
-    SPRING_EBITS      /* the bits of a short run are not those they should be */
+    SPRING_EROUNDING, /**< rounding is not to nearest */
+    SPRING_EFLUSHED,  /**< denormal numbers count as 0 */
+    SPRING_EFUSED,    /**< a product and a sum are rounded once, not twice */
+    SPRING_EBITS      /**< the bits of a short run are not those they should be */
 } spring_status;
 
-/* ------------------------------------------------------------------------------------------------ the kernels */
-/* One step, unchecked, for the inner loop. Check the parameters once, or use spring_advance(). */
+/** @} */
+
+/** @defgroup kernels The kernels
+ * One step, unchecked, for the inner loop. Check the parameters once, or use spring_advance().
+ * @{ */
 
 /**
  * Advance one spring by one step of explicit Euler.
@@ -172,7 +180,10 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  */
 SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, double dt);
 
-/* --------------------------------------------------------------------------------------------- the safe way in */
+/** @} */
+
+/** @defgroup safe The safe way in
+ * @{ */
 
 /**
  * Advance one spring by n steps, checked once.
@@ -193,7 +204,10 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
 SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt,
                                         uint64_t n);
 
-/* ------------------------------------------------------------------------------------------ questions to ask */
+/** @} */
+
+/** @defgroup questions Questions to ask
+ * @{ */
 
 /** Energy m v^2/2 + k x^2/2 - load x [J]. Conserved by the exact solution when damping is 0. Unchecked, like the
    kernels. */
@@ -296,20 +310,24 @@ SPRING_API bool spring_params_valid(const spring_params *p);
  */
 SPRING_API spring_status spring_self_test(void);
 
-/* ------------------------------------------------------------------------------------------------ the methods */
+/** @} */
 
-/* What programs need to know to offer methods without naming them. */
+/** @defgroup methods The methods
+ * @{ */
+
+/** What programs need to know to offer methods without naming them. */
 typedef struct spring_method_info {
-    const char *name;    /* as on a command line: "leapfrog" */
-    int order;           /* error C dt^order; 0: no error but rounding */
-    int forces_per_step; /* evaluations; of scenes without forces that depend on velocities */
-    bool symplectic;     /* without damping: bounded energy error over any time */
-    bool springs;        /* offered for one spring and batches */
-    bool scenes;         /* offered for scenes */
-    const char *label;   /* as in a text: "RK4" */
-    bool positions_only; /* not for scenes with damped links or with a callback that may use velocities */
+    const char *name;    /**< as on a command line: "leapfrog" */
+    int order;           /**< error C dt^order; 0: no error but rounding */
+    int forces_per_step; /**< evaluations; of scenes without forces that depend on velocities */
+    bool symplectic;     /**< without damping: bounded energy error over any time */
+    bool springs;        /**< offered for one spring and batches */
+    bool scenes;         /**< offered for scenes */
+    const char *label;   /**< as in a text: "RK4" */
+    bool positions_only; /**< not for scenes with damped links or with a callback that may use velocities */
 } spring_method_info;
 
+/** One step of a method, unchecked; see spring_method_kernel(). */
 typedef void spring_step_fn(spring_state *s, const spring_params *p, double dt);
 
 /** What there is to know of a method; NULL for any other value. */
@@ -330,6 +348,8 @@ SPRING_API const char *spring_status_string(spring_status s);
 
 /** The version of the library that is linked, as in SPRING_VERSION. */
 SPRING_API const char *spring_version(void);
+
+/** @} */
 
 #ifdef __cplusplus
 }

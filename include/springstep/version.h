@@ -1,14 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* The version of springstep, written here and nowhere else (meson.build, CMakeLists.txt and packages read it), and the
-   mark of a public function. */
+/** @file
+ * The version of springstep, written here and nowhere else (meson.build, CMakeLists.txt and packages read it), and the
+ * mark of a public function.
+ */
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
 
+/** What spring_version() says of the library that is linked. */
 #define SPRING_VERSION "0.1.0"
 
-/* Of the shared library: changes when programs that were compiled for the last release would not run any more. */
+/** Of the shared library: changes when programs that were compiled for the last release would not run any more. */
 #define SPRING_SOVERSION "0"
 
+/** @def SPRING_API
+ * The mark of a public function: exported from a shared library. */
 #if defined(_WIN32) && defined(SPRING_BUILD_DLL)
 #define SPRING_API __declspec(dllexport)
 #elif defined(_WIN32) && defined(SPRING_DLL) /* of a program that uses the DLL; without it calls take a detour */
