@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Is a site whole? Every link inside it leads somewhere, nothing is fetched from elsewhere, and every public name has its
+place.
+
+usage: check.py SITE DOXYGEN-XML EXPORTS
+"""
+
+import html.parser
+import pathlib
+import sys
+import urllib.parse
+import xml.etree.ElementTree
+
+
+class Page(html.parser.HTMLParser):
+    """The anchors of a page and what it links to: (address, does a browser fetch it by itself?)."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.anchors = set()
+        self.links = []
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.anchors.update(attributes[name] for name in ('id', 'name') if name in attributes)
+        for name in ('href', 'src'):
+            if attributes.get(name):
+                self.links.append((attributes[name], tag != 'a'))
+
+
+def public_names(doxygen):
+    """Yield (anchor, name) of all that Doxygen has found in the headers, but for enums without a name."""
+    for file in sorted(doxygen.glob('*.xml')):
+        for element in xml.etree.ElementTree.parse(file).iter():
+            if element.tag == 'memberdef' and (element.findtext('name') or '@').isidentifier():
+                yield element.get('id'), element.findtext('name')
+            elif element.tag == 'compounddef' and element.get('kind') == 'struct':
+                yield element.get('id'), element.findtext('compoundname')
+
+
+def faults(site, doxygen, exports):
+    """Yield a sentence for each thing that is wrong."""
+    pages = {path: Page(path) for path in sorted(site.rglob('*.html'))}
+    for path, page in pages.items():
+        for address, fetched in page.links:
+            parts = urllib.parse.urlsplit(address)
+            if parts.scheme in ('http', 'https', 'data', 'mailto') or parts.netloc:
+                if fetched and parts.scheme != 'data':
+                    yield f'{path}: fetches {address}'
+                continue
+            target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
+            if not target.is_file():
+                yield f'{path}: no file for {address}'
+            elif parts.fragment and target in pages and urllib.parse.unquote(parts.fragment) not in pages[target].anchors:
+                yield f'{path}: no anchor for {address}'
+    anchors = set().union(*(page.anchors for page in pages.values()))
+    names = list(public_names(doxygen))
+    yield from (f'{name} is in a header and in no page' for anchor, name in names if anchor not in anchors)
+    exported = exports.read_text().split()
+    yield from (f'{name} is exported and in no page' for name in exported if f'c.{name}' not in anchors)
+    if not pages or not names or not exported:
+        yield 'there is nothing to check'
+
+
+def main():
+    site, doxygen, exports = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    found = list(faults(site, doxygen, exports))
+    print('\n'.join(found), end='\n' if found else '')
+    return 1 if found else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""How Sphinx makes the site of these pages; tools/docs calls it."""
+
+import pathlib
+import re
+
+from docutils import nodes
+from sphinx import addnodes
+
+root = pathlib.Path(__file__).resolve().parent.parent
+
+project = 'springstep'
+release = re.search(r'SPRING_VERSION "(.*)"', (root / 'include/springstep/version.h').read_text())[1]
+copyright = 'the authors of springstep'
+html_title = f'springstep {release}'
+
+extensions = ['breathe', 'myst_parser']
+root_doc = 'index'
+myst_heading_anchors = 2  # the anchors that a code host makes, too
+nitpicky = True
+c_id_attributes = ['SPRING_API']
+nitpick_ignore = [('c:identifier', name) for name in ('size_t', 'uint8_t', 'uint32_t', 'uint64_t')]
+
+breathe_projects = {'springstep': str(root / 'build/docs-xml/xml')}
+breathe_default_project = 'springstep'
+breathe_domain_by_extension = {'h': 'c'}
+breathe_show_define_initializer = True
+
+html_theme = 'furo'
+html_static_path = ['style.css']
+html_css_files = ['style.css']
+html_copy_source = False
+html_show_sphinx = False
+html_theme_options = {
+    'top_of_page_button': None,
+    # Furo's own colours, which its style sheet in Debian 12 (2022.12.07+dfsg-1) has lost: pages stayed light in the dark.
+    'dark_css_variables': {
+        'color-problematic': '#ee5151',
+        'color-foreground-primary': '#ffffffcc',
+        'color-foreground-secondary': '#9ca0a5',
+        'color-foreground-muted': '#81868d',
+        'color-foreground-border': '#666666',
+        'color-background-primary': '#131416',
+        'color-background-secondary': '#1a1c1e',
+        'color-background-hover': '#1e2124',
+        'color-background-hover--transparent': '#1e212400',
+        'color-background-border': '#303335',
+        'color-background-item': '#444',
+        'color-brand-primary': '#2b8cee',
+        'color-brand-content': '#368ce2',
+        'color-highlighted-background': '#083563',
+        'color-highlight-on-target': '#333300',
+    },
+}
+
+
+def tidy(app, doctree):
+    """What Breathe cannot be told: structures before the functions that take them and without headings, no name where an enum has none."""
+    for node in list(doctree.findall(addnodes.desc)):
+        siblings = node.parent.children
+        if node['objtype'] == 'struct':
+            for needless in [c for c in node[1].children if 'include' in c.astext()[:8]] + list(node.findall(nodes.rubric)):
+                needless.parent.remove(needless)
+            others = (s for s in siblings if isinstance(s, (nodes.container, addnodes.index)))
+            first = siblings.index(next(others))
+            if first < siblings.index(node):
+                siblings.remove(node)
+                siblings.insert(first, node)
+        elif node['objtype'] == 'enum' and '[anonymous]' in node[0].astext():
+            text, constant = node[1][0], next(node[1].findall(addnodes.desc))
+            constant[1].children = [text]
+            siblings.pop(siblings.index(node) - 1)  # its line of the index
+            node.replace_self(constant)
+
+
+def setup(app):
+    app.connect('doctree-read', tidy)
