@@ -6,6 +6,7 @@ import re
 
 from docutils import nodes
 from sphinx import addnodes
+from sphinx.transforms import SphinxTransform
 
 root = pathlib.Path(__file__).resolve().parent.parent
 
@@ -54,24 +55,29 @@ html_theme_options = {
 }
 
 
-def tidy(app, doctree):
-    """What Breathe cannot be told: structures before the functions that take them and without headings, no name where an enum has none."""
-    for node in list(doctree.findall(addnodes.desc)):
-        siblings = node.parent.children
-        if node['objtype'] == 'struct':
-            for needless in [c for c in node[1].children if 'include' in c.astext()[:8]] + list(node.findall(nodes.rubric)):
-                needless.parent.remove(needless)
-            others = (s for s in siblings if isinstance(s, (nodes.container, addnodes.index)))
-            first = siblings.index(next(others))
-            if first < siblings.index(node):
-                siblings.remove(node)
-                siblings.insert(first, node)
-        elif node['objtype'] == 'enum' and '[anonymous]' in node[0].astext():
-            text, constant = node[1][0], next(node[1].findall(addnodes.desc))
-            constant[1].children = [text]
-            siblings.pop(siblings.index(node) - 1)  # its line of the index
-            node.replace_self(constant)
+class Tidy(SphinxTransform):
+    """What Breathe cannot be told: structures before the functions that take them and without headings, no name where an
+    enum has none."""
+
+    default_priority = 840  # before the index is made, at 850
+
+    def apply(self):
+        for node in list(self.document.findall(addnodes.desc)):
+            siblings = node.parent.children
+            if node['objtype'] == 'struct':
+                for needless in [c for c in node[1] if 'include' in c.astext()[:8]] + list(node.findall(nodes.rubric)):
+                    needless.parent.remove(needless)
+                others = (s for s in siblings if isinstance(s, (nodes.container, addnodes.index)))
+                first = siblings.index(next(others))
+                if first < siblings.index(node):
+                    siblings.remove(node)
+                    siblings.insert(first, node)
+            elif node['objtype'] == 'enum' and '[anonymous]' in node[0].astext():
+                text, constant = node[1][0], next(node[1].findall(addnodes.desc))
+                constant[1].children = [text]
+                siblings.pop(siblings.index(node) - 1)  # its line of the index
+                node.replace_self(constant)
 
 
 def setup(app):
-    app.connect('doctree-read', tidy)
+    app.add_transform(Tidy)

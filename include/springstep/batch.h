@@ -15,7 +15,7 @@
  *    accel[i]}, in every batch, at every index, with every instruction set. So a batch may be split by pointer, to use
  *    threads. A float spring does the same arithmetic in float; its bits do not depend on its index either.
  *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one
- *    element. docs/batches.md says what each feature costs.
+ *    element. docs/performance.md says what each feature costs.
  *  - Each call reads and writes the state once, however many steps it takes.
  *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor has is used; elsewhere what the compiler makes
  *    of 16-byte vectors, or of plain loops.

@@ -16,7 +16,7 @@
  *
  * What holds for every function here, beside what spring.h says:
  *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory;
- *    docs/scenes.md says what each feature takes in bytes and time.
+ *    docs/scenes.md says what each feature takes in bytes, docs/performance.md in time.
  *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
  *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another
  *    place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a

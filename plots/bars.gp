@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+# Bars with a name before and a number behind each: called by the figures of costs, which set
+#
+#     bars, titles[], colours[]   how many, from above; their names; their line types
+#     is(r), size(r)              is this line of the file that of the r-th bar? Exactly one is; how long it is
+#
+#     call plots."bars.gp" FILE LEFT-MARGIN
+
+set xrange [*:*]
+set yrange [*:*]
+do for [r = 1:bars] {
+    stats ARG1 using (is(r) ? 1 : 0) nooutput
+    if (STATS_sum != 1) {
+        exit error sprintf("%s: %d rows for the bar %d, \"%s\"", ARG1, STATS_sum, r, titles[r])
+    }
+}
+set border 1
+set lmargin at screen ARG2
+set rmargin at screen 0.89
+set grid noytics
+set xrange [0:*]
+set yrange [-bars - 0.6:-0.4]
+set ytics scale 0 ("" 0)
+do for [r = 1:bars] {
+    set ytics add (titles[r] -r)
+}
+unset key
+set style fill solid noborder
+length_of(r) = is(r) ? size(r) : NaN
+plot for [r = 1:bars] ARG1 using (length_of(r)):(-r):(0):(length_of(r)):(-r - 0.38):(-r + 0.38) \
+         with boxxyerror linetype colours[r], \
+     for [r = 1:bars] ARG1 using (length_of(r)):(-r):(sprintf("%.2g", size(r))) with labels left offset 0.3,0

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+# What a step of one spring costs in a batch of double precision, with each feature. Above: 1000 springs, 16 steps a call, in
+# the cache. Below: 10^7 springs, one step a call, from memory.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 1000
+call plots."need.gp" ARG3 "kernel precision count ns_per_spring_step"
+
+bars = 16
+array features[8] = ["_shared_omega2", "", "_shared_gamma", "_own_gamma", "_shared_accel", "_own_accel", \
+    "_own_gamma_accel", "_zero_gamma_accel"]
+array feature_titles[8] = ["one stiffness for all", "stiffness of each", "… one damping", "… own damping", "… one load", \
+    "… own load", "… own of both", "… arrays of zeros"]
+array titles[bars]
+array colours[bars]
+do for [r = 1:bars] {
+    titles[r] = r % 2 ? feature_titles[(r + 1)/2] : " "
+    colours[r] = types[2 - r % 2]
+}
+steps = 16
+springs = 1000
+is(r) = strcol("kernel") eq sprintf("%s_batch_%d%s", names[2 - r % 2], steps, features[(r + 1)/2]) \
+    && column("count") == springs && strcol("precision") eq "double"
+size(r) = column("ns_per_spring_step")
+set output ARG1
+set multiplot
+set tmargin at screen 0.94
+set bmargin at screen 0.58
+set label 1 labels[1] at screen 0.4,0.97 textcolor linetype types[1]
+set label 2 labels[2] at screen 0.65,0.97 textcolor linetype types[2]
+set xlabel "ns per spring and step, in cache"
+call plots."bars.gp" ARG3 0.4
+steps = 1
+springs = 1e7
+set tmargin at screen 0.475
+set bmargin at screen 0.115
+set xlabel "ns per spring and step, from memory"
+call plots."bars.gp" ARG3 0.4
