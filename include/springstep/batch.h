@@ -31,12 +31,9 @@
 extern "C" {
 #endif
 
-/** For spring_batch.shared: this array has one element, for all springs.
- * @{ */
-#define SPRING_SHARED_OMEGA2 UINT32_C(1)
-#define SPRING_SHARED_GAMMA  UINT32_C(2)
-#define SPRING_SHARED_ACCEL  UINT32_C(4)
-/** @} */
+#define SPRING_SHARED_OMEGA2 UINT32_C(1) /**< for spring_batch.shared: one omega2 for all springs */
+#define SPRING_SHARED_GAMMA  UINT32_C(2) /**< one gamma */
+#define SPRING_SHARED_ACCEL  UINT32_C(4) /**< one accel */
 
 /** A batch. Zero-initialise what is not modelled. x and v overlap nothing; the others may be the same array. */
 typedef struct spring_batch {
