@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How Sphinx makes the site of these pages; tools/docs calls it."""
 
+import os
 import pathlib
 import re
 
@@ -79,5 +80,14 @@ class Tidy(SphinxTransform):
                 node.replace_self(constant)
 
 
+def show_examples(app, name, source):
+    """The page of the examples is that of their folder, its links as seen from here."""
+    if name == 'examples':
+        text = (root / 'examples/README.md').read_text()
+        seen_from_here = lambda link: '](' + os.path.relpath(root / 'examples' / link[1], root / 'docs')
+        source[0] = re.sub(r'\]\(([^):#]+)(?=[)#])', seen_from_here, text)
+
+
 def setup(app):
     app.add_transform(Tidy)
+    app.connect('source-read', show_examples)
