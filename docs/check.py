@@ -31,10 +31,10 @@ class Page(html.parser.HTMLParser):
 
 
 def public_names(doxygen):
-    """Yield (anchor, name) of all that Doxygen has found in the headers, but for enums without a name."""
+    """Yield (anchor, name) of all that Doxygen has found in the headers."""
     for file in sorted(doxygen.glob('*.xml')):
         for element in xml.etree.ElementTree.parse(file).iter():
-            if element.tag in ('memberdef', 'enumvalue') and (element.findtext('name') or '@').isidentifier():
+            if element.tag in ('memberdef', 'enumvalue'):
                 yield element.get('id'), element.findtext('name')
             elif element.tag == 'compounddef' and element.get('kind') == 'struct':
                 yield element.get('id'), element.findtext('compoundname')

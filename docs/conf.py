@@ -34,7 +34,6 @@ html_css_files = ['style.css']
 html_copy_source = False
 html_show_sphinx = False
 html_theme_options = {
-    'top_of_page_button': None,
     # Furo's own colours, which its style sheet in Debian 12 (2022.12.07+dfsg-1) has lost: pages stayed light in the dark.
     'dark_css_variables': {
         'color-problematic': '#ee5151',
@@ -57,8 +56,7 @@ html_theme_options = {
 
 
 class Tidy(SphinxTransform):
-    """What Breathe cannot be told: structures before the functions that take them and without headings, no name where an
-    enum has none."""
+    """What Breathe cannot be told: structures before the functions that take them, and without headings."""
 
     default_priority = 840  # before the index is made, at 850
 
@@ -73,11 +71,6 @@ class Tidy(SphinxTransform):
                 if first < siblings.index(node):
                     siblings.remove(node)
                     siblings.insert(first, node)
-            elif node['objtype'] == 'enum' and '[anonymous]' in node[0].astext():
-                text, constant = node[1][0], next(node[1].findall(addnodes.desc))
-                constant[1].children = [text]
-                siblings.pop(siblings.index(node) - 1)  # its line of the index
-                node.replace_self(constant)
 
 
 def show_examples(app, name, source):

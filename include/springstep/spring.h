@@ -62,10 +62,10 @@ typedef enum spring_method {
 } spring_method;
 
 /** How many methods there are; of its own, so that a switch over methods needs no case for it. */
-enum { SPRING_METHOD_COUNT = 6 /**< methods */ };
+enum { SPRING_METHOD_COUNT = 6 };
 
 /** Steps after which a state that is not finite any more is noticed, at the latest. */
-enum { SPRING_CHECK_INTERVAL = 4096 /**< steps */ };
+enum { SPRING_CHECK_INTERVAL = 4096 };
 
 /** What a function says of a call. */
 typedef enum spring_status {
