@@ -1,0 +1,529 @@
+/* SPDX-License-Identifier: MIT */
+/* Pictures of worlds; see draw.h. */
+#include "draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "font.h"
+
+/* -------------------------------------------------------------------------------------------------------- vectors */
+
+static vec3 add(vec3 a, double scale, vec3 b)
+{
+    return (vec3){a.x + scale * b.x, a.y + scale * b.y, a.z + scale * b.z};
+}
+
+static vec3 from_to(vec3 a, vec3 b)
+{
+    return add(b, -1, a);
+}
+
+static double dot(vec3 a, vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static vec3 cross(vec3 a, vec3 b)
+{
+    return (vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static vec3 unit(vec3 a)
+{
+    const double length = sqrt(dot(a, a));
+    return length > 0 ? (vec3){a.x / length, a.y / length, a.z / length} : (vec3){0, 0, 1};
+}
+
+/* --------------------------------------------------------------------------------------------------------- camera */
+
+camera camera_for(world_kind kind, int width, int height)
+{
+    static const struct view {
+        vec3 eye, target;
+        double zoom; /* focal length over the height of the window */
+    } views[WORLD_KINDS] = {
+        {{1.3, -0.55, 3.0}, {0.52, -0.62, 0}, 1.35},
+        {{0, -1.05, 3.6}, {0, -1.05, 0}, 1.35},
+        {{2, 2.9, 7.2}, {2, -0.1, 2.25}, 1.25},
+    };
+    const struct view *v = &views[kind];
+    camera c = {.eye = v->eye, .forward = unit(from_to(v->eye, v->target)), .x = width / 2.0, .y = height / 2.0};
+    c.right = unit(cross(c.forward, (vec3){0, 1, 0}));
+    c.up = cross(c.right, c.forward);
+    c.focal = v->zoom * fmin(height, 0.75 * width);
+    return c;
+}
+
+spot camera_project(const camera *c, vec3 at)
+{
+    const vec3 d = from_to(c->eye, at);
+    const double depth = dot(d, c->forward), scale = c->focal / fmax(depth, 1e-3);
+    return (spot){c->x + scale * dot(d, c->right), c->y - scale * dot(d, c->up), depth};
+}
+
+vec3 camera_pick(const camera *c, double x, double y, double depth)
+{
+    const vec3 ahead = add(c->eye, depth, c->forward);
+    return add(add(ahead, depth * (x - c->x) / c->focal, c->right), depth * (c->y - y) / c->focal, c->up);
+}
+
+/* What is at (x, h, z) is seen at y where up.d = q forward.d, d = (x, h, z) - eye: linear in h. */
+vec3 camera_pick_height(const camera *c, double y, vec3 above)
+{
+    const double q = (c->y - y) / c->focal;
+    const vec3 d = from_to(c->eye, (vec3){above.x, 0, above.z});
+    const double h = (q * dot(d, c->forward) - dot(d, c->up)) / (c->up.y - q * c->forward.y);
+    return (vec3){above.x, fmax(-1, fmin(1, h)), above.z};
+}
+
+/* ------------------------------------------------------------------------------------------------------ triangles */
+
+bool painter_open(painter *p, SDL_Renderer *renderer)
+{
+    *p = (painter){.renderer = renderer};
+    SDL_Surface *letters =
+        SDL_CreateRGBSurfaceWithFormat(0, FONT_COUNT * FONT_WIDTH, FONT_HEIGHT, 32, SDL_PIXELFORMAT_RGBA32);
+    if (letters == NULL)
+        return false;
+    for (int i = 0; i < FONT_COUNT; i++)
+        for (int y = 0; y < FONT_HEIGHT; y++)
+            for (int x = 0; x < FONT_WIDTH; x++)
+                if (font_rows[i][y] >> (FONT_WIDTH - 1 - x) & 1) {
+                    const SDL_Rect pixel = {i * FONT_WIDTH + x, y, 1, 1};
+                    SDL_FillRect(letters, &pixel, SDL_MapRGBA(letters->format, 255, 255, 255, 255));
+                }
+    p->font = SDL_CreateTextureFromSurface(renderer, letters);
+    SDL_FreeSurface(letters);
+    if (p->font == NULL)
+        return false;
+    SDL_SetTextureBlendMode(p->font, SDL_BLENDMODE_BLEND);
+    SDL_SetRenderDrawBlendMode(renderer, SDL_BLENDMODE_BLEND);
+    return true;
+}
+
+void painter_close(painter *p)
+{
+    SDL_DestroyTexture(p->font);
+    free(p->vertex);
+    *p = (painter){0};
+}
+
+/* Red, green, blue from 0 to 1, lit by so much. */
+static SDL_Color shade(vec3 color, double light, double shine)
+{
+    const double rgb[3] = {color.x * light + shine, color.y * light + shine, color.z * light + shine};
+    Uint8 byte[3];
+    for (int i = 0; i < 3; i++)
+        byte[i] = (Uint8)(255 * fmax(0, fmin(1, rgb[i])));
+    return (SDL_Color){byte[0], byte[1], byte[2], 255};
+}
+
+static bool make_room(painter *p)
+{
+    const size_t room = p->room > 0 ? 2 * p->room : 4096;
+    SDL_Vertex *more = realloc(p->vertex, room * sizeof *more);
+    if (more == NULL)
+        return false;
+    p->vertex = more;
+    p->room = room;
+    return true;
+}
+
+/* Without memory there is a triangle less, and paint_world() says so. */
+static void corner(painter *p, double x, double y, SDL_Color color)
+{
+    if (p->vertices == p->room && !make_room(p))
+        p->incomplete = true;
+    else
+        p->vertex[p->vertices++] = (SDL_Vertex){{(float)x, (float)y}, color, {0, 0}};
+}
+
+/* SDL counts pixels in int, and a world that explodes goes far. */
+static bool near_the_window(const camera *c, const spot *s)
+{
+    return s->depth > 0.05 && fabs(s->x - c->x) < 8 * c->x && fabs(s->y - c->y) < 8 * c->y;
+}
+
+/* Two triangles. */
+static void quad(painter *p, const double x[4], const double y[4], const SDL_Color color[4])
+{
+    static const int corners[6] = {0, 1, 2, 2, 1, 3};
+    for (int i = 0; i < 6; i++)
+        corner(p, x[corners[i]], y[corners[i]], color[corners[i]]);
+}
+
+static void background(painter *p, const camera *c)
+{
+    const SDL_Color above = {38, 44, 58, 255}, below = {92, 98, 110, 255}, color[4] = {above, above, below, below};
+    const double x[4] = {0, 2 * c->x, 0, 2 * c->x}, y[4] = {0, 0, 2 * c->y, 2 * c->y};
+    quad(p, x, y, color);
+}
+
+/* ---------------------------------------------------------------------------------------------- surfaces: cloth, water */
+
+typedef struct surface {
+    const world *w;
+    const camera *c;
+    const vec3 *at; /* [particles] */
+    spot *seen;     /* [particles] */
+    vec3 *normal;   /* [particles] towards the viewer where row and column run as at the start */
+    SDL_Color *lit; /* [particles] of water; cloth has two sides */
+} surface;
+
+typedef struct triangle {
+    uint32_t a, b, c;
+    double depth;
+} triangle;
+
+static int farthest_first(const void *left, const void *right)
+{
+    const double a = ((const triangle *)left)->depth, b = ((const triangle *)right)->depth;
+    return (a < b) - (a > b);
+}
+
+/* Both triangles of each cell, but those of which an edge is cut. */
+static size_t find_triangles(const surface *s, triangle *list)
+{
+    const world *w = s->w;
+    size_t n = 0;
+    for (uint32_t row = 0; row + 1 < w->rows; row++)
+        for (uint32_t column = 0; column + 1 < w->columns; column++) {
+            const uint32_t i = column + w->columns * row, below = i + w->columns;
+            if (w->torn[i] & TORN_DOWN_RIGHT)
+                continue;
+            if (!(w->torn[i] & TORN_RIGHT) && !(w->torn[i + 1] & TORN_DOWN))
+                list[n++] = (triangle){i, below + 1, i + 1, 0};
+            if (!(w->torn[i] & TORN_DOWN) && !(w->torn[below] & TORN_RIGHT))
+                list[n++] = (triangle){i, below, below + 1, 0};
+        }
+    return n;
+}
+
+/* Of a corner: the sum of those of its triangles, each as long as its triangle is large. */
+static void find_normals(surface *s, const triangle *list, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const triangle t = list[i];
+        const vec3 up = cross(from_to(s->at[t.a], s->at[t.b]), from_to(s->at[t.a], s->at[t.c]));
+        s->normal[t.a] = add(s->normal[t.a], 1, up);
+        s->normal[t.b] = add(s->normal[t.b], 1, up);
+        s->normal[t.c] = add(s->normal[t.c], 1, up);
+    }
+    for (size_t i = 0; i < s->w->particles; i++)
+        s->normal[i] = unit(s->normal[i]);
+}
+
+/* Stripes woven in; the other side is paler. */
+static SDL_Color cloth_color(const surface *s, uint32_t i, uint32_t cell, bool front)
+{
+    static const vec3 red = {0.78, 0.16, 0.15}, cream = {0.93, 0.85, 0.70}, sun = {-0.35, 0.50, 0.79};
+    const uint32_t column = cell % s->w->columns;
+    vec3 color = column % 6 < 4 ? red : cream;
+    if (!front)
+        color = add((vec3){0.22, 0.20, 0.20}, 0.55, color);
+    const vec3 normal = front ? s->normal[i] : add((vec3){0}, -1, s->normal[i]);
+    const vec3 half = unit(add(unit(from_to(s->at[i], s->c->eye)), 1, sun));
+    const double facing = fmax(0, dot(normal, sun)), shine = 0.07 * pow(fmax(0, dot(normal, half)), 24);
+    return shade(color, 0.34 + 0.78 * facing, shine);
+}
+
+/* Deep water is dark, what is seen at a flat angle mirrors the sky (Schlick's approximation), and the sun glitters. */
+static SDL_Color water_color(const surface *s, uint32_t i)
+{
+    static const vec3 deep = {0.01, 0.16, 0.26}, shallow = {0.10, 0.55, 0.58};
+    static const vec3 horizon = {0.95, 0.95, 0.90}, zenith = {0.30, 0.48, 0.72}, sun = {-0.30, 0.37, -0.88};
+    const vec3 towards = unit(from_to(s->at[i], s->c->eye)), normal = s->normal[i];
+    const double along = dot(normal, towards), reflectance = 0.06 + 0.94 * pow(1 - fmax(0, along), 5);
+    const vec3 mirrored = unit(add(add((vec3){0}, 2 * along, normal), -1, towards));
+    const vec3 sky = add(horizon, pow(fmax(0, mirrored.y), 0.6), from_to(horizon, zenith));
+    const double high = fmax(0, fmin(1, 0.3 + 2.5 * s->at[i].y + 0.9 * normal.z));
+    const vec3 body = add(deep, high, from_to(deep, shallow)), color = add(body, 1.6 * reflectance, from_to(body, sky));
+    return shade(color, 1, 0.8 * pow(fmax(0, dot(mirrored, sun)), 120));
+}
+
+static void paint_triangle(painter *p, const surface *s, const triangle *t)
+{
+    const uint32_t i[3] = {t->a, t->b, t->c};
+    const spot *a = &s->seen[i[0]], *b = &s->seen[i[1]], *c = &s->seen[i[2]];
+    if (!near_the_window(s->c, a) || !near_the_window(s->c, b) || !near_the_window(s->c, c))
+        return;
+    const bool front = (b->x - a->x) * (c->y - a->y) < (c->x - a->x) * (b->y - a->y);
+    for (int k = 0; k < 3; k++) {
+        const SDL_Color color = s->w->kind == WORLD_WATER ? s->lit[i[k]] : cloth_color(s, i[k], t->a, front);
+        corner(p, s->seen[i[k]].x, s->seen[i[k]].y, color);
+    }
+}
+
+static void paint_surface(painter *p, const camera *c, const world *w, const vec3 *at)
+{
+    surface s = {.w = w, .c = c, .at = at};
+    triangle *list = calloc(2 * w->particles, sizeof *list);
+    s.seen = calloc(w->particles, sizeof *s.seen);
+    s.normal = calloc(w->particles, sizeof *s.normal);
+    s.lit = calloc(w->particles, sizeof *s.lit);
+    if (list == NULL || s.seen == NULL || s.normal == NULL || s.lit == NULL)
+        p->incomplete = true;
+    else {
+        const size_t n = find_triangles(&s, list);
+        find_normals(&s, list, n);
+        for (size_t i = 0; i < w->particles; i++)
+            s.seen[i] = camera_project(c, at[i]);
+        for (uint32_t i = 0; i < w->particles && w->kind == WORLD_WATER; i++)
+            s.lit[i] = water_color(&s, i);
+        for (size_t i = 0; i < n; i++)
+            list[i].depth = s.seen[list[i].a].depth + s.seen[list[i].b].depth + s.seen[list[i].c].depth;
+        qsort(list, n, sizeof *list, farthest_first);
+        for (size_t i = 0; i < n; i++)
+            paint_triangle(p, &s, &list[i]);
+    }
+    free(list);
+    free(s.seen);
+    free(s.normal);
+    free(s.lit);
+}
+
+/* A flat piece between four places. */
+static void paint_slab(painter *p, const camera *c, const vec3 place[4], vec3 color, double light_from, double light_to)
+{
+    double x[4], y[4];
+    for (int i = 0; i < 4; i++) {
+        const spot s = camera_project(c, place[i]);
+        x[i] = s.x;
+        y[i] = s.y;
+    }
+    const SDL_Color from = shade(color, light_from, 0), to = shade(color, light_to, 0),
+                    colors[4] = {from, from, to, to};
+    quad(p, x, y, colors);
+}
+
+/* The rim of the pool: the far side and the flanks behind the water, the near side before it. */
+static void paint_rim(painter *p, const camera *c, bool near_side)
+{
+    static const vec3 stone = {0.74, 0.70, 0.64};
+    const double in = 0, out = 4, wide = 0.28, low = -0.35, top = 0.06;
+    if (near_side) {
+        const vec3 lid[4] = {
+            {in - wide, top, out}, {out + wide, top, out}, {in - wide, top, out + wide}, {out + wide, top, out + wide}};
+        const vec3 front[4] = {{in - wide, top, out + wide},
+                               {out + wide, top, out + wide},
+                               {in - wide, low, out + wide},
+                               {out + wide, low, out + wide}};
+        paint_slab(p, c, lid, stone, 0.95, 1.0);
+        paint_slab(p, c, front, stone, 0.62, 0.4);
+        return;
+    }
+    const vec3 back[4] = {{in, top, in}, {out, top, in}, {in, low, in}, {out, low, in}};
+    const vec3 flank[2][4] = {{{in, top, in}, {in, top, out}, {in, low, in}, {in, low, out}},
+                              {{out, top, in}, {out, top, out}, {out, low, in}, {out, low, out}}};
+    const vec3 far[4] = {
+        {in - wide, top, in - wide}, {out + wide, top, in - wide}, {in - wide, top, in}, {out + wide, top, in}};
+    const vec3 left[4] = {{in - wide, top, in - wide}, {in, top, in - wide}, {in - wide, top, out}, {in, top, out}};
+    const vec3 right[4] = {
+        {out, top, in - wide}, {out + wide, top, in - wide}, {out, top, out}, {out + wide, top, out}};
+    paint_slab(p, c, back, stone, 0.5, 0.4);
+    paint_slab(p, c, flank[0], stone, 0.42, 0.35);
+    paint_slab(p, c, flank[1], stone, 0.6, 0.45);
+    paint_slab(p, c, far, stone, 0.78, 0.82);
+    paint_slab(p, c, left, stone, 0.80, 0.95);
+    paint_slab(p, c, right, stone, 0.80, 0.95);
+}
+
+/* The rod that the curtain's hooks run on. */
+static void paint_rod(painter *p, const camera *c, const world *w)
+{
+    static const vec3 brass = {0.80, 0.62, 0.30};
+    const double from = -0.12, to = w->home[w->columns - 1].x + 0.12, thick = 0.012, high = 0.035;
+    const vec3 upper[4] = {{from, high + thick, 0}, {to, high + thick, 0}, {from, high, 0}, {to, high, 0}};
+    const vec3 lower[4] = {{from, high, 0}, {to, high, 0}, {from, high - thick, 0}, {to, high - thick, 0}};
+    paint_slab(p, c, upper, brass, 0.7, 1.25);
+    paint_slab(p, c, lower, brass, 1.25, 0.45);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- rope */
+
+/* On a smooth curve through b and c, a part t of the way from b to c (Catmull and Rom). */
+static vec3 on_curve(const vec3 q[4], double t)
+{
+    const double u = t * t, v = t * u;
+    const double weight[4] = {-0.5 * t + u - 0.5 * v, 1 - 2.5 * u + 1.5 * v, 0.5 * t + 2 * u - 1.5 * v,
+                              -0.5 * u + 0.5 * v};
+    vec3 sum = {0};
+    for (int i = 0; i < 4; i++)
+        sum = add(sum, weight[i], q[i]);
+    return sum;
+}
+
+enum {
+    ROPE_PIECES = 5,
+    ROPE_STRIPS = 6
+}; /* of a link along, and across; the outermost strips fade into what is behind */
+
+typedef struct rib {
+    double x, y, across_x, across_y; /* [pixels] on the screen; of the whole thickness */
+} rib;
+
+/* Light on a cylinder, and strands that wind around it. side from -1 to 1, along in thicknesses. */
+static SDL_Color rope_color(double side, double along)
+{
+    static const vec3 hemp = {0.80, 0.66, 0.43};
+    const double round = sqrt(fmax(0, 1 - side * side)), lit = 0.35 + 0.55 * round - 0.25 * side;
+    const double strand = 0.5 + 0.5 * sin(6.28318530717958648 * (0.45 * along + 0.4 * side));
+    return shade(hemp, lit * (0.72 + 0.4 * strand), 0);
+}
+
+static void paint_ribs(painter *p, const rib *a, const rib *b, double along_a, double along_b)
+{
+    for (int k = 0; k < ROPE_STRIPS; k++) {
+        double x[4], y[4];
+        SDL_Color color[4];
+        for (int i = 0; i < 4; i++) {
+            const rib *r = i < 2 ? a : b;
+            const int edge = k + i % 2;
+            const double side = 2.0 * edge / ROPE_STRIPS - 1;
+            x[i] = r->x + 0.5 * side * r->across_x;
+            y[i] = r->y + 0.5 * side * r->across_y;
+            color[i] = rope_color(0.9 * side, i < 2 ? along_a : along_b);
+            if (edge == 0 || edge == ROPE_STRIPS)
+                color[i].a = 0;
+        }
+        quad(p, x, y, color);
+    }
+}
+
+/* The link from particle i to the next. */
+static void paint_link(painter *p, const camera *c, const world *w, const vec3 *at, uint32_t i, double thick)
+{
+    const bool before = i > 0 && !(w->torn[i - 1] & TORN_RIGHT);
+    const bool after = i + 2 < w->particles && !(w->torn[i + 1] & TORN_RIGHT);
+    const vec3 q[4] = {before ? at[i - 1] : at[i], at[i], at[i + 1], after ? at[i + 2] : at[i + 1]};
+    rib last = {0};
+    for (int k = 0; k <= ROPE_PIECES; k++) {
+        const double t = (double)k / ROPE_PIECES, step = 0.01;
+        const spot here = camera_project(c, on_curve(q, t));
+        const spot a = camera_project(c, on_curve(q, t - step)), b = camera_project(c, on_curve(q, t + step));
+        if (!near_the_window(c, &here))
+            return;
+        const double x = b.x - a.x, y = b.y - a.y, length = fmax(hypot(x, y), 1e-9),
+                     wide = thick * c->focal / here.depth;
+        const rib now = {here.x, here.y, -y / length * wide, x / length * wide};
+        const double along = (i + t) * w->spacing / thick;
+        if (k > 0)
+            paint_ribs(p, &last, &now, along - w->spacing / thick / ROPE_PIECES, along);
+        last = now;
+    }
+}
+
+/* A disc whose middle is lit from the upper left, as a ball is. */
+static void paint_ball(painter *p, const camera *c, vec3 at, double radius, vec3 color)
+{
+    enum { SECTORS = 40, RINGS = 8 };
+    const spot s = camera_project(c, at);
+    if (!near_the_window(c, &s))
+        return;
+    const double pixels = radius * c->focal / s.depth;
+    for (int ring = 0; ring < RINGS; ring++)
+        for (int sector = 0; sector < SECTORS; sector++) {
+            double x[4], y[4];
+            SDL_Color colors[4];
+            for (int i = 0; i < 4; i++) {
+                const double r = (double)(ring + i / 2) / RINGS,
+                             angle = 6.28318530717958648 * (sector + i % 2) / SECTORS;
+                const vec3 normal = {r * cos(angle), -r * sin(angle), sqrt(fmax(0, 1 - r * r))};
+                const double facing = fmax(0, dot(normal, (vec3){-0.45, 0.6, 0.66}));
+                x[i] = s.x + pixels * normal.x;
+                y[i] = s.y - pixels * normal.y;
+                colors[i] = shade(color, 0.25 + 0.8 * facing, 0.6 * pow(facing, 40));
+            }
+            quad(p, x, y, colors);
+        }
+}
+
+static void paint_rope(painter *p, const camera *c, const world *w, const vec3 *at)
+{
+    static const vec3 wood = {0.45, 0.31, 0.20}, iron = {0.35, 0.37, 0.42}, steel = {0.42, 0.50, 0.62};
+    const double thick = 0.045;
+    const vec3 beam[4] = {{-0.38, 0.14, 0}, {0.38, 0.14, 0}, {-0.38, -0.03, 0}, {0.38, -0.03, 0}};
+    paint_slab(p, c, beam, wood, 1.1, 0.75);
+    for (uint32_t i = 0; i + 1 < w->particles; i++)
+        if (!(w->torn[i] & TORN_RIGHT))
+            paint_link(p, c, w, at, i, thick);
+    paint_ball(p, c, at[0], 0.04, iron);
+    paint_ball(p, c, at[w->particles - 1], 0.10, steel);
+}
+
+/* ------------------------------------------------------------------------------------------------------- all of it */
+
+bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at)
+{
+    p->incomplete = false;
+    background(p, c);
+    switch (w->kind) {
+    case WORLD_ROPE:
+        paint_rope(p, c, w, at);
+        break;
+    case WORLD_WATER:
+        paint_rim(p, c, false);
+        paint_surface(p, c, w, at);
+        paint_rim(p, c, true);
+        break;
+    default:
+        paint_rod(p, c, w);
+        paint_surface(p, c, w, at);
+    }
+    SDL_RenderGeometry(p->renderer, NULL, p->vertex, (int)p->vertices, NULL, 0);
+    p->vertices = 0;
+    return !p->incomplete;
+}
+
+void paint_hand(painter *p, spot held, double mouse_x, double mouse_y)
+{
+    enum { SIDES = 24 };
+    SDL_FPoint ring[SIDES + 1];
+    SDL_SetRenderDrawColor(p->renderer, 255, 214, 64, 255);
+    for (double radius = 8; radius < 10; radius += 0.5) {
+        for (int i = 0; i <= SIDES; i++) {
+            const double angle = 6.28318530717958648 * i / SIDES;
+            ring[i] = (SDL_FPoint){(float)(held.x + radius * cos(angle)), (float)(held.y + radius * sin(angle))};
+        }
+        SDL_RenderDrawLinesF(p->renderer, ring, SIDES + 1);
+    }
+    SDL_RenderDrawLineF(p->renderer, (float)held.x, (float)held.y, (float)mouse_x, (float)mouse_y);
+}
+
+int paint_text(painter *p, int x, int y, SDL_Color color, const char *text)
+{
+    SDL_Rect to = {x, y, FONT_WIDTH, FONT_HEIGHT};
+    SDL_SetTextureColorMod(p->font, color.r, color.g, color.b);
+    for (; *text != '\0'; text++, to.x += FONT_WIDTH) {
+        const int letter = *text - FONT_FIRST;
+        const SDL_Rect from = {letter * FONT_WIDTH, 0, FONT_WIDTH, FONT_HEIGHT};
+        if (letter > 0 && letter < FONT_COUNT)
+            SDL_RenderCopy(p->renderer, p->font, &from, &to);
+    }
+    return to.x - x;
+}
+
+void paint_box(painter *p, SDL_Rect box, SDL_Color color)
+{
+    SDL_SetRenderDrawColor(p->renderer, color.r, color.g, color.b, color.a);
+    SDL_RenderFillRect(p->renderer, &box);
+}
+
+void paint_curve(painter *p, SDL_Rect box, SDL_Color color, const double *value, int count)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        least = fmin(least, value[i]);
+        most = fmax(most, value[i]);
+    }
+    const double scale = most > least ? box.h / (most - least) : 0;
+    SDL_SetRenderDrawColor(p->renderer, color.r, color.g, color.b, color.a);
+    for (int i = 1; i < count; i++) {
+        if (isnan(value[i - 1]))
+            continue;
+        const double x = box.x + (double)box.w * i / count, left = x - (double)box.w / count, foot = box.y + box.h;
+        SDL_RenderDrawLineF(p->renderer, (float)left, (float)(foot - scale * (value[i - 1] - least)), (float)x,
+                            (float)(foot - scale * (value[i] - least)));
+    }
+}

@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: MIT */
+/* Cloth, rope and water as scenes of springs; see world.h. */
+#include "world.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+const char *const world_names[WORLD_KINDS] = {"cloth", "rope", "water"};
+
+/* A curtain on hooks, a rope with a ball at its end, a pool 4 m wide. A sum of links, 8 a particle in a sheet, decides on
+   the step: in water it makes one step a frame of 1/60 s too long for leapfrog, in the others about a dozen. */
+static const struct recipe {
+    spring_grid grid;
+    double mass, drag; /* [kg], [N s/m] of a particle */
+    double gravity;    /* [m/s^2] */
+} recipes[WORLD_KINDS] = {
+    [WORLD_CLOTH] = {{.count = {37, 27},
+                      .axes = 3,
+                      .spacing = 0.05,
+                      .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                      .stiffness = 400},
+                     .mass = 0.01,
+                     .drag = 0.004,
+                     .gravity = 9.81},
+    [WORLD_ROPE] = {{.count = {48}, .axes = 2, .spacing = 0.04, .stiffness = 6000, .pinned = SPRING_GRID_FIRST_X},
+                    .mass = 0.02,
+                    .drag = 0.002,
+                    .gravity = 9.81},
+    [WORLD_WATER] = {{.count = {61, 61},
+                      .axes = 1,
+                      .height = true,
+                      .spacing = 4.0 / 60,
+                      .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                      .stiffness = 184,
+                      .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y},
+                     .mass = 0.2,
+                     .drag = 0.08},
+};
+
+static const double ball = 0.5;        /* [kg] at the end of the rope */
+static const double strongest = 0.035; /* [N] on a particle: a third of its weight */
+static const uint32_t hook_every = 6;  /* particles of the upper edge */
+static const double gathered = 0.85;   /* width of the curtain over that of its cloth */
+static const double too_much = 1e5;    /* [J] no hand brings in so much: the method gains it */
+static const double two_pi = 6.28318530717958648;
+
+/* What the functions below ask of the library they ask rightly: a refusal is a mistake of this file. */
+static void must(spring_status status, const char *what)
+{
+    if (status == SPRING_OK)
+        return;
+    fprintf(stderr, "springs: %s: %s\n", what, spring_status_string(status));
+    abort();
+}
+
+/* ------------------------------------------------------------------------------------------------ how worlds begin */
+
+/* Folds from hook to hook: a sine that is as long as the cloth it is made of. */
+static vec3 curtain(double column, double row, double spacing)
+{
+    const double fold = two_pi * column / hook_every, deep = 0.13 * hook_every * spacing * gathered;
+    return (vec3){gathered * spacing * column, -spacing * row, deep * sin(fold)};
+}
+
+static vec3 hanging_aside(double along)
+{
+    return (vec3){0.8 * along, -0.6 * along, 0};
+}
+
+static void place(world *w)
+{
+    for (uint32_t row = 0; row < w->rows; row++)
+        for (uint32_t column = 0; column < w->columns; column++) {
+            vec3 *p = &w->home[column + w->columns * row];
+            if (w->kind == WORLD_CLOTH)
+                *p = curtain(column, row, w->spacing);
+            else if (w->kind == WORLD_ROPE)
+                *p = hanging_aside(column * w->spacing);
+            else
+                *p = (vec3){column * w->spacing, 0, row * w->spacing};
+        }
+}
+
+/* Gusts that run across the cloth, as sin(t - phase) = sin(t) cos(phase) - cos(t) sin(phase): a callback is called at
+   each step. It uses no velocities: see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
+static void blow(void *user, double t, size_t particles, const double *const position[3],
+                 const double *const velocity[3], double *const force[3])
+{
+    const world *w = user;
+    const double strength = w->wind * sin(0.7 * t), s = strength * sin(1.9 * t), c = strength * cos(1.9 * t);
+    (void)position;
+    (void)velocity;
+    for (size_t i = 0; i < particles; i++)
+        force[2][i] += 0.4 * w->wind + s * w->gust[i].along - c * w->gust[i].across;
+}
+
+/* ---------------------------------------------------------------------------------------------- between axes and xyz */
+
+/* As many numbers as the scene has axes: of water that is the height. */
+static void to_axes(const world *w, vec3 p, double own[3])
+{
+    own[0] = w->axes == 1 ? p.y : p.x;
+    own[1] = p.y;
+    own[2] = p.z;
+}
+
+static void get_positions(const world *w, vec3 *out)
+{
+    for (size_t i = 0; i < w->particles; i++)
+        out[i] = w->home[i];
+    double *first = w->axes == 1 ? &out[0].y : &out[0].x;
+    must(spring_scene_get(w->scene, SPRING_POSITION, first, 3, 0, w->particles), "get");
+}
+
+/* ------------------------------------------------------------------------------------------------- making, freeing */
+
+/* Every method that scenes offer, so that the user may change it while all moves on. RKN8 is not for damped links: the
+   links are made without damping, world_set_damping() comes later. */
+static uint32_t all_methods(void)
+{
+    uint32_t methods = 0;
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        const spring_method m = spring_method_at(i);
+        if (spring_method_describe(m)->scenes)
+            methods |= 1u << m;
+    }
+    return methods;
+}
+
+static bool make_scene(world *w, const struct recipe *r, double *position, double *mass)
+{
+    if (spring_grid_fill(&r->grid, position, w->pinned, w->link) != SPRING_OK)
+        return false;
+    place(w);
+    for (size_t i = 0; i < w->particles; i++) {
+        double own[3];
+        to_axes(w, w->home[i], own);
+        for (uint32_t axis = 0; axis < w->axes; axis++)
+            position[w->axes * i + axis] = own[axis];
+        const double phase = 2.5 * w->home[i].x - w->home[i].y;
+        w->gust[i] = (gust){cos(phase), sin(phase)};
+        mass[i] = r->mass;
+        w->previous[i] = w->current[i] = w->home[i];
+    }
+    if (w->kind == WORLD_ROPE)
+        mass[w->particles - 1] = ball;
+    if (w->kind == WORLD_CLOTH)
+        for (uint32_t column = 0; column < w->columns; column += hook_every)
+            w->pinned[column] = 1;
+    spring_scene_def def = {.axes = w->axes,
+                            .flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                            .methods = all_methods(),
+                            .particles = w->particles,
+                            .links = w->links,
+                            .position = position,
+                            .mass = mass,
+                            .pinned = w->pinned,
+                            .link = w->link,
+                            .drag = r->drag};
+    if (w->axes > 1)
+        def.gravity[1] = -r->gravity;
+    size_t bytes;
+    if (spring_scene_bytes(&def, &bytes) != SPRING_OK)
+        return false;
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    if (memory == NULL)
+        return false;
+    if (spring_scene_init(memory, bytes, &def, &w->scene) !=
+        SPRING_OK) { /* else the scene begins where its memory does */
+        free(memory);
+        return false;
+    }
+    return true;
+}
+
+bool world_open(world *w, world_kind kind)
+{
+    const struct recipe *r = &recipes[kind];
+    const spring_grid *g = &r->grid;
+    *w = (world){.kind = kind,
+                 .columns = g->count[0],
+                 .rows = g->count[1] > 0 ? g->count[1] : 1,
+                 .axes = g->axes,
+                 .spacing = g->spacing,
+                 .wave = g->spacing * sqrt(g->stiffness / r->mass),
+                 .grabbed = WORLD_NOTHING};
+    if (spring_grid_size(g, &w->particles, &w->links) != SPRING_OK)
+        return false;
+    w->link = calloc(w->links, sizeof *w->link);
+    w->pinned = calloc(w->particles, sizeof *w->pinned);
+    w->gust = calloc(w->particles, sizeof *w->gust);
+    w->torn = calloc(w->particles, sizeof *w->torn);
+    w->home = calloc(w->particles, sizeof *w->home);
+    w->previous = calloc(w->particles, sizeof *w->previous);
+    w->current = calloc(w->particles, sizeof *w->current);
+    w->spare = calloc(w->particles, sizeof *w->spare);
+    double *position = calloc(w->particles, 3 * sizeof *position), *mass = calloc(w->particles, sizeof *mass);
+    const bool room = w->link && w->pinned && w->gust && w->torn && w->home && w->previous && w->current && w->spare;
+    const bool made = room && position && mass && make_scene(w, r, position, mass);
+    free(position);
+    free(mass);
+    if (!made)
+        world_close(w);
+    else if (kind == WORLD_WATER)
+        world_poke(w, w->columns / 3 + w->columns * (w->rows / 2)); /* something to look at */
+    return made;
+}
+
+void world_close(world *w)
+{
+    free(w->scene);
+    free(w->link);
+    free(w->pinned);
+    free(w->gust);
+    free(w->torn);
+    free(w->home);
+    free(w->previous);
+    free(w->current);
+    free(w->spare);
+    *w = (world){0};
+}
+
+/* ----------------------------------------------------------------------------------------------------------- motion */
+
+/* The hand follows the mouse at half the speed of waves at most: what is faster tears at the links next to it, which costs
+   shorter steps (docs/hand.md). */
+static void reach(world *w, double duration)
+{
+    const vec3 d = {w->goal.x - w->hand.x, w->goal.y - w->hand.y, w->goal.z - w->hand.z};
+    const double far = sqrt(d.x * d.x + d.y * d.y + d.z * d.z), most = 0.5 * w->wave * duration;
+    const double part = far > most ? most / far : 1;
+    w->hand = (vec3){w->hand.x + part * d.x, w->hand.y + part * d.y, w->hand.z + part * d.z};
+}
+
+spring_status world_advance(world *w, spring_method method, double dt, uint64_t n)
+{
+    if (n == 0)
+        return SPRING_OK;
+    if (w->grabbed != WORLD_NOTHING) { /* it will be there after these n steps, and the links feel how fast it goes */
+        double own[3];
+        reach(w, (double)n * dt);
+        to_axes(w, w->hand, own);
+        must(spring_scene_drive(w->scene, w->grabbed, own, (double)n * dt), "drive");
+    }
+    spring_status status = spring_scene_advance(w->scene, method, dt, n - 1);
+    if (status != SPRING_OK)
+        return status;
+    vec3 *before = w->spare;
+    get_positions(w, before);
+    status = spring_scene_advance(w->scene, method, dt, 1);
+    if (status != SPRING_OK)
+        return status;
+    if (!(world_energy(w) < too_much)) /* on its way to where it is not finite any more */
+        return SPRING_ENONFINITE;
+    w->spare = w->previous;
+    w->previous = before;
+    get_positions(w, w->current);
+    return SPRING_OK;
+}
+
+void world_between(const world *w, double alpha, vec3 *out)
+{
+    for (size_t i = 0; i < w->particles; i++) {
+        const vec3 *a = &w->previous[i], *b = &w->current[i];
+        out[i] = (vec3){a->x + alpha * (b->x - a->x), a->y + alpha * (b->y - a->y), a->z + alpha * (b->z - a->z)};
+    }
+}
+
+double world_energy(const world *w)
+{
+    const spring_scene_energies e = spring_scene_energy(w->scene);
+    return e.kinetic + e.elastic + e.gravity;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ edits */
+
+void world_set_damping(world *w, double ratio)
+{
+    const struct recipe *r = &recipes[w->kind];
+    w->damping = ratio * 2 * sqrt(r->mass * r->grid.stiffness);
+    for (size_t i = 0; i < w->links; i++)
+        if (!world_is_cut(w, i)) {
+            spring_link damped = w->link[i];
+            damped.damping = w->damping;
+            must(spring_scene_set_link(w->scene, i, &damped), "damp");
+        }
+}
+
+/* Setting the force says, too, that it is another one now: a force may have been kept. */
+void world_set_wind(world *w, bool blows)
+{
+    w->wind = blows && w->kind == WORLD_CLOTH ? strongest : 0;
+    must(spring_scene_set_force(w->scene, w->wind > 0 ? blow : NULL, w), "wind");
+}
+
+void world_grab(world *w, uint32_t particle)
+{
+    const uint8_t yes = 1;
+    world_release(w);
+    w->grabbed = particle;
+    w->hand = w->goal = w->current[particle];
+    must(spring_scene_set_pinned(w->scene, particle, 1, &yes), "grab");
+}
+
+void world_pull(world *w, vec3 goal)
+{
+    w->goal = goal;
+}
+
+void world_release(world *w)
+{
+    if (w->grabbed == WORLD_NOTHING)
+        return;
+    const uint8_t no = 0;
+    if (w->pinned[w->grabbed]) /* stays, and would go on as fast as the hand was */
+        must(spring_scene_drive(w->scene, w->grabbed, NULL, 0), "stop");
+    else
+        must(spring_scene_set_pinned(w->scene, w->grabbed, 1, &no), "let go");
+    w->grabbed = WORLD_NOTHING;
+}
+
+/* The bit of a link in torn[link.a]. */
+static uint8_t torn_bit(const world *w, const spring_link *l)
+{
+    const uint32_t offset = l->b - l->a;
+    if (offset == 1)
+        return TORN_RIGHT;
+    if (offset == w->columns)
+        return TORN_DOWN;
+    return offset == w->columns + 1 ? TORN_DOWN_RIGHT : TORN_DOWN_LEFT;
+}
+
+void world_cut(world *w, size_t link)
+{
+    spring_link cut = w->link[link];
+    cut.stiffness = cut.damping = 0;
+    must(spring_scene_set_link(w->scene, link, &cut), "cut");
+    w->torn[cut.a] |= torn_bit(w, &cut);
+}
+
+bool world_is_cut(const world *w, size_t link)
+{
+    const spring_link *l = &w->link[link];
+    return w->torn[l->a] & torn_bit(w, l);
+}
+
+void world_poke(world *w, uint32_t particle)
+{
+    static const struct push {
+        double speed[3], radius; /* [m/s] along the axes of the scene, [m] */
+    } pushes[WORLD_KINDS] = {{{0, 0, -6}, 0.15}, {{4, 0, 0}, 0.2}, {{-5, 0, 0}, 0.2}};
+    const struct push *push = &pushes[w->kind];
+    const vec3 at = w->current[particle];
+    for (uint32_t i = 0; i < w->particles; i++) {
+        const vec3 p = w->current[i];
+        const double x = p.x - at.x, y = p.y - at.y, z = p.z - at.z;
+        const double part = exp(-(x * x + y * y + z * z) / (push->radius * push->radius));
+        if (part < 0.01 || w->pinned[i] || i == w->grabbed) /* a pin goes on as fast as it is told */
+            continue;
+        double v[3] = {0};
+        must(spring_scene_get(w->scene, SPRING_VELOCITY, v, 0, i, 1), "poke");
+        for (uint32_t axis = 0; axis < w->axes; axis++)
+            v[axis] += part * push->speed[axis];
+        must(spring_scene_set(w->scene, SPRING_VELOCITY, v, 0, i, 1), "poke");
+    }
+}
