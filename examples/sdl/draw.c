@@ -153,11 +153,16 @@ static void quad(painter *p, const double x[4], const double y[4], const SDL_Col
         corner(p, x[corners[i]], y[corners[i]], color[corners[i]]);
 }
 
+/* In bands, which are faster than a shaded triangle where there is no graphics processor. */
 static void background(painter *p, const camera *c)
 {
-    const SDL_Color above = {38, 44, 58, 255}, below = {92, 98, 110, 255}, color[4] = {above, above, below, below};
-    const double x[4] = {0, 2 * c->x, 0, 2 * c->x}, y[4] = {0, 0, 2 * c->y, 2 * c->y};
-    quad(p, x, y, color);
+    enum { BAND = 6 }; /* [pixels] */
+    const int height = (int)(2 * c->y);
+    for (int y = 0; y < height; y += BAND) {
+        const vec3 above = {0.15, 0.17, 0.23}, below = {0.36, 0.38, 0.43};
+        const SDL_Color color = shade(add(above, (double)y / height, from_to(above, below)), 1, 0);
+        paint_box(p, (SDL_Rect){0, y, (int)(2 * c->x), BAND}, color);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------- surfaces: cloth, water */

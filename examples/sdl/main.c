@@ -395,8 +395,12 @@ static bool parse(options *o, int count, char **word)
                              : strcmp(word[i], "--method") == 0 ? &o->method
                              : strcmp(word[i], "--script") == 0 ? &o->script
                                                                 : NULL;
-        if (value == NULL || i + 1 == count)
+        if (value == NULL || i + 1 == count) {
+            fprintf(stderr,
+                    "springs: %s %s; usage: springs [--scene cloth|rope|water] [--method NAME] [--script FILE]\n",
+                    word[i], value == NULL ? "is not an option" : "should be followed by its value");
             return false;
+        }
         *value = word[i + 1];
     }
     return true;
@@ -467,10 +471,8 @@ int main(int count, char **word)
     app a = {.damping = 2, .wind = true};
     script played = {0};
     world_kind kind;
-    if (!parse(&o, count, word)) {
-        fprintf(stderr, "usage: springs [--scene cloth|rope|water] [--method NAME] [--script FILE]\n");
+    if (!parse(&o, count, word))
         return 2;
-    }
     if (!find_world(o.world, &kind) || !choose_method(&a, o.method)) {
         fprintf(stderr, "springs: no scene \"%s\" with method \"%s\"\n", o.world, o.method);
         return 2;

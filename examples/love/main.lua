@@ -1,0 +1,163 @@
+-- SPDX-License-Identifier: MIT
+-- A rope hangs from the pointer.
+--
+--     SPRINGSTEP_LIBRARY=build/libspringstep.so.0 love examples/love
+--
+-- The first particle is pinned and driven to where the pointer is, at a limited speed; steps are fixed, and what is
+-- drawn lies between the last two states. Lengths are in metres, y points down as on the screen.
+local ffi = require "ffi"
+local spring = require "springstep"
+
+local N, STEPS = 36, 16 -- particles; steps a frame of 1/60 s
+local dt = 1 / 60 / STEPS -- [s]
+local spacing, stiffness, damping, mass, ball = 0.04, 3000, 0.2, 0.02, 0.25 -- [m] [N/m] [N s/m] [kg] [kg]
+local pixels = 300 -- to a metre
+local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] how fast the rope can follow
+
+local scene, memory, clock, hand, previous, current, whole, step_cost
+
+local function must(status, what)
+  if status ~= spring.SPRING_OK then
+    error(what .. ": " .. ffi.string(spring.spring_status_string(status)))
+  end
+end
+
+-- Lua's allocator aligns to less than a scene needs.
+local function aligned(bytes)
+  local block = ffi.new("uint8_t[?]", bytes + spring.SPRING_SCENE_ALIGN)
+  local behind = tonumber(ffi.cast("uintptr_t", block) % spring.SPRING_SCENE_ALIGN)
+  return block, block + (spring.SPRING_SCENE_ALIGN - behind)
+end
+
+local function start(x, y)
+  local grid = ffi.new("spring_grid", {count = {N, 1, 1}, axes = 2, spacing = spacing, stiffness = stiffness, damping = damping,
+                                       pinned = spring.SPRING_GRID_FIRST_X})
+  local position, pinned = ffi.new("double[?]", 2 * N), ffi.new("uint8_t[?]", N)
+  local link, masses = ffi.new("spring_link[?]", N - 1), ffi.new("double[?]", N, mass)
+  must(spring.spring_grid_fill(grid, position, pinned, link), "grid")
+  for i = 0, N - 1 do -- along x as it comes; from the pointer down, a little aside
+    local along = position[2 * i]
+    position[2 * i], position[2 * i + 1] = x + 0.28 * along, y + 0.96 * along
+    masses[i] = i < N - 1 and mass or ball
+  end
+  local def = ffi.new("spring_scene_def")
+  def.axes, def.flags, def.particles, def.links = 2, spring.SPRING_SCENE_EDITABLE, N, N - 1
+  def.position, def.mass, def.pinned, def.link = position, masses, pinned, link
+  def.gravity[1], def.drag = 9.81, 0.02
+  local bytes, made = ffi.new("size_t[1]"), ffi.new("spring_scene *[1]")
+  must(spring.spring_scene_bytes(def, bytes), "definition")
+  local place
+  memory, place = aligned(tonumber(bytes[0])) -- the scene lives as long as `memory` refers to it
+  must(spring.spring_scene_init(place, bytes[0], def, made), "init")
+  scene = made[0]
+  assert(dt < 0.5 * spring.spring_scene_stable_step(scene, spring.SPRING_LEAPFROG), "this step is too long")
+
+  clock, hand, whole, step_cost = ffi.new("spring_clock"), ffi.new("double[2]", x, y), {}, 0
+  previous, current = ffi.new("double[?]", 2 * N), ffi.new("double[?]", 2 * N)
+  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, previous, 0, 0, N), "get")
+  ffi.copy(current, previous, ffi.sizeof(previous))
+  for i = 1, N - 1 do
+    whole[i] = true -- the link between particles i - 1 and i
+  end
+end
+
+-- The hand follows the pointer, at half the speed of waves in the rope at most: see docs/hand.md.
+local function reach(x, y, duration)
+  local dx, dy, most = x - hand[0], y - hand[1], 0.5 * wave * duration
+  local part = math.min(1, most / math.max(math.sqrt(dx * dx + dy * dy), 1e-9))
+  hand[0], hand[1] = hand[0] + part * dx, hand[1] + part * dy
+end
+
+local alpha = ffi.new("double[1]")
+
+function love.load()
+  start(love.graphics.getWidth() / 2 / pixels, 0.3)
+end
+
+function love.update(frame)
+  local n = tonumber(spring.spring_clock_tick(clock, frame, dt, 6 * STEPS, alpha))
+  if n == 0 then
+    return
+  end
+  local x, y = love.mouse.getPosition()
+  local before = love.timer.getTime()
+  reach(x / pixels, y / pixels, n * dt)
+  must(spring.spring_scene_drive(scene, 0, hand, n * dt), "drive") -- there after these n steps
+  must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, n - 1), "advance")
+  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, previous, 0, 0, N), "get")
+  must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, 1), "advance")
+  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, current, 0, 0, N), "get")
+  local cost = (love.timer.getTime() - before) / n
+  step_cost = step_cost + (step_cost > 0 and 0.05 or 1) * (cost - step_cost)
+end
+
+-- Where a particle is drawn [pixels].
+local function at(i)
+  local x = previous[2 * i] + alpha[0] * (current[2 * i] - previous[2 * i])
+  local y = previous[2 * i + 1] + alpha[0] * (current[2 * i + 1] - previous[2 * i + 1])
+  return x * pixels, y * pixels
+end
+
+-- A click cuts the middle of what still hangs from the pointer.
+function love.mousepressed()
+  local hanging = 0
+  while whole[hanging + 1] do
+    hanging = hanging + 1
+  end
+  if hanging > 1 then
+    local i = math.ceil(hanging / 2) + 1
+    local cut = ffi.new("spring_link")
+    must(spring.spring_scene_get_link(scene, i - 1, cut), "get link")
+    cut.stiffness, cut.damping = 0, 0
+    must(spring.spring_scene_set_link(scene, i - 1, cut), "cut")
+    whole[i] = false
+  end
+end
+
+function love.keypressed(key)
+  if key == "r" then
+    local x, y = love.mouse.getPosition()
+    start(x / pixels, y / pixels)
+  elseif key == "escape" then
+    love.event.quit()
+  end
+end
+
+-- The whole links: dark, then lighter and narrower, so that the rope looks round; discs where two of them meet.
+local function draw_rope()
+  for _, look in ipairs {{11, 0.36, 0.26, 0.16}, {8, 0.60, 0.45, 0.28}, {4, 0.82, 0.67, 0.44}} do
+    love.graphics.setLineWidth(look[1])
+    love.graphics.setColor(look[2], look[3], look[4])
+    for i = 1, N - 1 do
+      if whole[i] then
+        local ax, ay = at(i - 1)
+        local bx, by = at(i)
+        love.graphics.line(ax, ay, bx, by)
+        love.graphics.circle("fill", ax, ay, look[1] / 2)
+        love.graphics.circle("fill", bx, by, look[1] / 2)
+      end
+    end
+  end
+end
+
+local function draw_ball(x, y, radius)
+  for i = 0, 20 do -- discs towards the light, each brighter
+    local part = i / 20
+    love.graphics.setColor(0.20 + 0.45 * part, 0.26 + 0.48 * part, 0.36 + 0.50 * part)
+    love.graphics.circle("fill", x - 0.35 * radius * part, y - 0.4 * radius * part, radius * (1 - 0.85 * part))
+  end
+end
+
+function love.draw()
+  love.graphics.clear(0.13, 0.15, 0.20)
+  draw_rope()
+  local x, y = at(N - 1)
+  draw_ball(x, y, 26)
+  x, y = at(0)
+  love.graphics.setColor(1, 0.84, 0.25)
+  love.graphics.setLineWidth(2)
+  love.graphics.circle("line", x, y, 10)
+  love.graphics.setColor(0.75, 0.78, 0.83)
+  local text = "springstep %s: leapfrog, %d steps a frame, %.1f us a step\nmove the mouse; a click cuts; R starts again; Esc"
+  love.graphics.print(text:format(ffi.string(spring.spring_version()), STEPS, 1e6 * step_cost), 16, 14)
+end

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""The tests of examples with windows, under an X server of their own; by hand:
+
+    SPRINGS=$PWD/build/examples/springs SPRINGSTEP_LIBRARY=$PWD/build/libspringstep.so.0 GAME=$PWD/examples/love \\
+        PATH=$PWD/build/tools:$PATH /usr/bin/python3 -m pytest tests/windows
+"""
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from windows import Screen
+
+
+def pytest_addoption(parser):
+    """Meson's protocol "gtest" asks for a JUnit file in these words, and takes the test cases from there."""
+    parser.addoption('--gtest_output', dest='xmlpath', type=lambda words: words.removeprefix('xml:'))
+
+
+@pytest.fixture(scope='session')
+def screen(tmp_path_factory):
+    """An X server without a window manager, whose picture lies in a file."""
+    for command in 'Xvfb', 'xdotool':
+        if shutil.which(command) is None:
+            pytest.skip(f'no {command}')
+    folder = tmp_path_factory.mktemp('screen')
+    read, write = os.pipe()
+    with subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1024x768x24', '-fbdir', folder,
+                           '-nolisten', 'tcp'],
+                          pass_fds=[write], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
+        os.close(write)
+        with os.fdopen(read) as number:
+            display = number.readline().strip()
+        assert display, 'Xvfb has not started'
+        yield Screen(f':{display}', folder / 'Xvfb_screen0')
+        server.terminate()
