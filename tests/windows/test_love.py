@@ -51,9 +51,9 @@ def test_a_rope_on_the_pointer(screen, tmp_path):
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) > 20).colors(ball)) > 20
         screen.do('click', 1)
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) == 1).colors(ball)) == 1
-        screen.do('key', '--window', window[0], 'r')
+        screen.key(window, 'r')
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) > 20).colors(ball)) > 20
-        screen.do('key', '--window', window[0], 'Escape')
+        screen.key(window, 'Escape')
         assert program.wait(30) == 0
         assert program.stdout.read() == ''
 
@@ -71,7 +71,7 @@ def test_no_library(screen):
         window = screen.window('rope on the pointer')
         blue = 89, 157, 220  # LÖVE's for errors
         assert blue in screen.wait_for(window, lambda picture: blue in picture.colors()).colors()
-        screen.do('key', '--window', window[0], 'Escape')
+        screen.key(window, 'Escape')
         said, _ = program.communicate(timeout=30)
         assert program.returncode == 1
     for words in 'The springstep library is missing', 'SPRINGSTEP_LIBRARY', '/nonexistent/library.so':

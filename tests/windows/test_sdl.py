@@ -162,8 +162,8 @@ def test_settings_change_the_motion(play, key, change):
 
 
 def test_wind(play):
-    (still,), _ = play('key W', 'key R', 'wait 20', 'say')
-    (windy,), _ = play('wait 20', 'say')
+    (still,), _ = play('key W', 'key R', 'wait 32', 'say')
+    (windy,), _ = play('wait 32', 'say')
     assert distance(position(still), position(windy)) > 3
 
 
@@ -174,7 +174,7 @@ def test_an_explosion_is_noticed(play):
     assert [state['status'] for state in states] == [NOT_FINITE] * 4 + ['ok'] * 2
     assert len({state['time'] for state in states[:4]}) == 1 and states[2]['grabbed'] == '0'
     assert states[3]['method'] == states[4]['method'] != 'euler'
-    assert 0.2 > float(states[5]['time']) > float(states[4]['time'])
+    assert 0.25 > float(states[5]['time']) > float(states[4]['time'])
     assert RED in pictures[0].colors(TROUBLE) and RED not in pictures[1].colors(TROUBLE)
     assert AMBER in pictures[0].colors(SETTINGS) and AMBER not in pictures[1].colors(SETTINGS)
 
@@ -222,19 +222,17 @@ def test_by_hand(screen):
             assert distance(there.ring(), (640, 230)) < 1.5
             screen.do('mouseup', 1)
             assert screen.wait_for(window, lambda picture: picture.ring() is None).ring() is None
-            screen.do('key', '--window', window[0], 'Escape')
+            screen.key(window, 'Escape')
             assert program.wait(30) == 0
         finally:
             program.kill()
 
 
-def test_the_command_in_the_first_comment(tmp_path):
-    """It compiles the program, from its folder."""
+def test_the_command_in_the_first_comment():
+    """It names all files and what they include; the library need not be installed, since nothing is linked."""
     root = os.path.dirname(os.path.dirname(os.environ['GAME']))
     with open(f'{root}/examples/sdl/main.c', encoding='utf-8') as file:
-        command, = re.findall(r'^ \* +(cc -std=.*)$', file.read(), re.MULTILINE)
-    command = command.replace('cc ', f'{os.environ.get("CC", "cc")} -Wall -Wextra -Werror ').replace('-o springs', '-c')
-    # Without linking, since the library is not installed.
-    command = re.sub(r'([a-z]+)\.c\b', lambda name: f'{root}/examples/sdl/{name[0]}', command)
-    subprocess.run(['bash', '-c', command], cwd=tmp_path, env={**os.environ, 'CPATH': f'{root}/include'}, check=True, timeout=120)
-    assert len(list(tmp_path.glob('*.o'))) == 4
+        command, = re.findall(r'^ \* +cc (-std=.*)$', file.read(), re.MULTILINE)
+    command = f'{os.environ.get("CC", "cc")} -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only {command}'
+    subprocess.run(['bash', '-c', command], cwd=f'{root}/examples/sdl', env={**os.environ, 'CPATH': f'{root}/include'}, check=True,
+                   timeout=120)

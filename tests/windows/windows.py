@@ -56,7 +56,7 @@ def read_bmp(path):
 class Screen:
     def __init__(self, display, picture):
         self.environment = {**os.environ, 'DISPLAY': display, 'SDL_VIDEODRIVER': 'x11', 'SDL_RENDER_DRIVER': 'software',
-                            'SDL_FRAMEBUFFER_ACCELERATION': '0'} # pixels straight to the server
+                            'SDL_FRAMEBUFFER_ACCELERATION': '0'}  # pixels straight to the server
         self.file = picture
 
     def picture(self, window):
@@ -78,6 +78,10 @@ class Screen:
         number = self.do('search', '--sync', '--onlyvisible', '--name', name).split()[0]
         words = dict(line.split('=') for line in self.do('getwindowgeometry', '--shell', number).splitlines())
         return number, int(words['X']), int(words['Y']), int(words['WIDTH']), int(words['HEIGHT'])
+
+    def key(self, window, name):
+        """Down alone: a window that it closes would not be there to hear the rest."""
+        self.do('keydown', '--window', window[0], name)
 
     def move(self, window, x, y):
         self.do('mousemove', window[1] + x, window[2] + y)
