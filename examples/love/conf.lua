@@ -5,5 +5,7 @@ function love.conf(t)
   t.window.title = "springstep: a rope on the pointer"
   t.window.width, t.window.height = 900, 640
   t.window.msaa = 4
-  t.modules.audio, t.modules.sound, t.modules.joystick, t.modules.physics, t.modules.video = false, false, false, false, false
+  for _, unused in ipairs {"audio", "joystick", "physics", "sound", "video"} do
+    t.modules[unused] = false
+  end
 end

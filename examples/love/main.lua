@@ -10,8 +10,8 @@ local spring = require "springstep"
 
 local N, STEPS = 36, 16 -- particles; steps a frame of 1/60 s
 local dt = 1 / 60 / STEPS -- [s]
-local spacing, stiffness, damping, mass, ball = 0.04, 3000, 0.2, 0.02, 0.25 -- [m] [N/m] [N s/m] [kg] [kg]
-local pixels = 300 -- to a metre
+local spacing, stiffness, damping, mass, ball = 0.03, 3000, 0.2, 0.02, 0.25 -- [m] [N/m] [N s/m] [kg] [kg]
+local pixels = 260 -- to a metre
 local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] how fast the rope can follow
 
 local scene, memory, clock, hand, previous, current, whole, step_cost
@@ -30,8 +30,8 @@ local function aligned(bytes)
 end
 
 local function start(x, y)
-  local grid = ffi.new("spring_grid", {count = {N, 1, 1}, axes = 2, spacing = spacing, stiffness = stiffness, damping = damping,
-                                       pinned = spring.SPRING_GRID_FIRST_X})
+  local grid = ffi.new("spring_grid", {count = {N, 1, 1}, axes = 2, spacing = spacing, stiffness = stiffness,
+                                       damping = damping, pinned = spring.SPRING_GRID_FIRST_X})
   local position, pinned = ffi.new("double[?]", 2 * N), ffi.new("uint8_t[?]", N)
   local link, masses = ffi.new("spring_link[?]", N - 1), ffi.new("double[?]", N, mass)
   must(spring.spring_grid_fill(grid, position, pinned, link), "grid")
@@ -158,6 +158,7 @@ function love.draw()
   love.graphics.setLineWidth(3)
   love.graphics.circle("line", x, y, 10)
   love.graphics.setColor(0.75, 0.78, 0.83)
-  local text = "springstep %s: leapfrog, %d steps a frame, %.1f us a step\nmove the mouse; a click cuts; R starts again; Esc"
+  local text = "springstep %s: leapfrog, %d steps a frame, %.1f us a step"
   love.graphics.print(text:format(ffi.string(spring.spring_version()), STEPS, 1e6 * step_cost), 16, 14)
+  love.graphics.print("move the mouse; a click cuts; R starts again; Esc", 16, 32)
 end

@@ -296,7 +296,7 @@ static void draw_settings(app *a)
     const world *w = &a->world;
     const spring_method_info *m = spring_method_describe(method(a));
     const double stable = spring_scene_stable_step(w->scene, method(a));
-    char text[96], limit[32];
+    char text[96], limit[48];
     paint_box(&a->painter, (SDL_Rect){8, 8, 366, 7 * LINE + 62}, (SDL_Color){16, 19, 26, 190});
     snprintf(text, sizeof text, "%s, %zu particles, %zu links", world_names[w->kind], w->particles, w->links);
     row(a, 0, "scene", text);

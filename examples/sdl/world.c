@@ -349,7 +349,7 @@ void world_poke(world *w, uint32_t particle)
 {
     static const struct push {
         double speed[3], radius; /* [m/s] along the axes of the scene, [m] */
-    } pushes[WORLD_KINDS] = {{{0, 0, -6}, 0.15}, {{4, 0, 0}, 0.2}, {{-5, 0, 0}, 0.2}};
+    } pushes[WORLD_KINDS] = {{{0, 0, -6}, 0.15}, {{4, 0, 0}, 0.2}, {{-8, 0, 0}, 0.2}};
     const struct push *push = &pushes[w->kind];
     const vec3 at = w->current[particle];
     for (uint32_t i = 0; i < w->particles; i++) {

@@ -20,8 +20,8 @@ pytestmark = [
 def running(screen, game, **variables):
     """The program, and what it prints."""
     environment = {name: value for name, value in screen.environment.items() if name != 'SPRINGSTEP_LIBRARY'}
-    with subprocess.Popen(['love', game], env={**environment, **variables}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True) as program:
+    with subprocess.Popen(['love', game], env={**environment, **variables}, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as program:
         try:
             yield program
         finally:
@@ -66,7 +66,7 @@ def test_the_library_by_its_variable(screen):
 
 
 def test_no_library(screen):
-    """It says what is missing, and where it was looked for: in the window, and when that is closed where it was started."""
+    """It says what is missing, and where it was looked for: in the window, and when that is closed to the shell."""
     with running(screen, GAME, SPRINGSTEP_LIBRARY='/nonexistent/library.so') as program:
         window = screen.window('rope on the pointer')
         blue = 89, 157, 220  # LÖVE's for errors

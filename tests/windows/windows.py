@@ -35,7 +35,8 @@ class Picture:
         """The middle of the ring that marks the hand, or None."""
         left, top = box[:2] if box else (0, 0)
         bgr = RING[::-1]
-        found = [(x, y) for y, line in enumerate(self.lines(box), top) if bgr in line for x, color in enumerate(line, left) if color == bgr]
+        lines = [(y, line) for y, line in enumerate(self.lines(box), top) if bgr in line]
+        found = [(x, y) for y, line in lines for x, color in enumerate(line, left) if color == bgr]
         if not found:
             return None
         x, y = zip(*found)
@@ -66,8 +67,8 @@ class Screen:
         assert header[11] == 32 and header[7] == 0, 'not 32 bits a pixel, lowest byte first'
         start, stride = header[0] + 12 * header[19], header[12]
         _, left, top, width, height = window
-        rows = [data[start + y * stride + 4 * left:start + y * stride + 4 * (left + width)] for y in range(top, top + height)]
-        return Picture(rows, width, 4)
+        rows = [data[start + y * stride:start + (y + 1) * stride] for y in range(top, top + height)]
+        return Picture([row[4 * left:4 * (left + width)] for row in rows], width, 4)
 
     def do(self, *words):
         return subprocess.run(['xdotool', *map(str, words)], env=self.environment, check=True, stdout=subprocess.PIPE,
