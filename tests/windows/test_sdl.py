@@ -164,7 +164,7 @@ def test_settings_change_the_motion(play, key, change):
 
 def test_wind(play):
     (still,), _ = play('key W; key R; wait 32; say')
-    (windy,), _ = play('wait 32; say')
+    (windy,), _ = play('key R; wait 32; say')
     assert distance(position(still), position(windy)) > 3
 
 
