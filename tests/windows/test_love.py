@@ -4,6 +4,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+import time
 
 import pytest
 
@@ -51,6 +52,8 @@ def test_a_rope_on_the_pointer(screen, tmp_path):
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) > 20).colors(ball)) > 20
         screen.do('click', 1)
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) == 1).colors(ball)) == 1
+        time.sleep(1)  # it has not just swung higher
+        assert len(screen.picture(window).colors(ball)) == 1
         screen.key(window, 'r')
         assert len(screen.wait_for(window, lambda picture: len(picture.colors(ball)) > 20).colors(ball)) > 20
         screen.key(window, 'Escape')
