@@ -23,8 +23,8 @@ enum { HISTORY = 600, MOST_STEPS = 64, LINE = 13 + 4 };
 static const double frame_time = 1.0 / 60;                                      /* [s] for which steps are counted */
 static const double dampings[] = {0, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}; /* of links, 1 is critical */
 enum { DAMPINGS = sizeof dampings / sizeof *dampings };
-static const uint64_t usual_steps[WORLD_KINDS] = {16, 20,
-                                                  4}; /* about half the stable step of leapfrog, less of the water's */
+/* About half the stable step of leapfrog; of water a third. */
+static const uint64_t usual_steps[WORLD_KINDS] = {16, 20, 4};
 
 typedef struct app {
     SDL_Window *window;
@@ -79,11 +79,11 @@ static bool choose_method(app *a, const char *name)
 static bool start(app *a, world_kind kind)
 {
     world_close(&a->world);
-    if (!world_open(&a->world, kind))
+    vec3 *drawn = world_open(&a->world, kind) ? realloc(a->drawn, a->world.particles * sizeof *drawn) : NULL;
+    if (drawn == NULL) {
+        fprintf(stderr, "springs: no memory for the scene\n");
         return false;
-    vec3 *drawn = realloc(a->drawn, a->world.particles * sizeof *drawn);
-    if (drawn == NULL)
-        return false;
+    }
     a->drawn = drawn;
     world_between(&a->world, 1, a->drawn);
     world_set_damping(&a->world, dampings[a->damping]);
@@ -443,9 +443,10 @@ static void run(app *a, script *played)
         const double seconds = (double)(now - before) / (double)SDL_GetPerformanceFrequency();
         before = now;
         advance(a, played != NULL ? played->frame_time : seconds);
-        if (!draw(a))
+        if (!draw(a)) {
+            fprintf(stderr, "springs: no picture: %s\n", SDL_GetError());
             quit(a, true);
-        else if (played != NULL) {
+        } else if (played != NULL) {
             char state[512];
             describe(a, state, sizeof state);
             if (!script_play(played, a->renderer, state))
@@ -482,10 +483,9 @@ int main(int count, char **word)
     if (!open_window(&a, o.script == NULL ? SDL_RENDERER_PRESENTVSYNC : 0)) {
         fprintf(stderr, "springs: no window: %s\n", SDL_GetError());
         a.failed = true;
-    } else if (!choose_world(&a, kind)) {
-        fprintf(stderr, "springs: no memory for this scene\n");
+    } else if (!choose_world(&a, kind))
         a.failed = true;
-    } else
+    else
         run(&a, o.script != NULL ? &played : NULL);
     close_all(&a);
     script_close(&played);

@@ -166,12 +166,10 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
     if (memory == NULL)
         return false;
-    if (spring_scene_init(memory, bytes, &def, &w->scene) !=
-        SPRING_OK) { /* else the scene begins where its memory does */
+    const bool made = spring_scene_init(memory, bytes, &def, &w->scene) == SPRING_OK;
+    if (!made) /* else the scene begins where its memory does */
         free(memory);
-        return false;
-    }
-    return true;
+    return made;
 }
 
 bool world_open(world *w, world_kind kind)
@@ -223,7 +221,7 @@ void world_close(world *w)
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
 
-/* The hand follows the mouse at half the speed of waves at most: what is faster tears at the links next to it, which costs
+/* The hand follows the mouse at half the speed of waves at most: a faster one stretches the links next to it, and asks for
    shorter steps (docs/hand.md). */
 static void reach(world *w, double duration)
 {
