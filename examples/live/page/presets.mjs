@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The scenes of the page: what they begin with, what they say, and the command that gives the same bits.
+
+/** steps: a frame of 1/60 s, half the stable step of leapfrog and as spring-scene takes them; speed: of the playback. */
+export const presets = {
+    water: { steps: 13, speed: 1 / 8, sizes: [17, 25, 33, 49] },
+    cloth: { steps: 19, speed: 1, sizes: [13, 25, 33] },
+    rope: { steps: 7, speed: 1, sizes: [10, 20, 40] },
+    jelly: { steps: 9, speed: 1, sizes: [5, 8, 10] },
+};
+
+/** A rope whose end is 10^4 times as heavy as its other particles; it takes stiff links, and many steps. */
+export const heavyEnd = { mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
+export const heavySteps = 150;
+
+const options = {
+    size: "--size",
+    damping: "--damping",
+    drag: "--drag",
+    mass: "--mass",
+    endMass: "--end-mass",
+    stiffness: "--stiffness",
+};
+
+export function commandOf(run, method, steps, duration) {
+    const words = ["spring-scene", "--scene", run.scene, "--method", method, "--frame-rate", "60"];
+    words.push("--steps-per-frame", `${steps}`, "--duration", `${duration}`, "--hash");
+    for (const [name, option] of Object.entries(options))
+        if (run[name] !== undefined) words.push(option, `${run[name]}`);
+    return words;
+}
