@@ -22,6 +22,7 @@ present() {
         printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$name" | cc -E - >/dev/null 2>&1
         ;;
     pkgconfig) pkg-config --exists "$name" 2>/dev/null ;;
+    wasm32) echo 'int main(void) { return 0; }' | "$name" --target=wasm32-wasi -x c - -o /dev/null 2>/dev/null ;;
     python) /usr/bin/python3 -c "import $name" 2>/dev/null ;; # the one that Meson files name
     *)
         say "packages.txt: unknown kind \"$kind\""

@@ -29,3 +29,23 @@ export function commandOf(run, method, steps, duration) {
         if (run[name] !== undefined) words.push(option, `${run[name]}`);
     return words;
 }
+
+/** What to try, what it shows, and the figure of the report that measures it. */
+export const sentences = {
+    water: [
+        "Poke it, let it rain, drop the ball. Then choose Euler: its waves grow instead of fading, until the water explodes, while leapfrog with the same work keeps it calm.",
+        "water-euler-explodes",
+    ],
+    cloth: [
+        "Pull a fold, blow, or pull hard until it tears. Take fewer steps a frame until the meter turns red: above the stable step every method shreds the cloth, Runge–Kutta 4 later than leapfrog.",
+        "cloth",
+    ],
+    rope: [
+        "Swing it, then give it a heavy end, ten thousand times as heavy as a link: the rope does not become rubber, because steps of a scene need no solver that gives up. It costs steps instead.",
+        "rope",
+    ],
+    jelly: [
+        "Pull a corner and let go. Put Euler beside leapfrog and watch the energy: the same springs, the same step, and only one of them comes to rest.",
+        "scene-energy",
+    ],
+};

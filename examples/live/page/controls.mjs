@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+// Buttons, selects, and what is written beside the scene.
+import { Plot } from "./plots.mjs";
+import { presets, sentences } from "./presets.mjs";
+
+const $ = (id) => document.getElementById(id);
+const names = { water: "Water", cloth: "Cloth", rope: "Rope", jelly: "Jelly" };
+const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01 }; // [N s/m] a notch
+const report = "../report/index.html"; // beside the page, where tools/report writes it
+const drawEvery = 150; // [ms] numbers and plots
+
+function option(value, text, disabled = false) {
+    const element = new Option(text, value);
+    element.disabled = disabled;
+    return element;
+}
+
+function seconds(t) {
+    if (t === 0) return "none";
+    if (!Number.isFinite(t)) return "any";
+    return t < 0.1 ? `${(1000 * t).toPrecision(3)} ms` : `${t.toPrecision(3)} s`;
+}
+
+function element(tag, attributes = {}, ...children) {
+    const each = Object.assign(document.createElement(tag), attributes);
+    each.append(...children);
+    return each;
+}
+
+export class Controls {
+    constructor(state, actions, stage) {
+        Object.assign(this, { state, actions, stage });
+        this.time = 0;
+        this.micros = [];
+        this.info = null;
+        this.drawn = 0;
+        this.energy = new Plot($("energy-plot"), false);
+        this.error = new Plot($("error-plot"), true);
+        $("scene").append(...Object.keys(presets).map((scene) => option(scene, names[scene])));
+        this.connect();
+    }
+
+    connect() {
+        const { state, actions } = this;
+        $("scene").onchange = (event) => actions.scene(event.target.value);
+        $("method").onchange = (event) => actions.method(0, event.target.value);
+        $("other").onchange = (event) => actions.method(1, event.target.value);
+        $("pause").onclick = () => actions.pause();
+        $("once").onclick = () => actions.once();
+        $("reset").onclick = () => actions.reset();
+        const steps = (n) => actions.steps(Math.max(1, Math.min(1000, Math.round(n) || 1)));
+        $("steps").onchange = (event) => steps(event.target.valueAsNumber);
+        $("steps").oninput = ({ target }) =>
+            target.validity.valid && target.value && steps(target.valueAsNumber);
+        $("fewer").onclick = () => steps(state.steps - 1);
+        $("more").onclick = () => steps(state.steps + 1);
+        $("speed").onchange = (event) => actions.set("speed", Number(event.target.value));
+        $("size").onchange = (event) => actions.remakeWith("size", Number(event.target.value));
+        $("damping").onchange = (event) =>
+            actions.remakeWith(
+                "damping",
+                Number((event.target.value * dampingUnit[state.scene]).toPrecision(3)),
+            );
+        $("wind").oninput = (event) => actions.wind(event.target.valueAsNumber);
+        $("reference").onchange = (event) => actions.remakeWith("reference", event.target.checked);
+        $("hash").onclick = async () => {
+            actions.pause(true);
+            $("hash-out").textContent = await actions.hash();
+            $("command").textContent = actions.command();
+        };
+    }
+
+    methods(list) {
+        this.list = list;
+    }
+
+    // --- a new scene ------------------------------------------------------------------------------------------------
+
+    made(info) {
+        const { state } = this;
+        this.info = info;
+        this.time = 0;
+        this.micros = [];
+        const options = () => info.methods.map(({ name, taken }) => option(name, this.label(name), !taken));
+        $("method").replaceChildren(...options());
+        $("other").replaceChildren(option("", "nothing"), ...options());
+        const taken = info.methods.filter((method) => method.taken).map((method) => method.name);
+        if (!taken.includes(state.method)) state.method = "leapfrog";
+        if (state.other && !taken.includes(state.other)) state.other = "leapfrog";
+        const sizes = presets[state.scene].sizes;
+        $("size").replaceChildren(...sizes.map((size) => option(size, this.sizeText(size))));
+        const [sentence, figure] = sentences[state.scene];
+        const link = element("a", { href: `${report}#${figure}`, textContent: "Measured in the report" });
+        $("sentence").replaceChildren(`${sentence} `, link, ".");
+        this.buildActions();
+        this.buildPanes();
+        const panes = state.other ? 2 : 1;
+        this.energy.reset(panes);
+        this.error.reset(panes);
+        $("error-figure").hidden = !state.reference;
+        $("hash-out").textContent = "";
+        this.last = null;
+        this.show();
+    }
+
+    label(name) {
+        const words = {
+            rk4: "Runge–Kutta 4",
+            rkn8: "Runge–Kutta–Nyström 8",
+            "symplectic-euler": "symplectic Euler",
+        };
+        const text = words[name] ?? name;
+        return text[0].toUpperCase() + text.slice(1);
+    }
+
+    sizeText(size) {
+        return { water: `${size}²`, cloth: `${size}²`, rope: `${size}`, jelly: `${size}³` }[this.state.scene];
+    }
+
+    buildActions() {
+        const { state, actions } = this;
+        const button = (id, text, onclick) =>
+            element("button", { type: "button", id, textContent: text, onclick });
+        const side = this.info.length;
+        const list = {
+            water: () => [
+                button("poke", "Poke", () => actions.poke(side * 0.35, side * 0.4, 6e4, (side * side) / 64)),
+                button("rain", "Rain", () => actions.rain(state.rain ? 0 : 30)),
+                button("ball", "Drop a ball", () => actions.ball(side * 0.6, side * 0.45, 0.9)),
+            ],
+            cloth: () => [
+                button("poke", "Poke", () => actions.poke(side / 2, side / 2, 40, (side * side) / 8)),
+                button("scissors", "Scissors", () => actions.set("scissors", !state.scissors)),
+            ],
+            rope: () => [
+                button("poke", "Poke", () => actions.poke(side, 0, 30, 0.1)),
+                button("heavy", "Heavy end, 1 : 10⁴", () => actions.remakeWith("heavy", !state.heavy)),
+            ],
+            jelly: () => [
+                button("poke", "Poke", () => actions.poke(side / 2, side / 2, 250, (side * side) / 3)),
+            ],
+        };
+        $("actions").replaceChildren(...list[state.scene]());
+    }
+
+    buildPanes() {
+        const many = this.state.other ? 2 : 1;
+        this.panes = Array.from({ length: many }, (_, i) => {
+            const name = element("span", { className: "name" });
+            const time = element("span", { className: "time" });
+            const words = element("p");
+            const again = element("button", {
+                type: "button",
+                className: "again",
+                textContent: "Start again",
+            });
+            again.onclick = () => this.actions.reset();
+            const boom = element("div", { className: "boom", hidden: true }, words, again);
+            boom.setAttribute("role", "alert");
+            const root = element("div", { className: "pane" }, name, time, boom);
+            root.dataset.pane = i;
+            return { root, name, time, words, boom };
+        });
+        $("panes").replaceChildren(...this.panes.map(({ root }) => root));
+        this.place();
+        this.placing ??= new ResizeObserver(() => this.place());
+        this.placing.observe($("stage"));
+    }
+
+    place() {
+        this.panes?.forEach(({ root }, i) => {
+            const { x, y, w, h } = this.stage.box(i);
+            Object.assign(root.style, { left: `${x}px`, top: `${y}px`, width: `${w}px`, height: `${h}px` });
+            root.classList.toggle("below", y > 0);
+        });
+    }
+
+    // --- what is chosen ---------------------------------------------------------------------------------------------
+
+    show() {
+        const { state } = this;
+        if (!this.info) return;
+        $("scene").value = state.scene;
+        $("method").value = state.method;
+        $("other").value = state.other;
+        if (document.activeElement !== $("steps") || $("steps").valueAsNumber !== state.steps)
+            $("steps").value = state.steps;
+        $("speed").value = state.speed;
+        $("size").value = this.info.count[0];
+        $("damping").value = Math.round(state.damping / dampingUnit[state.scene]);
+        $("wind").value = state.wind;
+        $("reference").checked = state.reference;
+        $("pause").textContent = state.paused ? "Play" : "Pause";
+        $("pause").setAttribute("aria-pressed", state.paused);
+        for (const [id, on] of [
+            ["rain", state.rain > 0],
+            ["scissors", state.scissors],
+            ["heavy", state.heavy],
+        ])
+            $(id)?.setAttribute("aria-pressed", on);
+        for (const each of document.querySelectorAll(".of-cloth")) each.hidden = state.scene !== "cloth";
+        $("command").textContent = this.actions.command();
+        [state.method, state.other].forEach((method, i) => {
+            if (this.panes[i]) this.panes[i].name.textContent = this.label(method);
+        });
+        this.numbers();
+    }
+
+    // --- what is measured -------------------------------------------------------------------------------------------
+
+    frame({ panes }) {
+        if (!this.panes || panes.length !== this.panes.length) return;
+        this.last = panes;
+        this.time = panes[0].time;
+        this.micros = panes.map((pane) => pane.micros);
+        const exploded = panes.map((pane) => pane.exploded !== null);
+        const time = Math.max(...panes.map((pane) => pane.time));
+        this.energy.add(
+            time,
+            panes.map((pane) => (pane.exploded ? NaN : pane.energy.total)),
+            exploded,
+        );
+        this.error.add(
+            time,
+            panes.map((pane) => pane.error),
+            exploded,
+        );
+        panes.forEach(({ exploded: how, method }, i) => {
+            const { boom, words } = this.panes[i];
+            if (how && boom.hidden) {
+                const stable = this.stable(method);
+                const why =
+                    this.stepNow() < stable
+                        ? ""
+                        : ` Its step of ${seconds(this.stepNow())} is not below the stable step, ${seconds(stable)}.`;
+                words.replaceChildren(
+                    element("strong", {
+                        textContent: `${this.label(method)} exploded after ${how.time.toFixed(2)} s.`,
+                    }),
+                    why,
+                );
+            }
+            boom.hidden = !how;
+        });
+    }
+
+    stepNow() {
+        return 1 / (60 * this.state.steps);
+    }
+
+    stable(method) {
+        return this.info.methods.find(({ name }) => name === method).stable;
+    }
+
+    /** Now and then: the eye reads no faster. */
+    draw() {
+        const now = performance.now();
+        if (now - this.drawn < drawEvery || !this.last) return;
+        this.drawn = now;
+        this.energy.draw();
+        if (this.state.reference) this.error.draw();
+        this.last.forEach(({ time }, i) => {
+            this.panes[i].time.textContent = `${time.toFixed(2)} s`;
+        });
+        this.numbers();
+    }
+
+    numbers() {
+        const chosen = this.state.other ? [this.state.method, this.state.other] : [this.state.method];
+        const row = (title, values, bad = () => false) =>
+            element(
+                "tr",
+                {},
+                element("th", { scope: "row", textContent: title }),
+                ...values.map((value, i) =>
+                    element("td", { textContent: value, className: bad(i) ? "bad" : "" }),
+                ),
+            );
+        const of = (method) => this.info.methods.find(({ name }) => name === method);
+        const unstable = (i) => !(this.stepNow() < this.stable(chosen[i]));
+        const head = chosen.map((method, i) =>
+            element("th", {
+                scope: "col",
+                textContent: chosen.length > 1 ? this.label(method) : "",
+                className: "ab"[i],
+            }),
+        );
+        const rows = [
+            row(
+                "Step",
+                chosen.map(() => seconds(this.stepNow())),
+                unstable,
+            ),
+            row(
+                "Stable step",
+                chosen.map((method) => seconds(this.stable(method))),
+            ),
+            row(
+                "Force evaluations a frame",
+                chosen.map((method) => `${of(method).forces * this.state.steps}`),
+            ),
+            row(
+                "Microseconds a frame",
+                chosen.map((_, i) => (this.micros[i] > 0 ? this.micros[i].toPrecision(3) : "–")),
+            ),
+        ];
+        if (this.state.reference)
+            rows.push(
+                row(
+                    "Error now",
+                    chosen.map((_, i) =>
+                        this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–",
+                    ),
+                ),
+            );
+        const part = Math.min(1, this.stepNow() / this.stable(chosen[0]) / 2);
+        const meter = element("meter", { min: 0, max: 1, low: 0.45, high: 0.5, optimum: 0, value: part });
+        meter.title = "step over twice the stable step";
+        meter.setAttribute("aria-label", "Step over twice the stable step");
+        $("numbers").replaceChildren(
+            element(
+                "table",
+                {},
+                element("thead", {}, element("tr", {}, element("th"), ...head)),
+                element("tbody", {}, ...rows),
+            ),
+            meter,
+        );
+        $("notice").textContent = this.state.paused ? "paused" : "";
+    }
+
+    repaint() {
+        this.energy.reset(this.panes.length);
+        this.error.reset(this.panes.length);
+    }
+}

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// The live page: what is chosen, what that asks of the physics, and what is shown of its answers.
+import { Controls } from "./controls.mjs";
+import { Hand } from "./hand.mjs";
+import { Physics } from "./physics.mjs";
+import { commandOf, heavyEnd, heavySteps, presets } from "./presets.mjs";
+import { Stage } from "./stage.mjs";
+
+/* global WORKER, MODULE, MODULE_WITHOUT_SIMD */ // put in by bundle.mjs
+
+function bytesOf(base64) {
+    return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+}
+
+const physics = new Physics(WORKER, [bytesOf(MODULE), bytesOf(MODULE_WITHOUT_SIMD)]);
+const stage = new Stage(document.getElementById("canvas"));
+const still = matchMedia("(prefers-reduced-motion: reduce)");
+
+const state = {
+    scene: "water",
+    method: "leapfrog",
+    other: "",
+    steps: presets.water.steps,
+    speed: presets.water.speed,
+    paused: still.matches,
+    size: 0, // 0: that of the preset
+    damping: 0,
+    heavy: false,
+    reference: false,
+    wind: 0,
+    rain: 0,
+    scissors: false,
+};
+
+function run() {
+    const each = { scene: state.scene };
+    if (state.size) each.size = state.size;
+    if (state.damping) each.damping = state.damping;
+    if (state.scene === "rope" && state.heavy) Object.assign(each, heavyEnd);
+    return each;
+}
+
+function remake() {
+    const { method, other, steps, reference } = state;
+    physics.order("make", {
+        run: run(),
+        steps,
+        methods: other ? [method, other] : [method],
+        reference,
+        wind: state.scene === "cloth" ? state.wind : 0,
+        rain: state.scene === "water" ? state.rain : 0,
+    });
+}
+
+const actions = {
+    scene(scene) {
+        const { steps, speed } = presets[scene];
+        Object.assign(state, {
+            scene,
+            steps,
+            speed,
+            size: 0,
+            damping: 0,
+            heavy: false,
+            wind: 0,
+            rain: 0,
+            scissors: false,
+        });
+        remake();
+    },
+    method(pane, name) {
+        const before = state.other;
+        if (pane === 0) state.method = name;
+        else state.other = name;
+        if (pane === 1 && Boolean(before) !== Boolean(name)) remake();
+        else physics.order("method", { pane, method: name });
+        controls.show();
+    },
+    steps(steps) {
+        state.steps = steps;
+        physics.order("steps", { steps });
+        controls.show();
+    },
+    set(name, value) {
+        state[name] = value;
+        controls.show();
+    },
+    remakeWith(name, value) {
+        state[name] = value;
+        if (name === "heavy") state.steps = value ? heavySteps : presets.rope.steps;
+        remake();
+    },
+    pause(paused = !state.paused) {
+        state.paused = paused;
+        controls.show();
+    },
+    once() {
+        actions.pause(true);
+        return physics.ask("step", 1);
+    },
+    reset: remake,
+    poke: (x, y, force, area) => physics.order("poke", { x, y, force, area }),
+    wind(speed) {
+        state.wind = speed;
+        physics.order("wind", { speed });
+    },
+    rain(rate) {
+        state.rain = rate;
+        physics.order("rain", { rate });
+        controls.show();
+    },
+    ball: (x, y, height) => physics.order("ball", { x, y, height }),
+    hash: () => physics.ask("hash"),
+    command: () => commandOf(run(), state.method, state.steps, controls.time).join(" "),
+};
+
+const controls = new Controls(state, actions, stage);
+const hand = new Hand(
+    stage,
+    document.getElementById("cursor"),
+    {
+        poke: (x, y) => actions.poke(x, y, 4e4, (stage.info.length ** 2 / 64) * 0.7),
+        grab: (particle) => physics.order("grab", { particle }),
+        drag: (to) => physics.order("drag", { to }),
+        release: () => physics.order("release"),
+        snip: (particle) => physics.order("snip", { particle }),
+    },
+    () => state.scene === "cloth" && state.scissors,
+);
+
+physics.onmade = (info) => {
+    hand.up(hand.doing?.by);
+    stage.build(info, state.other ? 2 : 1);
+    controls.made(info);
+};
+let fresh = false;
+physics.onframe = (frame) => {
+    stage.update(frame);
+    controls.frame(frame);
+    fresh = true;
+};
+
+// Times of the last frames [ms]: from one to the next, and of drawing alone.
+const intervals = [];
+const drawings = [];
+
+function keep(list, value) {
+    list.push(value);
+    if (list.length > 600) list.shift();
+}
+
+let last = performance.now();
+let shown = last;
+function animate(now) {
+    requestAnimationFrame(animate);
+    keep(intervals, now - shown);
+    shown = now;
+    if (state.paused) last = now;
+    else if (physics.tick(((now - last) / 1000) * state.speed)) last = now;
+    if (fresh) {
+        const start = performance.now();
+        stage.draw();
+        keep(drawings, performance.now() - start);
+        controls.draw();
+        fresh = false;
+    }
+}
+
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    stage.repaint();
+    controls.repaint();
+});
+still.addEventListener("change", () => actions.pause(still.matches));
+
+/** For tests, and for whoever opens the console: of the first pane. */
+window.springstepLab = {
+    async step(frames) {
+        actions.pause(true);
+        return physics.ask("step", frames);
+    },
+    hash: () => physics.ask("hash"),
+    time: () => physics.ask("time"),
+    energy: () => physics.ask("energy"),
+    poke: async (x, y, force, area) => {
+        actions.poke(x, y, force, area);
+        return physics.ask("time");
+    },
+    position: (particle) => physics.ask("position", particle),
+    pixel: (particle) => stage.pixelOf(0, particle),
+    difference: () => physics.ask("difference"),
+    tornLinks: () => physics.ask("tornLinks"),
+    command: async () => commandOf(run(), state.method, state.steps, await physics.ask("time")).join(" "),
+    times: () => ({ intervals, drawings, micros: controls.micros }),
+    simd: physics.simd,
+};
+
+physics.ready.then((methods) => {
+    controls.methods(methods);
+    remake();
+    requestAnimationFrame(animate);
+});

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// A cloth that hangs on two of its corners. Cells lose their triangles where links are torn.
+import {
+    BufferAttribute,
+    BufferGeometry,
+    CylinderGeometry,
+    DoubleSide,
+    DynamicDrawUsage,
+    Group,
+    Mesh,
+    ShaderMaterial,
+    SphereGeometry,
+} from "three";
+
+import { smoothNormals } from "../surface.mjs";
+import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
+
+const floor = -3.35; // [m]
+
+const fabric = /* glsl */ `
+    ${lighting}
+    varying vec3 n, v;
+    varying vec2 at;
+    void main() {
+        vec3 normal = normalize(n) * (gl_FrontFacing ? 1.0 : -1.0);
+        vec2 p = at * 6.0, cell = abs(fract(p) - 0.5);
+        float diamond = smoothstep(0.30, 0.33, cell.x + cell.y);
+        vec2 q = abs(fract(p + 0.5) - 0.5);
+        float dot2 = 1.0 - smoothstep(0.10, 0.13, q.x + q.y);
+        vec3 red = gl_FrontFacing ? vec3(0.78, 0.14, 0.17) : vec3(0.52, 0.09, 0.14), cream = vec3(0.97, 0.90, 0.78);
+        vec3 c = mix(red, mix(red * 0.82, cream, 0.9), max(dot2, (1.0 - diamond) * 0.25));
+        vec2 edge = min(at, 1.0 - at);
+        c = mix(cream, c, smoothstep(0.022, 0.028, min(edge.x, edge.y)));
+        vec2 thread = 0.5 + 0.5 * cos(at * 6.2831853 * 150.0);
+        c *= 0.96 + 0.04 * thread.x * thread.y;
+        gl_FragColor = vec4(lit(c, normal, normalize(v), 0.06), 1.0);
+    }`;
+
+const metal = /* glsl */ `
+    ${lighting}
+    varying vec3 n, v;
+    void main() { gl_FragColor = vec4(lit(vec3(0.55, 0.50, 0.44), normalize(n), normalize(v), 0.7), 1.0); }`;
+
+// Triangles of the cells, and the links along their sides.
+function weave(columns, rows, ends) {
+    const particles = columns * rows;
+    const named = new Map();
+    for (let l = 0; l < ends.length / 2; l++) named.set(ends[2 * l] * particles + ends[2 * l + 1], l);
+    const link = (a, b) => named.get(Math.min(a, b) * particles + Math.max(a, b));
+    const triangles = [];
+    for (let j = 0; j + 1 < rows; j++)
+        for (let i = 0; i + 1 < columns; i++) {
+            const a = i + columns * j;
+            const b = a + 1;
+            const c = a + columns;
+            const d = c + 1;
+            triangles.push({ corners: [a, b, c], sides: [link(a, b), link(a, c)] });
+            triangles.push({ corners: [b, d, c], sides: [link(b, d), link(c, d)] });
+        }
+    return triangles;
+}
+
+export class Cloth {
+    static camera = { from: [1.6, -5.6, -0.6], to: [0, 0.1, -1.3], orbit: true };
+
+    constructor(info, theme) {
+        const [columns, rows] = info.count;
+        const uniforms = uniformsOf(theme);
+        this.uniforms = uniforms;
+        this.triangles = weave(columns, rows, info.ends);
+        this.torn = 0;
+        const geometry = new BufferGeometry();
+        this.positions = new BufferAttribute(new Float32Array(3 * info.particles), 3).setUsage(
+            DynamicDrawUsage,
+        );
+        this.normals = new BufferAttribute(new Float32Array(3 * info.particles), 3).setUsage(
+            DynamicDrawUsage,
+        );
+        const uv = Float32Array.from({ length: 2 * info.particles }, (_, k) => {
+            const p = k >> 1;
+            return k % 2 ? Math.floor(p / columns) / (rows - 1) : (p % columns) / (columns - 1);
+        });
+        this.index = new BufferAttribute(new Uint32Array(3 * this.triangles.length), 1).setUsage(
+            DynamicDrawUsage,
+        );
+        geometry.setAttribute("position", this.positions);
+        geometry.setAttribute("normal", this.normals);
+        geometry.setAttribute("uv", new BufferAttribute(uv, 2));
+        geometry.setIndex(this.index);
+        this.geometry = geometry;
+        this.stitch(new Uint8Array(info.links));
+
+        this.group = new Group();
+        this.group.position.set(-info.length / 2, 0, 0);
+        const material = (fragmentShader, more) =>
+            new ShaderMaterial({ uniforms, vertexShader: vertex, fragmentShader, ...more });
+        const cloth = new Mesh(geometry, material(fabric, { side: DoubleSide }));
+        cloth.frustumCulled = false;
+        const bar = new Mesh(new CylinderGeometry(0.025, 0.025, info.length + 0.7, 16), material(metal));
+        bar.rotation.z = Math.PI / 2;
+        bar.position.set(info.length / 2, 0, 0.045);
+        this.group.add(cloth, bar, shadowOf(geometry, floor), shadowOf(bar.geometry, floor));
+        this.group.children[3].rotation.copy(bar.rotation);
+        this.group.children[3].position.copy(bar.position);
+        for (const x of [0, info.length]) {
+            const ring = new Mesh(new SphereGeometry(0.05, 20, 14), material(metal));
+            ring.position.set(x, 0, 0.02);
+            this.group.add(ring);
+        }
+        this.floor = floorAt(floor, uniforms);
+        this.floor.position.x = info.length / 2;
+        this.group.add(this.floor);
+    }
+
+    paint(theme) {
+        for (const name of ["skyLow", "skyHigh", "ground"]) this.uniforms[name].value = theme[name];
+    }
+
+    stitch(cut) {
+        const { array } = this.index;
+        let at = 0;
+        for (const { corners, sides } of this.triangles)
+            if (!sides.some((side) => cut[side])) for (const corner of corners) array[at++] = corner;
+        this.geometry.setDrawRange(0, at);
+        this.drawn = array.subarray(0, at);
+        this.index.needsUpdate = true;
+    }
+
+    update({ positions, torn }) {
+        const many = torn.reduce((sum, each) => sum + each, 0);
+        if (many !== this.torn) this.stitch(torn);
+        this.torn = many;
+        this.positions.array.set(positions);
+        smoothNormals(positions, this.drawn, this.normals.array);
+        this.positions.needsUpdate = this.normals.needsUpdate = true;
+    }
+
+    look() {}
+    dispose() {}
+}

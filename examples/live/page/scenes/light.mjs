@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What cloth, rope and jelly share: one sun and a sky, a floor that fades out, and shadows on it.
+import {
+    CircleGeometry,
+    DoubleSide,
+    EqualStencilFunc,
+    IncrementStencilOp,
+    Mesh,
+    ShaderMaterial,
+    Vector3,
+} from "three";
+
+export const sun = new Vector3(-0.45, -0.55, 0.75).normalize();
+
+/** Of a surface of this colour, with normal n towards the eye, direction v to it; gloss from 0 to 1. */
+export const lighting = /* glsl */ `
+    uniform vec3 skyLow, skyHigh, ground;
+    const vec3 sun = vec3(${sun.toArray().map((x) => x.toFixed(4))});
+    vec3 lit(vec3 colour, vec3 n, vec3 v, float gloss) {
+        float day = max(dot(n, sun), 0.0);
+        vec3 round = mix(0.55 * ground + 0.12, 0.45 * skyHigh + 0.38, 0.5 + 0.5 * n.z);
+        vec3 h = normalize(sun + v);
+        float sharp = mix(8.0, 220.0, gloss);
+        float glint = gloss * (0.15 + 2.0 * gloss) * pow(max(dot(n, h), 0.0), sharp) * step(0.0, dot(n, sun));
+        float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);
+        vec3 mirror = mix(ground, mix(skyLow, skyHigh, 0.5), 0.5 + 0.5 * reflect(-v, n).z);
+        return colour * (0.62 * round + 0.72 * day * vec3(1.0, 0.95, 0.86)) + glint + mirror * rim * (0.10 + 0.5 * gloss);
+    }`;
+
+/** The vertex shader of whatever has positions, normals and uv. */
+export const vertex = /* glsl */ `
+    varying vec3 n, v;
+    varying vec2 at;
+    void main() {
+        vec4 p = modelMatrix * vec4(position, 1.0);
+        n = mat3(modelMatrix) * normal;
+        v = cameraPosition - p.xyz;
+        at = uv;
+        gl_Position = projectionMatrix * viewMatrix * p;
+    }`;
+
+export function uniformsOf(theme, more = {}) {
+    const uniforms = { ...more };
+    for (const name of ["skyLow", "skyHigh", "ground"]) uniforms[name] = { value: theme[name] };
+    return uniforms;
+}
+
+export function floorAt(z, uniforms, radius = 4) {
+    const material = new ShaderMaterial({
+        uniforms,
+        transparent: true,
+        depthWrite: false,
+        vertexShader: vertex,
+        fragmentShader: /* glsl */ `
+            ${lighting}
+            varying vec2 at;
+            void main() {
+                float away = 2.0 * length(at - 0.5);
+                gl_FragColor = vec4(ground, 0.9 * (1.0 - smoothstep(0.35, 1.0, away)));
+            }`,
+    });
+    const mesh = new Mesh(new CircleGeometry(radius, 48), material);
+    mesh.position.z = z;
+    mesh.renderOrder = -2;
+    return mesh;
+}
+
+/** The same geometry, cast by the sun to the floor. The stencil keeps it from being darkened twice. */
+export function shadowOf(geometry, z, strength = 0.2) {
+    const material = new ShaderMaterial({
+        transparent: true,
+        depthWrite: false,
+        side: DoubleSide,
+        stencilWrite: true,
+        stencilFunc: EqualStencilFunc,
+        stencilRef: 0,
+        stencilZPass: IncrementStencilOp,
+        vertexShader: /* glsl */ `
+            varying float high;
+            void main() {
+                vec4 p = modelMatrix * vec4(position, 1.0);
+                high = max(p.z - ${(z + 0.004).toFixed(3)}, 0.0);
+                p.xy -= vec2(${(sun.x / sun.z).toFixed(4)}, ${(sun.y / sun.z).toFixed(4)}) * high;
+                p.z = ${(z + 0.004).toFixed(3)};
+                gl_Position = projectionMatrix * viewMatrix * p;
+            }`,
+        fragmentShader: /* glsl */ `
+            varying float high;
+            void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, ${strength.toFixed(2)} * exp(-0.15 * high)); }`,
+    });
+    const mesh = new Mesh(geometry, material);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = -1;
+    return mesh;
+}

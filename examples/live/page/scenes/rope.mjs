@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// A rope held at one end, as a tube along a Catmull-Rom curve through its particles; a heavy end is a ball of iron.
+import {
+    BufferAttribute,
+    BufferGeometry,
+    DynamicDrawUsage,
+    Group,
+    Mesh,
+    ShaderMaterial,
+    SphereGeometry,
+} from "three";
+
+import { smoothNormals } from "../surface.mjs";
+import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
+
+const floor = -2.9; // [m]
+const radius = 0.032; // [m]
+const around = 10;
+const along = 6; // rings a link
+
+const strands = /* glsl */ `
+    ${lighting}
+    varying vec3 n, v;
+    varying vec2 at;
+    void main() {
+        float twist = fract(at.x * 3.0 + at.y * 9.0), groove = min(twist, 1.0 - twist);
+        vec3 c = mix(vec3(0.42, 0.29, 0.15), vec3(0.86, 0.69, 0.44), smoothstep(0.0, 0.28, groove));
+        float fibre = fract(at.x * 21.0 + at.y * 63.0);
+        c *= 0.92 + 0.08 * smoothstep(0.2, 0.5, min(fibre, 1.0 - fibre));
+        gl_FragColor = vec4(lit(c, normalize(n), normalize(v), 0.05), 1.0);
+    }`;
+
+const iron = /* glsl */ `
+    ${lighting}
+    varying vec3 n, v;
+    void main() { gl_FragColor = vec4(lit(vec3(0.17, 0.18, 0.21), normalize(n), normalize(v), 0.75), 1.0); }`;
+
+export class Rope {
+    static camera = { from: [0.5, -5.6, -0.4], to: [0.0, 0, -0.95], orbit: true };
+
+    constructor(info, theme) {
+        const uniforms = uniformsOf(theme);
+        this.uniforms = uniforms;
+        this.particles = info.particles;
+        this.rings = (info.particles - 1) * along + 1;
+        const points = this.rings * (around + 1);
+        const index = [];
+        for (let r = 0; r + 1 < this.rings; r++)
+            for (let a = 0; a < around; a++) {
+                const p = r * (around + 1) + a;
+                const q = p + around + 1;
+                index.push(p, q, p + 1, p + 1, q, q + 1);
+            }
+        const uv = new Float32Array(2 * points);
+        for (let r = 0; r < this.rings; r++)
+            for (let a = 0; a <= around; a++)
+                uv.set([a / around, (r / (this.rings - 1)) * 2], 2 * (r * (around + 1) + a));
+        this.geometry = new BufferGeometry();
+        this.position = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
+        this.normal = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
+        this.geometry.setAttribute("position", this.position);
+        this.geometry.setAttribute("normal", this.normal);
+        this.geometry.setAttribute("uv", new BufferAttribute(uv, 2));
+        this.geometry.setIndex(index);
+        this.index = this.geometry.index.array;
+
+        const material = (fragmentShader) =>
+            new ShaderMaterial({ uniforms, vertexShader: vertex, fragmentShader });
+        const tube = new Mesh(this.geometry, material(strands));
+        tube.frustumCulled = false;
+        const size = info.massRatio > 1 ? 0.26 : 0.06;
+        this.end = new Mesh(new SphereGeometry(size, 32, 22), material(iron));
+        this.endShadow = shadowOf(this.end.geometry, floor);
+        const hook = new Mesh(new SphereGeometry(0.07, 24, 16), material(iron));
+        this.group = new Group();
+        this.floor = floorAt(floor, uniforms);
+        this.group.add(tube, this.end, hook, this.floor, shadowOf(this.geometry, floor), this.endShadow);
+    }
+
+    paint(theme) {
+        for (const name of ["skyLow", "skyHigh", "ground"]) this.uniforms[name].value = theme[name];
+    }
+
+    update({ positions }) {
+        const n = this.particles;
+        const x = this.position.array;
+        const point = (i, axis) => positions[3 * Math.max(0, Math.min(n - 1, i)) + axis];
+        for (let r = 0; r < this.rings; r++) {
+            const cell = Math.min(Math.floor(r / along), n - 2);
+            const t = r / along - cell;
+            const c = [0, 2].map((axis) => {
+                const [p, q, u, w] = [-1, 0, 1, 2].map((k) => point(cell + k, axis));
+                const place =
+                    q + 0.5 * t * (u - p + t * (2 * p - 5 * q + 4 * u - w + t * (3 * (q - u) + w - p)));
+                const slope =
+                    0.5 * (u - p + t * (2 * (2 * p - 5 * q + 4 * u - w) + 3 * t * (3 * (q - u) + w - p)));
+                return [place, slope];
+            });
+            const size = Math.hypot(c[0][1], c[1][1]) || 1;
+            const across = [-c[1][1] / size, c[0][1] / size]; // in the plane; the other direction is y
+            for (let a = 0; a <= around; a++) {
+                const angle = (2 * Math.PI * a) / around;
+                const at = 3 * (r * (around + 1) + a);
+                const u = radius * Math.cos(angle);
+                x[at] = c[0][0] + u * across[0];
+                x[at + 1] = radius * Math.sin(angle);
+                x[at + 2] = c[1][0] + u * across[1];
+            }
+        }
+        smoothNormals(x, this.index, this.normal.array);
+        const { array } = this.normal; // the seam: first and last of a ring are one
+        for (let r = 0; r < this.rings; r++)
+            for (let axis = 0; axis < 3; axis++) {
+                const a = 3 * r * (around + 1) + axis;
+                array[a] = array[a + 3 * around] = array[a] + array[a + 3 * around];
+            }
+        this.position.needsUpdate = this.normal.needsUpdate = true;
+        this.end.position.fromArray(positions, 3 * (n - 1));
+        this.endShadow.position.copy(this.end.position);
+    }
+
+    look() {}
+    dispose() {}
+}

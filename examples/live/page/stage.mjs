@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// One canvas, divided into panes that show the same scene from the same eye; a lost context comes back by itself.
+import {
+    Color,
+    NoToneMapping,
+    PerspectiveCamera,
+    Plane,
+    Raycaster,
+    Scene,
+    Vector2,
+    Vector3,
+    WebGLRenderer,
+} from "three";
+
+import { Cloth } from "./scenes/cloth.mjs";
+import { Jelly } from "./scenes/jelly.mjs";
+import { Rope } from "./scenes/rope.mjs";
+import { Water } from "./scenes/water.mjs";
+
+const views = { water: Water, cloth: Cloth, rope: Rope, jelly: Jelly };
+
+function themeOf(element) {
+    const style = getComputedStyle(element);
+    const colour = (name) => {
+        const c = new Color(style.getPropertyValue(name).trim()).convertLinearToSRGB(); // shaders work in sRGB
+        return new Vector3(c.r, c.g, c.b);
+    };
+    return {
+        skyLow: colour("--sky-low"),
+        skyHigh: colour("--sky-high"),
+        ground: colour("--ground"),
+        coping: colour("--coping"),
+    };
+}
+
+export class Stage {
+    constructor(canvas) {
+        this.canvas = canvas;
+        this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true, stencil: true });
+        this.renderer.toneMapping = NoToneMapping;
+        this.renderer.autoClear = false;
+        this.camera = new PerspectiveCamera(38, 1, 0.05, 60);
+        this.camera.up.set(0, 0, 1);
+        this.turn = { yaw: 0, pitch: 0, zoom: 1 };
+        this.panes = [];
+        this.lost = false;
+        canvas.addEventListener("webglcontextlost", (event) => {
+            event.preventDefault();
+            this.lost = true;
+        });
+        canvas.addEventListener("webglcontextrestored", () => {
+            this.lost = false;
+            this.draw();
+        });
+        new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+        this.resize();
+    }
+
+    /** A view for each pane. */
+    build(info, panes) {
+        for (const { view } of this.panes) view.dispose();
+        const theme = themeOf(this.canvas);
+        const View = views[info.run.scene];
+        this.scene = info.run.scene;
+        this.info = info;
+        this.panes = Array.from({ length: panes }, () => {
+            const scene = new Scene();
+            const view = new View(info, theme, this.renderer);
+            scene.add(view.group);
+            return { scene, view, positions: null };
+        });
+        this.turn = { yaw: 0, pitch: 0, zoom: 1 };
+    }
+
+    repaint() {
+        const theme = themeOf(this.canvas);
+        for (const { view } of this.panes) view.paint(theme);
+        this.draw();
+    }
+
+    resize() {
+        const { clientWidth, clientHeight } = this.canvas.parentElement;
+        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setSize(clientWidth, clientHeight, false);
+        this.draw();
+    }
+
+    /** Of pane i, in CSS pixels from the left and the top. Panes stand side by side, or on each other where it is narrow. */
+    box(i) {
+        const { clientWidth: w, clientHeight: h } = this.canvas;
+        const n = Math.max(1, this.panes.length);
+        return w > h * 0.9 ? { x: (w / n) * i, y: 0, w: w / n, h } : { x: 0, y: (h / n) * i, w, h: h / n };
+    }
+
+    aim(box) {
+        const { from, to } = views[this.scene].camera;
+        const { yaw, pitch, zoom } = this.turn;
+        const target = new Vector3(...to);
+        const arm = new Vector3(...from).sub(target);
+        const flat = Math.hypot(arm.x, arm.y);
+        const angle = Math.atan2(arm.y, arm.x) + yaw;
+        const high = Math.max(-0.4, Math.min(1.45, Math.atan2(arm.z, flat) + pitch));
+        // the scene fits into a square: a narrow pane steps back
+        const reach = (arm.length() / zoom) * Math.max(1, (1.12 * box.h) / box.w);
+        this.camera.position.set(
+            target.x + reach * Math.cos(high) * Math.cos(angle),
+            target.y + reach * Math.cos(high) * Math.sin(angle),
+            target.z + reach * Math.sin(high),
+        );
+        this.camera.aspect = box.w / box.h;
+        this.camera.lookAt(target);
+        this.camera.updateProjectionMatrix();
+        this.camera.updateMatrixWorld();
+    }
+
+    update(frame) {
+        frame.panes.forEach((picture, i) => {
+            const pane = this.panes[i];
+            if (!pane || picture.positions.length !== 3 * this.info.particles) return;
+            if (picture.exploded && pane.positions && !this.tame(picture.positions)) return;
+            pane.positions = picture.positions;
+            pane.view.update(picture);
+        });
+    }
+
+    // What has flown out of sight is no picture: the last one stays.
+    tame(positions) {
+        const most = 40 * this.info.length;
+        return positions.every((x) => Math.abs(x) < most);
+    }
+
+    draw() {
+        if (this.lost || this.panes.length === 0) return;
+        const { renderer } = this;
+        renderer.setScissorTest(true);
+        const height = this.canvas.clientHeight;
+        this.panes.forEach(({ scene, view }, i) => {
+            const box = this.box(i);
+            this.aim(box);
+            view.look(this.camera);
+            renderer.setViewport(box.x, height - box.y - box.h, box.w, box.h);
+            renderer.setScissor(box.x, height - box.y - box.h, box.w, box.h);
+            renderer.clear();
+            renderer.render(scene, this.camera);
+        });
+    }
+
+    // --- what is under a point of the canvas ------------------------------------------------------------------------
+
+    /** {pane, ray} at CSS pixels. */
+    rayAt(x, y) {
+        let pane = this.panes.findIndex((_, i) => {
+            const box = this.box(i);
+            return x >= box.x && x < box.x + box.w && y >= box.y && y < box.y + box.h;
+        });
+        pane = Math.max(0, pane);
+        return { pane, ray: this.rayIn(pane, x, y) };
+    }
+
+    rayIn(pane, x, y) {
+        const box = this.box(pane);
+        this.aim(box);
+        const caster = new Raycaster();
+        caster.setFromCamera(
+            new Vector2((2 * (x - box.x)) / box.w - 1, 1 - (2 * (y - box.y)) / box.h),
+            this.camera,
+        );
+        return caster.ray;
+    }
+
+    /** Where the ray meets the water at rest, [x, y] of the scene, or null. */
+    onWater(ray) {
+        const hit = ray.intersectPlane(new Plane(new Vector3(0, 0, 1), 0), new Vector3());
+        if (!hit) return null;
+        const { length } = this.info;
+        const [x, y] = [hit.x + length / 2, hit.y + length / 2];
+        return x >= 0 && x <= length && y >= 0 && y <= length ? [x, y] : null;
+    }
+
+    /** The particle nearest to the ray, if it is within so many CSS pixels; of those that are alike the foremost. */
+    nearest(pane, ray, pixels) {
+        const { positions, view } = this.panes[pane];
+        if (!positions) return null;
+        const offset = view.group.position;
+        const box = this.box(pane);
+        const scale = box.h / 2 / Math.tan((this.camera.fov * Math.PI) / 360);
+        const p = new Vector3();
+        const rel = new Vector3();
+        let best = null;
+        let least = Infinity;
+        for (let i = 0; i < this.info.particles; i++) {
+            p.fromArray(positions, 3 * i).add(offset);
+            const along = rel.copy(p).sub(ray.origin).dot(ray.direction);
+            if (along <= 0) continue;
+            const away = (Math.sqrt(ray.distanceSqToPoint(p)) / along) * scale;
+            if (away > pixels) continue;
+            const score = away + (20 * along) / this.info.length;
+            if (score < least) {
+                least = score;
+                best = i;
+            }
+        }
+        return best;
+    }
+
+    /** A plane through a particle, towards the eye. */
+    planeThrough(pane, particle) {
+        const { positions, view } = this.panes[pane];
+        const p = new Vector3().fromArray(positions, 3 * particle).add(view.group.position);
+        this.aim(this.box(pane));
+        const normal =
+            this.scene === "rope" ? new Vector3(0, 1, 0) : this.camera.getWorldDirection(new Vector3());
+        return new Plane().setFromNormalAndCoplanarPoint(normal, p);
+    }
+
+    /** CSS pixels of a particle of a pane. */
+    pixelOf(pane, particle) {
+        const { positions, view } = this.panes[pane];
+        const box = this.box(pane);
+        this.aim(box);
+        const p = new Vector3()
+            .fromArray(positions, 3 * particle)
+            .add(view.group.position)
+            .project(this.camera);
+        return [box.x + ((p.x + 1) / 2) * box.w, box.y + ((1 - p.y) / 2) * box.h];
+    }
+
+    toScene(pane, point) {
+        return point.clone().sub(this.panes[pane].view.group.position).toArray();
+    }
+}

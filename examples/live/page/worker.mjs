@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Physics, in a worker so that it never waits for drawing, nor drawing for it. The page asks for one tick at a time; a
+// tick advances every pane by what is due and sends back what is drawn of it.
+import { Module } from "./module.mjs";
+import { presets } from "./presets.mjs";
+
+const longestTick = 0.1; // [s]; beyond, the scene falls behind
+const tooFar = 15; // lengths of the scene: what has gone so far has exploded, though its numbers hold on for a while
+const tearing = 2.2; // lengths over rest lengths at which links tear while something is held
+
+let module;
+let run;
+let panes = []; // {lab, method, exploded, busy, taken, micros}
+let reference = null; // {lab, method, steps}
+let steps = 1;
+
+function everyLab() {
+    return reference ? [...panes.map((pane) => pane.lab), reference.lab] : panes.map((pane) => pane.lab);
+}
+
+function dropAll() {
+    for (const lab of everyLab()) lab.free();
+    panes = [];
+    reference = null;
+}
+
+function newPane(method) {
+    return { lab: module.make(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
+}
+
+function newReference() {
+    const lab = module.make(run);
+    const offered = module.methods.filter((method) => lab.takes(method));
+    const method = offered.reduce((a, b) => (module.orderOf(b) > module.orderOf(a) ? b : a));
+    return { lab, method, steps: presets[run.scene].steps * (module.orderOf(method) > 4 ? 1 : 6) };
+}
+
+function describe() {
+    const { lab } = panes[0];
+    const { particles, links, count, length, massRatio, ends, pinned } = lab;
+    const methods = module.methods.map((name) => ({
+        name,
+        order: module.orderOf(name),
+        forces: module.forcesPerStep(name),
+        taken: lab.takes(name),
+        stable: lab.takes(name) ? lab.stableStep(name) : NaN,
+    }));
+    return { run, particles, links, count, length, massRatio, ends, pinned, methods };
+}
+
+function make(settings) {
+    dropAll();
+    run = settings.run;
+    steps = settings.steps;
+    panes = settings.methods.map(newPane);
+    for (const pane of panes) if (!pane.lab.takes(pane.method)) pane.method = "leapfrog";
+    if (settings.reference) reference = newReference();
+    for (const lab of everyLab()) {
+        if (settings.wind) lab.wind(settings.wind);
+        if (settings.rain) lab.rain(settings.rain);
+    }
+    postMessage({ kind: "made", ...describe() });
+    show("frame", { asked: true });
+}
+
+function advance(pane, n) {
+    const start = performance.now();
+    const taken = pane.lab.advance(pane.method, steps, n);
+    pane.busy += performance.now() - start;
+    pane.taken += taken;
+    const far = pane.lab.farthest;
+    if (!pane.exploded && (taken < n || !(far <= tooFar * pane.lab.length)))
+        pane.exploded = { time: pane.lab.time, overflow: taken < n };
+    if (pane.busy > 20) {
+        pane.micros = ((1000 * pane.busy) / pane.taken) * steps;
+        pane.busy = pane.taken = 0;
+    }
+    return taken;
+}
+
+function advanceAll(n, evenExploded) {
+    for (const pane of panes) if (evenExploded || !pane.exploded) advance(pane, n);
+    if (!reference || panes.every((pane) => pane.exploded)) return;
+    const frames = panes[0].lab.time * 60; // to the same time, in its own steps
+    const due = Math.round(frames * reference.steps) - Math.round(reference.lab.time * 60 * reference.steps);
+    if (due > 0) reference.lab.advance(reference.method, reference.steps, due);
+}
+
+function tearHeld() {
+    if (run.scene === "cloth")
+        for (const pane of panes) if (pane.held && !pane.exploded) pane.lab.tear(tearing);
+}
+
+function picture(pane) {
+    const { lab } = pane;
+    const { ball } = lab;
+    const positions = lab.positions(steps);
+    const { method, exploded, micros, held } = pane;
+    const error = reference && !exploded ? lab.distance(reference.lab) : NaN;
+    const torn = run.scene === "cloth" ? lab.cut : new Uint8Array(0);
+    return {
+        positions,
+        torn,
+        ball,
+        method,
+        time: lab.time,
+        energy: lab.energies,
+        exploded,
+        micros,
+        error,
+        held,
+    };
+}
+
+function show(kind, more) {
+    const pictures = panes.map(picture);
+    const buffers = pictures.flatMap(({ positions, torn }) => [positions.buffer, torn.buffer]);
+    postMessage({ kind, panes: pictures, steps, ...more }, buffers);
+}
+
+function tick(elapsed) {
+    const due = panes.map((pane) => pane.lab.due(Math.min(elapsed, longestTick), steps, 10 * steps));
+    advanceAll(due[0], false);
+    tearHeld();
+    show("frame");
+}
+
+// What the page's tests and buttons ask for, with an answer.
+const questions = {
+    step(frames) {
+        for (let frame = 0; frame < frames; frame++) advanceAll(steps, true);
+        tearHeld();
+        show("frame", { asked: true });
+        return panes[0].lab.time;
+    },
+    hash: () => panes[0].lab.hash(),
+    time: () => panes[0].lab.time,
+    energy: () => panes[0].lab.energies.total,
+    position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
+    difference: () => panes[0].lab.distance(reference.lab),
+    tornLinks: () => panes[0].lab.cut.reduce((sum, each) => sum + each, 0),
+};
+
+const orders = {
+    async start({ bytes }) {
+        module = await Module.load(bytes);
+        postMessage({ kind: "ready", methods: module.methods });
+    },
+    make,
+    tick: ({ elapsed }) => tick(elapsed),
+    steps: (message) => {
+        steps = message.steps;
+    },
+    method: ({ pane, method }) => {
+        if (panes[pane]) Object.assign(panes[pane], { method, busy: 0, taken: 0 });
+    },
+    poke: ({ x, y, force, area }) => everyLab().forEach((lab) => lab.poke(x, y, force, area)),
+    rain: ({ rate }) => everyLab().forEach((lab) => lab.rain(rate)),
+    wind: ({ speed }) => everyLab().forEach((lab) => lab.wind(speed)),
+    ball: ({ x, y, height }) => everyLab().forEach((lab) => lab.dropBall(x, y, height)),
+    grab: ({ particle }) => {
+        for (const pane of panes) pane.held = true;
+        everyLab().forEach((lab) => lab.grab(particle));
+    },
+    drag: ({ to }) => everyLab().forEach((lab) => lab.drag(...to)),
+    release: () => {
+        for (const pane of panes) pane.held = false;
+        everyLab().forEach((lab) => lab.release());
+    },
+    snip: ({ particle }) => everyLab().forEach((lab) => lab.snip(particle)),
+    ask({ id, question, parameters }) {
+        postMessage({ kind: "answer", id, answer: questions[question](...parameters) });
+    },
+};
+
+onmessage = ({ data }) => orders[data.kind](data);
