@@ -106,7 +106,7 @@ export class Controls {
     label(name) {
         const words = {
             rk4: "Runge–Kutta 4",
-            rkn8: "Runge–Kutta–Nyström 8",
+            rkn8: "RKN 8",
             "symplectic-euler": "symplectic Euler",
         };
         const text = words[name] ?? name;
@@ -201,7 +201,7 @@ export class Controls {
         for (const each of document.querySelectorAll(".of-cloth")) each.hidden = state.scene !== "cloth";
         $("command").textContent = this.actions.command();
         [state.method, state.other].forEach((method, i) => {
-            if (this.panes[i]) this.panes[i].name.textContent = this.label(method);
+            if (method && this.panes[i]) this.panes[i].name.textContent = this.label(method);
         });
         this.numbers();
     }
@@ -301,7 +301,7 @@ export class Controls {
             ),
             row(
                 "Microseconds a frame",
-                chosen.map((_, i) => (this.micros[i] > 0 ? this.micros[i].toPrecision(3) : "–")),
+                chosen.map((_, i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])}` : "–")),
             ),
         ];
         if (this.state.reference)

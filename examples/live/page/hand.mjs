@@ -26,6 +26,13 @@ export class Hand {
         });
     }
 
+    /** A new scene: nothing is held, and the cursor has no place in it. */
+    begun() {
+        this.doing = null;
+        this.place = null;
+        this.cursor.hidden = true;
+    }
+
     down(event) {
         if (this.doing || event.button > 0) return;
         this.cursor.hidden = true;

@@ -129,7 +129,7 @@ const hand = new Hand(
 );
 
 physics.onmade = (info) => {
-    hand.up(hand.doing?.by);
+    hand.begun();
     stage.build(info, state.other ? 2 : 1);
     controls.made(info);
 };

@@ -33,6 +33,14 @@ function themeOf(element) {
     };
 }
 
+function dispose({ scene, view }) {
+    scene.traverse(({ geometry, material }) => {
+        geometry?.dispose();
+        material?.dispose();
+    });
+    view.dispose();
+}
+
 export class Stage {
     constructor(canvas) {
         this.canvas = canvas;
@@ -47,6 +55,7 @@ export class Stage {
         canvas.addEventListener("webglcontextlost", (event) => {
             event.preventDefault();
             this.lost = true;
+            for (const pane of this.panes) pane.stale = true; // what it had in the context is gone
         });
         canvas.addEventListener("webglcontextrestored", () => {
             this.lost = false;
@@ -58,7 +67,7 @@ export class Stage {
 
     /** A view for each pane. */
     build(info, panes) {
-        for (const { view } of this.panes) view.dispose();
+        for (const pane of this.panes) if (!pane.stale) dispose(pane);
         const theme = themeOf(this.canvas);
         const View = views[info.run.scene];
         this.scene = info.run.scene;

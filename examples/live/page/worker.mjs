@@ -32,7 +32,7 @@ function newReference() {
     const lab = module.make(run);
     const offered = module.methods.filter((method) => lab.takes(method));
     const method = offered.reduce((a, b) => (module.orderOf(b) > module.orderOf(a) ? b : a));
-    return { lab, method, steps: presets[run.scene].steps * (module.orderOf(method) > 4 ? 1 : 6) };
+    return { lab, method, steps: presets[run.scene].steps * (module.orderOf(method) > 4 ? 2 : 8) };
 }
 
 function describe() {

@@ -24,7 +24,9 @@ export async function open(browser, url, how = {}, before = null) {
     const page = await context.newPage();
     page.complaints = [];
     page.on("console", (message) => {
-        if (["error", "warning"].includes(message.type())) page.complaints.push(message.text());
+        const screenshot = message.text().includes("GL Driver Message"); // it is slow, and says so
+        if (["error", "warning"].includes(message.type()) && !screenshot)
+            page.complaints.push(message.text());
     });
     page.on("pageerror", (error) => page.complaints.push(`${error}`));
     page.on("request", (request) => {

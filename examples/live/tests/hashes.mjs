@@ -1,69 +1,68 @@
 // SPDX-License-Identifier: MIT
 // Has the module of the live page, with and without SIMD, the bits of spring-scene? Each scene with each method, 600
-// frames with a scripted poke, and scenes as the page's controls make them. Prints TAP.
-//
-// usage: node hashes.mjs FOLDER-OF-MODULES SPRING-SCENE
-import { spawnSync } from "node:child_process";
+// frames with a scripted poke, and scenes as the page's controls make them.
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 
 import { Module } from "../page/module.mjs";
 import { commandOf, heavyEnd, heavySteps, presets } from "../page/presets.mjs";
+import { Cases } from "./harness.mjs";
 
-const [folder, tool] = process.argv.slice(2);
 const frames = 600;
 const pokeAt = 37; // frames
 
-function native(run, method, steps, poke) {
-    const duration = frames / 60;
-    const done = spawnSync(tool, [...commandOf(run, method, steps, duration).slice(1), ...poke], {
-        encoding: "utf8",
-    });
-    return done.stdout.trim();
+/** What spring-scene --hash prints; status 1 is a scene that blows up. */
+export function native(tool, run, method, steps, duration, poke = []) {
+    const words = [...commandOf(run, method, steps, duration).slice(1), ...poke];
+    return new Promise((resolve, reject) =>
+        execFile(tool, words, (error, out, complaint) => {
+            if (error && error.code !== 1) reject(new Error(complaint));
+            else resolve(out.trim());
+        }),
+    );
 }
 
-function pokeOf(lab, run) {
-    const { length } = lab;
-    const along = run.scene === "rope" ? 0 : 0.3 * length;
-    return [0.4 * length, along, run.scene === "water" ? 5e4 : 2, (length * length) / 20];
+/** The poke that a scene gets: [x, y, force, area]. */
+export function pokeOf(scene, length) {
+    const along = scene === "rope" ? 0 : 0.3 * length;
+    return [0.4 * length, along, scene === "water" ? 5e4 : 2, (length * length) / 20];
 }
 
 function inModule(module, run, method, steps) {
     const lab = module.make({ ...run, calm: true }); // spring-scene pokes water that is not poked
-    lab.poke(...pokeOf(lab, run), pokeAt / 60); // known from the start, as spring-scene knows it
+    lab.poke(...pokeOf(run.scene, lab.length), pokeAt / 60); // known from the start, as spring-scene knows it
     for (let frame = 0; frame < frames; frame++) if (lab.advance(method, steps, steps) < steps) break;
     const hash = lab.hash();
     lab.free();
     return hash;
 }
 
-const runs = Object.keys(presets).map((scene) => ({ scene }));
-runs.push({ scene: "rope", ...heavyEnd });
-runs.push({ scene: "cloth", size: 12, damping: 0.01, drag: 0.02 });
-runs.push({ scene: "water", size: 40, drag: 2 });
-
-const modules = [];
-for (const name of ["lab.wasm", "lab-nosimd.wasm"])
-    modules.push({ name, module: await Module.load(readFileSync(join(folder, name))) });
-
-let count = 0;
-let failed = 0;
-for (const run of runs) {
-    const trial = modules[0].module.make(run);
-    const methods = modules[0].module.methods.filter((method) => trial.takes(method));
-    const poke = ["--poke", [pokeAt / 60, ...pokeOf(trial, run)].join(",")];
-    trial.free();
-    for (const method of methods) {
-        const steps = run.endMass ? heavySteps : presets[run.scene].steps;
-        const wanted = native(run, method, steps, poke);
-        for (const { name, module } of modules) {
-            const hash = inModule(module, run, method, steps);
-            const same = /^[0-9a-f]{16}$/.test(wanted) && hash === wanted;
-            failed += !same;
-            const what = `${name}: ${JSON.stringify(run)} ${method}`;
-            console.log(`${same ? "ok" : "not ok"} ${++count} - ${what}: ${hash}, spring-scene ${wanted}`);
-        }
+export async function testHashes(folder, tool) {
+    const load = (name) => Module.load(readFileSync(join(folder, name)));
+    const modules = { SIMD: await load("lab.wasm"), "no SIMD": await load("lab-nosimd.wasm") };
+    const runs = Object.keys(presets).map((scene) => ({ scene }));
+    const further = [
+        { scene: "rope", ...heavyEnd },
+        { scene: "cloth", size: 12, damping: 0.01, drag: 0.02 },
+        { scene: "water", size: 40, drag: 2 },
+    ];
+    const cases = new Cases("bits");
+    for (const run of [...runs, ...further]) {
+        const lab = modules.SIMD.make(run);
+        const poke = ["--poke", [pokeAt / 60, ...pokeOf(run.scene, lab.length)].join(",")];
+        const methods = modules.SIMD.methods.filter((method) => lab.takes(method));
+        lab.free();
+        for (const method of methods)
+            await cases.case(`${JSON.stringify(run)} ${method}`, async () => {
+                const steps = run.endMass ? heavySteps : presets[run.scene].steps;
+                const wanted = await native(tool, run, method, steps, frames / 60, poke);
+                assert.match(wanted, /^[0-9a-f]{16}$/);
+                assert.equal(inModule(modules.SIMD, run, method, steps), wanted, "SIMD");
+                if (runs.includes(run))
+                    assert.equal(inModule(modules["no SIMD"], run, method, steps), wanted, "no SIMD");
+            });
     }
+    return cases;
 }
-console.log(`1..${count}`);
-process.exit(failed ? 1 : 0);

@@ -25,21 +25,21 @@ const flesh = /* glsl */ `
     void main() {
         vec3 normal = normalize(n) * (inside > 0.5 ? -1.0 : 1.0), eye = normalize(v);
         float facing = clamp(dot(normal, eye), 0.0, 1.0);
-        vec3 deep = vec3(0.62, 0.02, 0.10), thin = vec3(1.0, 0.30, 0.26);
+        vec3 deep = vec3(0.80, 0.04, 0.12), thin = vec3(1.0, 0.34, 0.30);
         vec3 c = mix(thin, deep, 0.25 + 0.55 * facing);
         float through = pow(max(dot(-normal, sun), 0.0), 1.5) + 0.35 * pow(clamp(dot(-eye, sun) * 0.5 + 0.5, 0.0, 1.0), 2.0);
         vec3 glow = vec3(1.0, 0.22, 0.16) * (0.30 * through + 0.16);
-        vec3 colour = lit(c, normal, eye, 0.8) * 0.8 + glow;
-        gl_FragColor = inside > 0.5 ? vec4(0.7 * colour, 1.0) : vec4(colour, 0.80 + 0.17 * pow(1.0 - facing, 2.0));
+        vec3 colour = lit(c, normal, eye, 0.75) * 0.8 + glow;
+        gl_FragColor = inside > 0.5 ? vec4(0.7 * colour, 1.0) : vec4(colour, 0.70 + 0.25 * pow(1.0 - facing, 2.0));
     }`;
 
 const china = /* glsl */ `
     ${lighting}
     varying vec3 n, v;
-    void main() { gl_FragColor = vec4(lit(vec3(0.93, 0.93, 0.90), normalize(n), normalize(v), 0.5), 1.0); }`;
+    void main() { gl_FragColor = vec4(lit(vec3(0.16, 0.30, 0.46), normalize(n), normalize(v), 0.5), 1.0); }`;
 
 export class Jelly {
-    static camera = { from: [0.75, -1.75, 1.02], to: [0, 0, 0.27], orbit: true };
+    static camera = { from: [0.72, -1.62, 0.98], to: [0, 0, 0.29], orbit: true };
 
     constructor(info, theme) {
         const n = info.count[0];

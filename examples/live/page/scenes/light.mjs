@@ -18,7 +18,8 @@ export const lighting = /* glsl */ `
     const vec3 sun = vec3(${sun.toArray().map((x) => x.toFixed(4))});
     vec3 lit(vec3 colour, vec3 n, vec3 v, float gloss) {
         float day = max(dot(n, sun), 0.0);
-        vec3 round = mix(0.55 * ground + 0.12, 0.45 * skyHigh + 0.38, 0.5 + 0.5 * n.z);
+        vec3 above = mix(vec3(dot(skyHigh, vec3(0.3333))), skyHigh, 0.35);
+        vec3 round = mix(0.55 * ground + 0.12, 0.45 * above + 0.38, 0.5 + 0.5 * n.z);
         vec3 h = normalize(sun + v);
         float sharp = mix(8.0, 220.0, gloss);
         float glint = gloss * (0.15 + 2.0 * gloss) * pow(max(dot(n, h), 0.0), sharp) * step(0.0, dot(n, sun));

@@ -13,7 +13,7 @@ import {
 import { smoothNormals } from "../surface.mjs";
 import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
 
-const floor = -2.9; // [m]
+const floor = -2.55; // [m]
 const radius = 0.032; // [m]
 const around = 10;
 const along = 6; // rings a link
@@ -36,7 +36,7 @@ const iron = /* glsl */ `
     void main() { gl_FragColor = vec4(lit(vec3(0.17, 0.18, 0.21), normalize(n), normalize(v), 0.75), 1.0); }`;
 
 export class Rope {
-    static camera = { from: [0.5, -5.6, -0.4], to: [0.0, 0, -0.95], orbit: true };
+    static camera = { from: [0.4, -5.0, -0.55], to: [0.0, 0, -0.92], orbit: true };
 
     constructor(info, theme) {
         const uniforms = uniformsOf(theme);

@@ -25,7 +25,7 @@ import { Upsampler } from "../surface.mjs";
 
 const depth = 1.15; // [m]
 const rim = 0.05; // [m] of the pool over the water
-const exaggeration = 1.6; // of heights
+const exaggeration = 2; // of heights
 
 const shared = /* glsl */ `
     uniform float side;
@@ -188,7 +188,7 @@ function groundAround(side) {
 }
 
 export class Water {
-    static camera = { from: [0, -4.7, 3.1], to: [0, -0.25, -0.35], orbit: true };
+    static camera = { from: [0.55, -4.75, 2.95], to: [0.02, -0.25, -0.3], orbit: true };
 
     constructor(info, theme, renderer) {
         const n = info.count[0];
