@@ -18,7 +18,8 @@ function option(value, text, disabled = false) {
 function seconds(t) {
     if (t === 0) return "none";
     if (!Number.isFinite(t)) return "any";
-    return t < 0.1 ? `${(1000 * t).toPrecision(3)} ms` : `${t.toPrecision(3)} s`;
+    if (t < 1e-4) return `${+(1e6 * t).toPrecision(3)} µs`;
+    return t < 0.1 ? `${(1000 * t).toPrecision(3)} ms` : `${t.toPrecision(3)} s`;
 }
 
 function element(tag, attributes = {}, ...children) {
@@ -100,6 +101,7 @@ export class Controls {
         $("error-figure").hidden = !state.reference;
         $("hash-out").textContent = "";
         this.last = null;
+        this.dirty = false;
         this.show();
     }
 
@@ -211,6 +213,7 @@ export class Controls {
     frame({ panes }) {
         if (!this.panes || panes.length !== this.panes.length) return;
         this.last = panes;
+        this.dirty = true;
         this.time = panes[0].time;
         this.micros = panes.map((pane) => pane.micros);
         const exploded = panes.map((pane) => pane.exploded !== null);
@@ -255,8 +258,9 @@ export class Controls {
     /** Now and then: the eye reads no faster. */
     draw() {
         const now = performance.now();
-        if (now - this.drawn < drawEvery || !this.last) return;
+        if (now - this.drawn < drawEvery || !this.dirty) return;
         this.drawn = now;
+        this.dirty = false;
         this.energy.draw();
         if (this.state.reference) this.error.draw();
         this.last.forEach(({ time }, i) => {
@@ -296,12 +300,12 @@ export class Controls {
                 chosen.map((method) => seconds(this.stable(method))),
             ),
             row(
-                "Force evaluations a frame",
+                "Evaluations a frame",
                 chosen.map((method) => `${of(method).forces * this.state.steps}`),
             ),
             row(
-                "Microseconds a frame",
-                chosen.map((_, i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])}` : "–")),
+                "Computing a frame",
+                chosen.map((_, i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–")),
             ),
         ];
         if (this.state.reference)

@@ -151,6 +151,7 @@ function keep(list, value) {
 
 let last = performance.now();
 let shown = last;
+let drawn = last;
 function animate(now) {
     requestAnimationFrame(animate);
     keep(intervals, now - shown);
@@ -158,12 +159,14 @@ function animate(now) {
     if (state.paused) last = now;
     else if (physics.tick(((now - last) / 1000) * state.speed)) last = now;
     if (fresh) {
+        if (!state.paused) stage.pace(now - drawn);
+        drawn = now;
         const start = performance.now();
         stage.draw();
         keep(drawings, performance.now() - start);
-        controls.draw();
         fresh = false;
     }
+    controls.draw();
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -22,6 +22,15 @@ function limits(lines, exploded, log) {
     return [low - room, high + room];
 }
 
+/** Powers of ten, at most five of them. */
+function decades(u, axis, low, high) {
+    const [first, last] = [Math.round(Math.log10(low)), Math.round(Math.log10(high))];
+    const stride = Math.max(1, Math.ceil((last - first) / 4));
+    const list = [];
+    for (let power = first; power <= last; power += stride) list.push(10 ** power);
+    return list;
+}
+
 export class Plot {
     constructor(element, log) {
         this.element = element;
@@ -45,7 +54,9 @@ export class Plot {
             ticks: { show: false },
         };
         const shown = (u, splits) =>
-            splits.map((y) => (y === null ? "" : this.log ? y.toExponential(0) : `${+y.toPrecision(6)}`));
+            splits.map((y) =>
+                this.log || (y && Math.abs(y) < 1e-3) ? y.toExponential(0) : `${+y.toPrecision(6)}`,
+            );
         this.plot = new uPlot(
             {
                 ...this.room(),
@@ -58,7 +69,12 @@ export class Plot {
                 },
                 axes: [
                     { ...axis, size: 24, values: (u, splits) => splits.map((t) => `${+t.toPrecision(6)} s`) },
-                    { ...axis, size: 58, values: shown },
+                    {
+                        ...axis,
+                        size: 58,
+                        values: shown,
+                        ...(this.log ? { splits: decades, filter: (u, splits) => splits } : {}),
+                    },
                 ],
                 series: [
                     {},

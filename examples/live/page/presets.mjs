@@ -41,7 +41,7 @@ export const sentences = {
         "cloth",
     ],
     rope: [
-        "Swing it, then give it a heavy end, ten thousand times as heavy as a link: the rope does not become rubber, because steps of a scene need no solver that gives up. It costs steps instead.",
+        "Swing it by its end. Then give it a heavy end, ten thousand times as heavy as a link, and pull that: it stays a rope, and its energy stays. What the weight costs is steps: take fewer, and see.",
         "rope",
     ],
     jelly: [

@@ -33,6 +33,15 @@ function themeOf(element) {
     };
 }
 
+// Is everything drawn by the processor? Then smooth edges cost more than the rest of the picture.
+function isSoftware() {
+    const gl = document.createElement("canvas").getContext("webgl2");
+    const info = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = info ? `${gl.getParameter(info.UNMASKED_RENDERER_WEBGL)}` : "";
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+    return /swiftshader|llvmpipe|software/i.test(name);
+}
+
 function dispose({ scene, view }) {
     scene.traverse(({ geometry, material }) => {
         geometry?.dispose();
@@ -44,7 +53,11 @@ function dispose({ scene, view }) {
 export class Stage {
     constructor(canvas) {
         this.canvas = canvas;
-        this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true, stencil: true });
+        this.software = isSoftware();
+        const antialias = !this.software;
+        this.sharpness = 1; // pixels drawn for one that would be
+        this.paces = [];
+        this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias, stencil: true });
         this.renderer.toneMapping = NoToneMapping;
         this.renderer.autoClear = false;
         this.camera = new PerspectiveCamera(38, 1, 0.05, 60);
@@ -74,7 +87,7 @@ export class Stage {
         this.info = info;
         this.panes = Array.from({ length: panes }, () => {
             const scene = new Scene();
-            const view = new View(info, theme, this.renderer);
+            const view = new View(info, theme, this.renderer, this.software);
             scene.add(view.group);
             return { scene, view, positions: null };
         });
@@ -89,9 +102,21 @@ export class Stage {
 
     resize() {
         const { clientWidth, clientHeight } = this.canvas.parentElement;
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+        this.renderer.setPixelRatio(this.sharpness * Math.min(devicePixelRatio, 2));
         this.renderer.setSize(clientWidth, clientHeight, false);
         this.draw();
+    }
+
+    /** From one frame to the next, in milliseconds: where that is slow for long, fewer pixels are drawn. */
+    pace(interval) {
+        const slow = 22; // [ms]
+        this.paces.push(interval);
+        if (this.paces.length < 90) return;
+        const median = this.paces.sort((a, b) => a - b)[45];
+        this.paces = [];
+        if (median < slow || this.sharpness < 0.6) return;
+        this.sharpness *= 0.85;
+        this.resize();
     }
 
     /** Of pane i, in CSS pixels from the left and the top. Panes stand side by side, or on each other where it is narrow. */
@@ -102,15 +127,15 @@ export class Stage {
     }
 
     aim(box) {
-        const { from, to } = views[this.scene].camera;
+        const { from, to, fit } = views[this.scene].camera;
         const { yaw, pitch, zoom } = this.turn;
         const target = new Vector3(...to);
         const arm = new Vector3(...from).sub(target);
         const flat = Math.hypot(arm.x, arm.y);
         const angle = Math.atan2(arm.y, arm.x) + yaw;
         const high = Math.max(-0.4, Math.min(1.45, Math.atan2(arm.z, flat) + pitch));
-        // the scene fits into a square: a narrow pane steps back
-        const reach = (arm.length() / zoom) * Math.max(1, (1.12 * box.h) / box.w);
+        // the scene fits into a box of this shape: before a narrower pane the eye steps back
+        const reach = (arm.length() / zoom) * Math.max(1, (fit * box.h) / box.w);
         this.camera.position.set(
             target.x + reach * Math.cos(high) * Math.cos(angle),
             target.y + reach * Math.cos(high) * Math.sin(angle),

@@ -61,7 +61,7 @@ function weave(columns, rows, ends) {
 }
 
 export class Cloth {
-    static camera = { from: [1.5, -5.0, -0.75], to: [0, 0.2, -1.42], orbit: true };
+    static camera = { from: [1.5, -5.0, -0.75], to: [0, 0.2, -1.42], fit: 1.1 };
 
     constructor(info, theme) {
         const [columns, rows] = info.count;

@@ -27,10 +27,11 @@ const flesh = /* glsl */ `
         float facing = clamp(dot(normal, eye), 0.0, 1.0);
         vec3 deep = vec3(0.80, 0.04, 0.12), thin = vec3(1.0, 0.34, 0.30);
         vec3 c = mix(thin, deep, 0.25 + 0.55 * facing);
-        float through = pow(max(dot(-normal, sun), 0.0), 1.5) + 0.35 * pow(clamp(dot(-eye, sun) * 0.5 + 0.5, 0.0, 1.0), 2.0);
+        float back = max(dot(-normal, sun), 0.0), towards = 0.5 - 0.5 * dot(eye, sun);
+        float through = back * back + 0.35 * towards * towards;
         vec3 glow = vec3(1.0, 0.22, 0.16) * (0.30 * through + 0.16);
         vec3 colour = lit(c, normal, eye, 0.75) * 0.8 + glow;
-        gl_FragColor = inside > 0.5 ? vec4(0.7 * colour, 1.0) : vec4(colour, 0.70 + 0.25 * pow(1.0 - facing, 2.0));
+        gl_FragColor = inside > 0.5 ? vec4(0.7 * colour, 1.0) : vec4(colour, 0.70 + 0.25 * (1.0 - facing) * (1.0 - facing));
     }`;
 
 const china = /* glsl */ `
@@ -39,7 +40,7 @@ const china = /* glsl */ `
     void main() { gl_FragColor = vec4(lit(vec3(0.16, 0.30, 0.46), normalize(n), normalize(v), 0.5), 1.0); }`;
 
 export class Jelly {
-    static camera = { from: [0.72, -1.62, 0.98], to: [0, 0, 0.29], orbit: true };
+    static camera = { from: [0.72, -1.62, 0.98], to: [0, 0, 0.29], fit: 1.25 };
 
     constructor(info, theme) {
         const n = info.count[0];

@@ -19,11 +19,13 @@ export const lighting = /* glsl */ `
     vec3 lit(vec3 colour, vec3 n, vec3 v, float gloss) {
         float day = max(dot(n, sun), 0.0);
         vec3 above = mix(vec3(dot(skyHigh, vec3(0.3333))), skyHigh, 0.35);
-        vec3 round = mix(0.55 * ground + 0.12, 0.45 * above + 0.38, 0.5 + 0.5 * n.z);
+        vec3 round = mix(0.45 * ground + 0.34, 0.40 * above + 0.42, 0.5 + 0.5 * n.z);
         vec3 h = normalize(sun + v);
         float sharp = mix(8.0, 220.0, gloss);
-        float glint = gloss * (0.15 + 2.0 * gloss) * pow(max(dot(n, h), 0.0), sharp) * step(0.0, dot(n, sun));
-        float rim = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 4.0);
+        float glint = gloss * (0.15 + 2.0 * gloss) * exp2(1.5 * sharp * (dot(n, h) - 1.0)) * step(0.0, dot(n, sun));
+        float rim = 1.0 - clamp(dot(n, v), 0.0, 1.0);
+        rim *= rim;
+        rim *= rim;
         vec3 mirror = mix(ground, mix(skyLow, skyHigh, 0.5), 0.5 + 0.5 * reflect(-v, n).z);
         return colour * (0.62 * round + 0.72 * day * vec3(1.0, 0.95, 0.86)) + glint + mirror * rim * (0.10 + 0.5 * gloss);
     }`;

@@ -36,7 +36,7 @@ const iron = /* glsl */ `
     void main() { gl_FragColor = vec4(lit(vec3(0.17, 0.18, 0.21), normalize(n), normalize(v), 0.75), 1.0); }`;
 
 export class Rope {
-    static camera = { from: [0.4, -5.0, -0.55], to: [0.0, 0, -0.92], orbit: true };
+    static camera = { from: [0.4, -5.0, -0.55], to: [0.0, 0, -0.92], fit: 1.1 };
 
     constructor(info, theme) {
         const uniforms = uniformsOf(theme);

@@ -35,16 +35,15 @@ const shared = /* glsl */ `
 
     vec3 sky(vec3 d) {
         float up = clamp(d.z, 0.0, 1.0);
-        vec3 c = mix(skyLow, skyHigh, pow(up, 0.55));
-        float s = max(dot(d, sun), 0.0);
-        return c + vec3(1.0, 0.9, 0.75) * (0.25 * pow(s, 24.0) + 4.0 * pow(s, 900.0));
+        float s = dot(d, sun) - 1.0;
+        return mix(skyLow, skyHigh, sqrt(up)) + vec3(1.0, 0.9, 0.75) * (0.25 * exp2(34.0 * s) + 4.0 * exp2(1300.0 * s));
     }
 
     vec3 tiles(vec2 p) {
         vec2 cell = fract(p * 4.0), edge = min(cell, 1.0 - cell);
         float joint = smoothstep(0.02, 0.06, min(edge.x, edge.y));
         vec2 which = floor(p * 4.0);
-        float tone = fract(sin(dot(which, vec2(12.9, 78.2))) * 43758.5);
+        float tone = fract(52.98 * fract(dot(which, vec2(0.6711, 0.2584))));
         return mix(vec3(0.36, 0.52, 0.56), mix(vec3(0.50, 0.78, 0.82), vec3(0.66, 0.89, 0.90), tone), joint);
     }
 
@@ -98,7 +97,8 @@ const surfaceFragment = /* glsl */ `
     void main() {
         vec3 n = normalize(normalOf), d = normalize(place - eye);
         float facing = clamp(-dot(n, d), 0.0, 1.0);
-        float mirror = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
+        float glance = 1.0 - facing, glance2 = glance * glance;
+        float mirror = 0.02 + 0.98 * glance2 * glance2 * glance;
         vec3 above = sky(reflect(d, n));
 
         vec3 t = refract(d, n, 0.75);
@@ -114,9 +114,8 @@ const surfaceFragment = /* glsl */ `
                 seen = 0.85 * beach((o + path * t) / ball.w);
             }
         }
-        vec3 below = mix(vec3(0.05, 0.36, 0.46), seen, exp(-path * vec3(0.55, 0.16, 0.12)));
-        vec3 c = mix(below, above, mirror);
-        gl_FragColor = vec4(pow(c, vec3(0.9)), 1.0);
+        vec3 below = mix(vec3(0.05, 0.36, 0.46), seen, exp2(-path * vec3(0.70, 0.20, 0.15)));
+        gl_FragColor = vec4(1.06 * mix(below, above, mirror), 1.0);
     }`;
 
 const wallFragment = /* glsl */ `
@@ -188,12 +187,12 @@ function groundAround(side) {
 }
 
 export class Water {
-    static camera = { from: [0.55, -4.75, 2.95], to: [0.02, -0.25, -0.3], orbit: true };
+    static camera = { from: [0.55, -4.75, 2.95], to: [0.02, -0.25, -0.3], fit: 1.4 };
 
-    constructor(info, theme, renderer) {
+    constructor(info, theme, renderer, software) {
         const n = info.count[0];
         const side = info.length;
-        const times = Math.max(1, Math.round(96 / (n - 1)));
+        const times = Math.max(1, Math.round((software ? 48 : 96) / (n - 1)));
         this.n = n;
         this.upsampler = new Upsampler(n, times);
         const fine = this.upsampler.fine;
