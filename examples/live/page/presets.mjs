@@ -33,7 +33,7 @@ export function commandOf(run, method, steps, duration) {
 /** What to try, what it shows, and the figure of the report that measures it. */
 export const sentences = {
     water: [
-        "Poke it, let it rain, drop the ball. Then choose Euler: its waves grow instead of fading, until the water explodes, while leapfrog with the same work keeps it calm.",
+        "Poke it, let it rain, drop the ball. Then choose Euler: the water explodes, where leapfrog stays calm with the same work. With 300 steps a frame you can watch Euler's waves grow.",
         "water-euler-explodes",
     ],
     cloth: [
@@ -45,7 +45,7 @@ export const sentences = {
         "rope",
     ],
     jelly: [
-        "Pull a corner and let go. Put Euler beside leapfrog and watch the energy: the same springs, the same step, and only one of them comes to rest.",
+        "Pull a corner and let go. Put Euler beside leapfrog: the same springs, the same steps, and one of them tears itself apart.",
         "scene-energy",
     ],
 };

@@ -27,7 +27,7 @@ export const lighting = /* glsl */ `
         rim *= rim;
         rim *= rim;
         vec3 mirror = mix(ground, mix(skyLow, skyHigh, 0.5), 0.5 + 0.5 * reflect(-v, n).z);
-        return colour * (0.62 * round + 0.72 * day * vec3(1.0, 0.95, 0.86)) + glint + mirror * rim * (0.10 + 0.5 * gloss);
+        return colour * (0.62 * round + 0.14 * clamp(dot(n, v), 0.0, 1.0) + 0.72 * day * vec3(1.0, 0.95, 0.86)) + glint + mirror * rim * (0.10 + 0.5 * gloss);
     }`;
 
 /** The vertex shader of whatever has positions, normals and uv. */
