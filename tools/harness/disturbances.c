@@ -172,6 +172,11 @@ static bool has_ended(const disturbance *d, double t)
     return d->start + d->duration <= t;
 }
 
+bool disturbances_any(const disturbances *p)
+{
+    return p->count > 0;
+}
+
 void disturbances_forget(disturbances *p, double t)
 {
     for (size_t i = 0; i < p->count; i++)

@@ -53,6 +53,9 @@ void disturbances_free(disturbances *p); /* NULL: nothing */
     that there are; of equal starts the one added first comes first. SPRING_ENOMEM leaves those that there are. */
 spring_status disturbances_add(disturbances *p, const preset *r, const disturbance *d);
 
+/** Are there any, past ones that are not forgotten and future ones included? */
+bool disturbances_any(const disturbances *p);
+
 /** Forget all if all have ended at t, so that a scene that runs for ever takes no more memory for ever. */
 void disturbances_forget(disturbances *p, double t);
 

@@ -8,11 +8,10 @@
 
 #include "harness/scene_run.h"
 
-static const double push_duration = 0.02; /* [s], as in spring-scene */
 static const double frame_rate = 60;
 
-static void force(void *user, double t, size_t particles, const double *const position[3],
-                  const double *const velocity[3], double *const out[3])
+void lab_force(void *user, double t, size_t particles, const double *const position[3], const double *const velocity[3],
+               double *const out[3])
 {
     const lab *l = user;
     disturbances_force(l->pushes, t, particles, position, velocity, out);
@@ -20,9 +19,14 @@ static void force(void *user, double t, size_t particles, const double *const po
         weather_force(l, t, position, out);
 }
 
+/* Without a callback steps take one pass over memory, with the same bits. But leapfrog keeps forces from step to step, and
+   of damped links what it has kept decides the bits of the next: there the callback stays, and nothing is found again. */
 void lab_feel(lab *l)
 {
-    spring_scene_set_force(l->scene, force, l);
+    const bool needed = l->wind > 0 || l->settings.damping > 0 || disturbances_any(l->pushes);
+    if (needed != l->felt)
+        spring_scene_set_force(l->scene, needed ? lab_force : NULL, l);
+    l->felt = needed;
 }
 
 EXPORT void lab_free(lab *l)
@@ -39,6 +43,12 @@ EXPORT void lab_free(lab *l)
     free(l->ends);
     free(l->cut);
     free(l);
+}
+
+/* Of water nothing is edited, and links that cannot be take a byte each. */
+static uint32_t flags_of(const lab *l)
+{
+    return l->settings.kind == PRESET_WATER ? 0 : SPRING_SCENE_EDITABLE;
 }
 
 static uint32_t all_methods(const preset *r)
@@ -69,7 +79,7 @@ static bool make(lab *l, bool calm)
         return false;
     l->pushes = disturbances_new(&l->preset);
     if (l->pushes == NULL ||
-        preset_start(&l->preset, all_methods(&l->preset), SPRING_SCENE_EDITABLE, &l->scene, &l->bytes) != SPRING_OK)
+        preset_start(&l->preset, all_methods(&l->preset), flags_of(l), &l->scene, &l->bytes) != SPRING_OK)
         return false;
     if (!allocate(l))
         return false;
@@ -144,9 +154,16 @@ EXPORT bool lab_takes(const lab *l, uint32_t method)
     return preset_takes(&l->preset, (spring_method)method);
 }
 
-static uint64_t steps(lab *l, uint32_t method, double dt, uint64_t n)
+/* All of n steps, and what is drawn before and after the last of them; false, and nothing done, where it explodes. */
+static bool take(lab *l, spring_method m, double dt, uint64_t n)
 {
-    return scene_run_steps(l->scene, l->saved, l->bytes, (spring_method)method, dt, n);
+    memcpy(l->saved, l->scene, l->bytes);
+    bool holds = spring_scene_advance(l->scene, m, dt, n - 1) == SPRING_OK;
+    preset_positions(&l->preset, l->scene, l->before);
+    holds = holds && spring_scene_advance(l->scene, m, dt, 1) == SPRING_OK && scene_run_holds(l->scene);
+    if (!holds)
+        memcpy(l->scene, l->saved, l->bytes);
+    return holds;
 }
 
 /* Takes n steps of 1/(60 steps_per_frame) s, or as many as the scene survives; returns how many. */
@@ -158,12 +175,12 @@ EXPORT uint32_t lab_advance(lab *l, uint32_t method, uint32_t steps_per_frame, u
     hand_pull(l, duration);
     weather_rain(l, now + duration);
     weather_ball(l, duration);
-    uint64_t taken = steps(l, method, dt, n - 1);
-    preset_positions(&l->preset, l->scene, l->before);
-    if (taken == n - 1)
-        taken += steps(l, method, dt, 1);
+    uint64_t taken = n;
+    if (!take(l, (spring_method)method, dt, n))
+        taken = scene_run_steps(l->scene, l->saved, l->bytes, (spring_method)method, dt, n);
     preset_positions(&l->preset, l->scene, l->now);
     disturbances_forget(l->pushes, spring_scene_time(l->scene));
+    lab_feel(l);
     return (uint32_t)taken;
 }
 
@@ -261,7 +278,7 @@ EXPORT double lab_farthest(const lab *l)
     return sqrt(most);
 }
 
-/* As spring-scene --poke. */
+/* As spring-scene --poke. It begins with no force, so one that has been kept holds. */
 EXPORT bool lab_poke(lab *l, double start, double x, double y, double peak, double area)
 {
     const disturbance d = {start, push_duration, x, y, peak, area, DISTURBANCE_ROUND};

@@ -13,6 +13,8 @@
 
 #define EXPORT __attribute__((visibility("default"), used))
 
+static const double push_duration = 0.02; /* [s] of pokes, drops and the ball, as in spring-scene */
+
 typedef struct ball { /* single springs, by the exact solution: free fall, then afloat */
     bool there, afloat;
     double x, y;
@@ -26,6 +28,7 @@ typedef struct lab {
     void *saved; /* a copy, to return to */
     size_t bytes;
     disturbances *pushes;
+    bool felt; /* has the scene a callback? */
     spring_clock clock;
 
     double *before, *now; /* [particles*3] the last two states */
@@ -46,7 +49,11 @@ typedef struct lab {
     ball ball;
 } lab;
 
-/* The callback of the scene as it is now, or none: to be called after every change of what acts on it. */
+/* The callback of scenes; user points to the lab. */
+void lab_force(void *user, double t, size_t particles, const double *const position[3], const double *const velocity[3],
+               double *const out[3]);
+
+/* Gives the scene its callback if anything acts on it, else none: to be called after every change of that. */
 void lab_feel(lab *l);
 
 void hand_pull(lab *l, double duration);

@@ -5,8 +5,6 @@
 #include "harness/random.h"
 #include "lab.h"
 
-static const double push_duration = 0.02; /* [s] */
-
 /* --------------------------------------------------------------------------------------------------------- wind */
 
 /* A number in [-1, 1] that changes smoothly within a second. */
@@ -22,6 +20,8 @@ EXPORT void lab_wind(lab *l, double speed)
 {
     l->wind = speed;
     lab_feel(l);
+    if (l->felt)
+        spring_scene_set_force(l->scene, lab_force, l); /* at once: one that has been kept is of another wind */
 }
 
 static void difference(const double *const x[3], size_t a, size_t b, double out[3])

@@ -37,7 +37,7 @@ export const sentences = {
         "water-euler-explodes",
     ],
     cloth: [
-        "Pull a fold, blow, or pull hard until it tears. Take fewer steps a frame until the meter turns red: above the stable step every method shreds the cloth, Runge–Kutta 4 later than leapfrog.",
+        "Pull a fold, blow, or pull hard until it tears. Then take fewer steps a frame: up to the stable step nothing happens, not far above it leapfrog shreds the cloth, and Runge–Kutta 4 is next.",
         "cloth",
     ],
     rope: [

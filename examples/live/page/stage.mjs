@@ -62,7 +62,7 @@ export class Stage {
         this.renderer.autoClear = false;
         this.camera = new PerspectiveCamera(38, 1, 0.05, 60);
         this.camera.up.set(0, 0, 1);
-        this.turn = { yaw: 0, pitch: 0, zoom: 1 };
+        this.turn = { yaw: 0, pitch: 0 };
         this.panes = [];
         this.lost = false;
         canvas.addEventListener("webglcontextlost", (event) => {
@@ -91,7 +91,7 @@ export class Stage {
             scene.add(view.group);
             return { scene, view, positions: null };
         });
-        this.turn = { yaw: 0, pitch: 0, zoom: 1 };
+        this.turn = { yaw: 0, pitch: 0 };
     }
 
     repaint() {
@@ -128,14 +128,14 @@ export class Stage {
 
     aim(box) {
         const { from, to, fit } = views[this.scene].camera;
-        const { yaw, pitch, zoom } = this.turn;
+        const { yaw, pitch } = this.turn;
         const target = new Vector3(...to);
         const arm = new Vector3(...from).sub(target);
         const flat = Math.hypot(arm.x, arm.y);
         const angle = Math.atan2(arm.y, arm.x) + yaw;
         const high = Math.max(-0.4, Math.min(1.45, Math.atan2(arm.z, flat) + pitch));
         // the scene fits into a box of this shape: before a narrower pane the eye steps back
-        const reach = (arm.length() / zoom) * Math.max(1, (fit * box.h) / box.w);
+        const reach = arm.length() * Math.max(1, (fit * box.h) / box.w);
         this.camera.position.set(
             target.x + reach * Math.cos(high) * Math.cos(angle),
             target.y + reach * Math.cos(high) * Math.sin(angle),

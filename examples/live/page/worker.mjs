@@ -11,7 +11,7 @@ const tearing = 2.2; // lengths over rest lengths at which links tear while some
 let module;
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}
-let reference = null; // {lab, method, steps}
+let reference = null; // {lab, method}
 let steps = 1;
 
 function everyLab() {
@@ -28,11 +28,17 @@ function newPane(method) {
     return { lab: module.make(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
 }
 
+// The most accurate method. Its steps divide those of the panes, so that all can be compared at the same times.
 function newReference() {
     const lab = module.make(run);
     const offered = module.methods.filter((method) => lab.takes(method));
     const method = offered.reduce((a, b) => (module.orderOf(b) > module.orderOf(a) ? b : a));
-    return { lab, method, steps: presets[run.scene].steps * (module.orderOf(method) > 4 ? 2 : 8) };
+    return { lab, method };
+}
+
+function referenceSteps() {
+    const enough = presets[run.scene].steps * (module.orderOf(reference.method) > 4 ? 2 : 8);
+    return steps * Math.max(2, Math.ceil(enough / steps));
 }
 
 function describe() {
@@ -81,9 +87,9 @@ function advance(pane, n) {
 function advanceAll(n, evenExploded) {
     for (const pane of panes) if (evenExploded || !pane.exploded) advance(pane, n);
     if (!reference || panes.every((pane) => pane.exploded)) return;
-    const frames = panes[0].lab.time * 60; // to the same time, in its own steps
-    const due = Math.round(frames * reference.steps) - Math.round(reference.lab.time * 60 * reference.steps);
-    if (due > 0) reference.lab.advance(reference.method, reference.steps, due);
+    const time = Math.max(...panes.map((pane) => (pane.exploded ? 0 : pane.lab.time)));
+    const due = Math.round((time - reference.lab.time) * 60 * referenceSteps());
+    if (due > 0) reference.lab.advance(reference.method, referenceSteps(), due);
 }
 
 function tearHeld() {

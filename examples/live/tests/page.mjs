@@ -72,6 +72,24 @@ async function testBits(cases, page, tool) {
                 assert.equal(await ask(page, "hash"), wanted);
             });
     }
+    await cases.case("the bits of spring-scene: damped links, a poke while it runs", async () => {
+        await choose(page, "jelly", "leapfrog");
+        await page.fill("#damping", "3");
+        await begin(page);
+        await ask(page, "step", 30);
+        const poke = ["--poke", [await ask(page, "time"), ...pokeOf("jelly", 0.7)].join(",")];
+        await ask(page, "poke", ...pokeOf("jelly", 0.7));
+        await ask(page, "step", 30);
+        const wanted = await native(
+            tool,
+            { scene: "jelly", damping: 0.03 },
+            "leapfrog",
+            presets.jelly.steps,
+            1,
+            poke,
+        );
+        assert.equal(await ask(page, "hash"), wanted);
+    });
     await cases.case("the command that the page shows, with other settings", async () => {
         await choose(page, "rope", "rk4");
         await page.click("#heavy");

@@ -1,14 +1,59 @@
 // SPDX-License-Identifier: MIT
-// How long frames and steps of the live page take, drawn in software at 960 x 540: TSV. Nothing is judged.
+// How long steps of the live page take beside plain JavaScript, and how long frames, drawn in software at 960 x 540: two
+// tables in TSV. Nothing is judged.
 //
 // usage: node times.mjs FOLDER [SECONDS]     the folder that tools/live has written; on a quiet machine
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 import { presets } from "../page/presets.mjs";
+import { Module } from "../page/module.mjs";
 import { launch, open } from "./browser.mjs";
+import { Plain } from "./plain.mjs";
 
 const [folder, seconds = "5"] = process.argv.slice(2);
+
+// --- steps, in Node.js: the engine is that of Chromium ------------------------------------------------------------------
+
+const module = await Module.load(readFileSync(join(resolve(folder), "lab.wasm")));
+
+// Microseconds a frame, the least of many, of both in turn.
+function framesOf(scene, size, mass, stiffness, gravity) {
+    const { steps } = presets[scene];
+    const dt = 1 / (60 * steps);
+    const lab = module.make({ scene, size, drag: 0, calm: true });
+    const plain = new Plain(lab, mass, stiffness, gravity);
+    const both = [() => lab.advance("leapfrog", steps, steps), () => plain.advance(dt, steps)];
+    const least = [Infinity, Infinity];
+    for (let round = 0; round < 150; round++)
+        both.forEach((advance, i) => {
+            const start = process.hrtime.bigint();
+            advance();
+            least[i] = Math.min(least[i], Number(process.hrtime.bigint() - start) / 1000);
+            if (round === 5 && i === 1) compare(lab, plain); // before small differences grow
+        });
+    const { links } = lab;
+    lab.free();
+    return [scene, size, links, steps, ...least.map((us) => us.toFixed(0)), (least[1] / least[0]).toFixed(2)];
+}
+
+function compare(lab, plain) {
+    const ours = lab.positions(1);
+    const last = ours.length - 1; // a corner that has fallen, or water at rest
+    const theirs = plain.x.at(-1);
+    assert.ok(Math.abs(ours[last] - theirs) < 1e-3, `${ours[last]} m, ${theirs} m`);
+}
+
+console.log("scene\tsize\tlinks\tsteps\tmodule_us\tplain_us\tspeedup");
+for (const size of [25, 35, 50]) {
+    console.log(framesOf("cloth", size, 0.01, 500, 9.81).join("\t"));
+    console.log(framesOf("water", size, 1, 25000, 0).join("\t"));
+}
+
+// --- frames, in Chromium -------------------------------------------------------------------------------------------------
+
 const browser = await launch();
 const page = await open(browser, pathToFileURL(join(resolve(folder), "index.html")).href, {
     viewport: { width: 1400, height: 900 },
