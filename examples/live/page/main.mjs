@@ -193,7 +193,7 @@ window.springstepLab = {
     difference: () => physics.ask("difference"),
     tornLinks: () => physics.ask("tornLinks"),
     command: async () => commandOf(run(), state.method, state.steps, await physics.ask("time")).join(" "),
-    times: () => ({ intervals, drawings, micros: controls.micros }),
+    times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),
     simd: physics.simd,
 };
 

@@ -77,7 +77,7 @@ function advance(pane, n) {
     const far = pane.lab.farthest;
     if (!pane.exploded && (taken < n || !(far <= tooFar * pane.lab.length)))
         pane.exploded = { time: pane.lab.time, overflow: taken < n };
-    if (pane.busy > 20) {
+    if (pane.busy > 20 || pane.taken > 60 * steps) {
         pane.micros = ((1000 * pane.busy) / pane.taken) * steps;
         pane.busy = pane.taken = 0;
     }
@@ -143,7 +143,7 @@ const questions = {
     time: () => panes[0].lab.time,
     energy: () => panes[0].lab.energies.total,
     position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
-    difference: () => panes[0].lab.distance(reference.lab),
+    difference: () => (reference ? panes[0].lab.distance(reference.lab) : NaN),
     tornLinks: () => panes[0].lab.cut.reduce((sum, each) => sum + each, 0),
 };
 

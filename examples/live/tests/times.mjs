@@ -61,7 +61,7 @@ const page = await open(browser, pathToFileURL(join(resolve(folder), "index.html
 await page.addStyleTag({ content: "#stage { width: 960px !important; height: 540px !important }" });
 
 const part = (list, q) => list.sort((a, b) => a - b)[Math.min(list.length - 1, Math.floor(q * list.length))];
-console.log("scene\tmethod\tsteps\tframe_ms_median\tframe_ms_p95\tdraw_ms_median\tsimulation_us");
+console.log("scene\tmethod\tsteps\tframe_ms_median\tframe_ms_p95\tdraw_ms_median\tsimulation_us\tsharpness");
 for (const scene of Object.keys(presets))
     for (const method of ["leapfrog", "rk4"]) {
         await page.selectOption("#scene", scene);
@@ -75,10 +75,21 @@ for (const scene of Object.keys(presets))
             intervals.length = drawings.length = 0;
         });
         await page.waitForTimeout(1000 * Number(seconds));
-        const { intervals, drawings, micros } = await page.evaluate(() => window.springstepLab.times());
+        const { intervals, drawings, micros, sharpness } = await page.evaluate(() =>
+            window.springstepLab.times(),
+        );
         const numbers = [part(intervals, 0.5), part(intervals, 0.95), part(drawings, 0.5)].map((ms) =>
             ms.toFixed(2),
         );
-        console.log([scene, method, presets[scene].steps, ...numbers, micros[0].toFixed(0)].join("\t"));
+        console.log(
+            [
+                scene,
+                method,
+                presets[scene].steps,
+                ...numbers,
+                micros[0].toFixed(0),
+                sharpness.toFixed(2),
+            ].join("\t"),
+        );
     }
 await browser.close();
