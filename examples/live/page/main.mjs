@@ -31,6 +31,12 @@ const state = {
     rain: 0,
     scissors: false,
 };
+let touched = false; // since the scene began
+
+function touch(kind, how) {
+    touched = true;
+    physics.order(kind, how);
+}
 
 function run() {
     const each = { scene: state.scene };
@@ -42,6 +48,7 @@ function run() {
 
 function remake() {
     const { method, other, steps, reference } = state;
+    touched = false;
     physics.order("make", {
         run: run(),
         steps,
@@ -99,17 +106,17 @@ const actions = {
         return physics.ask("step", 1);
     },
     reset: remake,
-    poke: (x, y, force, area) => physics.order("poke", { x, y, force, area }),
+    poke: (x, y, force, area) => touch("poke", { x, y, force, area }),
     wind(speed) {
         state.wind = speed;
-        physics.order("wind", { speed });
+        touch("wind", { speed });
     },
     rain(rate) {
         state.rain = rate;
-        physics.order("rain", { rate });
+        touch("rain", { rate });
         controls.show();
     },
-    ball: (x, y, height) => physics.order("ball", { x, y, height }),
+    ball: (x, y, height) => touch("ball", { x, y, height }),
     hash: () => physics.ask("hash"),
     command: () => commandOf(run(), state.method, state.steps, controls.time).join(" "),
 };
@@ -120,10 +127,10 @@ const hand = new Hand(
     document.getElementById("cursor"),
     {
         poke: (x, y) => actions.poke(x, y, 4e4, (stage.info.length ** 2 / 64) * 0.7),
-        grab: (particle) => physics.order("grab", { particle }),
+        grab: (particle) => touch("grab", { particle }),
         drag: (to) => physics.order("drag", { to }),
         release: () => physics.order("release"),
-        snip: (particle) => physics.order("snip", { particle }),
+        snip: (particle) => touch("snip", { particle }),
     },
     () => state.scene === "cloth" && state.scissors,
 );
@@ -175,9 +182,11 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
 });
 still.addEventListener("change", () => actions.pause(still.matches));
 
-/** For tests, and for whoever opens the console: of the first pane. */
+/** For tests, and for whoever opens the console: of the first pane. step() stops the clock; a scene that was running, and
+    that nobody has touched, begins again, so that as many frames have passed as it is told. */
 window.springstepLab = {
     async step(frames) {
+        if (!state.paused && !touched) remake();
         actions.pause(true);
         return physics.ask("step", frames);
     },

@@ -72,6 +72,17 @@ async function testBits(cases, page, tool) {
                 assert.equal(await ask(page, "hash"), wanted);
             });
     }
+    await cases.case(
+        "the bits of spring-scene: a scene that runs begins again when it is stepped",
+        async () => {
+            await choose(page, "cloth", "rk4");
+            await page.click("#pause");
+            await until("it runs", async () => (await ask(page, "time")) > 0);
+            await ask(page, "step", 30);
+            const wanted = await native(tool, { scene: "cloth" }, "rk4", presets.cloth.steps, 0.5);
+            assert.equal(await ask(page, "hash"), wanted);
+        },
+    );
     await cases.case("the bits of spring-scene: damped links, a poke while it runs", async () => {
         await choose(page, "jelly", "leapfrog");
         await page.fill("#damping", "3");
