@@ -29,16 +29,16 @@ static int compare(const void *left, const void *right)
 static bool read_mesh(FILE *file, size_t *vertices, size_t *links)
 {
     char line[512];
-    size_t n = *vertices = 0;
+    size_t n = *vertices = *links = 0;
     while (fgets(line, sizeof line, file) != NULL) {
         double *x = position[*vertices];
         if (sscanf(line, "v %lf %lf %lf", &x[0], &x[1], &x[2]) == 3 && ++*vertices == MOST)
             return false;
         if (line[0] != 'f' || line[1] != ' ')
             continue;
-        long corner[4];
+        long corner[5];
         int corners = 0;
-        for (char *at = line + 1; corners < 4; corners++) { /* 7, 7/1 and 7/1/3 are vertex 7, counted from 1 */
+        for (char *at = line + 1; corners < 5; corners++) { /* 7, 7/1 and 7/1/3 are vertex 7, counted from 1 */
             char *end;
             corner[corners] = strtol(at, &end, 10);
             if (end == at)
@@ -49,13 +49,12 @@ static bool read_mesh(FILE *file, size_t *vertices, size_t *links)
         for (int i = 0; i < corners; i++)
             for (int j = 0; j < i; j++, n++) {
                 const long a = corner[i] < corner[j] ? corner[i] : corner[j], b = corner[i] + corner[j] - a;
-                if (n == MOST || a < 1 || b > (long)*vertices || a == b)
+                if (n == MOST || corners == 5 || a < 1 || b > (long)*vertices || a == b)
                     return false;
                 link[n] = (spring_link){.a = (uint32_t)(a - 1), .b = (uint32_t)(b - 1), .stiffness = 300};
             }
     }
     qsort(link, n, sizeof *link, compare);
-    *links = 0;
     for (size_t i = 0; i < n; i++) {
         if (i > 0 && compare(&link[i], &link[i - 1]) == 0)
             continue;
@@ -105,10 +104,11 @@ static bool fly(const char *name, double (*x)[3], size_t vertices, size_t links)
 
 int main(int argc, char **argv)
 {
-    FILE *file = fopen(argc > 1 ? argv[1] : "flag.obj", "r");
+    const char *name = argc > 1 ? argv[1] : "flag.obj";
+    FILE *file = fopen(name, "r");
     size_t vertices, links;
     if (file == NULL || !read_mesh(file, &vertices, &links))
-        return 1;
+        return fprintf(stderr, "%s should be a mesh of triangles and quadrilaterals\n", name), 1;
     fclose(file);
     printf("%zu particles, %zu springs\n", vertices, links);
     if (!fly("as in the file", position, vertices, links) ||

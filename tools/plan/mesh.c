@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Scenes from mesh files; see mesh.h. */
+#define _POSIX_C_SOURCE 200809L /* getline() */
 #include "mesh.h"
 
 #include <errno.h>
@@ -7,10 +8,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 #include "common/cli.h"
 
-enum { longest_line = 4096, most_corners = 64 };
+enum { most_corners = 64 };
+
+static const char blank[] = " \t\r\n";
 
 /* A file, as far as it is read. */
 typedef struct mesh {
@@ -43,13 +47,19 @@ static void *grown(void *array, size_t *capacity, size_t count, size_t size)
     return resized(array, *capacity, size);
 }
 
-static void add_vertex(mesh *m, char *at)
+static bool ends_word(char c)
+{
+    return strchr(blank, c) != NULL; /* or the line */
+}
+
+/* What follows, a weight or a colour, does not count. */
+static void add_vertex(mesh *m, const char *at)
 {
     m->position = grown(m->position, &m->vertex_capacity, m->vertices, sizeof *m->position);
     for (int axis = 0; axis < 3; axis++) {
         char *end;
         const double x = strtod(at, &end);
-        if (end == at || !isfinite(x))
+        if (end == at || !ends_word(*end) || !isfinite(x))
             refuse(m, "a vertex should have three finite numbers");
         m->position[m->vertices][axis] = x;
         at = end;
@@ -66,21 +76,21 @@ static void add_link(mesh *m, uint32_t a, uint32_t b)
 }
 
 /* 7, 7/1, 7//3 and 7/1/3 are the seventh vertex, -1 is the last one so far. */
-static uint32_t read_corner(const mesh *m, char **at)
+static uint32_t read_corner(const mesh *m, const char **at)
 {
     char *end;
     const long long number = strtoll(*at, &end, 10), count = (long long)m->vertices;
-    if (end == *at || number == 0 || number > count || number < -count || strchr("/ \t\r\n", *end) == NULL)
+    if (end == *at || number == 0 || number > count || number < -count || (*end != '/' && !ends_word(*end)))
         refuse(m, "a corner should be the number of a vertex above");
-    *at = end + strcspn(end, " \t\r\n");
+    *at = end + strcspn(end, blank);
     return (uint32_t)(number > 0 ? number - 1 : count + number);
 }
 
-static void add_edges(mesh *m, char *at, bool face)
+static void add_edges(mesh *m, const char *at, bool face)
 {
     uint32_t corner[most_corners];
     size_t corners = 0;
-    for (; at += strspn(at, " \t\r\n"), *at != '\0'; corners++) {
+    for (; at += strspn(at, blank), *at != '\0'; corners++) {
         if (corners == most_corners)
             refuse(m, "a face should not have more than 64 corners");
         corner[corners] = read_corner(m, &at);
@@ -97,24 +107,35 @@ static void add_edges(mesh *m, char *at, bool face)
     }
 }
 
-static void read_lines(mesh *m)
+static void read_line(mesh *m, char *line)
 {
+    line[strcspn(line, "#")] = '\0';
+    const char *word = line + strspn(line, blank);
+    const size_t length = strcspn(word, blank);
+    if (length == 1 && word[0] == 'v')
+        add_vertex(m, word + 1);
+    else if (length == 1 && (word[0] == 'f' || word[0] == 'l'))
+        add_edges(m, word + 1, word[0] == 'f');
+}
+
+static void read_file(mesh *m)
+{
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
     FILE *file = fopen(m->path, "r");
     if (file == NULL)
         cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
-    char line[longest_line];
-    while (fgets(line, sizeof line, file) != NULL) {
+    char *line = NULL;
+    size_t capacity = 0;
+    for (ssize_t length; (length = getline(&line, &capacity, file)) >= 0;) {
         m->line++;
-        if (strchr(line, '\n') == NULL && !feof(file))
-            refuse(m, "a line should not be longer than 4094 bytes");
-        const bool is_space = line[0] != '\0' && strchr(" \t", line[1]) != NULL;
-        if (line[0] == 'v' && is_space)
-            add_vertex(m, line + 1);
-        else if ((line[0] == 'f' || line[0] == 'l') && is_space)
-            add_edges(m, line + 1, line[0] == 'f');
+        if (strlen(line) != (size_t)length)
+            refuse(m, "a text should have no bytes of 0");
+        const bool marked = m->line == 1 && strncmp(line, byte_order_mark, 3) == 0;
+        read_line(m, marked ? line + 3 : line);
     }
-    if (ferror(file))
+    if (!feof(file))
         cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
+    free(line);
     fclose(file);
     if (m->links == 0)
         cli_fail(CLI_USAGE, "--mesh: \"%s\" should have faces or lines", m->path);
@@ -159,28 +180,44 @@ static double *renumber(mesh *m)
     return position;
 }
 
-static uint8_t *pin_highest(const double *position, size_t vertices)
+/* The highest vertices, of those with links; those without stay where they are. */
+static uint8_t *pin_highest(const mesh *m, const double *position)
 {
-    uint8_t *pinned = resized(NULL, vertices, sizeof *pinned);
+    enum { free_to_move, held };
+    uint8_t *pinned = resized(NULL, m->vertices, sizeof *pinned);
+    memset(pinned, held, m->vertices);
     double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < vertices; i++) {
-        low = fmin(low, position[3 * i + 1]);
-        high = fmax(high, position[3 * i + 1]);
+    for (size_t i = 0; i < m->links; i++) {
+        const uint32_t ends[2] = {m->link[i].a, m->link[i].b};
+        for (int end = 0; end < 2; end++) {
+            pinned[ends[end]] = free_to_move;
+            low = fmin(low, position[3 * ends[end] + 1]);
+            high = fmax(high, position[3 * ends[end] + 1]);
+        }
     }
     const double rounding = 1e-6; /* of the numbers in a file */
-    for (size_t i = 0; i < vertices; i++)
-        pinned[i] = position[3 * i + 1] >= high - rounding * (high - low);
+    bool moves = false;
+    for (size_t i = 0; i < m->vertices; i++) {
+        if (position[3 * i + 1] >= high - rounding * (high - low))
+            pinned[i] = held;
+        moves = moves || pinned[i] == free_to_move;
+    }
+    if (!moves)
+        cli_fail(CLI_USAGE,
+                 "--mesh: \"%s\" is level; some of its vertices should be lower than others, since the highest "
+                 "are held (y is up)",
+                 m->path);
     return pinned;
 }
 
 preset mesh_read(const char *path, const mesh_settings *settings)
 {
     mesh m = {.path = path};
-    read_lines(&m);
+    read_file(&m);
     join_once(&m, settings);
     preset scene = {.position = renumber(&m), .link = m.link};
     free(m.position);
-    scene.pinned = pin_highest(scene.position, m.vertices);
+    scene.pinned = pin_highest(&m, scene.position);
     scene.def = (spring_scene_def){.axes = 3,
                                    .particles = m.vertices,
                                    .links = m.links,

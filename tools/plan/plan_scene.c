@@ -17,7 +17,9 @@
 #include "scene/start.h"
 
 static const double frames_a_second = 60;
-static const double law_holds = 0.5; /* an error below this falls by the order of the method */
+static const double most_numbers = 2e7; /* of the reference that are kept: a second of 10^5 particles */
+static const double patience = 30;      /* times the work that is wanted, where a reference takes more */
+static const double law_holds = 0.5;    /* an error below this falls by the order of the method */
 
 struct plan_scene {
     const preset *preset;
@@ -129,7 +131,12 @@ static void run_reference(plan_scene *s, double error, double work)
 {
     const spring_method m = best_method(s);
     const double below = ldexp(1, spring_method_describe(m)->order) - 1, share = 20;
-    uint64_t substeps = (uint64_t)ceil(s->frame / fmin(stable_step(s, m), s->frame)) * 2;
+    const double fewest = 2 * ceil(s->frame / fmin(stable_step(s, m), s->frame));
+    if (!(work_of(s, m, 3 * fewest) <= patience * work))
+        cli_fail(CLI_FAILED,
+                 "the reference of this scene would need %.3g steps a frame in %" PRIu64 " frames: too long", fewest,
+                 s->frames);
+    uint64_t substeps = (uint64_t)fewest;
     double *coarse = room(s->frames * s->numbers), *fine = room(s->frames * s->numbers);
     bool known = run(s, m, substeps, coarse);
     for (;; substeps *= 2) {
@@ -141,7 +148,7 @@ static void run_reference(plan_scene *s, double error, double work)
             s->reference[i] = fine[i] + (fine[i] - coarse[i]) / below;
         measure_motion(s);
         s->uncertainty = off / s->motion;
-        if (s->uncertainty <= error / share || work_of(s, m, 4 * (double)substeps) > work)
+        if (!(s->motion > 0) || s->uncertainty <= error / share || work_of(s, m, 4 * (double)substeps) > work)
             break;
         double *other = coarse;
         coarse = fine;
@@ -159,9 +166,13 @@ plan_scene *plan_scene_new(const preset *scene, double duration, double error, d
     if (s == NULL)
         cli_fail(CLI_FAILED, "out of memory");
     s->preset = scene;
-    s->frames = (uint64_t)fmax(rint(duration * frames_a_second), 1);
-    s->frame = duration / (double)s->frames;
     s->numbers = s->preset->def.particles * s->preset->def.axes;
+    const double frames = fmax(rint(duration * frames_a_second), 1);
+    if (frames * (double)s->numbers > most_numbers)
+        cli_fail(CLI_USAGE, "--duration: \"%g\" of this scene is too long; it should be at most %.3g s", duration,
+                 most_numbers / (double)s->numbers / frames_a_second);
+    s->frames = (uint64_t)frames;
+    s->frame = duration / frames;
     s->reference = room(s->frames * s->numbers);
     run_reference(s, error, work);
     return s;

@@ -291,7 +291,7 @@ static void write_scene(void)
     preset scene = chosen_scene(&poke);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_comment(table, "scene: %s, %zu particles, %zu links", mesh != NULL ? mesh : preset_names[kind],
+    cli_comment(table, "scene: %s, %zu particles, %zu links", mesh != NULL ? "a mesh" : preset_names[kind],
                 scene.def.particles, scene.def.links);
     plan_one_scene(&scene);
     write_plan(table);
