@@ -19,6 +19,8 @@
 
 #include "presets.h"
 
+static const double disturbance_duration = 0.02; /* [s] unless another is asked for */
+
 typedef enum disturbance_shape { DISTURBANCE_ROUND, DISTURBANCE_SQUARE } disturbance_shape;
 
 typedef struct disturbance {

@@ -25,6 +25,41 @@ preset_settings preset_defaults(preset_kind kind)
     return defaults[kind];
 }
 
+preset_settings preset_unchosen(preset_kind kind)
+{
+    return (preset_settings){.kind = kind,
+                             .length = NAN,
+                             .mass = NAN,
+                             .end_mass = NAN,
+                             .stiffness = NAN,
+                             .damping = NAN,
+                             .drag = NAN,
+                             .gravity = NAN,
+                             .stretch = NAN};
+}
+
+static double either(double chosen, double otherwise)
+{
+    return isnan(chosen) || isnan(otherwise) ? otherwise : chosen;
+}
+
+preset_settings preset_chosen(const preset_settings *chosen)
+{
+    const preset_settings *d = &defaults[chosen->kind];
+    return (preset_settings){.kind = chosen->kind,
+                             .size = chosen->size > 0 ? chosen->size : d->size,
+                             .axes = chosen->axes > 0 ? chosen->axes : d->axes,
+                             .families = chosen->families > 0 ? chosen->families : d->families,
+                             .length = either(chosen->length, d->length),
+                             .mass = either(chosen->mass, d->mass),
+                             .end_mass = either(chosen->end_mass, either(chosen->mass, d->end_mass)),
+                             .stiffness = either(chosen->stiffness, d->stiffness),
+                             .damping = either(chosen->damping, d->damping),
+                             .drag = either(chosen->drag, d->drag),
+                             .gravity = either(chosen->gravity, d->gravity),
+                             .stretch = either(chosen->stretch, d->stretch)};
+}
+
 static spring_grid grid_of(const preset_settings *s)
 {
     const uint32_t n = (uint32_t)s->size;

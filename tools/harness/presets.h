@@ -29,7 +29,7 @@ typedef enum preset_kind {
 /* The words for them, in that order, ended by NULL. */
 extern const char *const preset_names[];
 
-/* NaN, or 0 for a count, where a scene has no such thing. */
+/* NaN, or 0 for a count, where a scene has no such thing, or where nothing is chosen. */
 typedef struct preset_settings {
     preset_kind kind;
     uint64_t size;     /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
@@ -48,6 +48,13 @@ typedef struct preset_settings {
 
 /* What a scene is made of unless the user says otherwise. */
 preset_settings preset_defaults(preset_kind kind);
+
+/** Nothing is chosen but the scene. */
+preset_settings preset_unchosen(preset_kind kind);
+
+/** What is chosen, and the defaults for the rest. The end of a rope is as heavy as its other particles unless a mass is
+    chosen for it; what a scene has none of it does not get. */
+preset_settings preset_chosen(const preset_settings *chosen);
 
 /* A definition, and the arrays that it needs. */
 typedef struct preset {

@@ -170,10 +170,9 @@ static void plan_one_scene(const preset *scene)
 /* A scene of spring-scene, with its poke if it is water. */
 static preset poked_preset(const preset_settings *settings, disturbances **poke)
 {
-    const double duration_of_poke = 0.02; /* [s] as in spring-scene */
     preset scene;
     start_preset(&scene, settings);
-    *poke = start_poke(&scene, settings, duration_of_poke);
+    *poke = start_poke(&scene, settings);
     return scene;
 }
 
@@ -183,13 +182,13 @@ static preset chosen_scene(disturbances **poke)
         const mesh_settings settings = {or_else(mass, 1), stiffness, or_else(damping, 0), or_else(drag, 0)};
         return mesh_read(mesh, &settings);
     }
-    preset_settings settings = preset_defaults((preset_kind)kind);
-    settings.size = size > 0 ? size : settings.size;
-    settings.mass = or_else(mass, settings.mass);
-    settings.end_mass = isnan(settings.end_mass) ? settings.end_mass : settings.mass;
-    settings.stiffness = or_else(stiffness, settings.stiffness);
-    settings.damping = or_else(damping, settings.damping);
-    settings.drag = or_else(drag, settings.drag);
+    preset_settings chosen = preset_unchosen((preset_kind)kind);
+    chosen.size = size;
+    chosen.mass = mass;
+    chosen.stiffness = stiffness;
+    chosen.damping = damping;
+    chosen.drag = drag;
+    const preset_settings settings = preset_chosen(&chosen);
     return poked_preset(&settings, poke);
 }
 

@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <float.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,19 +22,12 @@
 static const char *const links[] = {"all", "structural", NULL};
 
 static int kind, method, link_choice;
-static uint64_t size, axes, seed = 1, steps_per_frame;
-static double dt, frame_rate, duration = 5, fps = 60, disturbance_time = 0.02, rain;
+static uint64_t seed = 1, steps_per_frame;
+static double dt, frame_rate, duration = 5, fps = 60, disturbance_time, rain;
 static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
 static bool hash_alone;
-
-/* Physical parameters of the same name as in preset_settings. */
-enum { LENGTH, MASS, END_MASS, STIFFNESS, DAMPING, DRAG, GRAVITY, STRETCH, parameters };
-static double given[parameters] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-static const size_t setting[parameters] = {offsetof(preset_settings, length),   offsetof(preset_settings, mass),
-                                           offsetof(preset_settings, end_mass), offsetof(preset_settings, stiffness),
-                                           offsetof(preset_settings, damping),  offsetof(preset_settings, drag),
-                                           offsetof(preset_settings, gravity),  offsetof(preset_settings, stretch)};
+static preset_settings given;
 
 static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S",
@@ -49,31 +41,31 @@ static const cli_option options[] = {
     {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R",
      .help = "frames a second that --steps-per-frame divides (default: 60)"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
-    {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
+    {"size", CLI_COUNT, .count = &given.size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move\n"
              "(default: rope 20, cloth 25, jelly 8, chain 50, water 25)"},
-    {"axes", CLI_COUNT, .count = &axes, .least = 1, .most = 3, .value = "A",
+    {"axes", CLI_COUNT, .count = &given.axes, .least = 1, .most = 3, .value = "A",
      .help = "water only: 1, the default, moves up and down; 3 in all directions"},
     {"links", CLI_CHOICE, .choice = &link_choice, .choices = links, .value = "L",
      .help = "all, the default: to the next particle, across, and to the one after\n"
              "the next; or structural: to the next alone, as rope and chain always"},
-    {"length", CLI_POSITIVE, .real = &given[LENGTH], .value = "L",
+    {"length", CLI_POSITIVE, .real = &given.length, .value = "L",
      .help = "of an edge [m] (default: rope 2, cloth 2, jelly 0.7, chain 5, water 4)"},
-    {"mass", CLI_POSITIVE, .real = &given[MASS], .value = "M",
+    {"mass", CLI_POSITIVE, .real = &given.mass, .value = "M",
      .help = "of a particle [kg] (default: rope 0.05, cloth 0.01, jelly 0.01,\n"
              "chain 0.1, water 1)"},
-    {"end-mass", CLI_POSITIVE, .real = &given[END_MASS], .value = "M",
+    {"end-mass", CLI_POSITIVE, .real = &given.end_mass, .value = "M",
      .help = "rope only: of the last particle [kg] (default: as --mass)"},
-    {"stiffness", CLI_NOT_NEGATIVE, .real = &given[STIFFNESS], .value = "K",
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &given.stiffness, .value = "K",
      .help = "of a link [N/m] (default: rope 2000, cloth 500, jelly 40, chain 100,\n"
              "water 25000)"},
-    {"damping", CLI_NOT_NEGATIVE, .real = &given[DAMPING], .value = "C", .help = "of a link [N s/m] (default: 0)"},
-    {"drag", CLI_NOT_NEGATIVE, .real = &given[DRAG], .value = "D",
+    {"damping", CLI_NOT_NEGATIVE, .real = &given.damping, .value = "C", .help = "of a link [N s/m] (default: 0)"},
+    {"drag", CLI_NOT_NEGATIVE, .real = &given.drag, .value = "D",
      .help = "of a particle [N s/m] (default: rope 0.01, cloth 0.01, jelly 0.005,\n"
              "chain 0, water 0.5)"},
-    {"gravity", CLI_REAL, .real = &given[GRAVITY], .value = "G",
+    {"gravity", CLI_REAL, .real = &given.gravity, .value = "G",
      .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
-    {"stretch", CLI_POSITIVE, .real = &given[STRETCH], .value = "S",
+    {"stretch", CLI_POSITIVE, .real = &given.stretch, .value = "S",
      .help = "length of the links over their rest length at the start (default: 1;\n"
              "water on three axes: 1.25). Water on one axis has no rest lengths:\n"
              "S > 1 leaves it the part 1 - 1/S of --stiffness, as much as a sheet\n"
@@ -124,38 +116,33 @@ static const cli_program program = {
     .options = options,
 };
 
+static void refuse_what_it_lacks(const char *option, double value, double usual)
+{
+    if (!isnan(value) && isnan(usual))
+        cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none", option, value, preset_names[kind]);
+}
+
 static preset_settings chosen_settings(void)
 {
-    preset_settings s = preset_defaults((preset_kind)kind);
-    if (size > 0)
-        s.size = size;
-    if (axes > 0 && s.kind != PRESET_WATER && axes != s.axes)
+    const preset_settings usual = preset_defaults((preset_kind)kind);
+    const bool water = kind == PRESET_WATER;
+    given.kind = usual.kind;
+    if (given.axes > 0 && !water && given.axes != usual.axes)
         cli_fail(CLI_USAGE,
-                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given", axes,
-                 preset_names[kind], s.axes);
-    if (axes == 2 && s.kind == PRESET_WATER)
+                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given",
+                 given.axes, preset_names[kind], usual.axes);
+    if (given.axes == 2 && water)
         cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
-    if (axes == 3 && s.kind == PRESET_WATER) {
-        s.axes = 3;
-        s.stretch = 1.25;
-    }
-    if (link_choice == 1)
-        s.families = SPRING_GRID_STRUCTURAL;
-    if (!isnan(given[MASS]) && !isnan(s.end_mass))
-        s.end_mass = given[MASS];
-    for (int i = 0; i < parameters; i++) {
-        double *value = (double *)(void *)((char *)&s + setting[i]);
-        if (isnan(given[i]))
-            continue;
-        if (isnan(*value))
-            cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none", i == GRAVITY ? "gravity" : "end-mass",
-                     given[i], preset_names[kind]);
-        *value = given[i];
-    }
-    if (s.kind == PRESET_WATER && s.axes == 1 && !isnan(given[STRETCH]) && !(s.stretch > 1))
+    refuse_what_it_lacks("end-mass", given.end_mass, usual.end_mass);
+    refuse_what_it_lacks("gravity", given.gravity, usual.gravity);
+    if (water && given.axes != 3 && given.stretch <= 1)
         cli_fail(CLI_USAGE, "--stretch: \"%g\" gives water no stiffness across; it should be greater than 1",
-                 s.stretch);
-    return s;
+                 given.stretch);
+    if (water && given.axes == 3 && isnan(given.stretch))
+        given.stretch = 1.25;
+    if (link_choice == 1)
+        given.families = SPRING_GRID_STRUCTURAL;
+    return preset_chosen(&given);
 }
 
 /* -------------------------------------------------------------------------------------------------- disturbances */
@@ -413,6 +400,8 @@ static void check_amounts(void)
 
 int main(int argc, char **argv)
 {
+    given = preset_unchosen((preset_kind)kind);
+    disturbance_time = disturbance_duration;
     cli_parse(&program, argc, argv);
     const preset_settings settings = chosen_settings();
     preset r;

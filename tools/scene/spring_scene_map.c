@@ -15,8 +15,7 @@
 #include "common/timing.h"
 #include "start.h"
 
-static const double frame_time = 1.0 / 60;   /* [s] */
-static const double disturbance_time = 0.02; /* [s] */
+static const double frame_time = 1.0 / 60; /* [s] */
 
 static int only_scene = -1, only_method = -1;
 static bool quick, timed;
@@ -126,7 +125,7 @@ static void begin(subject *s, const preset_settings *settings)
 {
     *s = (subject){.frames = quick ? 60 : 240};
     start_preset(&s->preset, settings);
-    s->poke = start_poke(&s->preset, settings, disturbance_time);
+    s->poke = start_poke(&s->preset, settings);
     s->energy = calloc(s->frames, sizeof *s->energy);
     if (s->energy == NULL)
         cli_fail(CLI_FAILED, "out of memory");

@@ -46,10 +46,10 @@ disturbances *start_disturbances(preset *r, const disturbance *list, size_t coun
     return p;
 }
 
-disturbances *start_poke(preset *r, const preset_settings *s, double duration)
+disturbances *start_poke(preset *r, const preset_settings *s)
 {
     if (s->kind != PRESET_WATER)
         return NULL;
-    const disturbance poke = disturbances_poke(r, s, duration);
+    const disturbance poke = disturbances_poke(r, s, disturbance_duration);
     return start_disturbances(r, &poke, 1);
 }

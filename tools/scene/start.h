@@ -16,6 +16,6 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes);
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count);
 
 /** Pokes the scene if it is water; NULL if it is none. */
-disturbances *start_poke(preset *r, const preset_settings *s, double duration);
+disturbances *start_poke(preset *r, const preset_settings *s);
 
 #endif

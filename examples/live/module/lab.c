@@ -2,7 +2,7 @@
 /* Scenes of the live page: made, advanced, asked; see lab.h. */
 #include "lab.h"
 
-#include <math.h> /* isnan(), sqrt() */
+#include <math.h> /* sqrt() */
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,7 +91,7 @@ static bool make(lab *l, bool calm)
     memcpy(l->before, l->now, 3 * l->preset.def.particles * sizeof *l->now);
     l->random = 1;
     if (l->settings.kind == PRESET_WATER && !calm) {
-        const disturbance poke = disturbances_poke(&l->preset, &l->settings, push_duration);
+        const disturbance poke = disturbances_poke(&l->preset, &l->settings, disturbance_duration);
         if (disturbances_add(l->pushes, &l->preset, &poke) != SPRING_OK)
             return false;
     }
@@ -101,21 +101,21 @@ static bool make(lab *l, bool calm)
 
 /* A scene of spring-scene, with what is a number in place of its defaults: size [particles], damping of links, drag
    [N s/m], mass, mass of the rope's end [kg], stiffness [N/m]; 0 or NaN: the default. Water is poked at the start unless
-   it is to be calm. NULL if it cannot be. */
+   it is to be calm. NULL if there is no such scene, or it cannot be. */
 EXPORT lab *lab_new(uint32_t kind, uint32_t size, double damping, double drag, double mass, double end_mass,
                     double stiffness, bool calm)
 {
-    lab *l = calloc(1, sizeof *l);
+    lab *l = kind < preset_kinds ? calloc(1, sizeof *l) : NULL;
     if (l == NULL)
         return NULL;
-    preset_settings *s = &l->settings;
-    *s = preset_defaults((preset_kind)kind);
-    s->size = size > 0 ? size : s->size;
-    s->damping = isnan(damping) ? s->damping : damping;
-    s->drag = isnan(drag) ? s->drag : drag;
-    s->mass = isnan(mass) ? s->mass : mass;
-    s->end_mass = isnan(end_mass) ? s->end_mass : end_mass;
-    s->stiffness = isnan(stiffness) ? s->stiffness : stiffness;
+    preset_settings chosen = preset_unchosen((preset_kind)kind);
+    chosen.size = size;
+    chosen.damping = damping;
+    chosen.drag = drag;
+    chosen.mass = mass;
+    chosen.end_mass = end_mass;
+    chosen.stiffness = stiffness;
+    l->settings = preset_chosen(&chosen);
     if (make(l, calm))
         return l;
     lab_free(l);
@@ -154,7 +154,7 @@ EXPORT bool lab_takes(const lab *l, uint32_t method)
     return preset_takes(&l->preset, (spring_method)method);
 }
 
-/* All of n steps, and what is drawn before and after the last of them; false, and nothing done, where it explodes. */
+/* All of n steps, and what is drawn before the last of them; where it explodes false, and the scene as it was. */
 static bool take(lab *l, spring_method m, double dt, uint64_t n)
 {
     memcpy(l->saved, l->scene, l->bytes);
@@ -175,10 +175,11 @@ EXPORT uint32_t lab_advance(lab *l, uint32_t method, uint32_t steps_per_frame, u
     hand_pull(l, duration);
     weather_rain(l, now + duration);
     weather_ball(l, duration);
-    uint64_t taken = n;
-    if (!take(l, (spring_method)method, dt, n))
-        taken = scene_run_steps(l->scene, l->saved, l->bytes, (spring_method)method, dt, n);
+    const bool all = take(l, (spring_method)method, dt, n);
+    const uint64_t taken = all ? n : scene_run_steps(l->scene, l->saved, l->bytes, (spring_method)method, dt, n);
     preset_positions(&l->preset, l->scene, l->now);
+    if (!all) /* what take() saw last is no state of this scene: it is drawn as it is now */
+        memcpy(l->before, l->now, 3 * l->preset.def.particles * sizeof *l->now);
     disturbances_forget(l->pushes, spring_scene_time(l->scene));
     lab_feel(l);
     return (uint32_t)taken;
@@ -281,7 +282,7 @@ EXPORT double lab_farthest(const lab *l)
 /* As spring-scene --poke. It begins with no force, so one that has been kept holds. */
 EXPORT bool lab_poke(lab *l, double start, double x, double y, double peak, double area)
 {
-    const disturbance d = {start, push_duration, x, y, peak, area, DISTURBANCE_ROUND};
+    const disturbance d = {start, disturbance_duration, x, y, peak, area, DISTURBANCE_ROUND};
     const bool done = disturbances_add(l->pushes, &l->preset, &d) == SPRING_OK;
     lab_feel(l);
     return done;

@@ -13,8 +13,6 @@
 
 #define EXPORT __attribute__((visibility("default"), used))
 
-static const double push_duration = 0.02; /* [s] of pokes, drops and the ball, as in spring-scene */
-
 typedef struct ball { /* single springs, by the exact solution: free fall, then afloat */
     bool there, afloat;
     double x, y;

@@ -18,7 +18,7 @@ static double noise(double t, uint64_t stream)
 
 EXPORT void lab_wind(lab *l, double speed)
 {
-    l->wind = speed;
+    l->wind = l->preset.def.axes == 3 ? speed : 0; /* what it blows at is on three axes */
     lab_feel(l);
     if (l->felt)
         spring_scene_set_force(l->scene, lab_force, l); /* at once: one that has been kept is of another wind */
@@ -31,7 +31,7 @@ static void difference(const double *const x[3], size_t a, size_t b, double out[
 }
 
 /* Pressure of still air on a sheet in the wind: F = rho/2 |w| (w n) A, n and A of the cells around a particle. It looks
-   at positions alone, as the scene was promised. */
+   at positions alone, as the scene was promised, and at all three axes of them. */
 void weather_force(const lab *l, double t, const double *const x[3], double *const force[3])
 {
     const double density = 1.2; /* [kg/m^3] */
@@ -71,8 +71,8 @@ void weather_rain(lab *l, double until)
         return;
     bool any = false;
     for (const double gap = 1 / l->rain; l->next_drop < until; l->next_drop += gap, any = true) {
-        const disturbance d =
-            disturbances_drop(&l->preset, &l->settings, l->next_drop, l->next_drop + gap, push_duration, &l->random);
+        const disturbance d = disturbances_drop(&l->preset, &l->settings, l->next_drop, l->next_drop + gap,
+                                                disturbance_duration, &l->random);
         disturbances_add(l->pushes, &l->preset, &d);
     }
     if (any)
@@ -101,10 +101,10 @@ static void splash(lab *l)
 {
     const double pi = 3.14159265358979323846;
     const disturbance d = {.start = spring_scene_time(l->scene),
-                           .duration = push_duration,
+                           .duration = disturbance_duration,
                            .x = l->ball.x,
                            .y = l->ball.y,
-                           .peak = disturbances_peak(-ball_mass * l->ball.state.v, push_duration),
+                           .peak = disturbances_peak(-ball_mass * l->ball.state.v, disturbance_duration),
                            .area = pi * ball_radius * ball_radius};
     disturbances_add(l->pushes, &l->preset, &d);
     lab_feel(l);
