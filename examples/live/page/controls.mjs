@@ -35,6 +35,7 @@ export class Controls {
         this.micros = [];
         this.info = null;
         this.drawn = 0;
+        this.trouble = "";
         this.energy = new Plot($("energy-plot"), false);
         this.error = new Plot($("error-plot"), true);
         $("scene").append(...Object.keys(presets).map((scene) => option(scene, names[scene])));
@@ -67,12 +68,8 @@ export class Controls {
         $("hash").onclick = async () => {
             actions.pause(true);
             $("hash-out").textContent = await actions.hash();
-            $("command").textContent = actions.command();
+            this.command();
         };
-    }
-
-    methods(list) {
-        this.list = list;
     }
 
     // --- a new scene ------------------------------------------------------------------------------------------------
@@ -81,6 +78,7 @@ export class Controls {
         const { state } = this;
         this.info = info;
         this.time = 0;
+        this.trouble = "";
         this.micros = [];
         const options = () => info.methods.map(({ name, taken }) => option(name, this.label(name), !taken));
         $("method").replaceChildren(...options());
@@ -201,11 +199,28 @@ export class Controls {
         ])
             $(id)?.setAttribute("aria-pressed", on);
         for (const each of document.querySelectorAll(".of-cloth")) each.hidden = state.scene !== "cloth";
-        $("command").textContent = this.actions.command();
+        this.command();
         [state.method, state.other].forEach((method, i) => {
             if (method && this.panes[i]) this.panes[i].name.textContent = this.label(method);
         });
         this.numbers();
+    }
+
+    command() {
+        const words = this.actions.command();
+        $("command").textContent = words;
+        $("with-command").hidden = !words;
+        $("no-command").hidden = Boolean(words);
+    }
+
+    /** The scene stands still until a new one is made. */
+    fail(message) {
+        this.trouble = `The physics has stopped: ${message}. Reset starts it again.`;
+        this.notice();
+    }
+
+    notice() {
+        $("notice").textContent = this.trouble || (this.state.paused ? "paused" : "");
     }
 
     // --- what is measured -------------------------------------------------------------------------------------------
@@ -330,7 +345,7 @@ export class Controls {
             ),
             meter,
         );
-        $("notice").textContent = this.state.paused ? "paused" : "";
+        this.notice();
     }
 
     repaint() {

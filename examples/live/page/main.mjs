@@ -12,8 +12,19 @@ function bytesOf(base64) {
     return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 }
 
+function newStage() {
+    try {
+        return new Stage(document.getElementById("canvas"));
+    } catch (error) {
+        for (const id of ["bar", "panel"]) document.getElementById(id).remove();
+        document.getElementById("notice").textContent =
+            "This page draws with WebGL 2, and this browser does not offer it: there is nothing to see.";
+        throw error;
+    }
+}
+
+const stage = newStage();
 const physics = new Physics(WORKER, [bytesOf(MODULE), bytesOf(MODULE_WITHOUT_SIMD)]);
-const stage = new Stage(document.getElementById("canvas"));
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 const state = {
@@ -31,11 +42,19 @@ const state = {
     rain: 0,
     scissors: false,
 };
-let touched = false; // since the scene began
+let touched = false; // since the scene began: no command does the same
 
 function touch(kind, how) {
     touched = true;
     physics.order(kind, how);
+    controls.command();
+}
+
+/** Before the first step it is a setting of the scene. */
+function changeMidway(kind, how) {
+    if (!state.paused || controls.time > 0) touched = true;
+    physics.order(kind, how);
+    controls.show();
 }
 
 function run() {
@@ -49,6 +68,7 @@ function run() {
 function remake() {
     const { method, other, steps, reference } = state;
     touched = false;
+    if (physics.failed) physics.start();
     physics.order("make", {
         run: run(),
         steps,
@@ -79,14 +99,14 @@ const actions = {
         const before = state.other;
         if (pane === 0) state.method = name;
         else state.other = name;
-        if (pane === 1 && Boolean(before) !== Boolean(name)) remake();
+        if (pane === 0) changeMidway("method", { pane, method: name });
+        else if (Boolean(before) !== Boolean(name)) remake();
         else physics.order("method", { pane, method: name });
         controls.show();
     },
     steps(steps) {
         state.steps = steps;
-        physics.order("steps", { steps });
-        controls.show();
+        changeMidway("steps", { steps });
     },
     set(name, value) {
         state[name] = value;
@@ -118,7 +138,11 @@ const actions = {
     },
     ball: (x, y, height) => touch("ball", { x, y, height }),
     hash: () => physics.ask("hash"),
-    command: () => commandOf(run(), state.method, state.steps, controls.time).join(" "),
+    /** That prints the hash of the first pane; "": there is none. */
+    command() {
+        if (touched || state.wind > 0 || state.rain > 0) return "";
+        return commandOf(run(), state.method, state.steps, controls.time).join(" ");
+    },
 };
 
 const controls = new Controls(state, actions, stage);
@@ -140,6 +164,7 @@ physics.onmade = (info) => {
     stage.build(info, state.other ? 2 : 1);
     controls.made(info);
 };
+physics.onfailed = (message) => controls.fail(message);
 let fresh = false;
 physics.onframe = (frame) => {
     stage.update(frame);
@@ -201,13 +226,10 @@ window.springstepLab = {
     pixel: (particle) => stage.pixelOf(0, particle),
     difference: () => physics.ask("difference"),
     tornLinks: () => physics.ask("tornLinks"),
-    command: async () => commandOf(run(), state.method, state.steps, await physics.ask("time")).join(" "),
+    command: () => actions.command(),
     times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),
     simd: physics.simd,
 };
 
-physics.ready.then((methods) => {
-    controls.methods(methods);
-    remake();
-    requestAnimationFrame(animate);
-});
+remake();
+requestAnimationFrame(animate);

@@ -49,8 +49,9 @@ export class Module {
         } = run;
         const kind = this.scenes.indexOf(scene);
         const calm = run.calm ? 1 : 0;
-        const address = this.calls.lab_new(kind, size, damping, drag, mass, endMass, stiffness, calm);
-        if (kind < 0 || address === 0) throw new Error(`no scene of ${JSON.stringify(run)}`);
+        const address =
+            kind < 0 ? 0 : this.calls.lab_new(kind, size, damping, drag, mass, endMass, stiffness, calm);
+        if (address === 0) throw new Error(`no scene of ${JSON.stringify(run)}`);
         return new Lab(this, address);
     }
 }

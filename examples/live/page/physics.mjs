@@ -1,52 +1,68 @@
 // SPDX-License-Identifier: MIT
-// The page's end of the worker: orders go out at once, one tick is under way at a time, questions get a Promise.
+// The page's end of the worker: orders go out as soon as it is ready, one tick is under way at a time, questions get a
+// Promise. After an exception in it nothing goes out until start().
 
 export class Physics {
     /** source: of the worker; modules: [with SIMD, without], each a Uint8Array */
     constructor(source, modules) {
-        this.worker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
-        this.worker.onmessage = ({ data }) => this.hear(data);
-        this.worker.onerror = (event) => console.error(`physics: ${event.message}`);
-        this.waiting = new Map();
+        this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+        this.simd = WebAssembly.validate(modules[0]);
+        this.bytes = this.simd ? modules[0] : modules[1];
         this.asked = 0;
-        this.underWay = false;
-        this.onmade = this.onframe = () => {};
+        this.onmade = this.onframe = this.onfailed = () => {};
+        this.start();
+    }
+
+    /** A new worker, without a scene. */
+    start() {
+        this.worker?.terminate();
+        this.worker = new Worker(this.source);
+        this.worker.onmessage = ({ data }) => this.hear(data);
+        this.worker.onerror = ({ message }) => this.fail(message);
+        this.waiting = new Map();
+        this.underWay = this.failed = false;
         this.ready = new Promise((resolve) => (this.isReady = resolve));
-        const simd = WebAssembly.validate(modules[0]);
-        this.simd = simd;
-        this.order("start", { bytes: simd ? modules[0] : modules[1] });
+        this.worker.postMessage({ kind: "start", bytes: this.bytes });
+    }
+
+    fail(message) {
+        this.failed = true;
+        for (const { reject } of this.waiting.values()) reject(new Error(message));
+        this.waiting.clear();
+        this.onfailed(message);
     }
 
     order(kind, more = {}) {
-        this.worker.postMessage({ kind, ...more });
+        const { worker } = this;
+        this.ready.then(() => worker.postMessage({ kind, ...more }));
     }
 
     /** Advances by so many seconds, unless the last tick is still under way: then false. */
     tick(elapsed) {
-        if (this.underWay) return false;
+        if (this.underWay || this.failed) return false;
         this.underWay = true;
         this.order("tick", { elapsed });
         return true;
     }
 
-    async ask(question, ...parameters) {
-        await this.ready;
+    ask(question, ...parameters) {
+        if (this.failed) return Promise.reject(new Error("the physics has stopped"));
         const id = this.asked++;
-        return new Promise((resolve) => {
-            this.waiting.set(id, resolve);
+        return new Promise((resolve, reject) => {
+            this.waiting.set(id, { resolve, reject });
             this.order("ask", { id, question, parameters });
         });
     }
 
     hear(message) {
-        if (message.kind === "ready") this.isReady(message.methods);
+        if (message.kind === "ready") this.isReady();
         if (message.kind === "made") this.onmade(message);
         if (message.kind === "frame") {
             if (!message.asked) this.underWay = false;
             this.onframe(message);
         }
         if (message.kind === "answer") {
-            this.waiting.get(message.id)(message.answer);
+            this.waiting.get(message.id)?.resolve(message.answer);
             this.waiting.delete(message.id);
         }
     }

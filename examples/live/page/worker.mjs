@@ -150,7 +150,7 @@ const questions = {
 const orders = {
     async start({ bytes }) {
         module = await Module.load(bytes);
-        postMessage({ kind: "ready", methods: module.methods });
+        postMessage({ kind: "ready" });
     },
     make,
     tick: ({ elapsed }) => tick(elapsed),
@@ -180,3 +180,6 @@ const orders = {
 };
 
 onmessage = ({ data }) => orders[data.kind](data);
+onunhandledrejection = ({ reason }) => {
+    throw reason; // else the page would not hear of it
+};

@@ -64,5 +64,18 @@ export async function testHashes(folder, tool) {
                     assert.equal(inModule(modules["no SIMD"], run, method, steps), wanted, "no SIMD");
             });
     }
+    await cases.case("a scene that is not there is refused", () =>
+        assert.throws(() => modules.SIMD.make({ scene: "nonsense" }), /no scene/),
+    );
+    await cases.case("a scene that explodes is drawn as it was last", () => {
+        const lab = modules.SIMD.make({ scene: "water" });
+        const [steps, many] = [1, 1000];
+        assert.ok(lab.advance("euler", steps, many) < many);
+        const drawn = lab.positions(steps);
+        lab.advance("euler", steps, 1); // explodes at once: before and after are the last state
+        assert.deepEqual(drawn, lab.positions(steps));
+        assert.ok(drawn.every((x) => !Number.isNaN(x)));
+        lab.free();
+    });
     return cases;
 }

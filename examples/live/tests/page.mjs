@@ -107,12 +107,44 @@ async function testBits(cases, page, tool) {
         await page.selectOption("#size", "10");
         await begin(page);
         await ask(page, "step", 20);
-        const words = (await ask(page, "command")).split(" ");
+        await page.click("summary");
+        await page.click("#hash");
+        await until("the hash", async () => /^[0-9a-f]{16}$/.test(await page.textContent("#hash-out")));
+        await page.click("summary");
+        const words = (await page.textContent("#command")).split(" ");
         const value = (name) => Number(words[words.indexOf(name) + 1]);
         const run = { scene: "rope", size: 10, mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
         assert.equal(value("--end-mass"), 100);
         const wanted = await native(tool, run, "rk4", value("--steps-per-frame"), value("--duration"));
-        assert.equal(await ask(page, "hash"), wanted);
+        assert.equal(await page.textContent("#hash-out"), wanted);
+    });
+}
+
+async function testCommand(cases, page) {
+    const shown = () => page.$eval("#no-command", (none) => none.hidden);
+    const changes = {
+        "a poke": () => page.click("#poke"),
+        "another method": () => page.selectOption("#method", "rk4"),
+        "other steps": () => page.click("#more"),
+    };
+    for (const [name, change] of Object.entries(changes))
+        await cases.case(`no command is shown after ${name} on the way`, async () => {
+            await choose(page, "cloth", "leapfrog", presets.cloth.steps);
+            await ask(page, "step", 5);
+            assert.ok((await shown()) && (await ask(page, "command")));
+            await change();
+            assert.ok(!(await shown()) && !(await page.textContent("#command")));
+            await begin(page);
+            assert.ok(await shown());
+        });
+    await cases.case("no command is shown where wind blows from the start", async () => {
+        await choose(page, "cloth", "leapfrog");
+        await page.fill("#wind", "6");
+        await begin(page);
+        assert.equal(await shown(), false);
+        await page.fill("#wind", "0");
+        await begin(page);
+        assert.equal(await shown(), true);
     });
 }
 
@@ -344,6 +376,37 @@ async function testWindows(cases, page, browser, url, tool) {
         assert.deepEqual(phone.complaints, []);
         await phone.context().close();
     });
+    await cases.case("a page without WebGL 2 says so", async () => {
+        const context = await browser.newContext();
+        const bare = await context.newPage();
+        await bare.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+        await bare.goto(url);
+        assert.match(await bare.textContent("#notice"), /WebGL 2/);
+        await context.close();
+    });
+    await cases.case("when its worker fails the page says so, and reset begins anew", async () => {
+        const frail = await open(browser, url, {}, () => {
+            const Plain = Worker;
+            window.workers = [];
+            window.Worker = function (source) {
+                window.workers.push(new Plain(source));
+                return window.workers.at(-1);
+            };
+        });
+        await choose(frail, "cloth", "leapfrog");
+        await ask(frail, "step", 10);
+        await frail.evaluate(() => window.workers[0].postMessage({ kind: "nonsense" }));
+        await until("it says so", async () => /stopped/.test(await frail.textContent("#notice")));
+        await begin(frail);
+        await ask(frail, "step", 60);
+        const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
+        assert.equal(await ask(frail, "hash"), wanted);
+        assert.equal(await frail.textContent("#notice"), "paused");
+        assert.equal(await frail.evaluate(() => window.workers.length), 2);
+        await frail.click("#pause");
+        await until("it runs", async () => (await ask(frail, "time")) > 1);
+        await frail.context().close();
+    });
     await cases.case("without SIMD: the same bits", async () => {
         const plain = await open(browser, url, {}, () => (WebAssembly.validate = () => false));
         assert.equal(await plain.evaluate(() => window.springstepLab.simd), false);
@@ -383,6 +446,7 @@ export async function testPage(folder, tool) {
     try {
         const page = await open(browser, url);
         await testMethods(cases, page);
+        await testCommand(cases, page);
         await testHands(cases, page);
         await testExplosions(cases, page);
         await testWindows(cases, page, browser, url, tool);
