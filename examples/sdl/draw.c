@@ -288,12 +288,13 @@ static void paint_surface(painter *p, const camera *c, const world *w, const vec
     free(s.lit);
 }
 
-/* A flat piece between four places. */
-static void paint_slab(painter *p, const camera *c, const vec3 place[4], vec3 color, double light_from, double light_to)
+/* A flat piece between four corners. */
+static void paint_slab(painter *p, const camera *c, const vec3 corners[4], vec3 color, double light_from,
+                       double light_to)
 {
     double x[4], y[4];
     for (int i = 0; i < 4; i++) {
-        const spot s = camera_project(c, place[i]);
+        const spot s = camera_project(c, corners[i]);
         x[i] = s.x;
         y[i] = s.y;
     }

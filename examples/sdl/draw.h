@@ -36,7 +36,7 @@ camera camera_for(world_kind kind, int width, int height);
 
 spot camera_project(const camera *c, vec3 at);
 
-/** The place that is seen there: of cloth and rope at that depth; of water, straight above or below a place. */
+/** The point that is seen there: of cloth and rope at that depth; of water, straight above or below another. */
 vec3 camera_pick(const camera *c, double x, double y, double depth);
 vec3 camera_pick_height(const camera *c, double y, vec3 above);
 

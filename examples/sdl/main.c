@@ -32,10 +32,10 @@ typedef struct app {
     painter painter;
     camera camera;
     world world;
-    vec3 *drawn;    /* [particles] where they are drawn */
-    int place;      /* of the method, for spring_method_at() */
-    uint64_t steps; /* a frame */
-    int damping;    /* index of dampings[] */
+    vec3 *drawn;      /* [particles] where they are drawn */
+    int method_index; /* for spring_method_at() */
+    uint64_t steps;   /* a frame */
+    int damping;      /* index of dampings[] */
     bool wind, running, failed;
     spring_clock clock;
     spring_status trouble;  /* SPRING_OK, or why the world stands still */
@@ -49,7 +49,7 @@ typedef struct app {
 
 static spring_method method(const app *a)
 {
-    return spring_method_at(a->place);
+    return spring_method_at(a->method_index);
 }
 
 static double step(const app *a)
@@ -58,16 +58,16 @@ static double step(const app *a)
 }
 
 /* The next method that scenes offer, or the one before. */
-static void change_method(app *a, int way)
+static void change_method(app *a, int delta)
 {
     do
-        a->place = (a->place + way + SPRING_METHOD_COUNT) % SPRING_METHOD_COUNT;
+        a->method_index = (a->method_index + delta + SPRING_METHOD_COUNT) % SPRING_METHOD_COUNT;
     while (!spring_method_describe(method(a))->scenes);
 }
 
 static bool choose_method(app *a, const char *name)
 {
-    for (a->place = 0; a->place < SPRING_METHOD_COUNT; a->place++) {
+    for (a->method_index = 0; a->method_index < SPRING_METHOD_COUNT; a->method_index++) {
         const spring_method_info *m = spring_method_describe(method(a));
         if (m->scenes && strcmp(m->name, name) == 0)
             return true;
@@ -160,7 +160,7 @@ static void pull(app *a)
         world_pull(w, camera_pick(&a->camera, a->mouse_x, a->mouse_y, a->depth));
 }
 
-/* Do the ways from a to b and from c to d cross? Each has the ends of the other on both sides. */
+/* Do the segments from a to b and from c to d cross? Each has the ends of the other on both sides. */
 static bool cross_over(spot a, spot b, spot c, spot d)
 {
     const double abc = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);

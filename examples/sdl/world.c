@@ -42,7 +42,7 @@ static const double ball = 0.5;        /* [kg] at the end of the rope */
 static const double strongest = 0.035; /* [N] on a particle: a third of its weight */
 static const uint32_t hook_every = 6;  /* particles of the upper edge */
 static const double gathered = 0.85;   /* width of the curtain over that of its cloth */
-static const double too_much = 1e5;    /* [J] no hand brings in so much: the method gains it */
+static const double most_energy = 1e5; /* [J] no hand brings in so much: the method gains it */
 static const double two_pi = 6.28318530717958648;
 
 /* What the functions below ask of the library they ask rightly: a refusal is a mistake of this file. */
@@ -68,7 +68,7 @@ static vec3 hanging_aside(double along)
     return (vec3){0.8 * along, -0.6 * along, 0};
 }
 
-static void place(world *w)
+static void set_home(world *w)
 {
     for (uint32_t row = 0; row < w->rows; row++)
         for (uint32_t column = 0; column < w->columns; column++) {
@@ -97,7 +97,7 @@ static void blow(void *user, double t, size_t particles, const double *const pos
 
 /* ---------------------------------------------------------------------------------------------- between axes and xyz */
 
-/* As many numbers as the scene has axes: of water that is the height. */
+/* A coordinate for each axis of the scene: of water that is the height. */
 static void to_axes(const world *w, vec3 p, double own[3])
 {
     own[0] = w->axes == 1 ? p.y : p.x;
@@ -132,7 +132,7 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
 {
     if (spring_grid_fill(&r->grid, position, w->pinned, w->link) != SPRING_OK)
         return false;
-    place(w);
+    set_home(w);
     for (size_t i = 0; i < w->particles; i++) {
         double own[3];
         to_axes(w, w->home[i], own);
@@ -249,7 +249,7 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
     status = spring_scene_advance(w->scene, method, dt, 1);
     if (status != SPRING_OK)
         return status;
-    if (!(world_energy(w) < too_much)) /* on its way to where it is not finite any more */
+    if (!(world_energy(w) < most_energy)) /* on its way to where it is not finite any more */
         return SPRING_ENONFINITE;
     w->spare = w->previous;
     w->previous = before;
