@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """examples/sdl: played from scripts in fixed frames, and once by a real pointer."""
 import itertools
+import math
 import os
 import re
 import shlex
@@ -104,6 +105,15 @@ def test_what_is_grabbed_is_where_the_pointer_is(play, scene, press, go, frames)
     assert pictures[0].ring(BELOW_TEXT) is None and pictures[2].ring(BELOW_TEXT) is None
 
 
+def test_the_hand_is_half_as_fast_as_waves(play):
+    """On the rope, whose camera looks at right angles at 3.6 m, with 1.35 times the height of the window as focal length."""
+    states, _ = play('move 700 226; press left; move 450 300', *['wait 1; say'] * 4, scene='rope')
+    spacing, stiffness, mass = 0.04, 6000, 0.02
+    expected = 0.5 * spacing * math.sqrt(stiffness / mass) / 60 * 1.35 * 720 / 3.6
+    for a, b in itertools.pairwise(states):
+        assert math.dist(position(a), position(b)) == pytest.approx(expected, abs=0.02)  # of pixels rounded to 0.01
+
+
 def test_a_pin_can_be_moved_and_stays(play):
     """The upper right corner hangs on a hook."""
     states, _ = play('wait 1; move 872 102; press left; move 800 150; wait 12; say; release left',
@@ -122,6 +132,14 @@ def test_the_rope_is_cut(play):
     assert pictures[0].changed(pictures[1], BELOW_TEXT) > 2000
 
 
+def test_what_is_cut_stays_cut(play):
+    """Whatever the damping was when the rope was cut, and is after: at 0.2 it would hold the ball at 1.1 m/s."""
+    (falls,), _ = play(*['key Right'] * 5, 'wait 2; move 540 330; press right; wait 1; move 780 250; release right',
+                       'wait 2; key Left; wait 45; say', scene='rope')
+    assert falls['damping'] == '0.100' and falls['status'] == 'ok'
+    assert position(falls)[1] > 1000
+
+
 def test_the_cloth_is_cut(play):
     """Along its upper edge, under the hooks: it falls."""
     (hangs, falls), (before, after) = play('wait 5; say; save; move 300 190; press right; move 950 190',
@@ -135,6 +153,14 @@ def test_a_poke_brings_energy(play, how):
     """Where the water is still calm: half of the mass below the poke, at up to 8 m/s, is some 25 J."""
     (before, after), _ = play('wait 10; say; move 600 400', how, 'wait 1; say', scene='water')
     assert float(after['energy']) - float(before['energy']) > 10
+
+
+def test_water_is_poked_downwards(play):
+    """The pointer is then over water that is farther away, in an earlier row, than where it is calm."""
+    (calm, poked), _ = play('move 600 400; wait 10; press left; wait 1; say; release left; key R',
+                            'wait 10; key Space; wait 2; press left; wait 1; say', scene='water')
+    columns = 61
+    assert int(poked['particle']) // columns < int(calm['particle']) // columns
 
 
 def methods_of_scenes():
