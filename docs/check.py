@@ -8,9 +8,17 @@ usage: check.py SITE DOXYGEN-XML EXPORTS
 
 import html.parser
 import pathlib
+import re
 import sys
 import urllib.parse
 import xml.etree.ElementTree
+
+
+def fetched_by_style(text):
+    """Yield the addresses that a style sheet fetches."""
+    text = re.sub(r'/\*.*?\*/', ' ', text, flags=re.S)
+    for matches in re.findall(r"""(?:@import\s*|\burl\(\s*)(?:"([^"]*)"|'([^']*)')|\burl\(\s*([^"')\s]+)""", text, re.I):
+        yield from filter(None, matches)
 
 
 class Page(html.parser.HTMLParser):
@@ -20,7 +28,9 @@ class Page(html.parser.HTMLParser):
         super().__init__()
         self.anchors = set()
         self.links = []
+        self.style = ''
         self.feed(path.read_text())
+        self.links += ((address, True) for address in fetched_by_style(self.style))
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
@@ -28,6 +38,14 @@ class Page(html.parser.HTMLParser):
         for name in ('href', 'src'):
             if attributes.get(name):
                 self.links.append((attributes[name], tag != 'a'))
+        # Addresses, each with a width or a density behind it or not; one may have commas in it.
+        for address in re.findall(r'([^\s,]\S*[^\s,])(?:\s+[\d.]+[wx])?\s*(?:,|$)', attributes.get('srcset') or ''):
+            self.links.append((address, True))
+        self.style += f" {attributes.get('style') or ''}"
+
+    def handle_data(self, data):
+        if self.cdata_elem == 'style':
+            self.style += data
 
 
 def public_names(doxygen):
@@ -43,8 +61,10 @@ def public_names(doxygen):
 def faults(site, doxygen, exports):
     """Yield a sentence for each thing that is wrong."""
     pages = {path: Page(path) for path in sorted(site.rglob('*.html'))}
-    for path, page in pages.items():
-        for address, fetched in page.links:
+    links = {path: page.links for path, page in pages.items()}
+    links |= {path: [(address, True) for address in fetched_by_style(path.read_text())] for path in sorted(site.rglob('*.css'))}
+    for path in links:
+        for address, fetched in links[path]:
             parts = urllib.parse.urlsplit(address)
             if parts.scheme in ('http', 'https', 'data', 'mailto') or parts.netloc:
                 if fetched and parts.scheme != 'data':
