@@ -81,6 +81,15 @@ def show_examples(app, name, source):
         source[0] = re.sub(r'\]\(([^):#]+)(?=[)#])', seen_from_here, text)
 
 
+def complete_style(app, error):
+    """Furo's style sheet in Debian imports normalize.css from beside the site."""
+    sheet = pathlib.Path(app.outdir) / '_static/styles/furo.css'
+    if error is None:
+        there = lambda link: pathlib.Path('/usr/share' + link[1]).read_text()
+        sheet.write_text(re.sub(r'@import url\((/javascript/[^)]*)\);', there, sheet.read_text()))
+
+
 def setup(app):
     app.add_transform(Tidy)
     app.connect('source-read', show_examples)
+    app.connect('build-finished', complete_style)
