@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The same in C++.
 #include <cinttypes>
+#include <cmath>
 #include <cstdio>
 
 #include <springstep/batch.h>
@@ -12,7 +13,7 @@ int main()
     const spring_params p{1.3, 2.7, 0.0, 0.0};
     spring_state s{1.0, 0.0};
     spring_clock clock{};
-    const double dt = 1.0 / 256;
+    const double dt = 1.0 / std::ceil(1.0 / spring_accurate_step(&p, SPRING_LEAPFROG, 1.0, 1e-5));
     const std::uint64_t n = spring_clock_tick(&clock, 1.0, dt, 1000, nullptr);
     if (spring_advance(&s, &p, SPRING_LEAPFROG, dt, n) != SPRING_OK)
         return 1;
