@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""Many springs that are not joined, as arrays."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from springstep._common import SpringError, fail, finite, invalid, method_number, springs_method, step_count
+from springstep._native import ffi, lib
+
+# How the functions and the structure are called in C, and what an array is for C.
+_PRECISIONS = {"float64": ("spring_batch", "double[]"), "float32": ("spring_batchf", "float[]")}
+
+
+class Batch:
+    """Springs by the number: x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'.
+
+    x: [m] displacements from the unloaded rest position
+    v: [m/s] velocities
+    omega2: [1/s^2] stiffness/mass >= 0
+    gamma: [1/s] damping/mass >= 0; None: no damping, which costs nothing
+    accel: [m/s^2] load/mass; None: no load, which costs nothing
+
+    x and v are arrays of float64 or of float32, which decides in what all are computed; a parameter is an array like
+    them, or one number for all springs. Arrays are used where they are, not copied: advance() changes the arrays x and v
+    that were handed over. An array that would have to be copied is refused with TypeError.
+    """
+
+    def __init__(self, x: np.ndarray, v: np.ndarray, omega2: np.ndarray | float, gamma: np.ndarray | float | None = None,
+                 accel: np.ndarray | float | None = None):
+        if not isinstance(x, np.ndarray) or x.dtype.name not in _PRECISIONS:
+            raise TypeError("x: not an array of float64 or float32")
+        self._name, self._pointer = _PRECISIONS[x.dtype.name]
+        self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
+        self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
+        self._parameters: dict[str, np.ndarray | None] = {}
+        for field, array in (("x", x), ("v", v)):
+            self._lend(field, array)
+            if not array.flags.writeable:
+                raise TypeError(f"{field}: not writeable")
+        for field, values in (("omega2", omega2), ("gamma", gamma), ("accel", accel)):
+            if values is not None and np.ndim(values) == 0:
+                values = np.asarray(values, x.dtype)
+                self._batch.shared |= getattr(lib, f"SPRING_SHARED_{field.upper()}")
+            self._parameters[field] = values
+            if values is not None:
+                self._lend(field, values)
+        for field, values in (("v", v), *self._parameters.items()):
+            for name, state in (("x", x), ("v", v)):
+                if field != name and values is not None and np.may_share_memory(state, values):
+                    raise ValueError(f"{field}: shares memory with {name}")
+
+    def _lend(self, field: str, array: Any) -> None:
+        """Show an array to C as it is."""
+        if not isinstance(array, np.ndarray) or array.dtype != self._x.dtype or not array.flags.c_contiguous:
+            raise TypeError(f"{field}: not a contiguous array of {self._x.dtype}")
+        if array.shape not in ((), self._x.shape) or array.ndim > 1:
+            raise ValueError(f"{field}: its shape is {array.shape}, of x {self._x.shape}")
+        setattr(self._batch, field, ffi.from_buffer(self._pointer, array))
+
+    x = property(lambda self: self._x, doc="[m] the array handed over")
+    v = property(lambda self: self._v, doc="[m/s] the array handed over")
+    omega2 = property(lambda self: self._parameters["omega2"], doc="[1/s^2] the array handed over, or of one number")
+    gamma = property(lambda self: self._parameters["gamma"], doc="[1/s] the array handed over, or of one number, or None")
+    accel = property(lambda self: self._parameters["accel"], doc="[m/s^2] the array handed over, or of one number, or None")
+    dtype = property(lambda self: self._x.dtype, doc="float64 or float32: what all are computed in")
+
+    def __len__(self) -> int:
+        return self._batch.count
+
+    def _first_invalid(self, index: int | None) -> None:
+        """InvalidError for what is wrong with a spring, or with parameters that are shared."""
+        for field, values in (("x", self._x), ("v", self._v), *self._parameters.items()):
+            if values is None or (index is None and values.ndim):
+                continue
+            value = float(values[index] if values.ndim else values)
+            if not np.isfinite(value) or (value < 0 and field in ("omega2", "gamma")):
+                invalid(field, value, index if values.ndim else None)
+
+    def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
+        """Advance every spring by a number of steps of dt [s]; negative runs backwards.
+
+        Where springs fail, because what they hold is not valid or would become infinite or NaN, they keep their state and
+        all others advance; the exception tells of the first, and its `failed` has the indices of all. After any other
+        error nothing has changed, and `failed` is empty.
+        """
+        function = getattr(lib, f"{self._name}_advance_marked")
+        status = function(self._batch, method_number(method), dt, step_count(steps), ffi.from_buffer("uint8_t[]", self._failed))
+        if status == lib.SPRING_OK:
+            return
+        failed = np.flatnonzero(self._failed)
+        self._failed[:] = 0
+        first = int(failed[0]) if len(failed) else None
+        try:
+            if status == lib.SPRING_EUNSUPPORTED:
+                fail(status, "method", method)
+            if status == lib.SPRING_EINVAL:
+                finite("dt", dt)
+                for index in failed if len(failed) else [None]:
+                    self._first_invalid(None if index is None else int(index))
+            if first is None:
+                fail(status)
+            fail(status, "x", float(self._x[first]), first)
+        except SpringError as error:
+            error.failed = failed
+            raise
+
+    def stable_step(self, method: str = "leapfrog") -> float:
+        """The least stable step of all springs [s]: 0 if there is none, infinity if all are."""
+        step = getattr(lib, f"{self._name}_stable_step")(self._batch, springs_method(method))
+        if np.isnan(step):
+            for index in [None, *range(len(self))]:
+                self._first_invalid(index)
+        return step
+
+    def snapshot(self) -> tuple[np.ndarray, np.ndarray]:
+        """Copies of x and v, for restore()."""
+        return self._x.copy(), self._v.copy()
+
+    def restore(self, snapshot: tuple[np.ndarray, np.ndarray]) -> None:
+        """Go back to a snapshot."""
+        self._x[:], self._v[:] = snapshot
+
+    def __repr__(self) -> str:
+        return f"<Batch of {len(self)} springs, {self.dtype}>"

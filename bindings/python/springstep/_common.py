@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""What all parts of the package share: the C library, its statuses as exceptions, its methods by name."""
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Sequence
+from typing import Any, NamedTuple, NoReturn
+
+from springstep._native import ffi, lib
+
+
+class SpringError(Exception):
+    """What the library refused, or could not do.
+
+    status: of the C function, such as lib.SPRING_EINVAL
+    field: name of the argument or field that is wrong, such as "mass" or "link.a"; None if it is none
+    value: what it is
+    index: of the particle, link or spring; None where there are not many
+    failed: of a batch, the indices of the springs that have kept their state
+    """
+
+    failed: Sequence[int] = ()
+
+    def __init__(self, status: int, field: str | None = None, value: Any = None, index: int | None = None):
+        self.status, self.field, self.value, self.index = status, field, value, index
+        message = ffi.string(lib.spring_status_string(status)).decode()
+        if field is not None:
+            place = "" if index is None else f"[{index}]"
+            message = f"{field}{place} = {value!r}: {message}"
+        super().__init__(message)
+
+
+class InvalidError(SpringError, ValueError):
+    """Bad input: the field and its value are named."""
+
+
+class RangeError(SpringError, IndexError):
+    """An index or a count is out of range."""
+
+
+class NonFiniteError(SpringError, ArithmeticError):
+    """The state would have become infinite or NaN: the step is unstable, or numbers are too large."""
+
+
+class UnsupportedError(SpringError):
+    """Not offered for this kind of system, or not asked for when it was made."""
+
+
+_CLASSES = {
+    lib.SPRING_EINVAL: InvalidError,
+    lib.SPRING_ERANGE: RangeError,
+    lib.SPRING_ENONFINITE: NonFiniteError,
+    lib.SPRING_EUNSUPPORTED: UnsupportedError,
+    lib.SPRING_EDISABLED: UnsupportedError,
+}
+
+
+def fail(status: int, field: str | None = None, value: Any = None, index: int | None = None) -> NoReturn:
+    """Raise what belongs to a status."""
+    raise _CLASSES.get(status, SpringError)(status, field, value, index)
+
+
+def invalid(field: str, value: Any, index: int | None = None) -> NoReturn:
+    """Raise InvalidError."""
+    fail(lib.SPRING_EINVAL, field, value, index)
+
+
+class Method(NamedTuple):
+    """What there is to know of a method."""
+
+    name: str
+    label: str  #: as in a text: "RK4"
+    order: int  #: error C dt^order; 0: no error but rounding
+    forces_per_step: int  #: evaluations; of scenes without forces that depend on velocities
+    symplectic: bool  #: without damping: bounded energy error over any time
+    springs: bool  #: offered for one spring and batches
+    scenes: bool  #: offered for scenes
+    positions_only: bool  #: not for scenes with damped links or with a force that may use velocities
+
+
+def _describe(number: int) -> Method:
+    info = lib.spring_method_describe(number)
+    text = {field: ffi.string(getattr(info, field)).decode() for field in ("name", "label")}
+    return Method(**text, **{field: getattr(info, field) for field in Method._fields if field not in text})
+
+
+_NUMBERS = {}
+_METHODS = []
+for _place in range(lib.SPRING_METHOD_COUNT):
+    _METHODS.append(_describe(lib.spring_method_at(_place)))
+    _NUMBERS[_METHODS[-1].name] = lib.spring_method_at(_place)
+
+
+def methods() -> tuple[Method, ...]:
+    """The methods, in the order in which tables show them."""
+    return tuple(_METHODS)
+
+
+def method_number(name: str) -> int:
+    """The number of a method in C."""
+    if name not in _NUMBERS:
+        invalid("method", name)
+    return _NUMBERS[name]
+
+
+def springs_method(name: str) -> int:
+    """The number of a method that is offered for one spring and batches."""
+    number = method_number(name)
+    if not lib.spring_method_describe(number).springs:
+        fail(lib.SPRING_EUNSUPPORTED, "method", name)
+    return number
+
+
+def step_count(steps: int) -> int:
+    """A number of steps that C can count."""
+    steps = operator.index(steps)
+    if not 0 <= steps < 2**64:
+        invalid("steps", steps)
+    return steps
+
+
+def finite(field: str, value: float) -> float:
+    """A number that is finite."""
+    if not math.isfinite(value):
+        invalid(field, value)
+    return value
+
+
+def self_test() -> None:
+    """Has the library the arithmetic here that its bits depend on? SpringError if not."""
+    if status := lib.spring_self_test():
+        fail(status)

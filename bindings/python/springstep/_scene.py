@@ -1,0 +1,483 @@
+# SPDX-License-Identifier: MIT
+"""Particles joined by springs: rope, cloth, jelly, water."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
+
+from springstep._common import fail, finite, invalid, method_number, step_count
+from springstep._native import ffi, lib
+
+#: A link, as in C: a and b [indices of particles], rest [m], stiffness [N/m], damping [N s/m].
+LINK = np.dtype({
+    "names": [name for name, _ in ffi.typeof("spring_link").fields],
+    "formats": [{"double": np.float64, "uint32_t": np.uint32}[field.type.cname]
+                for _, field in ffi.typeof("spring_link").fields],
+    "offsets": [field.offset for _, field in ffi.typeof("spring_link").fields],
+    "itemsize": ffi.sizeof("spring_link"),
+})
+
+#: force(t, position, velocity, force) adds forces [N] to the arrays of `force`. There is one array for each axis: of
+#: `position` [m] and `velocity` [m/s] at the time t [s], not to be written to; none may be kept.
+Force = Callable[[float, tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]], None]
+
+_PREFIXES = {"float64": "spring_scene", "float32": "spring_scenef"}
+_FAMILIES = ("structural", "shear", "bend")
+_FACES = ("first_x", "last_x", "first_y", "last_y", "first_z", "last_z")
+
+
+class Energies(NamedTuple):
+    """The energies of a scene [J]."""
+
+    kinetic: float  #: of particles that are not pinned
+    elastic: float  #: of all links
+    gravity: float  #: of particles that are not pinned; 0 at the origin
+
+
+class Grid(NamedTuple):
+    """The arrays of a grid, to be changed and handed to Scene."""
+
+    position: np.ndarray  #: [m], (particles, axes)
+    pinned: np.ndarray  #: True: pinned
+    links: np.ndarray  #: of LINK
+
+
+class _Called:
+    """A force, and what C is given to find it."""
+
+    def __init__(self, function: Force, axes: int, dtype: np.dtype):
+        self.function, self.axes, self.dtype = function, axes, dtype
+        self.error: BaseException | None = None
+        self.handle = ffi.new_handle(self)
+
+    def call(self, t: float, particles: int, position: Any, velocity: Any, force: Any) -> None:
+        """Call it. An exception is kept for whoever called C, and NaN makes C give up."""
+        def arrays(pointers: Any, write: bool) -> tuple[np.ndarray, ...]:
+            views = tuple(np.frombuffer(ffi.buffer(pointers[axis], particles * self.dtype.itemsize), self.dtype)
+                          for axis in range(self.axes))
+            for view in views:
+                view.flags.writeable = write
+            return views
+
+        forces = arrays(force, True)
+        if self.error is None:
+            try:
+                self.function(t, arrays(position, False), arrays(velocity, False), forces)
+            except BaseException as error:  # noqa: B902: an interrupt, too, is for the caller
+                self.error = error
+        if self.error is not None:
+            for array in forces:
+                array[:] = np.nan
+
+
+def _callback(user: Any, t: float, particles: int, position: Any, velocity: Any, force: Any) -> None:
+    ffi.from_handle(user).call(t, particles, position, velocity, force)
+
+
+ffi.def_extern("springstep_force")(_callback)
+ffi.def_extern("springstep_forcef")(_callback)
+
+
+def _bits(field: str, names: Iterable[str], known: Sequence[str]) -> int:
+    """Names as bits, in their order in C."""
+    bits = 0
+    for name in names:
+        if name not in known:
+            invalid(field, name)
+        bits |= 1 << known.index(name)
+    return bits
+
+
+def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float = 0.0, *,
+         families: Iterable[str] = ("structural",), pinned: Iterable[str] = (), stretch: float = 1.0, axes: int = 3,
+         height: bool = False) -> Grid:
+    """The particles at the corners of a grid, and its links: a row is a rope, a layer a sheet, more a block.
+
+    count: particles along x, y, z. Particle (i, j, k) has index i + count[0] (j + count[1] k)
+    spacing: [m] > 0 from one particle to the next
+    stiffness, damping: [N/m], [N s/m] of every link
+    families: "structural" to the next particle, "shear" across faces, "bend" to the one after the next
+    pinned: faces that are pinned: "first_x", "last_x", "first_y" ...
+    stretch: length over rest length of every link; above 1 is tension
+    axes: of the positions; height: a height field, of one axis across the grid
+    """
+    c = ffi.new("spring_grid *", {
+        "count": [*count, 1, 1][:3], "axes": 1 if height else axes, "height": height, "spacing": spacing, "stretch": stretch,
+        "families": _bits("families", families, _FAMILIES), "stiffness": stiffness, "damping": damping,
+        "pinned": _bits("pinned", pinned, _FACES),
+    })
+    particles, links = ffi.new("size_t *"), ffi.new("size_t *")
+    if status := lib.spring_grid_size(c, particles, links):
+        for field in ("spacing", "stretch"):
+            if not 0 < getattr(c, field) < np.inf:
+                invalid(field, getattr(c, field))
+        for field in ("stiffness", "damping"):
+            if not 0 <= getattr(c, field) < np.inf:
+                invalid(field, getattr(c, field))
+        fail(status, "count", tuple(count))
+    result = Grid(np.empty((particles[0], c.axes)), np.empty(particles[0], bool), np.empty(links[0], LINK))
+    if status := lib.spring_grid_fill(c, ffi.from_buffer("double[]", result.position),
+                                      ffi.from_buffer("uint8_t[]", result.pinned),
+                                      ffi.cast("spring_link *", ffi.from_buffer(result.links))):
+        fail(status)
+    return result
+
+
+class Snapshot:
+    """The state of a scene at a time, its force included. Scene.restore() goes back to it."""
+
+    def __init__(self, memory: bytes, called: _Called | None):
+        self._memory, self._called = memory, called
+
+    def __len__(self) -> int:
+        """[bytes]"""
+        return len(self._memory)
+
+
+class Scene:
+    """Particles joined by springs: mass x'' = link forces + mass gravity - drag x' + force(t, x, x').
+
+    position: [m], (particles, axes); (particles,) for one axis
+    links: an array of LINK, or what NumPy makes one of: tuples (a, b, rest [m], stiffness [N/m], damping [N s/m])
+    velocity: [m/s], like position; None: at rest
+    mass: [kg] > 0, of all or for each particle
+    pinned: for each particle, True: it feels no force and keeps its velocity; None: none is
+    gravity: [m/s^2], a number for each axis; None: none
+    drag: [N s/m] >= 0, on every particle
+    force: adds forces, see Force
+    force_ignores_velocity: force uses no velocities: leapfrog is twice as fast
+    methods: names of those that will be used; None: all but "rk4" and "rkn8", which take more memory
+    editable: links, pins and masses may change
+    undo: False: an advance that fails loses the state, and memory is saved
+    dtype: float64 or float32: what the scene computes in
+
+    Everything is copied into a block of memory, as C does; position(), velocity() and their like copy it out. While one
+    thread advances a scene others get RuntimeError, and so does its own force.
+    """
+
+    def __init__(self, position: ArrayLike, links: ArrayLike = (), *, velocity: ArrayLike | None = None,
+                 mass: ArrayLike = 1.0, pinned: ArrayLike | None = None, gravity: ArrayLike | None = None,
+                 drag: float = 0.0, force: Force | None = None, force_ignores_velocity: bool = False,
+                 methods: Iterable[str] | None = None, editable: bool = False, undo: bool = True,
+                 dtype: DTypeLike = np.float64):
+        self._dtype = np.dtype(dtype)
+        if self._dtype.name not in _PREFIXES:
+            raise TypeError("dtype: not float64 or float32")
+        self._prefix = _PREFIXES[self._dtype.name]
+        positions = np.ascontiguousarray(position, np.float64)
+        if positions.ndim == 1:
+            positions = positions[:, np.newaxis]
+        if positions.ndim != 2 or not 1 <= positions.shape[1] <= 3:
+            raise ValueError(f"position: its shape is {np.shape(position)}, not (particles, axes)")
+        self._particles, self._axes = positions.shape
+        joined = np.ascontiguousarray(links if isinstance(links, np.ndarray) else [tuple(link) for link in links], LINK)
+        if joined.ndim != 1:
+            raise ValueError(f"links: its shape is {joined.shape}, not (links,)")
+        self._links = len(joined)
+        self._called: _Called | None = None
+        self._busy = False
+
+        given = {"position": positions, "link": joined}
+        definition = ffi.new(f"{self._prefix}_def *", {
+            "axes": self._axes, "particles": self._particles, "links": self._links, "drag": drag,
+            "gravity": self._vector("gravity", gravity) if gravity is not None else [],
+        })
+        for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),
+                             ("FORCE_IGNORES_VELOCITY", force_ignores_velocity)):
+            if wanted:
+                definition.flags |= getattr(lib, f"SPRING_SCENE_{flag}")
+        for method in methods or ():
+            definition.methods |= 1 << method_number(method)
+        if np.ndim(mass) == 0:
+            if not 0 < float(mass) < np.inf:  # 0 would mean 1
+                invalid("mass", mass)
+            definition.mass_all = mass
+        else:
+            given["mass"] = self._numbers("mass", mass, (self._particles,))
+        if velocity is not None:
+            given["velocity"] = self._numbers("velocity", velocity, positions.shape)
+        if pinned is not None:
+            given["pinned"] = self._flags(pinned, self._particles)
+        lent = {field: ffi.from_buffer(array) for field, array in given.items()}
+        for field, buffer in lent.items():
+            setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
+        if force is not None:
+            self._called = _Called(force, self._axes, self._dtype)
+            definition.force, definition.user = self._function(), self._called.handle
+
+        field, index = ffi.new("const char **"), ffi.new("size_t *")
+        if status := self._c("check")(definition, field, index):
+            self._refuse(status, ffi.string(field[0]).decode() if field[0] else None, index[0], definition, given, methods)
+        size = ffi.new("size_t *")
+        self._c("bytes")(definition, size)
+        self._take(size[0])
+        scene = ffi.new(f"{self._prefix} **")
+        if status := self._c("init")(self._scene, size[0], definition, scene):
+            fail(status)
+
+    # --- between Python and C
+
+    def _c(self, name: str) -> Any:
+        return getattr(lib, f"{self._prefix}_{name}")
+
+    def _function(self) -> Any:
+        return lib.springstep_force if self._prefix == "spring_scene" else lib.springstep_forcef
+
+    def _take(self, size: int) -> None:
+        """Take memory, aligned as C wants it. The scene is at its start."""
+        room = np.empty(size + lib.SPRING_SCENE_ALIGN, np.uint8)
+        skip = -room.ctypes.data % lib.SPRING_SCENE_ALIGN
+        self._memory = room[skip:skip + size]
+        self._lent = ffi.from_buffer(self._memory)
+        self._pointer = ffi.cast(f"{self._prefix} *", self._lent)
+
+    @property
+    def _scene(self) -> Any:
+        if self._busy:
+            raise RuntimeError("the scene is being advanced, or asked by its own force")
+        return self._pointer
+
+    def _vector(self, field: str, values: ArrayLike) -> list[float]:
+        array = np.asarray(values, np.float64)
+        if array.shape != (self._axes,):
+            raise ValueError(f"{field}: its shape is {array.shape}, not ({self._axes},)")
+        return [finite(field, value) for value in array.tolist()]
+
+    @staticmethod
+    def _numbers(field: str, values: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:
+        array = np.ascontiguousarray(values, np.float64)
+        if array.ndim + 1 == len(shape) and shape[-1] == 1:
+            array = array[:, np.newaxis]
+        if array.shape != shape:
+            raise ValueError(f"{field}: its shape is {array.shape}, not {shape}")
+        return array
+
+    @staticmethod
+    def _flags(values: ArrayLike, count: int | None = None) -> np.ndarray:
+        flags = np.ascontiguousarray(values, bool).view(np.uint8)
+        if flags.ndim != 1 or (count is not None and len(flags) != count):
+            raise ValueError(f"pinned: its shape is {flags.shape}, not {'(count,)' if count is None else (count,)}")
+        return flags
+
+    def _refuse(self, status: int, field: str | None, index: int, definition: Any, given: dict[str, np.ndarray],
+                methods: Iterable[str] | None) -> None:
+        """The exception for a definition that is not valid."""
+        name, _, part = (field or "").partition(".")
+        if name in given and index < len(given[name]):
+            value = given[name][index]
+            fail(status, field, (value[part] if part else value).tolist(), index)
+        if name == "methods":
+            fail(status, field, tuple(methods or ()))
+        value = getattr(definition, name, None)
+        fail(status, field, value if isinstance(value, (int, float)) else None)
+
+    def _run(self, name: str, *arguments: Any) -> Any:
+        """Call what may call the force: its exception is the caller's."""
+        scene, self._busy = self._scene, True
+        try:
+            result = self._c(name)(scene, *arguments)
+        finally:
+            self._busy = False
+        if self._called is not None and self._called.error is not None:
+            error, self._called.error = self._called.error, None
+            raise error
+        return result
+
+    # --- what it is
+
+    def __len__(self) -> int:
+        """Particles."""
+        return self._particles
+
+    axes = property(lambda self: self._axes, doc="1, 2 or 3")
+    links = property(lambda self: self._links, doc="number of links, cut ones included")
+    dtype = property(lambda self: self._dtype, doc="float64 or float32: what the scene computes in")
+
+    @property
+    def nbytes(self) -> int:
+        """[bytes] of the scene, and of a snapshot"""
+        return len(self._memory)
+
+    @property
+    def time(self) -> float:
+        """[s] since it was made"""
+        return self._c("time")(self._scene)
+
+    def energy(self) -> Energies:
+        """The energies [J]."""
+        energies = self._c("energy")(self._scene)
+        return Energies(energies.kinetic, energies.elastic, energies.gravity)
+
+    def at_rest(self, v_tol: float, a_tol: float) -> bool:
+        """Is every speed at most v_tol [m/s], and every acceleration of what is not pinned at most a_tol [m/s^2]?"""
+        return self._run("at_rest", v_tol, a_tol)
+
+    # --- steps
+
+    def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
+        """Advance by a number of steps of dt [s]; negative runs backwards.
+
+        After an error, one of force() included, the scene is as it was, but see undo.
+        """
+        status = self._run("advance", method_number(method), dt, step_count(steps))
+        if status == lib.SPRING_EINVAL:
+            invalid("dt", dt)
+        if status in (lib.SPRING_EUNSUPPORTED, lib.SPRING_EDISABLED):
+            fail(status, "method", method)
+        if status:
+            fail(status)
+
+    def stable_step(self, method: str = "leapfrog") -> float:
+        """A stable step [s], from the stiffness of the links; 0: none is known, infinity: all are. Better take half."""
+        step = self._c("stable_step")(self._scene, method_number(method))
+        if np.isnan(step):
+            fail(lib.SPRING_EUNSUPPORTED, "method", method)
+        return step
+
+    # --- state
+
+    def _get(self, quantity: int, first: int, count: int | None, out: np.ndarray | None) -> np.ndarray:
+        if out is None:
+            out = np.empty((max(0, self._particles - first) if count is None else count, self._axes), self._dtype)
+        elif count is not None and count != len(out):
+            raise ValueError("count: not that of out")
+        elif not self._fits(out):
+            raise TypeError(f"out: not a writeable array of float64 or float32, (count, {self._axes}), with rows in one piece")
+        get, pointer = ("get", "double *") if out.dtype == np.float64 else ("getf", "float *")
+        stride = out.strides[0] // out.itemsize if len(out) > 1 else 0
+        start = ffi.cast(pointer, out.ctypes.data)
+        if status := self._c(get)(self._scene, quantity, start, stride, _natural("first", first), len(out)):
+            fail(status, "first, count", (first, len(out)))
+        return out
+
+    def _fits(self, out: np.ndarray) -> bool:
+        """Can C write rows to it, at a stride?"""
+        if out.ndim != 2 or out.shape[1] != self._axes or out.dtype.name not in _PREFIXES or not out.flags.writeable:
+            return False
+        stride, rest = divmod(out.strides[0], out.itemsize)
+        return len(out) < 1 or (out.strides[1] == out.itemsize and (len(out) == 1 or (stride >= self._axes and rest == 0)))
+
+    def _set(self, quantity: int, field: str, values: ArrayLike, first: int) -> None:
+        array = np.asarray(values, np.float64)
+        array = self._numbers(field, array, (len(array) if array.ndim else 0, self._axes))
+        pointer = ffi.cast("double *", ffi.from_buffer(array))
+        status = self._c("set")(self._scene, quantity, pointer, 0, _natural("first", first), len(array))
+        if status == lib.SPRING_EINVAL:
+            with np.errstate(over="ignore"):
+                row = int(np.flatnonzero(~np.isfinite(array.astype(self._dtype)).all(axis=1))[0])
+            fail(status, field, array[row].tolist(), first + row)
+        if status:
+            fail(status, "first, count", (first, len(array)))
+
+    def position(self, first: int = 0, count: int | None = None, out: np.ndarray | None = None) -> np.ndarray:
+        """Positions [m] of particles first ... first + count - 1, by default all: (count, axes).
+
+        They are copied into `out` if it is given: an array of float64 or float32, such as a part of a vertex buffer.
+        """
+        return self._get(lib.SPRING_POSITION, first, count, out)
+
+    def velocity(self, first: int = 0, count: int | None = None, out: np.ndarray | None = None) -> np.ndarray:
+        """Velocities [m/s], as position()."""
+        return self._get(lib.SPRING_VELOCITY, first, count, out)
+
+    def set_position(self, values: ArrayLike, first: int = 0) -> None:
+        """Set positions [m] of particles from `first` on: (count, axes). To move a pin use drive()."""
+        self._set(lib.SPRING_POSITION, "position", values, first)
+
+    def set_velocity(self, values: ArrayLike, first: int = 0) -> None:
+        """Set velocities [m/s], as set_position()."""
+        self._set(lib.SPRING_VELOCITY, "velocity", values, first)
+
+    def snapshot(self) -> Snapshot:
+        """All of it, to go back to."""
+        self._scene  # not while it moves
+        return Snapshot(self._memory.tobytes(), self._called)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this scene, to the bit."""
+        self._scene  # not while it moves
+        if len(snapshot) != len(self._memory):
+            raise ValueError("snapshot: of another scene")
+        self._memory[:] = np.frombuffer(snapshot._memory, np.uint8)
+        self._called = snapshot._called
+
+    # --- changes
+
+    def set_gravity(self, gravity: ArrayLike) -> None:
+        """Change gravity [m/s^2], a number for each axis."""
+        self._c("set_gravity")(self._scene, [*self._vector("gravity", gravity), 0, 0][:3])
+
+    def set_force(self, force: Force | None) -> None:
+        """Change the force; None: none. Call it, too, after a change of what the force depends on."""
+        called = None if force is None else _Called(force, self._axes, self._dtype)
+        function, user = (self._function(), called.handle) if called else (ffi.NULL, ffi.NULL)
+        if status := self._c("set_force")(self._scene, function, user):
+            fail(status)
+        self._called = called
+
+    def link(self, index: int) -> tuple[int, int, float, float, float]:
+        """A link as it is now: a, b, rest [m], stiffness [N/m], damping [N s/m]; a and b may be swapped."""
+        link = ffi.new("spring_link *")
+        if status := self._c("get_link")(self._scene, _natural("link", index), link):
+            fail(status, "link", index)
+        return link.a, link.b, link.rest, link.stiffness, link.damping
+
+    def set_link(self, index: int, *, rest: float | None = None, stiffness: float | None = None,
+                 damping: float | None = None) -> None:
+        """Change what is given of a link of an editable scene: [m], [N/m], [N s/m]; stiffness 0 and damping 0 cut it."""
+        link = ffi.new("spring_link *", self.link(index))
+        for field, value in (("rest", rest), ("stiffness", stiffness), ("damping", damping)):
+            if value is not None:
+                setattr(link, field, value)
+        if status := self._c("set_link")(self._scene, index, link):
+            if status == lib.SPRING_EINVAL:
+                for field in ("rest", "stiffness", "damping"):
+                    if not 0 <= getattr(link, field) < np.inf:
+                        fail(status, f"link.{field}", getattr(link, field), index)
+            fail(status, "link", (link.a, link.b, link.rest, link.stiffness, link.damping), index)
+
+    def find_link(self, a: int, b: int) -> int | None:
+        """The first link between two particles, in either order, or None. Looks at all links."""
+        index = self._c("find_link")(self._scene, _natural("a", a), _natural("b", b))
+        return index if index < self._links else None
+
+    def set_pinned(self, pinned: ArrayLike, first: int = 0) -> None:
+        """Pin and free particles from `first` on of an editable scene. What was free stops where it is; freed, it flies on."""
+        flags = self._flags(pinned)
+        status = self._c("set_pinned")(self._scene, _natural("first", first), len(flags), ffi.from_buffer("uint8_t[]", flags))
+        if status:
+            fail(status, "pinned", flags.astype(bool).tolist(), first)
+
+    def set_mass(self, mass: ArrayLike, first: int = 0) -> None:
+        """Change the masses [kg] of particles from `first` on of an editable scene."""
+        array = self._numbers("mass", mass, (np.size(mass),))
+        status = self._c("set_mass")(self._scene, _natural("first", first), len(array), ffi.from_buffer("double[]", array))
+        if status:
+            fail(status, "mass", array.tolist(), first)
+
+    def drive(self, particle: int, target: ArrayLike | None, duration: float = 0.0) -> None:
+        """Give a pinned particle the velocity that brings it to a target [m] within duration > 0 [s]; None: it stops."""
+        place = ffi.NULL if target is None else ffi.new("double[3]", self._vector("target", target))
+        if status := self._c("drive")(self._scene, _natural("particle", particle), place, duration):
+            if target is not None and not 0 < duration < np.inf:
+                fail(status, "duration", duration)
+            fail(status, "particle", particle)
+
+    def tension(self, index: int) -> float:
+        """The force along a link [N], > 0 pulls; its damping included."""
+        if not 0 <= index < self._links:
+            fail(lib.SPRING_ERANGE, "link", index)
+        return self._c("tension")(self._scene, index)
+
+    def __repr__(self) -> str:
+        return f"<Scene of {self._particles} particles and {self._links} links on {self._axes} axes, {self._dtype}>"
+
+
+def _natural(field: str, index: int) -> int:
+    """An index from 0 on: unlike those of lists they do not count from the end."""
+    if index < 0:
+        fail(lib.SPRING_ERANGE, field, index)
+    return index

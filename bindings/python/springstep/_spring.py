@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""One spring through time."""
+from __future__ import annotations
+
+import math
+
+from springstep._common import fail, finite, invalid, method_number, springs_method, step_count
+from springstep._native import ffi, lib
+
+
+def _state(field: str, doc: str) -> property:
+    return property(lambda self: getattr(self._state, field), lambda self, to: setattr(self._state, field, to), doc=doc)
+
+
+def _parameter(field: str, doc: str) -> property:
+    return property(lambda self: getattr(self._params, field), lambda self, to: setattr(self._params, field, to), doc=doc)
+
+
+class Spring:
+    """One spring: mass x'' = load - stiffness x - damping x'.
+
+    stiffness: [N/m] >= 0; 0 is a free particle
+    mass: [kg] > 0
+    damping: [N s/m] >= 0; critical at 2 sqrt(mass stiffness)
+    load: [N] a force held constant over the step; to follow a goal, stiffness times the goal
+    x: [m] displacement from the unloaded rest position
+    v: [m/s] velocity
+
+    All may be changed at any time, and are checked where they are used.
+    """
+
+    x = _state("x", "[m] displacement from the unloaded rest position")
+    v = _state("v", "[m/s] velocity, at the same time as x")
+    mass = _parameter("mass", "[kg] > 0")
+    stiffness = _parameter("stiffness", "[N/m] >= 0; 0 is a free particle")
+    damping = _parameter("damping", "[N s/m] >= 0; critical at 2 sqrt(mass stiffness)")
+    load = _parameter("load", "[N] a force held constant over the step")
+
+    def __init__(self, stiffness: float, mass: float = 1.0, damping: float = 0.0, load: float = 0.0, *,
+                 x: float = 0.0, v: float = 0.0):
+        self._params = ffi.new("spring_params *", [mass, stiffness, damping, load])
+        self._state = ffi.new("spring_state *", [x, v])
+        self._check_parameters()
+
+    @classmethod
+    def hertz(cls, hertz: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
+        """A spring of 1 kg from its undamped frequency >= 0 [Hz] and its damping ratio >= 0; 1 is critical."""
+        params = lib.spring_params_hertz(hertz, damping_ratio)
+        if math.isnan(params.mass):
+            if finite("damping_ratio", damping_ratio) < 0:
+                invalid("damping_ratio", damping_ratio)
+            invalid("hertz", hertz)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
+    @classmethod
+    def half_life(cls, half_life: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
+        """A spring of 1 kg from the time in which its envelope halves > 0 [s] and its damping ratio > 0."""
+        params = lib.spring_params_half_life(half_life, damping_ratio)
+        if math.isnan(params.mass):
+            if finite("damping_ratio", damping_ratio) <= 0:
+                invalid("damping_ratio", damping_ratio)
+            invalid("half_life", half_life)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
+    def _check_parameters(self) -> None:
+        """InvalidError for the first parameter that the library refuses."""
+        if lib.spring_params_valid(self._params):
+            return
+        if not self.mass > 0 or not math.isfinite(self.mass):
+            invalid("mass", self.mass)
+        for field in ("stiffness", "damping"):
+            if not getattr(self, field) >= 0:
+                invalid(field, getattr(self, field))
+        for field in ("stiffness", "damping", "load"):
+            if not math.isfinite(getattr(self, field) / self.mass):
+                invalid(field, getattr(self, field))
+        fail(lib.SPRING_EINVAL)
+
+    def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
+        """Advance by a number of steps of dt [s]; negative runs backwards. After an error nothing has changed."""
+        number = method_number(method)
+        status = lib.spring_advance(self._state, self._params, number, dt, step_count(steps))
+        if status == lib.SPRING_EINVAL:
+            finite("dt", dt)
+            finite("x", self.x)
+            finite("v", self.v)
+            self._check_parameters()
+        if status:
+            fail(status, "method" if status == lib.SPRING_EUNSUPPORTED else None, method)
+
+    def energy(self) -> float:
+        """Energy m v^2/2 + k x^2/2 - load x [J]."""
+        return lib.spring_energy(self._state, self._params)
+
+    def stable_step(self, method: str = "leapfrog") -> float:
+        """The longest stable step [s]: 0 if there is none, infinity if all are."""
+        self._check_parameters()
+        return lib.spring_stable_step(self._params, springs_method(method))
+
+    def accurate_step(self, duration: float, tolerance: float, method: str = "leapfrog") -> float:
+        """The longest step [s] with which the error within duration > 0 [s] is at most tolerance, relative to the start.
+
+        0: there is none.
+        """
+        number = springs_method(method)
+        self._check_parameters()
+        for field, value in (("duration", duration), ("tolerance", tolerance)):
+            if finite(field, value) <= 0:
+                invalid(field, value)
+        return lib.spring_accurate_step(self._params, number, duration, tolerance)
+
+    def step_error(self, duration: float, dt: float, method: str = "leapfrog") -> float:
+        """The largest error within duration [s] with a step of dt > 0 [s], relative to the start."""
+        number = springs_method(method)
+        self._check_parameters()
+        if finite("dt", dt) <= 0:
+            invalid("dt", dt)
+        error = lib.spring_step_error(self._params, number, duration, dt)
+        if math.isnan(error):
+            invalid("duration", duration)
+        return error
+
+    def at_rest(self, x_tol: float, v_tol: float) -> bool:
+        """Is it within x_tol [m] of its rest position, and not faster than v_tol [m/s]?"""
+        return lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
+
+    def settling_time(self, x_tol: float) -> float:
+        """[s] after it the exact solution stays within x_tol >= 0 [m] of the rest position; infinity if it never does."""
+        self._check_parameters()
+        time = lib.spring_settling_time(self._state, self._params, x_tol)
+        if math.isnan(time):
+            finite("x", self.x)
+            finite("v", self.v)
+            invalid("x_tol", x_tol)
+        return time
+
+    def snapshot(self) -> tuple[float, float]:
+        """The state, x and v, for restore()."""
+        return self.x, self.v
+
+    def restore(self, snapshot: tuple[float, float]) -> None:
+        """Go back to a snapshot."""
+        self.x, self.v = snapshot
+
+    def __repr__(self) -> str:
+        return (f"Spring(stiffness={self.stiffness!r}, mass={self.mass!r}, damping={self.damping!r}, "
+                f"load={self.load!r}, x={self.x!r}, v={self.v!r})")

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""Many springs."""
+import numpy as np
+import pytest
+
+import springstep
+from springstep import Batch, Spring, lib
+
+OF_SPRINGS = [method.name for method in springstep.methods() if method.springs]
+COUNT = 1003  # no multiple of any vector
+
+
+def example(dtype=np.float64):
+    numbers = np.random.default_rng(7)
+    x, v, accel = (numbers.uniform(-1, 1, COUNT).astype(dtype) for _ in range(3))
+    omega2, gamma = (numbers.uniform(0.3, 3, COUNT).astype(dtype) for _ in range(2))
+    return Batch(x, v, omega2, gamma, accel)
+
+
+@pytest.mark.parametrize("method", OF_SPRINGS)
+def test_bits_are_those_of_single_springs(method):
+    batch = example()
+    springs = [Spring(w, 1, g, a, x=x, v=v)
+               for x, v, w, g, a in zip(batch.x, batch.v, batch.omega2, batch.gamma, batch.accel)]
+    batch.advance(1 / 60, 7, method)
+    for spring in springs:
+        spring.advance(1 / 60, 7, method)
+    assert (batch.x == [spring.x for spring in springs]).all() and (batch.v == [spring.v for spring in springs]).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("shared", [False, True])
+def test_bits_are_those_of_c(dtype, shared):
+    name, pointer = ("spring_batch", "double[]") if dtype == np.float64 else ("spring_batchf", "float[]")
+    batch = example(dtype)
+    x, v = batch.snapshot()
+    if shared:
+        batch = Batch(batch.x, batch.v, 1.7, batch.gamma)
+    c = springstep.ffi.new(f"{name} *", {"count": COUNT})
+    lent = {"x": x, "v": v, "omega2": np.array([1.7], dtype) if shared else batch.omega2, "gamma": batch.gamma}
+    if not shared:
+        lent["accel"] = batch.accel
+    for field, array in lent.items():
+        setattr(c, field, springstep.ffi.from_buffer(pointer, array))
+    c.shared = lib.SPRING_SHARED_OMEGA2 if shared else 0
+    assert getattr(lib, f"{name}_advance")(c, lib.SPRING_LEAPFROG, 1 / 60, 100) == lib.SPRING_OK
+    batch.advance(1 / 60, 100)
+    assert batch.dtype == dtype and (batch.x == x).all() and (batch.v == v).all()
+    assert batch.stable_step() == getattr(lib, f"{name}_stable_step")(c, lib.SPRING_LEAPFROG)
+
+
+def test_arrays_are_used_where_they_are():
+    x, v, omega2 = np.ones(COUNT), np.zeros(COUNT), np.full(COUNT, 2.7)
+    batch = Batch(x, v, omega2)
+    assert batch.x is x and batch.v is v and batch.omega2 is omega2 and len(batch) == COUNT
+    batch.advance(0.01)
+    assert (x < 1).all() and (v < 0).all()
+    before = batch.snapshot()
+    omega2[:] = 0
+    v[:] = 0
+    batch.advance(0.01)
+    assert (x == before[0]).all()  # nothing pulls any more
+    batch.restore(before)
+    assert (v == before[1]).all() and batch.v is v
+
+
+@pytest.mark.parametrize("field, array", [("x", [1.0, 2.0]), ("x", np.ones(2, int)), ("v", np.ones(4)[::2]),
+                                          ("v", np.ones(2, np.float32)), ("omega2", [1.0, 2.0]), ("x", np.ones((2, 2))),
+                                          ("gamma", np.ones(3))])
+def test_what_would_be_copied_is_refused(field, array):
+    arrays = {"x": np.ones(2), "v": np.ones(2), "omega2": np.ones(2)}
+    arrays[field] = array
+    with pytest.raises((TypeError, ValueError), match=f"^{field if np.ndim(array) < 2 else 'v'}: |^x: "):
+        Batch(**arrays)
+
+
+def test_memory_that_is_shared_or_fixed_is_refused():
+    x, fixed = np.ones(4), np.ones(2)
+    fixed.flags.writeable = False
+    with pytest.raises(ValueError, match="^v: shares memory with x"):
+        Batch(x[:2], x[1:3], 1.0)
+    with pytest.raises(TypeError, match="^v: not writeable"):
+        Batch(np.ones(2), fixed, 1.0)
+    Batch(np.ones(2), np.ones(2), fixed).advance(0.01)
+
+
+def test_springs_that_fail_are_named_and_all_others_advance():
+    batch = example()
+    batch.x[[17, 900]] = np.nan, np.inf
+    batch.omega2[500] = -1.5
+    before = batch.snapshot()
+    with pytest.raises(springstep.InvalidError, match=r"^x\[17\] = nan: ") as caught:
+        batch.advance(0.01)
+    assert caught.value.failed.tolist() == [17, 500, 900] and caught.value.index == 17
+    changed = np.flatnonzero(batch.v != before[1])
+    assert len(changed) == COUNT - 3 and not set(changed) & {17, 500, 900}
+    batch.x[[17, 900]] = 0
+    with pytest.raises(springstep.InvalidError, match=r"^omega2\[500\] = -1.5: "):
+        batch.advance(0.01)
+    with pytest.raises(springstep.InvalidError, match=r"^omega2\[500\] = -1.5: "):
+        batch.stable_step()
+    batch.omega2[500] = 1e9
+    with pytest.raises(springstep.NonFiniteError, match=r"^x\[500\]") as caught:
+        batch.advance(1.0, 100)
+    assert caught.value.failed.tolist() == [500]
+
+
+@pytest.mark.parametrize("call, field", [
+    (lambda b: b.advance(np.nan), "dt"), (lambda b: b.advance(0.1, 1, "verlet"), "method"),
+    (lambda b: b.advance(0.1, 1, "rkn8"), "method"), (lambda b: b.stable_step("rkn8"), "method"),
+    (lambda b: b.advance(0.1, -3), "steps"), (lambda b: Batch(b.x, b.v, -1.0).advance(0.1), "omega2"),
+])
+def test_what_concerns_all_is_named_and_nothing_changes(call, field):
+    batch = example()
+    before = batch.snapshot()
+    with pytest.raises(springstep.SpringError) as caught:
+        call(batch)
+    assert caught.value.field == field and caught.value.index is None and len(caught.value.failed) == 0
+    assert (batch.x == before[0]).all() and (batch.v == before[1]).all()
+
+
+def test_none():
+    Batch(np.empty(0), np.empty(0), np.empty(0)).advance(0.1)

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""Particles joined by springs."""
+import math
+import re
+import subprocess
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import springstep
+from springstep import LINK, Scene, ffi, grid, lib
+
+OF_SCENES = [method.name for method in springstep.methods() if method.scenes]
+FLOATS = pytest.mark.parametrize("dtype", [np.float64, np.float32])
+
+
+def cloth(n=25, length=2.0, **options):
+    """The cloth of spring-scene."""
+    g = grid([n, n], length / (n - 1), 500.0, families=["structural", "shear", "bend"])
+    g.pinned[[0, n - 1]] = True
+    return Scene(g.position, g.links, **{"pinned": g.pinned, "mass": 0.01, "drag": 0.01, "gravity": [0, 0, -9.81], **options})
+
+
+def rope(**options):
+    """Six particles, hung at the first, with links that are damped."""
+    g = grid([6], 0.3, 170.0, 0.2, pinned=["first_x"])
+    return Scene(g.position, g.links, **{"pinned": g.pinned, "mass": 0.13, "gravity": [0, -9.81, 0.4], **options})
+
+
+def fnv(scene):
+    digest = 0xCBF29CE484222325
+    for byte in scene.position().tobytes() + scene.velocity().tobytes():
+        digest = (digest ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return f"{digest:016x}"
+
+
+@pytest.mark.parametrize("method", OF_SCENES)
+def test_bits_are_those_of_spring_scene(method):
+    scene = cloth(force_ignores_velocity=True, methods=[method])
+    # Euler's cloth lives for a few dozen steps
+    steps = 32 if method == "euler" else 512
+    scene.advance(2**-11, steps, method)
+    command = ["spring-scene", "--scene", "cloth", "--method", method, "--dt", "0x1p-11", "--duration", str(steps / 2048)]
+    assert subprocess.run([*command, "--hash"], capture_output=True, text=True, check=True).stdout.strip() == fnv(scene)
+    assert scene.time == steps / 2048
+
+
+def test_bits_in_float_are_those_of_c():
+    g = grid([6], 0.3, 170.0, 0.2, pinned=["first_x"])
+    definition = ffi.new("spring_scenef_def *", {"axes": 3, "particles": 6, "links": 5, "mass_all": 0.13})
+    definition.gravity = [0, -9.81, 0.4]
+    definition.position = ffi.from_buffer("double[]", g.position)
+    definition.pinned = ffi.from_buffer("uint8_t[]", g.pinned)
+    definition.link = links = ffi.cast("spring_link *", ffi.from_buffer(g.links))
+    assert links[1].a == 1 and links[1].damping == 0.2
+    size, scene = ffi.new("size_t *"), ffi.new("spring_scenef **")
+    assert lib.spring_scenef_bytes(definition, size) == lib.SPRING_OK
+    room = np.empty(size[0] + 64, np.uint8)
+    memory = ffi.cast("void *", room.ctypes.data + -room.ctypes.data % 64)
+    assert lib.spring_scenef_init(memory, size[0], definition, scene) == lib.SPRING_OK
+    assert lib.spring_scenef_advance(scene[0], lib.SPRING_LEAPFROG, 1e-3, 300) == lib.SPRING_OK
+    out = np.empty((6, 3), np.float32)
+    assert lib.spring_scenef_getf(scene[0], lib.SPRING_POSITION, ffi.from_buffer("float[]", out), 0, 0, 6) == lib.SPRING_OK
+
+    ours = rope(dtype=np.float32)
+    ours.advance(1e-3, 300)
+    assert ours.position().dtype == np.float32 and (ours.position() == out).all() and ours.nbytes == size[0]
+    assert ours.tension(2) == lib.spring_scenef_tension(scene[0], 2)
+
+
+@FLOATS
+def test_a_snapshot_brings_back_what_was(dtype):
+    scene = cloth(dtype=dtype, editable=True)
+    scene.advance(4e-4, 50)
+    before, state = scene.snapshot(), (scene.position(), scene.velocity())
+    scene.set_pinned([True, True], 300)
+    scene.drive(300, [1.0, 0.5, 0.4], 0.1)
+    scene.advance(4e-4, 250)
+    after = scene.snapshot(), scene.position()
+    assert scene.position(300, 1) == pytest.approx(np.array([[1.0, 0.5, 0.4]]), abs=1e-5)  # float rounds 250 steps
+    scene.restore(before)
+    assert (scene.position() == state[0]).all() and (scene.velocity() == state[1]).all() and scene.time == 50 * 4e-4
+    scene.restore(after[0])
+    assert (scene.position() == after[1]).all()
+    with pytest.raises(ValueError, match="snapshot"):
+        rope().restore(before)
+
+
+def test_the_program_in_the_documents():
+    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
+    names = {}
+    exec(re.search(r"```python\n(.*?)```", page, re.S)[1], names)
+    assert names["scene"].time == 100 * names["dt"] and len(names["scene"]) == 625
+
+
+def test_state_goes_in_and_out():
+    scene = rope()
+    assert (len(scene), scene.axes, scene.links, scene.dtype) == (6, 3, 5, np.float64)
+    scene.set_position([[1, 2, 3], [4, 5, 6.5]], first=2)
+    scene.set_velocity([[0.5, 0, 0]], first=5)
+    assert scene.position(2, 2).tolist() == [[1, 2, 3], [4, 5, 6.5]] and scene.velocity()[5].tolist() == [0.5, 0, 0]
+    vertices = np.full((6, 5), -1, np.float32)  # positions, and what else a vertex has
+    assert scene.position(out=vertices[:, :3]).base is vertices
+    assert (vertices[:, :3] == scene.position().astype(np.float32)).all() and (vertices[:, 3:] == -1).all()
+    energy = scene.energy()
+    assert energy.kinetic == pytest.approx(0.13 * 0.5**2 / 2, rel=1e-15)
+    for out in (np.empty((6, 2)), np.empty((6, 3), int), np.empty((3, 6)).T, np.empty(18)):
+        with pytest.raises(TypeError, match="^out: "):
+            scene.position(out=out)
+    for first, count in ((5, 2), (-1, 1), (7, None)):
+        with pytest.raises(springstep.RangeError):
+            scene.position(first, count)
+
+
+def test_changes():
+    scene = rope(editable=True, drag=0.3)
+    assert scene.find_link(3, 2) == 2 and scene.find_link(0, 5) is None
+    scene.set_link(2, stiffness=0, damping=0)
+    assert scene.link(2) == (2, 3, 0.3, 0, 0)
+    scene.set_mass([0.2, 0.3], first=4)
+    scene.set_gravity([0, 0, -1])
+    scene.advance(1e-3, 4000)
+    # What is cut off falls, at no less than 0.3 m/s in the end (m g/d is 0.43 m/s and more); two links of 0.3 m, longer by
+    # some (0.26 kg) g/k = 0.0015 m, hold the others.
+    assert (scene.position()[3:, 2] < -0.9).all() and (scene.position()[:3, 2] > -0.61).all()
+    scene.set_pinned([True] * 6)
+    assert scene.at_rest(0, 0)
+
+
+def test_one_axis_is_one_number_a_particle():
+    scene = Scene([0.0, 1.0], [(0, 1, 0.7, 2.7, 0.1)], velocity=[0.0, 0.2], mass=[1.3, 1.7], pinned=[True, False])
+    scene.set_position([1.1], first=1)
+    assert scene.position().tolist() == [[0], [1.1]] and scene.tension(0) == pytest.approx(2.7 * 0.4 + 0.1 * 0.2, rel=1e-14)
+
+
+LINKS = [(0, 1, 0.3, 2.7, 0.0), (1, 2, 0.3, 2.7, 0.1)]
+
+
+@pytest.mark.parametrize("change, kind, field, index", [
+    ({"mass": 0}, springstep.InvalidError, "mass", None),
+    ({"mass": [1.3, -1.3, 1]}, springstep.InvalidError, "mass", 1),
+    ({"position": [[0, 0], [1, math.nan], [2, 0]]}, springstep.InvalidError, "position", 1),
+    ({"velocity": [[0, 0], [0, 0], [math.inf, 0]]}, springstep.InvalidError, "velocity", 2),
+    ({"gravity": [0, math.nan]}, springstep.InvalidError, "gravity", None),
+    ({"drag": -0.1}, springstep.InvalidError, "drag", None),
+    ({"links": [LINKS[0], (1, 3, 0.3, 2.7, 0)]}, springstep.RangeError, "link.b", 1),
+    ({"links": [LINKS[0], (1, 1, 0.3, 2.7, 0)]}, springstep.InvalidError, "link.b", 1),
+    ({"links": [LINKS[0], (1, 2, 0.3, -2.7, 0)]}, springstep.InvalidError, "link.stiffness", 1),
+    ({"methods": ["verlet"]}, springstep.InvalidError, "method", None),
+    ({"methods": ["exact"]}, springstep.UnsupportedError, "methods", None),
+    ({"methods": ["rkn8"]}, springstep.UnsupportedError, "methods", None),
+])
+def test_what_is_wrong_is_named(change, kind, field, index):
+    whole = {"position": [[0, 0], [1, 0], [2, 0]], "links": LINKS}
+    Scene(**whole)
+    with pytest.raises(kind) as caught:
+        Scene(**{**whole, **change})
+    error = caught.value
+    assert (error.field, error.index) == (field, index) and str(error).startswith(field) and error.value is not None
+
+
+@pytest.mark.parametrize("change", [{"position": np.zeros((3, 4))}, {"mass": [1, 2]}, {"pinned": [True]},
+                                    {"gravity": [0, 0, 1]}, {"velocity": [1, 2, 3]}])
+def test_a_shape_that_is_wrong_is_named(change):
+    with pytest.raises(ValueError, match=f"^{[*change][0]}: its shape"):
+        Scene(**{"position": [[0, 0], [1, 0], [2, 0]], "links": LINKS, **change})
+
+
+@pytest.mark.parametrize("call, kind, field", [
+    (lambda s: s.advance(math.nan), springstep.InvalidError, "dt"),
+    (lambda s: s.advance(1e-3, -1), springstep.InvalidError, "steps"),
+    (lambda s: s.advance(1e-3, 1, "rk4"), springstep.UnsupportedError, "method"),
+    (lambda s: s.advance(1e-3, 1, "exact"), springstep.UnsupportedError, "method"),
+    (lambda s: s.stable_step("exact"), springstep.UnsupportedError, "method"),
+    (lambda s: s.advance(10.0, 1000), springstep.NonFiniteError, None),
+    (lambda s: s.set_link(0, stiffness=1), springstep.UnsupportedError, "link"),
+    (lambda s: s.set_link(5, stiffness=1), springstep.RangeError, "link"),
+    (lambda s: s.set_pinned([True]), springstep.UnsupportedError, "pinned"),
+    (lambda s: s.set_mass([1.0]), springstep.UnsupportedError, "mass"),
+    (lambda s: s.set_position([[0, math.nan, 0]], 3), springstep.InvalidError, "position"),
+    (lambda s: s.set_gravity([0, math.nan, 0]), springstep.InvalidError, "gravity"),
+    (lambda s: s.drive(1, [0, 0, 0], 1), springstep.InvalidError, "particle"),
+    (lambda s: s.drive(0, [0, 0, 0], 0), springstep.InvalidError, "duration"),
+    (lambda s: s.drive(0, [0, math.inf, 0], 1), springstep.InvalidError, "target"),
+    (lambda s: s.drive(6, None), springstep.RangeError, "particle"),
+    (lambda s: s.tension(5), springstep.RangeError, "link"),
+])
+def test_what_a_scene_refuses(call, kind, field):
+    scene = rope()
+    with pytest.raises(kind) as caught:
+        call(scene)
+    assert caught.value.field == field
+    assert (scene.position() == rope().position()).all() and (scene.velocity() == 0).all()
+
+
+@pytest.mark.parametrize("change, field", [
+    ({"spacing": 0}, "spacing"), ({"stiffness": -1}, "stiffness"), ({"damping": math.nan}, "damping"),
+    ({"count": [0x10000, 0x10000]}, "count"), ({"families": ["bent"]}, "families"), ({"pinned": ["top"]}, "pinned"),
+])
+def test_a_wrong_grid(change, field):
+    with pytest.raises(springstep.SpringError) as caught:
+        grid(**{"count": [3, 2], "spacing": 0.3, "stiffness": 2.7, **change})
+    assert caught.value.field == field
+
+
+# --- forces in Python
+
+
+@FLOATS
+def test_a_force_in_python(dtype):
+    # A uniform force on masses that are equal is gravity, but for rounding in each of a hundred steps.
+    scenes = [rope(dtype=dtype, pinned=None, gravity=[0, -9.81, 0.4]), rope(dtype=dtype, pinned=None, gravity=None)]
+    seen = []
+
+    def pull(t, position, velocity, force):
+        seen.append((t, position[0][5], velocity[1][5]))
+        assert position[0].dtype == dtype and not position[0].flags.writeable
+        force[1][:] += 0.13 * -9.81
+        force[2][:] += 0.13 * 0.4
+
+    scenes[1].set_force(pull)
+    for scene in scenes:
+        scene.advance(1e-3, 100)
+    assert scenes[1].position() == pytest.approx(scenes[0].position(), abs=300 * float(np.finfo(dtype).eps))
+    assert seen[0] == (0, scenes[0].dtype.type(1.5), 0) and len(seen) >= 200 and max(seen)[0] == pytest.approx(0.1)
+    scenes[1].set_force(None)
+    calls = len(seen)
+    scenes[1].advance(1e-3)
+    assert len(seen) == calls
+
+
+@FLOATS
+def test_an_exception_in_a_force_comes_back_and_nothing_changed(dtype):
+    def breaks(t, position, velocity, force):
+        if t > 0.005:
+            raise KeyError("mine")
+
+    scene = rope(dtype=dtype, force=breaks)
+    scene.advance(1e-3, 3)
+    before = scene.position(), scene.time
+    with pytest.raises(KeyError, match="mine"):
+        scene.advance(1e-3, 10)
+    assert (scene.position() == before[0]).all() and scene.time == before[1]
+    scene.advance(1e-3)
+    scene.set_force(lambda t, position, velocity, force: force[1].fill(1))
+    scene.advance(1e-3, 10)
+
+
+def test_a_snapshot_has_its_force():
+    def up(t, position, velocity, force):
+        force[1][:] += 5
+
+    scene = rope(force=up, methods=["leapfrog", "rk4"])
+    before = scene.snapshot()
+    scene.advance(1e-3, 20, "rk4")
+    after = scene.position()
+    scene.set_force(None)
+    scene.advance(1e-3, 20, "rk4")
+    scene.restore(before)
+    scene.advance(1e-3, 20, "rk4")
+    assert (scene.position() == after).all()
+
+
+def test_a_force_may_not_ask_its_scene():
+    scene = rope()
+    scene.set_force(lambda t, position, velocity, force: scene.advance(1e-3))
+    with pytest.raises(RuntimeError, match="own force"):
+        scene.advance(1e-3)
+    assert scene.time == 0
+
+
+def test_scenes_in_threads():
+    scenes = [cloth() for _ in range(4)]
+    threads = [threading.Thread(target=scene.advance, args=(4e-4, 200)) for scene in scenes]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len({fnv(scene) for scene in scenes}) == 1 and scenes[0].time == 200 * 4e-4
