@@ -50,5 +50,12 @@ class Clock:
         """Go back to a snapshot."""
         self._clock.pending, self._clock.dropped = snapshot
 
+    def __reduce__(self) -> tuple:
+        """A copy is a clock of its own."""
+        return Clock, (self.dt, self.max_steps), self.snapshot()
+
+    def __setstate__(self, snapshot: tuple[float, float]) -> None:
+        self.restore(snapshot)
+
     def __repr__(self) -> str:
         return f"Clock(dt={self.dt!r}, max_steps={self.max_steps!r})"

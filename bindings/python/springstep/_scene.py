@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -129,8 +129,8 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
 class Snapshot:
     """The state of a scene at a time, its force included. Scene.restore() goes back to it."""
 
-    def __init__(self, memory: bytes, called: _Called | None):
-        self._memory, self._called = memory, called
+    def __init__(self, scene: Scene, memory: bytes, called: _Called | None):
+        self._scene, self._memory, self._called = scene, memory, called
 
     def __len__(self) -> int:
         """[bytes]"""
@@ -394,15 +394,18 @@ class Scene:
     def snapshot(self) -> Snapshot:
         """All of it, to go back to."""
         self._scene  # not while it moves
-        return Snapshot(self._memory.tobytes(), self._called)
+        return Snapshot(self, self._memory.tobytes(), self._called)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of this scene, to the bit."""
         self._scene  # not while it moves
-        if len(snapshot) != len(self._memory):
+        if snapshot._scene is not self:
             raise ValueError("snapshot: of another scene")
         self._memory[:] = np.frombuffer(snapshot._memory, np.uint8)
         self._called = snapshot._called
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a scene is not copied: see snapshot()")
 
     # --- changes
 

@@ -2,6 +2,7 @@
 """One spring through time."""
 from __future__ import annotations
 
+import functools
 import math
 
 from springstep._common import fail, finite, invalid, method_number, springs_method, step_count
@@ -141,6 +142,11 @@ class Spring:
     def restore(self, snapshot: tuple[float, float]) -> None:
         """Go back to a snapshot."""
         self.x, self.v = snapshot
+
+    def __reduce__(self) -> tuple:
+        """A copy is a spring of its own."""
+        values = self.stiffness, self.mass, self.damping, self.load
+        return functools.partial(Spring, x=self.x, v=self.v), values
 
     def __repr__(self) -> str:
         return (f"Spring(stiffness={self.stiffness!r}, mass={self.mass!r}, damping={self.damping!r}, "

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Particles joined by springs."""
+import copy
 import math
 import re
 import subprocess
@@ -85,7 +86,9 @@ def test_a_snapshot_brings_back_what_was(dtype):
     scene.restore(after[0])
     assert (scene.position() == after[1]).all()
     with pytest.raises(ValueError, match="snapshot"):
-        rope().restore(before)
+        cloth(dtype=dtype, editable=True).restore(before)
+    with pytest.raises(TypeError, match="not copied"):
+        copy.copy(scene)
 
 
 def test_the_program_in_the_documents():

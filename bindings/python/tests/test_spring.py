@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """One spring, and the clock."""
+import copy
 import math
+import pickle
 import subprocess
 
 import pytest
@@ -105,3 +107,15 @@ def test_a_clock():
     assert clock.tick(10 / 128) == (4, 0.5) and clock.dropped == 6 / 128
     clock.restore(before)
     assert (clock.pending, clock.dropped) == (0.5 / 128, 0)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+def test_a_copy_is_a_thing_of_its_own(copied):
+    spring, clock = example(), Clock(1 / 128, 4)
+    clock.tick(5.5 / 128)
+    twins = copied(spring), copied(clock)
+    assert (repr(twins[0]), repr(twins[1])) == (repr(spring), repr(clock))
+    assert twins[1].snapshot() == clock.snapshot() == (0.5 / 128, 1 / 128)
+    spring.advance(0.1)
+    clock.tick(0.25 / 128)
+    assert repr(twins[0]) == repr(example()) and twins[1].pending == 0.5 / 128
