@@ -94,6 +94,9 @@ def test_springs_that_fail_are_named_and_all_others_advance():
     assert caught.value.failed.tolist() == [17, 500, 900] and caught.value.index == 17
     changed = np.flatnonzero(batch.v != before[1])
     assert len(changed) == COUNT - 3 and not set(changed) & {17, 500, 900}
+    with pytest.raises(springstep.InvalidError) as caught:
+        batch.advance(np.nan)
+    assert len(caught.value.failed) == 0
     batch.x[[17, 900]] = 0
     with pytest.raises(springstep.InvalidError, match=r"^omega2\[500\] = -1.5: "):
         batch.advance(0.01)

@@ -252,7 +252,11 @@ def test_an_exception_in_a_force_comes_back_and_nothing_changed(dtype):
 
 
 def test_a_snapshot_has_its_force():
+    broken = []
+
     def up(t, position, velocity, force):
+        if broken:
+            raise KeyError("mine")
         force[1][:] += 5
 
     scene = rope(force=up, methods=["leapfrog", "rk4"])
@@ -264,6 +268,23 @@ def test_a_snapshot_has_its_force():
     scene.restore(before)
     scene.advance(1e-3, 20, "rk4")
     assert (scene.position() == after).all()
+    broken.append(True)
+    with pytest.raises(KeyError):
+        scene.advance(1e-3)
+
+
+@pytest.mark.parametrize("ignores, calls", [(False, 20), (True, 11)])  # twice a step, or once, and once at the start
+def test_a_force_without_velocities_is_asked_once_a_step(ignores, calls):
+    seen = []
+    rope(force=lambda t, *_: seen.append(t), force_ignores_velocity=ignores, drag=0.1).advance(1e-3, 10)
+    assert len(seen) == calls
+
+
+def test_without_undo_the_state_is_lost():
+    scene = rope(undo=False)
+    with pytest.raises(springstep.NonFiniteError):
+        scene.advance(10.0, 1000)
+    assert np.isnan(scene.position()).all() and scene.nbytes < rope().nbytes
 
 
 def test_a_force_may_not_ask_its_scene():
