@@ -33,7 +33,9 @@ class Batch:
             raise TypeError("x: not an array of float64 or float32")
         self._name, self._pointer = _PRECISIONS[x.dtype.name]
         self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
+        self._advance = getattr(lib, f"{self._name}_advance_marked")
         self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
+        self._marks = ffi.from_buffer("uint8_t[]", self._failed)
         self._parameters: dict[str, np.ndarray | None] = {}
         for field, array in (("x", x), ("v", v)):
             self._lend(field, array)
@@ -85,8 +87,7 @@ class Batch:
         all others advance; the exception tells of the first, and its `failed` has the indices of all. After any other
         error nothing has changed, and `failed` is empty.
         """
-        function = getattr(lib, f"{self._name}_advance_marked")
-        status = function(self._batch, method_number(method), dt, step_count(steps), ffi.from_buffer("uint8_t[]", self._failed))
+        status = self._advance(self._batch, method_number(method), dt, step_count(steps), self._marks)
         if status == lib.SPRING_OK:
             return
         failed = np.flatnonzero(self._failed)
