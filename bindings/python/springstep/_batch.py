@@ -10,7 +10,7 @@ from springstep._common import SpringError, fail, finite, invalid, method_number
 from springstep._native import ffi, lib
 
 # How the functions and the structure are called in C, and what an array is for C.
-_PRECISIONS = {"float64": ("spring_batch", "double[]"), "float32": ("spring_batchf", "float[]")}
+_PRECISIONS = {np.dtype(np.float64): ("spring_batch", "double[]"), np.dtype(np.float32): ("spring_batchf", "float[]")}
 
 
 class Batch:
@@ -29,9 +29,9 @@ class Batch:
 
     def __init__(self, x: np.ndarray, v: np.ndarray, omega2: np.ndarray | float, gamma: np.ndarray | float | None = None,
                  accel: np.ndarray | float | None = None):
-        if not isinstance(x, np.ndarray) or x.dtype.name not in _PRECISIONS:
+        if not isinstance(x, np.ndarray) or x.dtype not in _PRECISIONS:
             raise TypeError("x: not an array of float64 or float32")
-        self._name, self._pointer = _PRECISIONS[x.dtype.name]
+        self._name, self._pointer = _PRECISIONS[x.dtype]
         self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
         self._advance = getattr(lib, f"{self._name}_advance_marked")
         self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
@@ -55,9 +55,11 @@ class Batch:
 
     def _lend(self, field: str, array: Any) -> None:
         """Show an array to C as it is."""
-        if not isinstance(array, np.ndarray) or array.dtype != self._x.dtype or not array.flags.c_contiguous:
+        if not isinstance(array, np.ndarray) or array.dtype != self._x.dtype or not (
+                array.flags.c_contiguous and array.flags.aligned):
             raise TypeError(f"{field}: not a contiguous array of {self._x.dtype}")
-        if array.shape not in ((), self._x.shape) or array.ndim > 1:
+        one_for_all = field in self._parameters and array.ndim == 0
+        if not one_for_all and (array.ndim != 1 or array.shape != self._x.shape):
             raise ValueError(f"{field}: its shape is {array.shape}, of x {self._x.shape}")
         setattr(self._batch, field, ffi.from_buffer(self._pointer, array))
 

@@ -24,7 +24,7 @@ LINK = np.dtype({
 #: `position` [m] and `velocity` [m/s] at the time t [s], not to be written to; none may be kept.
 Force = Callable[[float, tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]], None]
 
-_PREFIXES = {"float64": "spring_scene", "float32": "spring_scenef"}
+_PREFIXES = {np.dtype(np.float64): "spring_scene", np.dtype(np.float32): "spring_scenef"}
 _FAMILIES = ("structural", "shear", "bend")
 _FACES = ("first_x", "last_x", "first_y", "last_y", "first_z", "last_z")
 
@@ -164,9 +164,9 @@ class Scene:
                  methods: Iterable[str] | None = None, editable: bool = False, undo: bool = True,
                  dtype: DTypeLike = np.float64):
         self._dtype = np.dtype(dtype)
-        if self._dtype.name not in _PREFIXES:
+        if self._dtype not in _PREFIXES:
             raise TypeError("dtype: not float64 or float32")
-        self._prefix = _PREFIXES[self._dtype.name]
+        self._prefix = _PREFIXES[self._dtype]
         positions = np.ascontiguousarray(position, np.float64)
         if positions.ndim == 1:
             positions = positions[:, np.newaxis]
@@ -355,7 +355,9 @@ class Scene:
 
     def _fits(self, out: np.ndarray) -> bool:
         """Can C write rows to it, at a stride?"""
-        if out.ndim != 2 or out.shape[1] != self._axes or out.dtype.name not in _PREFIXES or not out.flags.writeable:
+        if out.ndim != 2 or out.shape[1] != self._axes or out.dtype not in _PREFIXES:
+            return False
+        if not (out.flags.writeable and out.flags.aligned):
             return False
         stride, rest = divmod(out.strides[0], out.itemsize)
         return len(out) < 1 or (out.strides[1] == out.itemsize and (len(out) == 1 or (stride >= self._axes and rest == 0)))

@@ -66,6 +66,8 @@ def test_arrays_are_used_where_they_are():
 
 @pytest.mark.parametrize("field, array", [("x", [1.0, 2.0]), ("x", np.ones(2, int)), ("v", np.ones(4)[::2]),
                                           ("v", np.ones(2, np.float32)), ("omega2", [1.0, 2.0]), ("x", np.ones((2, 2))),
+                                          ("x", np.ones(2, ">f8")), ("v", np.ones(())), ("v", np.ones((2, 1))),
+                                          ("v", np.ones(17, np.uint8)[1:].view(float)),
                                           ("gamma", np.ones(3))])
 def test_what_would_be_copied_is_refused(field, array):
     arrays = {"x": np.ones(2), "v": np.ones(2), "omega2": np.ones(2)}

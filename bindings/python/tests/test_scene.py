@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import springstep
-from springstep import LINK, Scene, ffi, grid, lib
+from springstep import Scene, ffi, grid, lib
 
 OF_SCENES = [method.name for method in springstep.methods() if method.scenes]
 FLOATS = pytest.mark.parametrize("dtype", [np.float64, np.float32])
@@ -109,7 +109,7 @@ def test_state_goes_in_and_out():
     assert (vertices[:, :3] == scene.position().astype(np.float32)).all() and (vertices[:, 3:] == -1).all()
     energy = scene.energy()
     assert energy.kinetic == pytest.approx(0.13 * 0.5**2 / 2, rel=1e-15)
-    for out in (np.empty((6, 2)), np.empty((6, 3), int), np.empty((3, 6)).T, np.empty(18)):
+    for out in (np.empty((6, 2)), np.empty((6, 3), int), np.empty((3, 6)).T, np.empty(18), np.empty((6, 3), ">f8")):
         with pytest.raises(TypeError, match="^out: "):
             scene.position(out=out)
     for first, count in ((5, 2), (-1, 1), (7, None)):
