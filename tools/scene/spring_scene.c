@@ -188,21 +188,21 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
     if (!(rain * duration <= most_drops))
         cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
                  most_drops, duration, most_drops / duration);
+    if (!isnan(poke[0]))
+        check_poke(r);
+    if (!isnan(box[0]))
+        check_box();
     const size_t most = (size_t)(rain * duration) + 4; /* a drop that has begun, a rounded one, a poke, a box */
     disturbance *list = malloc(most * sizeof *list);
     if (list == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu drops", most);
     size_t count = rain > 0 ? fall(r, s, list) : 0;
-    if (!isnan(poke[0])) {
-        check_poke(r);
+    if (!isnan(poke[0]))
         list[count++] = (disturbance){poke[0], disturbance_time, poke[1], poke[2], poke[3], poke[4], DISTURBANCE_ROUND};
-    }
     if (water_alone)
         list[count++] = disturbances_poke(r, s, disturbance_time);
-    if (!isnan(box[0])) {
-        check_box();
+    if (!isnan(box[0]))
         list[count++] = disturbances_box(r, s, box[0], box[1], disturbance_time);
-    }
     disturbances *p = start_disturbances(r, list, count);
     free(list);
     return p;
