@@ -13,7 +13,7 @@ import {
 } from "three";
 
 import { smoothNormals } from "../surface.mjs";
-import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
+import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
 
 const floor = -3.35; // [m]
 
@@ -36,10 +36,7 @@ const fabric = /* glsl */ `
         gl_FragColor = vec4(lit(c, normal, normalize(v), 0.06), 1.0);
     }`;
 
-const metal = /* glsl */ `
-    ${lighting}
-    varying vec3 n, v;
-    void main() { gl_FragColor = vec4(lit(vec3(0.55, 0.50, 0.44), normalize(n), normalize(v), 0.7), 1.0); }`;
+const metal = plain("0.55, 0.50, 0.44", 0.7);
 
 // Triangles of the cells, and the links along their sides.
 function weave(columns, rows, ends) {

@@ -13,7 +13,7 @@ import {
 } from "three";
 
 import { smoothNormals, Upsampler } from "../surface.mjs";
-import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
+import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
 
 const times = 3; // fine cells a cell
 const plate = -0.05; // [m]
@@ -34,10 +34,7 @@ const flesh = /* glsl */ `
         gl_FragColor = inside > 0.5 ? vec4(0.7 * colour, 1.0) : vec4(colour, 0.70 + 0.25 * (1.0 - facing) * (1.0 - facing));
     }`;
 
-const china = /* glsl */ `
-    ${lighting}
-    varying vec3 n, v;
-    void main() { gl_FragColor = vec4(lit(vec3(0.16, 0.30, 0.46), normalize(n), normalize(v), 0.5), 1.0); }`;
+const china = plain("0.16, 0.30, 0.46", 0.5);
 
 export class Jelly {
     static camera = { from: [0.72, -1.62, 0.98], to: [0, 0, 0.29], fit: 1.25 };

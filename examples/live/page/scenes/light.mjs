@@ -42,6 +42,14 @@ export const vertex = /* glsl */ `
         gl_Position = projectionMatrix * viewMatrix * p;
     }`;
 
+/** The fragment shader of something in one colour: three numbers as text, gloss as in lit(). */
+export function plain(colour, gloss) {
+    return /* glsl */ `
+    ${lighting}
+    varying vec3 n, v;
+    void main() { gl_FragColor = vec4(lit(vec3(${colour}), normalize(n), normalize(v), ${gloss.toFixed(2)}), 1.0); }`;
+}
+
 export function uniformsOf(theme, more = {}) {
     const uniforms = { ...more };
     for (const name of ["skyLow", "skyHigh", "ground"]) uniforms[name] = { value: theme[name] };

@@ -11,7 +11,7 @@ import {
 } from "three";
 
 import { smoothNormals } from "../surface.mjs";
-import { floorAt, lighting, shadowOf, uniformsOf, vertex } from "./light.mjs";
+import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
 
 const floor = -2.55; // [m]
 const radius = 0.032; // [m]
@@ -30,10 +30,7 @@ const strands = /* glsl */ `
         gl_FragColor = vec4(lit(c, normalize(n), normalize(v), 0.05), 1.0);
     }`;
 
-const iron = /* glsl */ `
-    ${lighting}
-    varying vec3 n, v;
-    void main() { gl_FragColor = vec4(lit(vec3(0.17, 0.18, 0.21), normalize(n), normalize(v), 0.75), 1.0); }`;
+const iron = plain("0.17, 0.18, 0.21", 0.75);
 
 export class Rope {
     static camera = { from: [0.4, -5.0, -0.55], to: [0.0, 0, -0.92], fit: 1.1 };
