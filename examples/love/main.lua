@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 -- A rope hangs from the pointer.
 --
---     SPRINGSTEP_LIBRARY=build/libspringstep.so.0 love examples/love
+--     LUA_PATH='build/?.lua;;' love examples/love
 --
 -- The first particle is pinned and driven to where the pointer is, at a limited speed; steps are fixed, and what is
 -- drawn lies between the last two states. Lengths are in metres, y points down as on the screen.
@@ -14,20 +14,9 @@ local spacing, stiffness, damping, mass, ball = 0.03, 3000, 0.2, 0.02, 0.25 -- [
 local pixels = 260 -- to a metre
 local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] how fast the rope can follow
 
-local scene, memory, clock, hand, previous, current, whole, step_cost
+local scene, clock, hand, previous, current, whole, step_cost
 
-local function must(status, what)
-  if status ~= spring.SPRING_OK then
-    error(what .. ": " .. ffi.string(spring.spring_status_string(status)))
-  end
-end
-
--- Lua's allocator aligns to less than a scene needs.
-local function aligned(bytes)
-  local block = ffi.new("uint8_t[?]", bytes + spring.SPRING_SCENE_ALIGN)
-  local behind = tonumber(ffi.cast("uintptr_t", block) % spring.SPRING_SCENE_ALIGN)
-  return block, block + (spring.SPRING_SCENE_ALIGN - behind)
-end
+local must = spring.must
 
 local function start(x, y)
   local grid = ffi.new("spring_grid", {count = {N, 1, 1}, axes = 2, spacing = spacing, stiffness = stiffness,
@@ -44,12 +33,7 @@ local function start(x, y)
   def.axes, def.flags, def.particles, def.links = 2, spring.SPRING_SCENE_EDITABLE, N, N - 1
   def.position, def.mass, def.pinned, def.link = position, masses, pinned, link
   def.gravity[1], def.drag = 9.81, 0.02
-  local bytes, made = ffi.new("size_t[1]"), ffi.new("spring_scene *[1]")
-  must(spring.spring_scene_bytes(def, bytes), "definition")
-  local place
-  memory, place = aligned(tonumber(bytes[0])) -- the scene lives as long as `memory` refers to it
-  must(spring.spring_scene_init(place, bytes[0], def, made), "init")
-  scene = made[0]
+  scene = spring.scene(def)
   assert(dt < 0.5 * spring.spring_scene_stable_step(scene, spring.SPRING_LEAPFROG), "this step is too long")
 
   clock, hand, whole, step_cost = ffi.new("spring_clock"), ffi.new("double[2]", x, y), {}, 0

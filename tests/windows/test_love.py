@@ -9,7 +9,8 @@ import time
 import pytest
 
 GAME, LIBRARY = os.environ['GAME'], os.environ.get('SPRINGSTEP_LIBRARY')
-SONAME = 'libspringstep.so.0'
+# The folder where the library is built, with springstep.lua beside it.
+BUILD = os.path.dirname(LIBRARY or '')
 
 pytestmark = [
     pytest.mark.skipif(shutil.which('love') is None, reason='no love'),
@@ -37,9 +38,10 @@ def ring_is_at(x, y):
 
 
 def test_a_rope_on_the_pointer(screen, tmp_path):
-    """With the library beside the game."""
+    """A copy of the folder, with springstep.lua and the library in it."""
     game = shutil.copytree(GAME, tmp_path / 'game')
-    shutil.copy(LIBRARY, game / SONAME)
+    shutil.copy(LIBRARY, game)
+    shutil.copy(f'{BUILD}/springstep.lua', game)
     with running(screen, game) as program:
         window = screen.window('rope on the pointer')
         screen.move(window, 300, 120)
@@ -61,8 +63,9 @@ def test_a_rope_on_the_pointer(screen, tmp_path):
         assert program.stdout.read() == ''
 
 
-def test_the_library_by_its_variable(screen):
-    with running(screen, GAME, SPRINGSTEP_LIBRARY=LIBRARY):
+def test_in_the_checkout(screen):
+    """springstep.lua in LUA_PATH, and the library beside that."""
+    with running(screen, GAME, LUA_PATH=f'{BUILD}/?.lua;;'):
         window = screen.window('rope on the pointer')
         screen.move(window, 400, 150)
         assert ring_is_at(400, 150)(screen.wait_for(window, ring_is_at(400, 150)))
@@ -70,7 +73,7 @@ def test_the_library_by_its_variable(screen):
 
 def test_no_library(screen):
     """It says what is missing, and where it was looked for: in the window, and when that is closed to the shell."""
-    with running(screen, GAME, SPRINGSTEP_LIBRARY='/nonexistent/library.so') as program:
+    with running(screen, GAME, LUA_PATH=f'{BUILD}/?.lua;;', SPRINGSTEP_LIBRARY='/nonexistent/library.so') as program:
         window = screen.window('rope on the pointer')
         blue = 89, 157, 220  # LÖVE's for errors
         assert blue in screen.wait_for(window, lambda picture: blue in picture.colors()).colors()
