@@ -235,6 +235,13 @@ holds("a force written in Lua: weight, to rounding", function()
   assert(moved > 0.01 and most < 50 * 2 * 2 ^ -52 * 8, ("they differ by %g m"):format(most))
 end)
 
+holds("the program in docs/lua.md runs", function()
+  local said
+  local program = assert(loadstring(read("docs/lua.md"):match("\n```lua\n(.-)\n```")))
+  setfenv(program, setmetatable({print = function(text) said = text end}, {__index = _G}))()
+  assert(said:find("^the end is at 1%.%d%d m, %-0%.%d%d m$"), said) -- of a rope of 1.9 m that has begun to fall
+end)
+
 -- --- what is refused
 
 holds("a scene in float, and a wrong mass in it", function()
