@@ -128,7 +128,8 @@ local function cloth(kind, change)
   if change then
     change(def, position)
   end
-  return spring[kind:gsub("spring_", "")](def)
+  local scene, bytes = spring[kind:gsub("spring_", "")](def) -- a tail call would let go of the arrays
+  return scene, bytes
 end
 
 local function state(scene, q)
