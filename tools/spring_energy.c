@@ -17,20 +17,22 @@ static const spring_params spring = {.mass = 1, .stiffness = 1};
 static const spring_state start = {.x = 1, .v = 0};
 
 static stepper chosen;
-static double dt = 0.01, duration = 1e8;
+static run_length length = {.dt = 0.01, .duration = 1e8};
 static bool half_step_velocity, jitter;
 
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
-    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s] (default: 0.01)"},
-    {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
-     .help = "a row for each power of ten from 1 s to H [s] (default: 1e8)"},
+    {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
+    {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
+     .help = "a row for each power of ten from 1 s to H [s]"},
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+     .help = "number of steps; two of this, --dt, --duration give the third"},
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
-     .help = "leapfrog only: measure the kinetic energy with the velocity at\n"
-             "t + dt/2, half a step ahead of the position"},
+     .help = "leapfrog only: take the kinetic energy half a step ahead\n"
+             "that is, with the velocity at t + dt/2 and the position at t"},
     {"jitter", CLI_FLAG, .flag = &jitter, .help = "draw every step from DT/2 to 3 DT/2, the same ones at every run"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {.name = NULL},
 };
 
@@ -39,21 +41,25 @@ static const cli_program program = {
     .summary = "The error in the energy of an undamped spring after 1, 10, 100 ... seconds.",
     .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
                "1/2 J.\n\n"
-               "Columns: method, velocity (synchronised, or half_step_ahead with --half-step-velocity),\n"
-               "duration_s (steps times DT), steps (the whole number that comes nearest to the power of ten, at\n"
-               "least 1) and energy_error_J, the distance |E - 1/2 J|. An energy that overflows has the error\n"
-               "inf; that is a result, with status 0.\n\n"
                "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
-               "terminal.\n"
+               "terminal.\n\n"
                "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
                "With --jitter the time run is the duration only on average.",
+    .columns = "method velocity duration_s steps energy_error_J",
+    .meaning = "velocity is synchronised, or half_step_ahead with --half-step-velocity; duration_s is steps times\n"
+               "DT, steps the whole number that comes nearest to the power of ten, at least 1; energy_error_J is\n"
+               "the distance |E - 1/2 J|. An energy that overflows has the error inf; that is a result, with\n"
+               "status 0.",
+    .shown = {"duration_s", "energy_error_J"},
+    .examples = {"--method leapfrog --duration 1e5", "--method leapfrog --duration 1e4 --half-step-velocity",
+                 "--method rk4 --dt 0.1 --steps 1e6 -o energy.tsv"},
     .options = options,
 };
 
 static double energy_error(spring_state s)
 {
     if (half_step_velocity)
-        s.v -= dt / 2 * s.x; /* the first kick of the next step */
+        s.v -= length.dt / 2 * s.x; /* the first kick of the next step */
     return fabs(spring_energy(&s, &spring) - spring_energy(&start, &spring));
 }
 
@@ -61,10 +67,10 @@ static bool advance(spring_state *s, uint64_t n)
 {
     static uint64_t state = 0;
     if (!jitter)
-        return stepper_advance(&chosen, s, &spring, dt, n) == SPRING_OK;
+        return stepper_advance(&chosen, s, &spring, length.dt, n) == SPRING_OK;
     bool finite = true;
     for (; finite && n > 0; n--)
-        finite = stepper_advance(&chosen, s, &spring, dt * (0.5 + random_unit(&state)), 1) == SPRING_OK;
+        finite = stepper_advance(&chosen, s, &spring, length.dt * (0.5 + random_unit(&state)), 1) == SPRING_OK;
     return finite;
 }
 
@@ -73,35 +79,34 @@ static void write_energies(cli_table *table)
     spring_state s = start;
     uint64_t step = 0;
     bool finite = true;
-    for (double H = 1; H <= duration; H *= 10) {
-        const uint64_t steps = (uint64_t)fmax(rint(H / dt), 1);
+    for (double H = 1; H <= length.duration; H *= 10) {
+        const uint64_t steps = (uint64_t)fmax(rint(H / length.dt), 1);
         while (finite && step < steps) {
             const uint64_t left = steps - step, n = left < stepper_leap ? left : stepper_leap;
             finite = advance(&s, n);
             step += n;
-            cli_progress((double)step * dt / duration);
+            cli_progress((double)step * length.dt / length.duration);
         }
         cli_row(table, "%s\t%s\t%.17g\t%" PRIu64 "\t%.17g", stepper_name(&chosen),
-                half_step_velocity ? "half_step_ahead" : "synchronised", (double)steps * dt, steps,
+                half_step_velocity ? "half_step_ahead" : "synchronised", (double)steps * length.dt, steps,
                 finite ? energy_error(s) : INFINITY);
     }
 }
 
 int main(int argc, char **argv)
 {
-    const double most_steps = 9007199254740992; /* 2^53: up to there steps and times are exact in a double */
     cli_parse(&program, argc, argv);
     stepper_check(&chosen);
     if (half_step_velocity && chosen.method != SPRING_LEAPFROG)
         cli_fail(CLI_USAGE, "--half-step-velocity: with --method %s; it should be leapfrog", stepper_name(&chosen));
-    if (!(duration >= 1))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at least 1 s", duration);
-    if (!(duration / dt <= most_steps))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at most 2^53 steps, %g s", duration, dt * most_steps);
+    run_length_settle(&length);
+    if (!(length.duration >= 1))
+        cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at least 1 s", length.duration);
 
     cli_table *table = cli_open_output();
     stepper_comment(&chosen, table);
-    cli_columns(table, "method velocity duration_s steps energy_error_J");
+    cli_columns(table, program.columns);
+    stepper_remark(&chosen, &spring, &length);
     write_energies(table);
     cli_finish();
     return 0;

@@ -9,9 +9,12 @@ static const cli_option options[] = {{.name = NULL}};
 static const cli_program program = {
     .name = "spring-methods",
     .summary = "The methods of the library, in the order in which tables and figures show them.",
-    .details = "Columns: method (its name), label (its name in a text), order (0: no error but rounding),\n"
-               "forces_per_step, and 1 or 0 for symplectic (bounded energy error without damping), springs\n"
-               "(offered for one spring and batches) and scenes (offered for scenes).",
+    .columns = "method label order forces_per_step symplectic springs scenes",
+    .meaning = "method is its name, label its name in a text, order 0: no error but rounding. symplectic (bounded\n"
+               "energy error without damping), springs (offered for one spring and batches) and scenes (offered\n"
+               "for scenes) are 1 or 0.",
+    .shown = {"order", "forces_per_step"},
+    .examples = {"", "-o methods.tsv", "| awk -F'\\t' '$7 == 1 {print $1}'"},
     .options = options,
 };
 
@@ -19,7 +22,7 @@ int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
-    cli_columns(table, "method label order forces_per_step symplectic springs scenes");
+    cli_columns(table, program.columns);
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const spring_method_info *m = spring_method_describe(spring_method_at(i));
         cli_row(table, "%s\t%s\t%d\t%d\t%d\t%d\t%d", m->name, m->label, m->order, m->forces_per_step, m->symplectic,

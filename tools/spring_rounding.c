@@ -10,6 +10,7 @@
 #include <springstep/spring.h>
 
 #include "common/cli.h"
+#include "common/run_length.h"
 #include "harness/compensated.h"
 #include "harness/reference.h"
 
@@ -17,27 +18,33 @@ static const char *const sums[] = {"plain", "compensated", NULL};
 enum { PLAIN, COMPENSATED };
 
 static int method, sum;
-static uint64_t most = 10000000;
-static double dt = 0.01; /* [s] */
+static run_length length = {.steps = 10000000, .dt = 0.01};
 
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_steps, .required = true, .value = "M"},
     {"sum", CLI_CHOICE, .choice = &sum, .choices = sums, .required = true, .value = "S",
      .help = "plain, as the library, or, of leapfrog and rk4, compensated"},
-    {"steps", CLI_COUNT, .count = &most, .least = 10000, .most = UINT64_C(1) << 53, .value = "N",
-     .help = "rows up to N steps; 1e7"},
-    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT", .help = "step [s]; 0.01"},
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 10000, .most = UINT64_C(1) << 53, .value = "N",
+     .help = "rows up to N steps"},
+    {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
+    {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
+     .help = "time to run [s]; two of this, --steps, --dt give the third"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-rounding",
     .summary = "How the rounding errors of an undamped spring grow with the number of steps.",
-    .details = "Columns: method, sum, start (0 to 7: phases spread evenly over a period), steps (two rows for each\n"
-               "power of ten from 1e4 to N), dt_s, state_error and energy_error: what differs from the same method\n"
-               "in 107-digit arithmetic, relative to the amplitude, in (x, v/omega), and to the energy; and\n"
-               "coefficient_error, by how much the rounding of dt stiffness/mass, which is the same in every step,\n"
-               "shifts the phase [rad]. 1e9 steps take about half a minute.",
+    .details = "The computed state is compared with the same method in 107-digit arithmetic, so all that differs is\n"
+               "rounding. 1e9 steps take about half a minute.",
+    .columns = "method sum start steps dt_s state_error energy_error coefficient_error",
+    .meaning = "start is 0 to 7: phases spread evenly over a period. There are two rows for each power of ten from\n"
+               "1e4 steps to N. state_error is relative to the amplitude, in (x, v/omega), energy_error to the\n"
+               "energy; coefficient_error is by how much the rounding of dt stiffness/mass, which is the same in\n"
+               "every step, shifts the phase [rad].",
+    .shown = {"steps", "state_error"},
+    .examples = {"--method leapfrog --sum plain --steps 1e5", "--method rk4 --sum compensated --steps 1e5",
+                 "--method euler --sum plain --dt 0.001 --duration 100 -o rounding.tsv"},
     .options = options,
 };
 
@@ -47,12 +54,12 @@ static void advance(compensated_state *s, uint64_t n)
 {
     const spring_method m = (spring_method)method;
     if (sum == COMPENSATED) {
-        compensated_advance(s, &spring, m, dt, n);
+        compensated_advance(s, &spring, m, length.dt, n);
         return;
     }
     for (int i = 0; i < compensated_springs; i++) {
         spring_state one = {s->x[i], s->v[i]};
-        spring_advance(&one, &spring, m, dt, n);
+        spring_advance(&one, &spring, m, length.dt, n);
         s->x[i] = one.x;
         s->v[i] = one.v;
     }
@@ -72,8 +79,8 @@ static compensated_state starts(void)
 
 static double coefficient_error(uint64_t n)
 {
-    const double w = spring.stiffness / spring.mass, hw = dt * w;
-    return (double)n * dt * sqrt(w) * fabs(fma(dt, w, -hw) / hw) / 2;
+    const double w = spring.stiffness / spring.mass, hw = length.dt * w;
+    return (double)n * length.dt * sqrt(w) * fabs(fma(length.dt, w, -hw) / hw) / 2;
 }
 
 static void compare(cli_table *table, const compensated_state *from, const compensated_state *s, uint64_t n)
@@ -83,9 +90,9 @@ static void compare(cli_table *table, const compensated_state *from, const compe
     for (int i = 0; i < compensated_springs; i++) {
         const spring_state start = {from->x[i], from->v[i]}, got = {s->x[i], s->v[i]};
         reference_start(&iterate, &spring, start);
-        reference_iterate(&iterate, &spring, (spring_method)method, dt, n);
+        reference_iterate(&iterate, &spring, (spring_method)method, length.dt, n);
         cli_row(table, "%s\t%s\t%d\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g", spring_method_name((spring_method)method),
-                sums[sum], i, n, dt, reference_distance(&iterate, got), reference_energy_error(&iterate, got),
+                sums[sum], i, n, length.dt, reference_distance(&iterate, got), reference_energy_error(&iterate, got),
                 coefficient_error(n));
     }
     reference_clear(&iterate);
@@ -98,17 +105,19 @@ int main(int argc, char **argv)
     if (sum == COMPENSATED && !compensated_knows((spring_method)method))
         cli_fail(CLI_USAGE, "--sum: \"compensated\" is for leapfrog and rk4 only; with --method %s it should be plain",
                  spring_method_name((spring_method)method));
+    run_length_settle(&length);
     cli_table *table = cli_open_output();
-    cli_columns(table, "method sum start steps dt_s state_error energy_error coefficient_error");
+    cli_columns(table, program.columns);
+    run_length_remark(&length, spring_stable_step(&spring, (spring_method)method), (spring_method)method);
     const compensated_state from = starts();
     compensated_state s = from;
     uint64_t done = 0;
-    for (uint64_t n = 10000; n <= most; n = n % 3 == 0 ? n / 3 * 10 : n * 3) {
+    for (uint64_t n = 10000; n <= length.steps; n = n % 3 == 0 ? n / 3 * 10 : n * 3) {
         while (done < n) {
             const uint64_t some = n - done < leap ? n - done : leap;
             advance(&s, some);
             done += some;
-            cli_progress((double)done / (double)most);
+            cli_progress((double)done / (double)length.steps);
         }
         compare(table, &from, &s, n);
     }

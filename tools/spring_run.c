@@ -14,8 +14,8 @@
 #include "common/stepper.h"
 
 static stepper chosen;
-static double duration;
-static uint64_t steps, every;
+static run_length length;
+static uint64_t every;
 static double from;
 static const char *envelope_path;
 static uint64_t envelope_columns = 600;
@@ -24,53 +24,60 @@ static spring_state start = {.x = 1};
 
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
-    {"duration", CLI_POSITIVE, .real = &duration, .required = true, .value = "H", .help = "time to run [s]"},
-    {"steps", CLI_COUNT, .count = &steps, .least = 1, .most = UINT64_C(1) << 53, .required = true, .value = "N",
-     .help = "number of steps; each is H/N long"},
+    {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
+     .help = "time to run [s]; two of this, --steps, --dt give the third"},
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+     .help = "number of steps"},
+    {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
+     .help = "step [s]\n"
+             "Of a duration the number of steps is the nearest whole number."},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
-     .help = "a row for every K-th step, the start included; without it only\n"
-             "the final state"},
-    {"from", CLI_REAL, .real = &from, .value = "T", .help = "no rows for times before T [s], but for the final state"},
-    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg] (default: 1)"},
-    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m] (default: 1)"},
-    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m] (default: 0)"},
-    {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N] (default: 0)"},
-    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m] (default: 1)"},
-    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s] (default: 0)"},
+     .help = "a row for every K-th step, the start included; else the end alone"},
+    {"from", CLI_REAL, .real = &from, .value = "T", .help = "no rows for times before T [s], but for the end"},
+    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]"},
+    {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N]"},
+    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m]"},
+    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s]"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
     {"envelope", CLI_FILE, .file = &envelope_path, .value = "FILE",
-     .help = "in the same pass, write the envelope of the error to FILE: its\n"
-             "minimum and maximum over all steps, for each of --columns equal\n"
-             "parts of the run"},
+     .help = "write the envelope of the error to FILE, too\n"
+             "That is its minimum and maximum over all steps, for each of --columns equal parts of the run."},
     {"columns", CLI_COUNT, .count = &envelope_columns, .least = 1, .most = 1000000, .value = "N",
-     .help = "number of these parts (default: 600)"},
+     .help = "number of these parts"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-run",
-    .summary = "Moves one spring through time and compares it with its exact solution.",
-    .details = "Columns: method, step, t_s, x_m, v_m_per_s, energy_J (m v^2/2 + k x^2/2 - load x), exact_x_m\n"
-               "and error_m, the distance |x_m - exact_x_m|. Times are step H/N, and exact_x_m is computed\n"
-               "from the start in one evaluation. The last row is the final state. With --method exact one\n"
-               "evaluation covers the steps from row to row, 2^24 of them at most (with --envelope each step\n"
-               "has its own), and the error is what rounding adds up to.\n\n"
-               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
-               "these with the sign of x_m - exact_x_m. Parts without a step have no row.\n\n"
+    .summary = "Move one spring through time and compare it with its exact solution.",
+    .details = "Times are i DT from the start, or i H/N, and the exact solution is computed from the start in one\n"
+               "evaluation.\n\n"
                "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
-               "is told, and the status is 1.",
+               "is told, and the status is 1. A step that is not below the stable step is remarked on.",
+    .columns = "method step t_s x_m v_m_per_s energy_J exact_x_m error_m",
+    .meaning = "energy_J is m v^2/2 + k x^2/2 - load x, error_m the distance |x_m - exact_x_m|. The last row is\n"
+               "the final state. With --method exact one evaluation covers the steps from row to row, 2^24 of\n"
+               "them at most (with --envelope each step has its own), and the error is what rounding adds up to.\n\n"
+               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
+               "these with the sign of x_m - exact_x_m. Parts without a step have no row.",
+    .shown = {"t_s", "x_m"},
+    .examples = {"--method leapfrog --duration 10 --dt 0.01 --every 1 -o spring.tsv",
+                 "--method exact --duration 2 --steps 120 --every 1 --stiffness 40 --damping 3",
+                 "--method rk4 --dt 1e-3 --steps 1e6 --envelope error.tsv"},
     .options = options,
 };
 
-static double dt;
+/* The time of step i is i span/parts: what was asked for, and so exact. */
+static double span, parts;
 
-/* At the time step/steps of the duration, which a double only holds to 6e-14 s at 1000 s: RK4's error is smaller. So
-   the time is a sum of two doubles, and over the second one, far below any dt, the motion is a straight line. */
+/* A double only holds that to 6e-14 s at 1000 s: RK4's error is smaller. So the time is a sum of two doubles, and over the second one, far below any dt, the motion is a straight line. */
 static double exact_x(uint64_t step)
 {
     int exponent; /* taken out of the duration: no product overflows */
-    const double H = frexp(duration, &exponent), i = (double)step, n = (double)steps;
+    const double H = frexp(span, &exponent), i = (double)step, n = parts;
     const double product = i * H, t = product / n;
     const double rest = (fma(-t, n, product) + fma(i, H, -product)) / n;
     spring_state s = start;
@@ -82,7 +89,7 @@ static void write_state(cli_table *table, uint64_t step, const spring_state *s)
 {
     const double exact = exact_x(step);
     cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", stepper_name(&chosen), step,
-            (double)step * dt, s->x, s->v, spring_energy(s, &spring), exact, fabs(s->x - exact));
+            (double)step * length.dt, s->x, s->v, spring_energy(s, &spring), exact, fabs(s->x - exact));
 }
 
 /* ------------------------------------------------------------------------------------------------- the envelope */
@@ -96,13 +103,13 @@ typedef struct envelope {
 static void write_part(const envelope *e)
 {
     cli_row(e->table, "%s\t%.17g\t%.17g\t%.17g", stepper_name(&chosen),
-            ((double)e->part + 0.5) / (double)envelope_columns * duration, e->min, e->max);
+            ((double)e->part + 0.5) / (double)envelope_columns * (double)length.steps * length.dt, e->min, e->max);
 }
 
 static void add_to_envelope(envelope *e, uint64_t step, const spring_state *s)
 {
     const double error = s->x - exact_x(step);
-    uint64_t part = (uint64_t)((double)step / (double)steps * (double)envelope_columns);
+    uint64_t part = (uint64_t)((double)step / (double)length.steps * (double)envelope_columns);
     if (part == envelope_columns) /* the last step belongs to the last part */
         part--;
     if (part != e->part) {
@@ -123,14 +130,14 @@ static uint64_t steps_at_once(uint64_t step)
         n = 1;
     if (every > 0 && n > every - step % every)
         n = every - step % every;
-    return n < steps - step ? n : steps - step;
+    return n < length.steps - step ? n : length.steps - step;
 }
 
 /* Takes n steps, or none if the state or its energy would become infinite. */
 static bool take(spring_state *s, uint64_t n)
 {
     spring_state next = *s;
-    if (stepper_advance(&chosen, &next, &spring, dt, n) != SPRING_OK || !isfinite(spring_energy(&next, &spring)))
+    if (stepper_advance(&chosen, &next, &spring, length.dt, n) != SPRING_OK || !isfinite(spring_energy(&next, &spring)))
         return false;
     *s = next;
     return true;
@@ -144,7 +151,7 @@ static void tell_explosion(spring_state *s, uint64_t step, uint64_t n)
             step += n;
     cli_warn("the spring explodes: step %" PRIu64
              ", to t = %.17g s, makes its state or its energy infinite; it was x = %g m, v = %g m/s",
-             step + 1, (double)(step + 1) * dt, s->x, s->v);
+             step + 1, (double)(step + 1) * length.dt, s->x, s->v);
 }
 
 /* Returns whether the spring survived. */
@@ -152,12 +159,12 @@ static bool run(cli_table *table, envelope *e)
 {
     spring_state s = start;
     for (uint64_t step = 0;;) {
-        const bool row_due = every > 0 && step % every == 0 && (double)step * dt >= from;
-        if (row_due || step == steps)
+        const bool row_due = every > 0 && step % every == 0 && (double)step * length.dt >= from;
+        if (row_due || step == length.steps)
             write_state(table, step, &s);
         if (e->table != NULL)
             add_to_envelope(e, step, &s);
-        if (step == steps)
+        if (step == length.steps)
             return true;
         const uint64_t n = steps_at_once(step);
         if (!take(&s, n)) {
@@ -165,16 +172,13 @@ static bool run(cli_table *table, envelope *e)
             return false;
         }
         step += n;
-        cli_progress((double)step / (double)steps);
+        cli_progress((double)step / (double)length.steps);
     }
 }
 
 static void check_options(void)
 {
     stepper_check(&chosen);
-    if (!(dt > 0))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger", duration,
-                 steps);
     if (!spring_params_valid(&spring))
         cli_fail(CLI_USAGE, "--mass: \"%g\" is too small: stiffness/mass, damping/mass, load/mass should be finite",
                  spring.mass);
@@ -183,19 +187,22 @@ static void check_options(void)
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
-    dt = duration / (double)steps;
     check_options();
+    run_length_settle(&length);
+    span = cli_given(&length.dt) ? length.dt : length.duration;
+    parts = cli_given(&length.dt) ? 1 : (double)length.steps;
 
     cli_table *table = cli_open_output();
     envelope e = {.min = INFINITY, .max = -INFINITY};
     if (envelope_path != NULL)
         e.table = cli_open_file("envelope", envelope_path);
     stepper_comment(&chosen, table);
-    cli_columns(table, "method step t_s x_m v_m_per_s energy_J exact_x_m error_m");
+    cli_columns(table, program.columns);
     if (e.table != NULL) {
         stepper_comment(&chosen, e.table);
         cli_columns(e.table, "method t_s error_min_m error_max_m");
     }
+    stepper_remark(&chosen, &spring, &length);
     const bool survived = run(table, &e);
     if (e.table != NULL)
         write_part(&e);

@@ -21,21 +21,25 @@ static bool map;
 
 static const cli_option options[] = {
     {"points", CLI_COUNT, .count = &points, .least = 1, .most = 10000, .value = "N",
-     .help = "damping ratios from 0.01 to 100, besides 0; 64"},
+     .help = "number of damping ratios from 0.01 to 100, besides 0"},
     {"map", CLI_FLAG, .flag = &map,
-     .help = "the error after ten periods instead, on a grid of N damping ratios from\n"
-             "0.01 to 100 by N steps omega dt from 0.001 to 10"},
+     .help = "the error after ten periods instead, over step and damping ratio\n"
+             "on a grid of N damping ratios from 0.01 to 100 by N steps omega dt from 0.001 to 10"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-stability",
     .summary = "Measure the stable step of each method over the damping ratio.",
-    .details = "Columns: method, damping_ratio, limit_measured and limit_theory (omega dt: the largest stable step\n"
-               "found by taking steps, and spring_stable_step()), relative_error. Takes about a minute.\n\n"
+    .details = "The limit is found by taking steps, about a minute of them with as many points as by default.",
+    .columns = "method damping_ratio limit_measured limit_theory relative_error",
+    .meaning = "limit_measured and limit_theory are omega dt: the largest stable step found by taking steps, and\n"
+               "spring_stable_step().\n\n"
                "With --map: method, omega_dt, damping_ratio, error: the distance from the exact state in\n"
                "(x, v/omega) over that of the start from rest, after the whole number of steps that comes\n"
                "nearest to ten undamped periods; inf where the state overflows.",
+    .shown = {"damping_ratio", "limit_measured"},
+    .examples = {"--points 1", "--map --points 10", "--map --points 50 -o map.tsv"},
     .options = options,
 };
 
@@ -192,8 +196,7 @@ int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
-    cli_columns(table, map ? "method omega_dt damping_ratio error"
-                           : "method damping_ratio limit_measured limit_theory relative_error");
+    cli_columns(table, map ? "method omega_dt damping_ratio error" : program.columns);
     for (int k = 0; k < SPRING_METHOD_COUNT; k++) {
         const spring_method m = spring_method_at(k);
         if (!cli_for_steps(spring_method_describe(m)))

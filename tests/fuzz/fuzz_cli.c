@@ -4,6 +4,8 @@
  * part is included, to reach what it keeps to itself.
  */
 #include "../../tools/common/cli.c"
+#include "../../tools/common/cli_help.c"
+#include "../../tools/common/cli_output.c"
 
 #include <float.h>
 
@@ -127,7 +129,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         return 0;
     memcpy(word, data, size);
     word[size] = '\0';
-    program = &fuzzed;
+    cli_asked.program = &fuzzed;
     check_count(word);
     check_real(word);
     check_reals(word);

@@ -23,8 +23,9 @@ static const cli_option options[] = {
      .help = "only the rows of this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
-    {"count", CLI_COUNT, .count = &only_count, .value = "N", .help = "only rows of so many springs, or links"},
-    {"calls", CLI_COUNT, .count = &calls, .value = "N",
+    {"count", CLI_COUNT, .count = &only_count, .least = 1, .value = "N",
+     .help = "only rows of so many springs, or links"},
+    {"calls", CLI_COUNT, .count = &calls, .least = 1, .value = "N",
      .help = "only make so many calls, for tools that count instructions"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
     {.name = NULL},
@@ -37,10 +38,6 @@ static const cli_program program = {
                "plain loop the library is (nan: there is none), and ratio, its time over that of a limit. Goals\n"
                "are what the library promises: goal_speedup (0: nothing), goal_ratio and goal_ns (inf:\n"
                "nothing), goal_excess_ns (0: nothing).\n\n"
-               "Columns: kernel, precision, count (springs; links of a scene), ns_per_spring_step, limit_ns,\n"
-               "ratio, spread, verdict, goal_ratio, goal_ns, limit (its name), baseline_ns (the plain loop),\n"
-               "speedup, goal_speedup, step_ns (a step of all springs or links), goal_excess_ns (how much\n"
-               "longer than with the limit that may take).\n\n"
                "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
                "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
                "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
@@ -77,6 +74,14 @@ static const cli_program program = {
                "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the\n"
                "row proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
                "judge.",
+    .columns = "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
+               "baseline_ns speedup goal_speedup step_ns goal_excess_ns",
+    .meaning = "count is that of springs, or of links of a scene; limit is the name of the limit, baseline_ns the\n"
+               "time of the plain loop, step_ns that of a step of all springs or links, goal_excess_ns how much\n"
+               "longer than with the limit that may take.",
+    .shown = {"count", "ns_per_spring_step"},
+    .examples = {"--quick --part spring", "--quick --kernel leapfrog_batch_1",
+                 "--quick --part batch --count 1000 -o bench.tsv"},
     .options = options,
 };
 
@@ -113,9 +118,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_columns(table,
-                "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
-                "baseline_ns speedup goal_speedup step_ns goal_excess_ns");
+    cli_columns(table, program.columns);
     size_t count;
     const bench_row *rows = bench_rows(&count);
     for (const bench_row *r = rows; r < rows + count; r++) {

@@ -1,284 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the command-line tools share: see cli.h.
+ * The command line of a tool: strict numbers, words, options from a table; see cli.h.
  *
  * Options are read here and not by getopt_long(), which accepts abbreviations of long options and cannot be told not
  * to: a script that says --step would change its meaning with the next option that begins so.
  */
-#define _XOPEN_SOURCE 700 /* POSIX 2008 with realpath() */
-#include "common/cli.h"
-
+#define _XOPEN_SOURCE 700 /* open_memstream() */
 #include <assert.h>
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
 #include <math.h>
-#include <signal.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
-struct cli_table {
-    FILE *stream;
-    const char *option;       /* that names the file */
-    const char *name;         /* as it was given */
-    char path[PATH_MAX];      /* what the file will be called */
-    char temporary[PATH_MAX]; /* what it is called until then; empty: it is written directly */
-    bool stamped;
-};
+#include "common/cli_parts.h"
 
-/* One tool is one process: what it was asked and what it has open. The signal handler needs the tables. */
-static const cli_program *program;
-static const char *output_path;
-static char *command; /* for the stamp: the options as they were understood */
-static cli_table tables[4];
-static time_t started;
-static size_t table_count;
-static bool progress_shown;
-
-/* ---------------------------------------------------------------------------------------------------- messages */
-
-static void erase_progress(void)
-{
-    if (progress_shown)
-        fprintf(stderr, "\r%*s\r", (int)strlen(program->name) + 10, "");
-    progress_shown = false;
-}
-
-void cli_progress(double fraction)
-{
-    static time_t last;
-    const time_t now = time(NULL);
-    if (now == last)
-        return;
-    last = now;
-    if (isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\r%s: %5.1f %%", program->name, 100 * fraction);
-        progress_shown = true;
-    }
-}
-
-static void print_message(const char *format, va_list arguments)
-{
-    erase_progress();
-    fprintf(stderr, "%s: ", program->name);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
-}
-
-_Noreturn void cli_fail(cli_status status, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_message(format, arguments);
-    va_end(arguments);
-    exit((int)status);
-}
-
-void cli_warn(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_message(format, arguments);
-    va_end(arguments);
-}
-
-/* ------------------------------------------------------------------------------------------------------ output */
-
-static void remove_temporaries(void)
-{
-    for (size_t i = 0; i < table_count; i++)
-        if (tables[i].temporary[0] != '\0')
-            unlink(tables[i].temporary);
-}
-
-static void on_signal(int number)
-{
-    remove_temporaries();
-    signal(number, SIG_DFL);
-    raise(number);
-}
-
-static void handle_signals(void)
-{
-    static const int ending[] = {SIGHUP, SIGINT, SIGPIPE, SIGTERM};
-    for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++)
-        if (signal(ending[i], on_signal) == SIG_IGN) /* started in the background, or by nohup */
-            signal(ending[i], SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN); /* a file size limit is a failed write, with its message */
-}
-
-/* A standard stream that the caller has closed would lend its number to the next file that is opened, and messages
-   would end up among the data. Opened for reading alone, it cannot be written either. */
-static void occupy_standard_streams(void)
-{
-    int fd;
-    do
-        fd = open("/dev/null", O_RDONLY);
-    while (fd >= 0 && fd <= STDERR_FILENO);
-    close(fd);
-}
-
-static _Noreturn void fail_to_write(const cli_table *table)
-{
-    if (table->stream == stdout)
-        cli_fail(CLI_IO, "cannot write standard output: %s", strerror(errno));
-    cli_fail(CLI_IO, "--%s: cannot write \"%s\": %s; it should be a file that can be created or replaced",
-             table->option, table->name, strerror(errno));
-}
-
-static _Noreturn void fail_as_taken(const cli_table *table)
-{
-    cli_fail(CLI_USAGE, "--%s: \"%s\" is written already; it should be another file", table->option, table->name);
-}
-
-static void close_stream(const cli_table *table)
-{
-    if (ferror(table->stream) != 0 || fflush(table->stream) != 0 || fclose(table->stream) != 0)
-        fail_to_write(table);
-}
-
-/* Open a file of another name beside it, so that a rename can put it in place at once. It is the same name for the same
-   file, and of no other process: in a container the numbers of processes come again. */
-static void open_temporary(cli_table *table)
-{
-    char name[PATH_MAX];
-    errno = ENAMETOOLONG;
-    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)started, (long)getpid()) < PATH_MAX)
-        table->stream = fopen(name, "wx");
-    if (table->stream != NULL)
-        strcpy(table->temporary, name);
-    else if (errno == EEXIST)
-        fail_as_taken(table);
-}
-
-static void open_stream(cli_table *table)
-{
-    const char *path = table->name;
-    struct stat status;
-    const bool exists = stat(path, &status) == 0;
-    const bool device = strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
-    if (device || (exists && !S_ISREG(status.st_mode))) {
-        table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
-    } else if (exists) {
-        /* a link stays a link to what it points to, a file keeps its mode */
-        if (access(path, W_OK) == 0 && realpath(path, table->path) != NULL)
-            open_temporary(table);
-        if (table->stream != NULL && fchmod(fileno(table->stream), status.st_mode & 0777) != 0)
-            fail_to_write(table);
-    } else if (errno == ENOENT && lstat(path, &status) != 0) {
-        /* a new file, and no link to nowhere; its name fits, or stat() had not said ENOENT */
-        strcpy(table->path, path);
-        open_temporary(table);
-    }
-    if (table->stream == NULL)
-        fail_to_write(table);
-}
-
-cli_table *cli_open_file(const char *option, const char *path)
-{
-    assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more */
-    cli_table *table = &tables[table_count++];
-    *table = (cli_table){.option = option, .name = path != NULL ? path : "/dev/stdout"};
-    if (strcmp(table->name, "/dev/stdout") != 0) {
-        open_stream(table);
-    } else { /* not opened anew: that would truncate a file behind it */
-        for (size_t i = 0; i < table_count; i++)
-            if (tables[i].stream == stdout)
-                fail_as_taken(table);
-        table->stream = stdout;
-    }
-    return table;
-}
-
-cli_table *cli_open_output(void)
-{
-    return cli_open_file("output", output_path);
-}
-
-/* With the first line and not before: a tool may open several tables, and fail at the last. */
-static void stamp(cli_table *table)
-{
-    table->stamped = true;
-    cli_comment(table, "springstep %s, %s", spring_version(), program->name);
-    cli_comment(table, "command: %s", command);
-#if defined(__clang__)
-    cli_comment(table, "compiler: clang %d.%d.%d", __clang_major__, __clang_minor__, __clang_patchlevel__);
-#elif defined(__GNUC__)
-    cli_comment(table, "compiler: gcc %d.%d.%d", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__);
-#else
-    cli_comment(table, "compiler: unknown");
-#endif
-}
-
-static void print_line(cli_table *table, const char *start, const char *format, va_list arguments)
-{
-    if (table->stream == stdout)
-        erase_progress();
-    if (!table->stamped)
-        stamp(table);
-    if (fputs(start, table->stream) == EOF || vfprintf(table->stream, format, arguments) < 0 ||
-        fputc('\n', table->stream) == EOF)
-        fail_to_write(table);
-}
-
-void cli_comment(cli_table *table, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(table, "# ", format, arguments);
-    va_end(arguments);
-}
-
-void cli_row(cli_table *table, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(table, "", format, arguments);
-    va_end(arguments);
-}
-
-void cli_columns(cli_table *table, const char *names)
-{
-    char *line = strdup(names);
-    if (line == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    for (char *space = line; (space = strchr(space, ' ')) != NULL;)
-        *space = '\t';
-    cli_row(table, "%s", line);
-    free(line);
-}
-
-static void put_in_place(cli_table *table)
-{
-    if (table->temporary[0] == '\0')
-        return;
-    if (rename(table->temporary, table->path) != 0)
-        fail_to_write(table);
-    table->temporary[0] = '\0';
-}
-
-void cli_close(cli_table *table)
-{
-    assert(table == &tables[table_count - 1]);
-    close_stream(table);
-    put_in_place(table);
-    table_count--;
-}
-
-void cli_finish(void)
-{
-    erase_progress();
-    for (size_t i = 0; i < table_count; i++)
-        close_stream(&tables[i]);
-    for (size_t i = 0; i < table_count; i++)
-        put_in_place(&tables[i]);
-}
+cli_command cli_asked;
 
 /* ------------------------------------------------------------------------------------------------------ numbers */
 
@@ -333,18 +70,7 @@ static bool parse_reals(const char *text, double *values, size_t count)
     return true;
 }
 
-static bool parse_choice(const char *text, const char *const *choices, int *value)
-{
-    for (int i = 0; choices[i] != NULL; i++) {
-        if (strcmp(text, choices[i]) == 0) {
-            *value = i;
-            return true;
-        }
-    }
-    return false;
-}
-
-/* ------------------------------------------------------------------------------------------------------ methods */
+/* -------------------------------------------------------------------------------------------------------- words */
 
 bool cli_for_springs(const spring_method_info *method)
 {
@@ -361,19 +87,6 @@ bool cli_for_scenes(const spring_method_info *method)
     return method->scenes;
 }
 
-static bool parse_method(const char *text, const cli_option *o)
-{
-    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
-        const spring_method m = spring_method_at(i);
-        const spring_method_info *info = spring_method_describe(m);
-        if (o->offers(info) && strcmp(text, info->name) == 0) {
-            *o->choice = (int)m;
-            return true;
-        }
-    }
-    return false;
-}
-
 void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_method_info *method))
 {
     size_t length = 0;
@@ -385,24 +98,121 @@ void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_metho
     }
 }
 
-static void print_methods(FILE *out, const cli_option *o)
+/* The i-th word that the value of an option can be, and what it stands for; NULL: there are no more, or none. */
+static const char *word_of(const cli_option *o, int i, int *value)
 {
-    char text[200];
-    cli_list_methods(text, sizeof text, o->offers);
-    fputs(text, out);
+    *value = i;
+    if (o->kind == CLI_CHOICE)
+        return o->choices[i];
+    for (int k = 0; o->kind == CLI_METHOD && k < SPRING_METHOD_COUNT; k++) {
+        *value = (int)spring_method_at(k);
+        const spring_method_info *info = spring_method_describe(spring_method_at(k));
+        if (o->offers(info) && i-- == 0)
+            return info->name;
+    }
+    return NULL;
+}
+
+bool cli_print_words(FILE *out, const cli_option *o, const char *separator)
+{
+    const char *word;
+    int i = 0;
+    for (int value; (word = word_of(o, i, &value)) != NULL; i++)
+        fprintf(out, "%s%s", i > 0 ? separator : "", word);
+    return i > 0;
+}
+
+static bool parse_word(const char *text, const cli_option *o)
+{
+    const char *word;
+    int value;
+    for (int i = 0; (word = word_of(o, i, &value)) != NULL; i++) {
+        if (strcmp(text, word) == 0) {
+            *o->choice = value;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* -------------------------------------------------------------------------------------------------- did you mean */
+
+enum { LONGEST_WORD = 40 }; /* that is looked at */
+
+static size_t least_of(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* How many letters have to be changed, added, left out, or exchanged with the next one, until one word is the other.
+   Row i of the table is about the first i letters of `a`, column j about the first j of `b`. */
+static size_t distance(const char *a, const char *b)
+{
+    const size_t m = strlen(a), n = strlen(b);
+    size_t d[LONGEST_WORD + 1][LONGEST_WORD + 1];
+    if (m > LONGEST_WORD || n > LONGEST_WORD)
+        return SIZE_MAX;
+    for (size_t i = 0; i <= m; i++)
+        for (size_t j = 0; j <= n; j++) {
+            d[i][j] = i + j;
+            if (i == 0 || j == 0)
+                continue;
+            const bool same = tolower((unsigned char)a[i - 1]) == tolower((unsigned char)b[j - 1]);
+            d[i][j] = least_of(least_of(d[i - 1][j], d[i][j - 1]) + 1, d[i - 1][j - 1] + !same);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                d[i][j] = least_of(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    return d[m][n];
+}
+
+/* The word that is most like what was typed: a third of its letters may be wrong, or it may only be begun. */
+typedef struct likeness {
+    const char *typed, *word; /* NULL: none is like it */
+    size_t distance;
+} likeness;
+
+static void compare(likeness *best, const char *word)
+{
+    const size_t allowed = (strlen(word) + 1) / 3, begun = strlen(best->typed), enough = 3;
+    size_t d = distance(best->typed, word);
+    if (begun >= enough && strncmp(best->typed, word, begun) == 0)
+        d = least_of(d, allowed);
+    if (d <= allowed && (best->word == NULL || d < best->distance)) {
+        best->word = word;
+        best->distance = d;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------ options */
 
-static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
+static bool want_help, want_version, want_man, want_completion;
+
+static const cli_option common_options[] = {
+    {"output", CLI_FILE, .file = &cli_asked.output, .value = "FILE",
+     .help = "write to FILE instead of standard output\n"
+             "FILE appears, or is replaced, when it is complete"},
+    {"help", CLI_FLAG, .flag = &want_help, .help = "print the options and some examples, and exit"},
+    {"version", CLI_FLAG, .flag = &want_version, .help = "print the version, and exit"},
+    {.name = NULL},
+};
+
+/* For those who install the tools. */
+static const cli_option hidden_options[] = {
+    {"man", CLI_FLAG, .flag = &want_man},
+    {"completion", CLI_FLAG, .flag = &want_completion},
+    {.name = NULL},
+};
+
+const cli_option *cli_option_at(size_t i)
 {
-    for (const cli_option *o = options; o->name != NULL; o++)
-        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
+    const cli_option *o = cli_asked.program->options;
+    for (; o->name != NULL; o++)
+        if (i-- == 0)
             return o;
-    return NULL;
+    return i < sizeof common_options / sizeof common_options[0] - 1 ? &common_options[i] : NULL;
 }
 
-static void print_expectation(FILE *out, const cli_option *o)
+void cli_print_expectation(FILE *out, const cli_option *o)
 {
     switch (o->kind) {
     case CLI_FLAG:
@@ -423,13 +233,9 @@ static void print_expectation(FILE *out, const cli_option *o)
         fputs("a finite number greater than 0", out);
         break;
     case CLI_CHOICE:
-        fputs("one of", out);
-        for (int i = 0; o->choices[i] != NULL; i++)
-            fprintf(out, "%s %s", i > 0 ? "," : "", o->choices[i]);
-        break;
     case CLI_METHOD:
         fputs("one of ", out);
-        print_methods(out, o);
+        cli_print_words(out, o, ", ");
         break;
     case CLI_REALS:
         fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
@@ -441,16 +247,68 @@ static void print_expectation(FILE *out, const cli_option *o)
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------ defaults */
+
+enum { MOST_OPTIONS = 64 };
+
+static char defaults[MOST_OPTIONS][32];
+
+/* What a target holds is the default, if it is a value that the option could have. */
+static void note_default(char *text, size_t size, const cli_option *o)
+{
+    text[0] = '\0';
+    const bool real = o->kind == CLI_REAL || (o->kind == CLI_NOT_NEGATIVE && *o->real >= 0) ||
+                      (o->kind == CLI_POSITIVE && *o->real > 0);
+    if (o->required)
+        return;
+    if (real && isfinite(*o->real))
+        snprintf(text, size, "%g", *o->real);
+    else if (o->kind == CLI_COUNT && *o->count >= o->least)
+        snprintf(text, size, "%" PRIu64, *o->count);
+    else if (o->kind == CLI_CHOICE && *o->choice >= 0)
+        snprintf(text, size, "%s", o->choices[*o->choice]);
+    else if (o->kind == CLI_METHOD && *o->choice >= 0)
+        snprintf(text, size, "%s", spring_method_name((spring_method)*o->choice));
+}
+
+const char *cli_default(size_t i)
+{
+    return defaults[i];
+}
+
+/* ------------------------------------------------------------------------------------------------------- parsing */
+
 /* "program: --option: problem what it should be" */
 static _Noreturn void fail_at(const cli_option *o, const char *value, const char *problem)
 {
-    fprintf(stderr, "%s: --%s: ", program->name, o->name);
+    fprintf(stderr, "%s: --%s: ", cli_asked.program->name, o->name);
     if (value != NULL)
         fprintf(stderr, "\"%s\" ", value);
     fputs(problem, stderr);
-    print_expectation(stderr, o);
+    cli_print_expectation(stderr, o);
+    likeness best = {.typed = value != NULL ? value : ""};
+    const char *word;
+    for (int i = 0, which; (word = word_of(o, i, &which)) != NULL; i++)
+        compare(&best, word);
+    if (best.word != NULL)
+        fprintf(stderr, "; did you mean \"%s\"?", best.word);
     fputc('\n', stderr);
     exit(CLI_USAGE);
+}
+
+static _Noreturn void fail_as_no_option(const char *word)
+{
+    char name[LONGEST_WORD + 1] = "";
+    const char *start = word + strspn(word, "-");
+    const size_t length = strcspn(start, "=");
+    if (length <= LONGEST_WORD)
+        memcpy(name, start, length);
+    likeness best = {.typed = name};
+    for (size_t i = 0; cli_option_at(i) != NULL; i++)
+        compare(&best, cli_option_at(i)->name);
+    cli_fail(CLI_USAGE, "\"%s\" is not an option; %s%s%ssee %s --help", word,
+             best.word != NULL ? "did you mean --" : "", best.word != NULL ? best.word : "",
+             best.word != NULL ? "? " : "", cli_asked.program->name);
 }
 
 static bool store(const cli_option *o, const char *value)
@@ -467,11 +325,10 @@ static bool store(const cli_option *o, const char *value)
     case CLI_POSITIVE:
         return parse_real(value, o->real) && *o->real > 0;
     case CLI_CHOICE:
-        return parse_choice(value, o->choices, o->choice);
     case CLI_METHOD:
-        return parse_method(value, o);
+        return parse_word(value, o);
     case CLI_REALS:
-        return parse_reals(value, o->real, o->least);
+        return parse_reals(value, o->real + (o->times != NULL ? *o->times * o->least : 0), o->least);
     case CLI_FILE:
     case CLI_FOLDER:
         *o->file = value;
@@ -480,57 +337,19 @@ static bool store(const cli_option *o, const char *value)
     return false;
 }
 
-static bool want_help, want_version;
-
-static const cli_option common_options[] = {
-    {"output", CLI_FILE, .file = &output_path, .value = "FILE",
-     .help = "write to FILE instead of standard output; short: -o FILE.\n"
-             "FILE appears, or is replaced, when it is complete"},
-    {"help", CLI_FLAG, .flag = &want_help, .help = "print this text and exit"},
-    {"version", CLI_FLAG, .flag = &want_version, .help = "print the version and exit"},
-    {.name = NULL},
-};
-
-static void print_options(const cli_option *options)
+static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
 {
-    enum { column = 26 };
-    for (const cli_option *o = options; o->name != NULL; o++) {
-        int width = printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
-        if (o->kind == CLI_METHOD) {
-            printf("%*s", column - width, "");
-            print_methods(stdout, o);
-            putchar('\n');
-        }
-        for (const char *line = o->help; line != NULL; width = 0) {
-            const char *end = strchr(line, '\n');
-            printf("%*s%.*s\n", width < column ? column - width : 2, "",
-                   end != NULL ? (int)(end - line) : (int)strlen(line), line);
-            line = end != NULL ? end + 1 : NULL;
-        }
-    }
-}
-
-static void print_usage(void)
-{
-    printf("Usage: %s", program->name);
-    for (const cli_option *o = program->options; o->name != NULL; o++)
-        if (o->required)
-            printf(" --%s %s", o->name, o->value);
-    printf(" [OPTION]...\n%s\n\n", program->summary);
-    print_options(program->options);
-    print_options(common_options);
-    printf("\n%s\n\n"
-           "Numbers are decimal (1e-4) or hexadecimal (0x1p-13); whole numbers may be written 1e7. Of an\n"
-           "option given several times the last one counts. The output is tab-separated values: lines that\n"
-           "start with \"#\" say how they were made, then come the names of the columns, then the rows.\n\n"
-           "Exit status: 0 done, 1 the computation failed or a check did not hold, 2 bad usage, 3 cannot read\n"
-           "or write.\n",
-           program->details);
+    for (const cli_option *o = options; o->name != NULL; o++)
+        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
+            return o;
+    return NULL;
 }
 
 static const cli_option *option_of(const char *word, const char **value)
 {
     *value = NULL;
+    if (strcmp(word, "-h") == 0)
+        return find_option(common_options, "help", strlen("help"));
     if (word[0] == '-' && word[1] == 'o' && strncmp(word, "-output", 7) != 0) { /* one dash typed for two */
         if (word[2] != '\0')
             *value = word + 2;
@@ -541,8 +360,11 @@ static const cli_option *option_of(const char *word, const char **value)
     const size_t length = strcspn(word + 2, "=");
     if (word[2 + length] == '=')
         *value = word + 2 + length + 1;
-    const cli_option *o = find_option(program->options, word + 2, length);
-    return o != NULL ? o : find_option(common_options, word + 2, length);
+    const cli_option *const tables[] = {cli_asked.program->options, common_options, hidden_options};
+    const cli_option *found = NULL;
+    for (size_t i = 0; found == NULL && i < sizeof tables / sizeof tables[0]; i++)
+        found = find_option(tables[i], word + 2, length);
+    return found;
 }
 
 /* Where the output goes is no part of how it was made: it is not stamped, and of other files only that there are. */
@@ -557,34 +379,62 @@ static void record(FILE *words, const cli_option *o, const char *value)
 
 static void print_and_exit_if_wanted(void)
 {
-    if (!want_help && !want_version)
-        return;
     if (want_help)
-        print_usage();
+        cli_print_help();
+    else if (want_version)
+        printf("%s (springstep) %s\n", cli_asked.program->name, spring_version());
+    else if (want_man)
+        cli_print_man();
+    else if (want_completion)
+        cli_print_completion();
     else
-        printf("%s (springstep) %s\n", program->name, spring_version());
-    close_stream(&(cli_table){.stream = stdout});
-    exit(0);
+        return;
+    cli_finish_text();
+}
+
+static void take_value(const cli_option *o, const char *value)
+{
+    if (value == NULL)
+        fail_at(o, NULL, "the value is missing; it should be ");
+    if (o->times != NULL && *o->times == o->most)
+        cli_fail(CLI_USAGE, "--%s: \"%s\" is one too many; it can be given %" PRIu64 " times", o->name, value, o->most);
+    if (!store(o, value))
+        fail_at(o, value, "is not ");
+    if (o->times != NULL)
+        ++*o->times;
+}
+
+static uint64_t given; /* bit i: option i */
+
+bool cli_given(const void *target)
+{
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++)
+        if (o->flag == target && (given >> i & 1) != 0)
+            return true;
+    return false;
 }
 
 void cli_parse(const cli_program *p, int argc, char **argv)
 {
-    program = p;
-    started = time(NULL);
-    occupy_standard_streams();
-    handle_signals();
-    atexit(remove_temporaries);
-    uint64_t given = 0; /* bit i: option i of the table */
-    size_t length;
-    FILE *words = open_memstream(&command, &length);
+    cli_asked.program = p;
+    cli_asked.started = time(NULL);
+    cli_guard_files();
+    const cli_option *o;
+    size_t length, count = 0;
+    for (; (o = cli_option_at(count)) != NULL; count++) {
+        assert(count < MOST_OPTIONS);
+        note_default(defaults[count], sizeof defaults[count], o);
+    }
+    FILE *words = open_memstream(&cli_asked.text, &length);
     if (words == NULL)
         cli_fail(CLI_FAILED, "out of memory");
-    fputs(program->name, words);
+    fputs(p->name, words);
     for (int i = 1; i < argc; i++) {
         const char *value;
-        const cli_option *o = option_of(argv[i], &value);
+        o = option_of(argv[i], &value);
         if (o == NULL)
-            cli_fail(CLI_USAGE, "\"%s\" is not an option; see %s --help", argv[i], program->name);
+            fail_as_no_option(argv[i]);
         if (o->kind == CLI_FLAG) {
             if (value != NULL)
                 cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name, value);
@@ -593,19 +443,16 @@ void cli_parse(const cli_program *p, int argc, char **argv)
         } else {
             if (value == NULL && i + 1 < argc)
                 value = argv[++i];
-            if (value == NULL)
-                fail_at(o, NULL, "the value is missing; it should be ");
-            if (!store(o, value))
-                fail_at(o, value, "is not ");
+            take_value(o, value);
         }
         record(words, o, value);
-        for (int k = 0; program->options[k].name != NULL; k++)
-            if (o == &program->options[k])
+        for (size_t k = 0; k < count; k++)
+            if (o == cli_option_at(k))
                 given |= UINT64_C(1) << k;
     }
     if (fclose(words) != 0)
         cli_fail(CLI_FAILED, "out of memory");
-    for (int k = 0; program->options[k].name != NULL; k++)
-        if (program->options[k].required && (given >> k & 1) == 0)
-            fail_at(&program->options[k], NULL, "is missing; it should be ");
+    for (size_t k = 0; k < count; k++)
+        if (cli_option_at(k)->required && (given >> k & 1) == 0)
+            fail_at(cli_option_at(k), NULL, "is missing; it should be ");
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the command-line tools share: options from a table, strict numbers, tables of results, progress, exit statuses.
+ * What the command-line tools share: options from a table, strict numbers, help, tables of results, progress, exit
+ * statuses. cli.c reads the command line, cli_help.c says what it can be, cli_output.c writes.
  *
  * A tool calls cli_parse() once, opens its tables, writes rows, and ends with cli_finish(). Whatever goes wrong on the
  * way ends in cli_fail(): a message on standard error, an exit status, and no half-written file.
@@ -27,15 +28,16 @@ typedef enum cli_kind {
     CLI_REAL,         /* a finite number */
     CLI_NOT_NEGATIVE, /* a finite number >= 0 */
     CLI_POSITIVE,     /* a finite number > 0 */
-    CLI_REALS,        /* as many finite numbers as `least` says, separated by commas */
+    CLI_REALS,        /* as many finite numbers as `least` says, separated by commas; see `times` */
     CLI_CHOICE,       /* one of a list of words */
     CLI_METHOD,       /* the name of a method that the tool offers */
     CLI_FILE,         /* the name of a file to write */
     CLI_FOLDER        /* the name of a folder to write to */
 } cli_kind;
 
-/* One row of a tool's table of options. What the pointer points to holds the default. Of an option that is given
-   several times the last one counts. */
+/* One row of a tool's table of options, from which --help, the man page and the completion of a shell are made. What
+   the pointer points to holds the default, and --help says so, if it is a value that the option could have; choice: -1
+   is none. Of an option that is given several times the last one counts, unless it has `times`. */
 typedef struct cli_option {
     const char *name; /* without the dashes; NULL ends the table */
     cli_kind kind;
@@ -46,19 +48,24 @@ typedef struct cli_option {
         int *choice;  /* index into choices; CLI_METHOD: a spring_method */
         const char **file;
     };
-    const char *value;                                /* what --help calls the value */
-    const char *help;                                 /* CLI_METHOD: NULL, the names say it */
-    const char *const *choices;                       /* CLI_CHOICE: ended by NULL */
+    const char *value;          /* what --help calls the value */
+    const char *help;           /* the first line is in --help, all of them in the man page; NULL: the words say it */
+    const char *const *choices; /* CLI_CHOICE: ended by NULL */
     bool (*offers)(const spring_method_info *method); /* CLI_METHOD */
     uint64_t least, most; /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
+    uint64_t *times;      /* CLI_REALS: how often it is given, at most `most` times, one set behind the other */
     bool required;
 } cli_option;
 
 typedef struct cli_program {
     const char *name;
     const char *summary;       /* one line */
-    const char *details;       /* what the columns are, what else there is to know; whole lines */
+    const char *details;       /* for the man page: what there is to know; an empty line ends a paragraph */
     const cli_option *options; /* besides --output, --help and --version, which every tool has */
+    const char *columns;       /* of the table that it writes if not told otherwise, separated by spaces */
+    const char *meaning;       /* for the man page: what is in the columns; like `details` */
+    const char *shown[2];      /* columns that make a chart, x and y */
+    const char *examples[3];   /* the options of three runs that take no long time */
 } cli_program;
 
 /* What tools offer: methods for one spring, those of them that take steps, methods for scenes. */
@@ -71,6 +78,9 @@ void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_metho
 
 /** Read the command line. Prints --help or --version and exits; exits with CLI_USAGE if anything is wrong. */
 void cli_parse(const cli_program *program, int argc, char **argv);
+
+/** Was the option given that stores its value there? */
+bool cli_given(const void *target);
 
 #if defined(__GNUC__)
 #define CLI_PRINTF(which) __attribute__((format(printf, which, which + 1)))

@@ -23,6 +23,11 @@ void stepper_check(const stepper *m)
                  stepper_name(m));
 }
 
+void stepper_remark(const stepper *m, const spring_params *p, const run_length *run)
+{
+    run_length_remark(run, spring_stable_step(p, (spring_method)m->method), (spring_method)m->method);
+}
+
 void stepper_comment(const stepper *m, cli_table *table)
 {
     cli_comment(table, "method: %s, arithmetic: %s", stepper_name(m), stepper_arithmetics[m->arithmetic]);

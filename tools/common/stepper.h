@@ -6,6 +6,7 @@
 #include <springstep/spring.h>
 
 #include "common/cli.h"
+#include "common/run_length.h"
 
 typedef struct stepper {
     int method;     /* a spring_method; int, as the target of an option */
@@ -22,6 +23,9 @@ const char *stepper_name(const stepper *m);
 
 /** Exit with CLI_USAGE if the method does not come in that arithmetic. */
 void stepper_check(const stepper *m);
+
+/** run_length_remark() of the method. */
+void stepper_remark(const stepper *m, const spring_params *p, const run_length *run);
 
 /** Stamp a table with the method. */
 void stepper_comment(const stepper *m, cli_table *table);

@@ -27,9 +27,8 @@ static double match_error;
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library (the default) or, for rk4, stages: k1, k2, k3, k4 one by one"},
-    {"duration", CLI_POSITIVE, .real = &duration, .value = "H",
-     .help = "time at which the error is taken [s] (default: 1)"},
+     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
+    {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time at which the error is taken [s]"},
     {"n-min", CLI_COUNT, .count = &n_min, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
      .help = "smallest number of steps (default: 10; of order 4 and more: 5)"},
     {"n-max", CLI_COUNT, .count = &n_max, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
@@ -37,11 +36,11 @@ static const cli_option options[] = {
     {"n-step", CLI_COUNT, .count = &n_step, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
      .help = "from one to the next (default: 10; of order 4 and more: 5)"},
     {"fit", CLI_FLAG, .flag = &fit,
-     .help = "instead of the errors, one row with the power law through all of them:\n"
-             "the least-squares line of log(error) against log(n)"},
+     .help = "instead of the errors, the power law through all of them\n"
+             "the least-squares line of log(error) against log(n), in one row"},
     {"match-error", CLI_POSITIVE, .real = &match_error, .value = "E",
-     .help = "instead, one row for the smallest n from which on the error never\n"
-             "exceeds E [m] < 2"},
+     .help = "instead, the smallest n from which on no error exceeds E [m] < 2\n"
+             "in one row"},
     {.name = NULL},
 };
 
@@ -49,15 +48,19 @@ static const cli_program program = {
     .name = "spring-order",
     .summary = "The error in position of a spring after a fixed time, against the number of steps.",
     .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m; the error is\n"
-               "|x - cos H|.\n\n"
-               "Columns: method, n (steps), dt_s (step), error_m, force_evaluations (in the whole run).\n"
+               "|x - cos H|.",
+    .columns = "method n dt_s error_m force_evaluations",
+    .meaning = "n is the number of steps, dt_s the step; force_evaluations are those of the whole run.\n\n"
                "With --fit: method, coefficient_m and exponent (error = coefficient n^exponent), r_squared,\n"
-               "points, and theory_coefficient_m, the same to leading order, of the method without rounding.\n"
+               "points, and theory_coefficient_m, the same to leading order, of the method without rounding.\n\n"
                "With --match-error: the columns of a single run, then match_error_m (E), previous_error_m (at\n"
                "n - 1, more than E) and first_n, the smallest n whose error happens not to exceed E; it may do\n"
-               "so again beyond. Where H is more than 10^5 s no steps of more than 1 s are looked at, and first_n "
-               "is 0.\n"
+               "so again beyond. Where H is more than 10^5 s no steps of more than 1 s are looked at, and first_n\n"
+               "is 0.\n\n"
                "The rounding of --arithmetic shows in the last digits of rk4's fit: its errors end at 1e-14.",
+    .shown = {"n", "error_m"},
+    .examples = {"--method rk4 -o order.tsv", "--method leapfrog --fit",
+                 "--method rk4 --duration 100 --match-error 1e-6"},
     .options = options,
 };
 
@@ -84,7 +87,7 @@ static uint64_t force_evaluations(uint64_t n)
 
 static void write_errors(cli_table *table)
 {
-    cli_columns(table, "method n dt_s error_m force_evaluations");
+    cli_columns(table, program.columns);
     for (uint64_t n = n_min; n <= n_max; n += n_step) {
         cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64, stepper_name(&chosen), n, duration / (double)n,
                 measured_error(n), force_evaluations(n));

@@ -27,7 +27,8 @@ static const cli_option options[] = {
     {"error", CLI_POSITIVE, .real = &error, .value = "E",
      .help = "the largest error, of the size of the motion: 0.01 is 1 %"},
     {"duration", CLI_POSITIVE, .real = &duration, .value = "T", .help = "for so long [s]"},
-    {"mass", CLI_POSITIVE, .real = &mass, .value = "M", .help = "[kg] (default: 1; of a scene, a particle's)"},
+    {"mass", CLI_POSITIVE, .real = &mass, .value = "M",
+     .help = "[kg] of the spring, or of particles (default: 1; by scene)"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &stiffness, .value = "K",
      .help = "[N/m] of the spring, or of a scene's links"},
     {"damping", CLI_NOT_NEGATIVE, .real = &damping, .value = "C",
@@ -36,17 +37,17 @@ static const cli_option options[] = {
     {"damping-ratio", CLI_NOT_NEGATIVE, .real = &damping_ratio, .value = "Z",
      .help = "with --hertz: 1 is critical (default: 0)"},
     {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .value = "S",
-     .help = "a scene of spring-scene instead: rope, cloth, jelly, chain or water"},
+     .help = "a scene of spring-scene: rope, cloth, jelly, chain or water"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
     {"mesh", CLI_FILE, .file = &mesh, .value = "FILE",
-     .help = "a scene of a mesh instead (Wavefront OBJ, y up): a particle a vertex, a link\n"
-             "along each edge and across each face of four corners; the highest\n"
-             "vertices are held, gravity pulls at the others; takes --stiffness"},
+     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness\n"
+             "A particle a vertex, a link along each edge and across each face of four corners; the highest\n"
+             "vertices are held, gravity pulls at the others."},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
     {"presets", CLI_FLAG, .flag = &presets,
-     .help = "instead: the steps that a frame of 1/60 s needs in each scene, or in\n"
-             "--scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
+     .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
+             "or in --scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "with --presets: no run that takes long"},
     {.name = NULL},
 };
@@ -55,22 +56,24 @@ static const cli_program program = {
     .name = "spring-plan",
     .summary = "Which method, and which step, for an error that is small enough.",
     .details =
-        "Columns: method, dt_s, steps, force_evaluations, predicted_error, measured_error, time_s (on this\n"
-        "machine, without setting up) and uncertainty (of the measured error); the cheapest method first. A\n"
-        "comment says it in words. A method of which no number of steps is known to be enough comes last, with\n"
-        "0 steps: rounding would be too large, or the runs take too long.\n\n"
+        "A spring is given by --stiffness, or by --hertz, a scene by --scene, or by --mesh.\n\n"
         "Of a spring the error is the largest at any of the first 65536 steps, and at no more of those after\n"
         "them, in (x, v/omega) and relative to the start, for the worst start; the prediction is the library's,\n"
         "spring_step_error(). Of a scene it is the largest at any frame: the Euclidean distance of all\n"
         "positions from a reference over the largest distance of that from the start. The reference is\n"
         "extrapolated from two runs of the method of highest order, which are made finer until the uncertainty\n"
         "is a twentieth of the error, or the runs take too long; predicted is what the error of a coarser step\n"
-        "and the order lead to. Steps are whole numbers a frame.\n\n"
-        "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
-        "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
-        "spring-plan --error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1\n"
-        "spring-plan --error 0.05 --duration 1 --scene cloth\n"
-        "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01",
+        "and the order lead to. Steps are whole numbers a frame.",
+    .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
+    .meaning = "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
+               "cheapest method comes first; a comment says it in words. A method of which no number of steps is\n"
+               "known to be enough comes last, with 0 steps: rounding would be too large, or the runs take too\n"
+               "long.\n\n"
+               "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
+               "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).",
+    .shown = {"dt_s", "measured_error"},
+    .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
+                 "--presets --scene rope --quick -o steps.tsv"},
     .options = options,
 };
 
@@ -224,7 +227,7 @@ static void write_plan(cli_table *table)
 {
     qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
     say(table);
-    cli_columns(table, "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty");
+    cli_columns(table, program.columns);
     for (int i = 0; i < row_count; i++) {
         const plan_row *r = &rows[i];
         cli_row(table, "%s\t%.17g\t%.0f\t%.0f\t%.17g\t%.17g\t%.4g\t%.3g", spring_method_name(r->method), r->dt,

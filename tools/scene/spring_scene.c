@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "common/run_length.h"
 #include "harness/scene_run.h"
 #include "start.h"
 
@@ -22,97 +23,104 @@
 static const char *const links[] = {"all", "structural", NULL};
 
 static int kind, method, link_choice;
-static uint64_t seed = 1, steps_per_frame;
-static double dt, frame_rate, duration = 5, fps = 60, disturbance_time, rain;
-static double poke[5] = {NAN}, box[2] = {NAN}; /* t, x, y, force, area; t, mass */
+enum { MOST_DISTURBANCES = 100 }; /* of a kind, on one command line */
+static uint64_t seed = 1, steps_per_frame, pokes, boxes;
+static run_length length = {.duration = 5};
+static double frame_rate = 60, fps = 60, disturbance_time = disturbance_duration, rain;
+static double poke[MOST_DISTURBANCES][5], box[MOST_DISTURBANCES][2]; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
 static bool hash_alone;
 static preset_settings given;
 
 static const cli_option options[] = {
-    {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S",
-     .help = "rope, cloth, jelly, chain or water"},
+    {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S"},
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_scenes, .required = true, .value = "M"},
-    {"dt", CLI_POSITIVE, .real = &dt, .value = "DT",
-     .help = "step [s] (default: the frame in as many steps as make it at most half\n"
-             "the stable step of leapfrog, and an eighth of --push-duration)"},
+    {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
+     .help = "time to run [s]; two of this, --dt, --steps give the third"},
+    {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
+     .help = "step [s] (default: half the stable step of leapfrog, or less)\n"
+             "By default a frame takes as many steps as make them at most half the stable step of leapfrog, and an\n"
+             "eighth of --push-duration. Of a duration the number of steps is the nearest whole number."},
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+     .help = "number of steps"},
     {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
      .help = "instead of --dt: the step is 1/(R N) s"},
     {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R",
-     .help = "frames a second that --steps-per-frame divides (default: 60)"},
-    {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time to run [s] (default: 5)"},
+     .help = "frames a second that --steps-per-frame divides"},
     {"size", CLI_COUNT, .count = &given.size, .least = 2, .most = 4000, .value = "N",
-     .help = "particles along an edge; of a chain: those that move\n"
-             "(default: rope 20, cloth 25, jelly 8, chain 50, water 25)"},
+     .help = "particles along an edge; of a chain: those that move (default: by scene)\n"
+             "That is: rope 20, cloth 25, jelly 8, chain 50, water 25."},
     {"axes", CLI_COUNT, .count = &given.axes, .least = 1, .most = 3, .value = "A",
-     .help = "water only: 1, the default, moves up and down; 3 in all directions"},
+     .help = "water only: 1 moves up and down, 3 in all directions (default: 1)"},
     {"links", CLI_CHOICE, .choice = &link_choice, .choices = links, .value = "L",
-     .help = "all, the default: to the next particle, across, and to the one after\n"
-             "the next; or structural: to the next alone, as rope and chain always"},
+     .help = "cloth, jelly, water: all, or structural, to the next alone\n"
+             "All are those to the next particle, across, and to the one after the next. Rope and chain have\n"
+             "structural links alone."},
     {"length", CLI_POSITIVE, .real = &given.length, .value = "L",
-     .help = "of an edge [m] (default: rope 2, cloth 2, jelly 0.7, chain 5, water 4)"},
+     .help = "of an edge [m] (default: by scene)\n"
+             "That is: rope 2, cloth 2, jelly 0.7, chain 5, water 4."},
     {"mass", CLI_POSITIVE, .real = &given.mass, .value = "M",
-     .help = "of a particle [kg] (default: rope 0.05, cloth 0.01, jelly 0.01,\n"
-             "chain 0.1, water 1)"},
+     .help = "of a particle [kg] (default: by scene)\n"
+             "That is: rope 0.05, cloth 0.01, jelly 0.01, chain 0.1, water 1."},
     {"end-mass", CLI_POSITIVE, .real = &given.end_mass, .value = "M",
      .help = "rope only: of the last particle [kg] (default: as --mass)"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &given.stiffness, .value = "K",
-     .help = "of a link [N/m] (default: rope 2000, cloth 500, jelly 40, chain 100,\n"
-             "water 25000)"},
+     .help = "of a link [N/m] (default: by scene)\n"
+             "That is: rope 2000, cloth 500, jelly 40, chain 100, water 25000."},
     {"damping", CLI_NOT_NEGATIVE, .real = &given.damping, .value = "C", .help = "of a link [N s/m] (default: 0)"},
     {"drag", CLI_NOT_NEGATIVE, .real = &given.drag, .value = "D",
-     .help = "of a particle [N s/m] (default: rope 0.01, cloth 0.01, jelly 0.005,\n"
-             "chain 0, water 0.5)"},
+     .help = "of a particle [N s/m] (default: by scene)\n"
+             "That is: rope 0.01, cloth 0.01, jelly 0.005, chain 0, water 0.5."},
     {"gravity", CLI_REAL, .real = &given.gravity, .value = "G",
      .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
     {"stretch", CLI_POSITIVE, .real = &given.stretch, .value = "S",
-     .help = "length of the links over their rest length at the start (default: 1;\n"
-             "water on three axes: 1.25). Water on one axis has no rest lengths:\n"
-             "S > 1 leaves it the part 1 - 1/S of --stiffness, as much as a sheet\n"
-             "stretched like that has across"},
-    {"poke", CLI_REALS, .real = poke, .least = 5, .value = "T,X,Y,FORCE,AREA",
-     .help = "push down at the time T [s] around (X, Y) [m] with FORCE [N] at most,\n"
-             "spread over a round AREA [m^2]; once: the last --poke counts"},
-    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE",
-     .help = "a drop in every 1/RATE seconds (default: 0, none)"},
-    {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another rain for every N (default: 1)"},
-    {"drop-box", CLI_REALS, .real = box, .least = 2, .value = "T,MASS",
-     .help = "a box of MASS [kg] falls from 1 m, at 9.81 m/s^2, and hits the middle\n"
-             "at the time T [s]"},
-    {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D",
-     .help = "of a poke, a drop, the box [s] (default: 0.02)"},
-    {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second (default: 60)"},
+     .help = "of the links at the start, over their rest length (default: 1)\n"
+             "By default 1.25 for water on three axes. Water on one axis has no rest lengths: S > 1 leaves it the\n"
+             "part 1 - 1/S of --stiffness, as much as a sheet stretched like that has across."},
+    {"poke", CLI_REALS, .real = poke[0], .least = 5, .most = MOST_DISTURBANCES, .times = &pokes,
+     .value = "T,X,Y,FORCE,AREA",
+     .help = "push at time T [s] at (X, Y) [m] with FORCE [N] on AREA [m^2]; repeatable\n"
+             "It pushes down, with FORCE at most, spread over a round AREA."},
+    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "a drop in every 1/RATE seconds"},
+    {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another --rain for every N"},
+    {"drop-box", CLI_REALS, .real = box[0], .least = 2, .most = MOST_DISTURBANCES, .times = &boxes, .value = "T,MASS",
+     .help = "a box of MASS [kg] hits the middle at time T [s]; repeatable\n"
+             "It falls from 1 m, at 9.81 m/s^2."},
+    {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D", .help = "of a poke, a drop, the box [s]"},
+    {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
-     .help = "write the positions of each frame to DIR/frame-000000.tsv and so on.\n"
-             "DIR is created; older frames in it of the same numbers are replaced"},
+     .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
+             "DIR is created; older frames in it of the same numbers are replaced."},
     {"positions", CLI_FILE, .file = &positions, .value = "FILE", .help = "write the positions of all frames to FILE"},
     {"hash", CLI_FLAG, .flag = &hash_alone,
-     .help = "print nothing but 16 digits, of the state at the end: FNV-1a, 64 bits,\n"
-             "over the doubles of all positions, then all velocities, lowest byte\n"
-             "first; of a scene that blows up, of the last state before"},
+     .help = "print nothing but 16 digits, of the state at the end\n"
+             "FNV-1a, 64 bits, over the doubles of all positions, then all velocities, lowest byte first; of a\n"
+             "scene that blows up, of the last state before."},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-scene",
     .summary = "A rope, a cloth, a block of jelly, a chain or a water surface through time.",
-    .details = "Columns: t_s, energy_J and its parts kinetic_J, elastic_J and gravity_J (0 at the origin), and\n"
-               "max_displacement_m, the largest distance of a particle from its start. A row for each frame, at\n"
-               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
-               "Of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.\n\n"
-               "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
+    .details = "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
                "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
                "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
-               "A disturbance that begins at T has the force FORCE (4 u (1 - u))^4, u = (t - T)/D, for 0 < u < 1; for "
-               "the\n"
-               "chain it is along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of (L/8)^2 "
-               "m^2, and\n"
-               "loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with the momentum of\n"
-               "one particle at 10 m/s, anywhere and at any time within its 1/RATE seconds.\n\n"
+               "A disturbance that begins at T has the force FORCE (4 u (1 - u))^4, u = (t - T)/D, for 0 < u < 1;\n"
+               "for the chain it is along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of\n"
+               "(L/8)^2 m^2, and loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with\n"
+               "the momentum of one particle at 10 m/s, anywhere and at any time within its 1/RATE seconds.\n\n"
                "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
-               "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows "
-               "end,\n"
-               "the time is told, and the status is 1.",
+               "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows\n"
+               "end, the time is told, and the status is 1.",
+    .columns = "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m",
+    .meaning = "energy_J is the sum of its parts kinetic_J, elastic_J and gravity_J (0 at the origin),\n"
+               "max_displacement_m the largest distance of a particle from its start. A row for each frame, at\n"
+               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n\n"
+               "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
+    .shown = {"t_s", "energy_J"},
+    .examples = {"--scene cloth --method leapfrog --duration 2 -o cloth.tsv",
+                 "--scene water --method rk4 --duration 1 --poke 0,1,1,2e4,.1 --poke .5,3,2,2e4,.1",
+                 "--scene rope --method leapfrog --dt 1e-3 --steps 500 --frames rope"},
     .options = options,
 };
 
@@ -120,6 +128,27 @@ static void refuse_what_it_lacks(const char *option, double value, double usual)
 {
     if (!isnan(value) && isnan(usual))
         cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none", option, value, preset_names[kind]);
+}
+
+static bool is_disturbed(void)
+{
+    return pokes > 0 || boxes > 0 || rain > 0 || kind == PRESET_WATER;
+}
+
+/* What has no effect is a mistake. */
+static void refuse_what_does_not_count(void)
+{
+    const bool line = kind == PRESET_ROPE || kind == PRESET_CHAIN;
+    if (line && cli_given(&link_choice))
+        cli_fail(CLI_USAGE, "--links: \"%s\" is for other scenes; %s has structural links alone", links[link_choice],
+                 preset_names[kind]);
+    if (rain == 0 && cli_given(&seed))
+        cli_fail(CLI_USAGE, "--seed: \"%" PRIu64 "\" does not count without --rain", seed);
+    if (!is_disturbed() && cli_given(&disturbance_time))
+        cli_fail(CLI_USAGE, "--push-duration: \"%g\" does not count without --poke, --rain or --drop-box",
+                 disturbance_time);
+    if (steps_per_frame == 0 && cli_given(&frame_rate))
+        cli_fail(CLI_USAGE, "--frame-rate: \"%g\" does not count without --steps-per-frame", frame_rate);
 }
 
 static preset_settings chosen_settings(void)
@@ -147,35 +176,35 @@ static preset_settings chosen_settings(void)
 
 /* -------------------------------------------------------------------------------------------------- disturbances */
 
-static void check_poke(const preset *r)
+static void check_poke(const preset *r, const double at[5])
 {
     const double *far = &r->start[3 * (r->def.particles - 1)];
-    if (!(poke[0] >= 0))
-        cli_fail(CLI_USAGE, "--poke: \"%g\" is not a time T of at least 0 s", poke[0]);
-    if (!(poke[4] > 0))
-        cli_fail(CLI_USAGE, "--poke: \"%g\" is not an AREA greater than 0 m^2", poke[4]);
-    if (!(poke[1] >= 0 && poke[1] <= far[0] && poke[2] >= 0 && poke[2] <= far[1]))
+    if (!(at[0] >= 0))
+        cli_fail(CLI_USAGE, "--poke: \"%g\" is not a time T of at least 0 s", at[0]);
+    if (!(at[4] > 0))
+        cli_fail(CLI_USAGE, "--poke: \"%g\" is not an AREA greater than 0 m^2", at[4]);
+    if (!(at[1] >= 0 && at[1] <= far[0] && at[2] >= 0 && at[2] <= far[1]))
         cli_fail(CLI_USAGE,
-                 "--poke: \"%g,%g\" is not a point X,Y of the scene; X should be from 0 to %g, Y from 0 to %g m",
-                 poke[1], poke[2], far[0], far[1]);
+                 "--poke: \"%g,%g\" is not a point X,Y of the scene; X should be from 0 to %g, Y from 0 to %g m", at[1],
+                 at[2], far[0], far[1]);
 }
 
-static void check_box(void)
+static void check_box(const double dropped[2])
 {
-    if (!(box[0] >= 0))
-        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a time T of at least 0 s", box[0]);
-    if (!(box[1] > 0))
-        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", box[1]);
+    if (!(dropped[0] >= 0))
+        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a time T of at least 0 s", dropped[0]);
+    if (!(dropped[1] > 0))
+        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", dropped[1]);
 }
 
 static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 {
     uint64_t random = seed;
     size_t count = 0;
-    for (uint64_t i = 0; (double)i / rain < duration; i++) {
+    for (uint64_t i = 0; (double)i / rain < length.duration; i++) {
         const disturbance drop =
             disturbances_drop(r, s, (double)i / rain, (double)(i + 1) / rain, disturbance_time, &random);
-        if (drop.start < duration)
+        if (drop.start < length.duration)
             list[count++] = drop;
     }
     return count;
@@ -184,25 +213,25 @@ static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
 {
     const double most_drops = 1e5;
-    const bool water_alone = s->kind == PRESET_WATER && isnan(poke[0]) && isnan(box[0]) && rain == 0;
-    if (!(rain * duration <= most_drops))
+    if (!(rain * length.duration <= most_drops))
         cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
-                 most_drops, duration, most_drops / duration);
-    if (!isnan(poke[0]))
-        check_poke(r);
-    if (!isnan(box[0]))
-        check_box();
-    const size_t most = (size_t)(rain * duration) + 4; /* a drop that has begun, a rounded one, a poke, a box */
-    disturbance *list = malloc(most * sizeof *list);
+                 most_drops, length.duration, most_drops / length.duration);
+    for (uint64_t i = 0; i < pokes; i++)
+        check_poke(r, poke[i]);
+    for (uint64_t i = 0; i < boxes; i++)
+        check_box(box[i]);
+    const size_t drops = (size_t)(rain * length.duration) + 2; /* one that has begun, a rounded one */
+    disturbance *list = malloc((drops + pokes + 1 + boxes) * sizeof *list);
     if (list == NULL)
-        cli_fail(CLI_FAILED, "no memory for %zu drops", most);
+        cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
     size_t count = rain > 0 ? fall(r, s, list) : 0;
-    if (!isnan(poke[0]))
-        list[count++] = (disturbance){poke[0], disturbance_time, poke[1], poke[2], poke[3], poke[4], DISTURBANCE_ROUND};
-    if (water_alone)
+    for (uint64_t i = 0; i < pokes; i++)
+        list[count++] = (disturbance){poke[i][0], disturbance_time, poke[i][1],       poke[i][2],
+                                      poke[i][3], poke[i][4],       DISTURBANCE_ROUND};
+    if (is_disturbed() && pokes == 0 && boxes == 0 && rain == 0)
         list[count++] = disturbances_poke(r, s, disturbance_time);
-    if (!isnan(box[0]))
-        list[count++] = disturbances_box(r, s, box[0], box[1], disturbance_time);
+    for (uint64_t i = 0; i < boxes; i++)
+        list[count++] = disturbances_box(r, s, box[i][0], box[i][1], disturbance_time);
     disturbances *p = start_disturbances(r, list, count);
     free(list);
     return p;
@@ -215,8 +244,8 @@ static char frame_path[4096];
 
 static void name_frame(uint64_t frame)
 {
-    const int length = snprintf(frame_path, sizeof frame_path, "%s/frame-%06" PRIu64 ".tsv", frames, frame);
-    if (length >= (int)sizeof frame_path)
+    const int needed = snprintf(frame_path, sizeof frame_path, "%s/frame-%06" PRIu64 ".tsv", frames, frame);
+    if (needed >= (int)sizeof frame_path)
         cli_fail(CLI_IO, "--frames: cannot write to \"%s\": %s", frames, strerror(ENAMETOOLONG));
 }
 
@@ -301,25 +330,26 @@ static bool advance(view *v, uint64_t n)
     const uint64_t leap = 1024;
     while (n > 0) {
         const uint64_t some = n < leap ? n : leap;
-        if (scene_run_steps(v->scene, v->saved, v->bytes, (spring_method)method, dt, some) < some) {
-            v->lost_at = spring_scene_time(v->scene) + dt;
+        if (scene_run_steps(v->scene, v->saved, v->bytes, (spring_method)method, length.dt, some) < some) {
+            v->lost_at = spring_scene_time(v->scene) + length.dt;
             return false;
         }
         n -= some;
-        cli_progress(spring_scene_time(v->scene) / duration);
+        cli_progress(spring_scene_time(v->scene) / length.duration);
     }
     return true;
 }
 
 /* Returns whether the scene survived. */
-static bool run(view *v, uint64_t steps, uint64_t frame_count)
+static bool run(view *v, uint64_t frame_count)
 {
     uint64_t step = 0;
     if (!scene_run_holds(v->scene))
         return false;
     for (uint64_t frame = 0; frame <= frame_count; frame++) {
         const bool end = frame == frame_count;
-        const uint64_t next = end ? steps : (uint64_t)fmin(rint((double)frame / fps / dt), (double)steps);
+        const uint64_t next =
+            end ? length.steps : (uint64_t)fmin(rint((double)frame / fps / length.dt), (double)length.steps);
         if (!advance(v, next - step))
             return false;
         if (frame == 0 || next > step)
@@ -340,30 +370,36 @@ static double default_step(spring_scene *scene, bool disturbed)
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
 }
 
+/* Without the scene: only a default step needs that, and waits. */
+static void choose_length(void)
+{
+    if (steps_per_frame > 0 && cli_given(&length.dt))
+        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --dt", steps_per_frame);
+    if (steps_per_frame > 0 && cli_given(&length.steps) && cli_given(&length.duration))
+        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --steps and --duration",
+                 steps_per_frame);
+    if (steps_per_frame > 0)
+        length.dt = scene_run_step(frame_rate, steps_per_frame);
+    if (length.dt > 0 || length.steps > 0)
+        run_length_settle(&length);
+}
+
 static void choose_step(spring_scene *scene, bool disturbed)
 {
-    if (steps_per_frame > 0 && dt > 0)
-        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --dt", steps_per_frame);
-    if (frame_rate > 0 && steps_per_frame == 0)
-        cli_fail(CLI_USAGE, "--frame-rate: \"%g\" does not count without --steps-per-frame", frame_rate);
-    if (steps_per_frame > 0)
-        dt = scene_run_step(frame_rate > 0 ? frame_rate : 60, steps_per_frame);
-    else if (dt == 0)
-        dt = default_step(scene, disturbed);
+    if (length.dt > 0)
+        return;
+    length.dt = default_step(scene, disturbed);
+    run_length_settle(&length);
 }
 
 static void remark_on_step(spring_scene *scene, bool disturbed)
 {
-    const double stable = spring_scene_stable_step(scene, (spring_method)method);
-    if (stable == 0)
-        cli_warn("no step is stable with %s in this scene", spring_method_name((spring_method)method));
-    else if (!(dt < stable))
-        cli_warn("the step of %g s is not below the stable step of %s in this scene, %g s", dt,
-                 spring_method_name((spring_method)method), stable);
-    if (disturbed && !(dt < disturbance_time / 4))
+    const spring_method m = (spring_method)method;
+    run_length_remark(&length, spring_scene_stable_step(scene, m), m);
+    if (disturbed && !(length.dt < disturbance_time / 4))
         cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances lose or "
                  "gain by it",
-                 dt, disturbance_time / 4);
+                 length.dt, disturbance_time / 4);
 }
 
 static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64_t frame_count)
@@ -381,28 +417,27 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     if (hash_alone)
         return v;
     cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
-    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method), dt,
-                spring_scene_stable_step(scene, (spring_method)method));
-    cli_columns(v.rows, "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m");
+    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
+                length.dt, spring_scene_stable_step(scene, (spring_method)method));
+    cli_columns(v.rows, program.columns);
     return v;
 }
 
-static void check_amounts(void)
+static void check_frames(void)
 {
-    const double most_frames = 1e6, most_steps = 9007199254740992; /* six digits; 2^53: up to there times are exact */
-    if (!(duration * fps < most_frames))
+    const double most_frames = 1e6; /* six digits */
+    if (!(length.duration * fps < most_frames))
         cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps, most_frames,
-                 duration, most_frames / duration);
-    if (!(duration / dt <= most_steps))
-        cli_fail(CLI_USAGE, "--dt: \"%g\" makes more than 2^53 steps in %g s; it should be at least %g", dt, duration,
-                 duration / most_steps);
+                 length.duration, most_frames / length.duration);
 }
 
 int main(int argc, char **argv)
 {
     given = preset_unchosen((preset_kind)kind);
-    disturbance_time = disturbance_duration;
     cli_parse(&program, argc, argv);
+    refuse_what_does_not_count();
+    choose_length();
+    check_frames();
     const preset_settings settings = chosen_settings();
     preset r;
     start_preset(&r, &settings);
@@ -410,13 +445,11 @@ int main(int argc, char **argv)
     size_t bytes;
     spring_scene *scene = start_scene(&r, (spring_method)method, &bytes);
     choose_step(scene, p != NULL);
-    check_amounts();
     remark_on_step(scene, p != NULL);
 
-    const uint64_t steps = (uint64_t)fmax(rint(duration / dt), 1),
-                   frame_count = (uint64_t)(duration * fps * (1 + DBL_EPSILON)) + 1;
+    const uint64_t frame_count = (uint64_t)(length.duration * fps * (1 + DBL_EPSILON)) + 1;
     view v = open_view(&r, scene, bytes, frame_count);
-    const bool survived = run(&v, steps, frame_count);
+    const bool survived = run(&v, frame_count);
     if (hash_alone)
         printf("%016" PRIx64 "\n", scene_run_hash(scene, r.def.particles, r.def.axes));
     cli_finish();

@@ -21,29 +21,32 @@ static int only_scene = -1, only_method = -1;
 static bool quick, timed;
 
 static const cli_option options[] = {
-    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S", .help = "only this scene"},
-    {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M", .help = "only this method"},
+    {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S"},
+    {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
     {"time", CLI_FLAG, .flag = &timed,
-     .help = "instead of the map: the fewest steps a frame from which on all are fine\n"
-             "and below the stable step, and how many particles are moved by them in\n"
-             "a millisecond"},
+     .help = "how many particles a millisecond moves instead\n"
+             "by the fewest steps a frame from which on all are fine and below the stable step"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-scene-map",
     .summary = "What becomes of each preset with each method and number of steps a frame.",
-    .details = "Columns: scene, method, particles, links, substeps (steps in a frame of 1/60 s), dt_s, "
-               "stable_step_s\n"
-               "(what the library says), energy_error (the largest difference of the energy at a frame from that\n"
-               "of a run in very short steps, in parts of the largest kinetic energy there) and verdict: fine, up\n"
-               "to 0.05; exploded, where the kinetic energy is more than tenfold the largest, or the state\n"
-               "overflows; else lossy or gaining, by the sign of the difference. The scenes are those that\n"
-               "spring-scene makes by default, for four seconds.\n\n"
+    .details = "All scenes, or that of --scene, with all methods, or that of --method. The scenes are those that "
+               "spring-scene makes by default, for four seconds.",
+    .columns = "scene method particles links substeps dt_s stable_step_s energy_error verdict",
+    .meaning = "substeps are the steps in a frame of 1/60 s, stable_step_s what the library says, energy_error the\n"
+               "largest difference of the energy at a frame from that of a run in very short steps, in parts of the\n"
+               "largest kinetic energy there. verdict is fine, up to 0.05; exploded, where the kinetic energy is\n"
+               "more than tenfold the largest, or the state overflows; else lossy or gaining, by the sign of the\n"
+               "difference.\n\n"
                "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms (the time\n"
                "that a frame of the scene takes, grown until that is about a millisecond: the shortest of five)\n"
                "and particles_per_ms. A method of which 64 steps a frame are not fine has no row.",
+    .shown = {"substeps", "energy_error"},
+    .examples = {"--scene chain --quick", "--scene rope --method leapfrog -o rope.tsv",
+                 "--scene chain --method rk4 --time --quick"},
     .options = options,
 };
 

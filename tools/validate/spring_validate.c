@@ -34,25 +34,23 @@ static cli_option options[] = {
 static const cli_program program = {
     .name = "spring-validate",
     .summary = "Check every method on a catalogue of corner cases against independent references.",
-    .details = "Columns: case, method, witness (the reference solution), dt_s, steps, error and bound (both [m],\n"
-               "distances in (x, v/omega)), verdict (pass, fail, skip), reason (what the bound is made of),\n"
-               "uncertainty (of the reference [m]: the difference to a ten times coarser run of its own; 0 for "
-               "exact\n"
-               "solutions in multiple precision), force_evaluations (of the reference; 0 where it has none) and "
-               "shape\n"
-               "(spring or scene). References of springs: iterate, the same method in 107-digit arithmetic; "
-               "solution,\n"
-               "the exact solution in 107 digits; drive, the motion under the drive that the loads are samples of;\n"
-               "gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams, cvode-bdf. Of scenes: definition, the same method from "
-               "a\n"
-               "second program; modes and reduced-mass, exact expressions for linear scenes; dispersion, the "
-               "frequency\n"
-               "of standing waves on sheets, which run 1 m in (x, v/omega), so that errors are those of the "
-               "frequency,\n"
-               "relative; digits and formula, the exact solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams.\n"
-               "Against an exact solution (the first solver, where there is none) each scene has a row for a step, "
-               "one\n"
-               "for half of it and one for the value extrapolated from both. Status 1 if any check fails.",
+    .details = "References of springs: iterate, the same method in 107-digit arithmetic; solution, the exact solution\n"
+               "in 107 digits; drive, the motion under the drive that the loads are samples of; gsl-rk4, arkode-rk4,\n"
+               "gsl-rk8pd, cvode-adams, cvode-bdf.\n\n"
+               "Of scenes: definition, the same method from a second program; modes and reduced-mass, exact\n"
+               "expressions for linear scenes; dispersion, the frequency of standing waves on sheets, which run 1 m\n"
+               "in (x, v/omega), so that errors are those of the frequency, relative; digits and formula, the exact\n"
+               "solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams. Against an exact solution (the first solver,\n"
+               "where there is none) each scene has a row for a step, one for half of it and one for the value\n"
+               "extrapolated from both.",
+    .columns = "case method witness dt_s steps error bound verdict reason uncertainty force_evaluations shape",
+    .meaning = "witness is the reference solution; error and bound are distances in (x, v/omega) [m], reason is what\n"
+               "the bound is made of; verdict is pass, fail or skip, and the status 1 if any check fails.\n"
+               "uncertainty is that of the reference [m]: the difference to a ten times coarser run of its own; 0\n"
+               "for exact solutions in multiple precision. force_evaluations are those of the reference; 0 where it\n"
+               "has none. shape is spring or scene.",
+    .shown = {"dt_s", "error"},
+    .examples = {"--list", "--case fast-root", "--case turning-point -o checks.tsv"},
     .options = options,
 };
 
@@ -231,9 +229,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     validate_into(table);
-    cli_columns(table, list_only ? "case purpose"
-                                 : "case method witness dt_s steps error bound verdict reason uncertainty "
-                                   "force_evaluations shape");
+    cli_columns(table, list_only ? "case purpose" : program.columns);
     for (size_t i = 0; i < case_count; i++) {
         if (only_case >= 0 && i != (size_t)only_case)
             continue;

@@ -31,32 +31,33 @@ static const cli_option options[] = {
      .help = "only this problem"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer points, none that takes long"},
     {"table", CLI_FILE, .file = &table_file, .value = "FILE",
-     .help = "write the cheapest stepper and the cheapest external solver for every error"},
+     .help = "write the cheapest stepper and external solver for every error, too"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-work",
     .summary = "Time against error of every stepper, beside GSL and SUNDIALS, in one run.",
-    .details = "Columns: problem, solver, steps, force_evaluations (of one spring with the library by\n"
-               "definition; all others counted), time_s (the shortest of five loops; nothing is set up\n"
-               "in them), error (|(x, v/omega) - exact| relative to the size of the motion), error_x (|x - exact\n"
-               "x| [m], nan: a scene), effort: sweep (of steps or tolerances), seed (the number of steps of\n"
-               "the original study), equal (the smallest number of steps from which on the error in x never\n"
-               "exceeds Euler's at 10^7 steps) or crossing (the last number of evaluations with which leapfrog\n"
-               "is ahead of RK4, and the next one), tolerance (0 for fixed steps), energy_error (relative to\n"
-               "the energy at the start, nan: a scene) and uncertainty (of the exact end of a scene: an error\n"
-               "of five times that is an upper bound, and not resolved).\n"
-               "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k =\n"
-               "2.7 N/m.\n"
-               "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula\n"
-               "whatever the duration, which evaluates no forces; gsl-rk4 doubles its step, and that is counted. A "
-               "run that explodes, or\n"
-               "is off by more than three times the size of the motion, has no row.\n"
-               "--table: for each error the cheapest measured row that has no larger one, nor has the next\n"
-               "finer one if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS "
-               "(peer,\n"
+    .details =
+        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n\n"
+        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
+        "the duration, which evaluates no forces; gsl-rk4 doubles its step, and that is counted. A run that\n"
+        "explodes, or is off by more than three times the size of the motion, has no row.",
+    .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty",
+    .meaning = "force_evaluations are those of one spring with the library by definition, all others counted; time_s\n"
+               "is the shortest of five loops, in which nothing is set up; error is |(x, v/omega) - exact| relative\n"
+               "to the size of the motion, error_x is |x - exact x| [m] (nan: a scene). effort is sweep (of steps or\n"
+               "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
+               "from which on the error in x never exceeds Euler's at 10^7 steps) or crossing (the last number of\n"
+               "evaluations with which leapfrog is ahead of RK4, and the next one). tolerance is 0 for fixed steps,\n"
+               "energy_error relative to the energy at the start (nan: a scene), uncertainty that of the exact end\n"
+               "of a scene: an error of five times that is an upper bound, and not resolved.\n\n"
+               "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
+               "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS (peer,\n"
                "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
+    .shown = {"time_s", "error"},
+    .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
+                 "--quick --problem elastic-pendulum --table cheapest.tsv"},
     .options = options,
 };
 
@@ -268,8 +269,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
-    cli_columns(table, "problem solver steps force_evaluations time_s error error_x effort tolerance "
-                       "energy_error uncertainty");
+    cli_columns(table, program.columns);
     cli_table *levels = open_levels();
     for (size_t i = 0; i < work_problem_count; i++) {
         if (only_problem < 0 || i == (size_t)only_problem)

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT */
+/* What a tool says of itself, all from its table: --help, its page of the manual, what a shell completes; see cli.h. */
+#define _XOPEN_SOURCE 700 /* open_memstream() */
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli_parts.h"
+
+enum { EXAMPLES = sizeof(((cli_program *)0)->examples) / sizeof(char *) };
+
+/* Of a text, up to the end of its line. */
+static int line_length(const char *text)
+{
+    return (int)strcspn(text, "\n");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- help */
+
+/* "--method M" */
+static int print_name(FILE *out, const cli_option *o)
+{
+    return fprintf(out, "--%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+}
+
+static void print_default(FILE *out, size_t i)
+{
+    if (cli_default(i)[0] != '\0')
+        fprintf(out, " (default: %s)", cli_default(i));
+}
+
+static void print_option(size_t i)
+{
+    enum { column = 26 };
+    const cli_option *o = cli_option_at(i);
+    const bool output = strcmp(o->name, "output") == 0;
+    const int width = printf(output ? "  -o, " : "  ") + print_name(stdout, o);
+    printf("%*s", width < column ? column - width : 2, "");
+    if (o->help != NULL)
+        printf("%.*s", line_length(o->help), o->help);
+    else
+        cli_print_words(stdout, o, ", ");
+    print_default(stdout, i);
+    putchar('\n');
+}
+
+/* The number of a column, for awk, which knows no names. */
+static int column_number(const char *columns, const char *name)
+{
+    int number = 1;
+    for (const char *c = columns; *c != '\0'; number++) {
+        const size_t length = strcspn(c, " ");
+        if (strlen(name) == length && strncmp(c, name, length) == 0)
+            break;
+        c += length + (c[length] == ' ');
+    }
+    return number;
+}
+
+/* Lines of words, the first one after "Columns:". */
+static void print_columns(const char *words)
+{
+    enum { right = 98 };
+    int at = printf("Columns:");
+    for (const char *w = words; *w != '\0';) {
+        const int length = (int)strcspn(w, " ");
+        if (at + 1 + length > right)
+            at = printf("\n ") - 1;
+        at += printf(" %.*s", length, w);
+        w += length;
+        w += *w == ' ';
+    }
+    putchar('\n');
+}
+
+static void print_readers(const cli_program *p)
+{
+    const char *x = p->shown[0], *y = p->shown[1];
+    printf("Read FILE by gnuplot: set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\"\n"
+           "  by awk: awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE  by pandas: read_csv(\"FILE\", sep=\"\\t\", "
+           "comment=\"#\")\n",
+           x, y, column_number(p->columns, x), column_number(p->columns, y));
+}
+
+void cli_print_help(void)
+{
+    const cli_program *p = cli_asked.program;
+    printf("Usage: %s", p->name);
+    for (const cli_option *o = p->options; o->name != NULL; o++)
+        if (o->required)
+            printf(" --%s %s", o->name, o->value);
+    printf(" [OPTION]...\n%s\n\n", p->summary);
+    size_t i = 0;
+    for (; strcmp(cli_option_at(i)->name, "help") != 0; i++)
+        print_option(i);
+    printf("  -h, --help, --version   print this, or the version, and exit; \"man %s\" says more\n", p->name);
+    if (p->columns != NULL) {
+        putchar('\n');
+        print_columns(p->columns);
+    }
+    for (i = 0; i < EXAMPLES && p->examples[i] != NULL; i++)
+        printf("%s  %s %s\n", i == 0 ? "Examples:\n" : "", p->name, p->examples[i]);
+    if (p->shown[0] != NULL)
+        print_readers(p);
+}
+
+/* ------------------------------------------------------------------------------------------------ the man page */
+
+/* A letter as roff takes it for that letter. */
+static void print_letter(char c)
+{
+    static const char special[] = "\\-^~`'";
+    static const char *const names[] = {"\\e", "\\-", "\\(ha", "\\(ti", "\\(ga", "\\(aq"};
+    const char *found = c != '\0' ? strchr(special, c) : NULL;
+    if (found != NULL)
+        fputs(names[found - special], stdout);
+    else
+        putchar(c);
+}
+
+static void print_letters(const char *text, int count)
+{
+    for (int i = 0; i < count; i++)
+        print_letter(text[i]);
+}
+
+static void print_roff(const char *text)
+{
+    print_letters(text, (int)strlen(text));
+}
+
+/* What is printed to a file, as text. */
+typedef struct memory {
+    FILE *stream;
+    char *text;
+    size_t length;
+} memory;
+
+static void open_memory(memory *m)
+{
+    m->stream = open_memstream(&m->text, &m->length);
+    if (m->stream == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+}
+
+static void print_memory(memory *m)
+{
+    if (fclose(m->stream) != 0)
+        cli_fail(CLI_FAILED, "out of memory");
+    print_roff(m->text);
+    free(m->text);
+}
+
+static void print_section(const char *name)
+{
+    printf(".SH %s\n", name);
+}
+
+/* An empty line ends a paragraph. */
+static void print_paragraphs(const char *text)
+{
+    for (const char *line = text + (text[0] == '\n'); *line != '\0';) {
+        const int length = line_length(line);
+        print_letters(line, length);
+        puts(length > 0 ? "" : ".PP");
+        line += length;
+        line += *line == '\n';
+    }
+}
+
+static void print_man_option(size_t i)
+{
+    const cli_option *o = cli_option_at(i);
+    memory name;
+    open_memory(&name);
+    if (strcmp(o->name, "output") == 0)
+        fputs("-o FILE, ", name.stream);
+    if (strcmp(o->name, "help") == 0)
+        fputs("-h, ", name.stream);
+    print_name(name.stream, o);
+    fputs(".TP\n.B ", stdout);
+    print_memory(&name);
+    putchar('\n');
+    if (o->help != NULL) {
+        const int first = line_length(o->help);
+        print_letters(o->help, first);
+        puts(o->help[first] != '\0' || o->kind != CLI_FLAG ? "\n.br" : "");
+        print_paragraphs(o->help + first);
+    }
+    if (o->kind == CLI_FLAG)
+        return;
+    memory value;
+    open_memory(&value);
+    fputs("Value: ", value.stream);
+    cli_print_expectation(value.stream, o);
+    print_default(value.stream, i);
+    print_memory(&value);
+    putchar('\n');
+}
+
+/* The upper case of the name, as the title of a page is. */
+static void print_title(void)
+{
+    fputs(".TH ", stdout);
+    for (const char *c = cli_asked.program->name; *c != '\0'; c++)
+        print_letter((char)toupper((unsigned char)*c));
+    printf(" 1 \"\" \"springstep %s\" \"User Commands\"\n", spring_version());
+}
+
+static void print_output(const cli_program *p)
+{
+    print_section("OUTPUT");
+    puts("Tab\\-separated values: lines that start with # say how the table was made, then come the names of the\n"
+         "columns, then the rows.");
+    if (p->columns != NULL) {
+        puts(".PP\nColumns:");
+        print_roff(p->columns);
+        putchar('\n');
+    }
+    if (p->meaning != NULL) {
+        puts(".PP");
+        print_paragraphs(p->meaning);
+    }
+    if (p->shown[0] == NULL)
+        return;
+    memory text;
+    open_memory(&text);
+    fprintf(text.stream,
+            "gnuplot -p -e 'set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\" with lines'\n"
+            "python3 -c 'import pandas; print(pandas.read_csv(\"FILE\", sep=\"\\t\", comment=\"#\"))'\n"
+            "awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE\n",
+            p->shown[0], p->shown[1], column_number(p->columns, p->shown[0]), column_number(p->columns, p->shown[1]));
+    puts(".PP\nTo look at a table that was written to FILE:\n.PP\n.nf");
+    print_memory(&text);
+    puts(".fi");
+}
+
+static void print_see_also(void)
+{
+    static const char *const tools[] = {"spring-methods", "spring-plan", "spring-run", "spring-scene", NULL};
+    print_section("SEE ALSO");
+    bool first = true;
+    for (int i = 0; tools[i] != NULL; i++) {
+        if (strcmp(tools[i], cli_asked.program->name) == 0)
+            continue;
+        fputs(first ? ".BR " : ",\n.BR ", stdout);
+        print_roff(tools[i]);
+        fputs(" (1)", stdout);
+        first = false;
+    }
+    putchar('\n');
+}
+
+void cli_print_man(void)
+{
+    const cli_program *p = cli_asked.program;
+    print_title();
+    print_section("NAME");
+    print_roff(p->name);
+    fputs(" \\- ", stdout);
+    print_roff(p->summary);
+    putchar('\n');
+    print_section("SYNOPSIS");
+    fputs(".B ", stdout);
+    print_roff(p->name);
+    putchar('\n');
+    for (const cli_option *o = p->options; o->name != NULL; o++) {
+        if (!o->required)
+            continue;
+        fputs(".B \\-\\-", stdout);
+        print_roff(o->name);
+        printf("\n.I %s\n", o->value);
+    }
+    puts(".RI [ OPTION ]...");
+    print_section("DESCRIPTION");
+    print_paragraphs(p->details != NULL ? p->details : p->summary);
+    print_section("OPTIONS");
+    puts("Numbers are decimal (1e\\-4) or hexadecimal (0x1p\\-13); whole numbers may be written 1e7. Of an option "
+         "given\n"
+         "several times the last one counts, unless it says otherwise.");
+    for (size_t i = 0; cli_option_at(i) != NULL; i++)
+        print_man_option(i);
+    print_output(p);
+    print_section("EXIT STATUS");
+    puts("0 done; 1 the computation failed, or a check did not hold; 2 bad usage; 3 cannot read or write. A closed\n"
+         "pipe ends the program by SIGPIPE, silently.");
+    if (p->examples[0] != NULL)
+        print_section("EXAMPLES");
+    for (int i = 0; i < EXAMPLES && p->examples[i] != NULL; i++) {
+        fputs(i == 0 ? ".nf\n" : "", stdout);
+        print_roff(p->name);
+        putchar(' ');
+        print_roff(p->examples[i]);
+        fputs(i + 1 == EXAMPLES || p->examples[i + 1] == NULL ? "\n.fi\n" : "\n", stdout);
+    }
+    print_see_also();
+}
+
+/* ------------------------------------------------------------------------------------------- for completion */
+
+/* A line for each option: its name, what its value is, the words it can be. */
+void cli_print_completion(void)
+{
+    static const char *const kinds[] = {[CLI_FLAG] = "flag", [CLI_CHOICE] = "words",  [CLI_METHOD] = "words",
+                                        [CLI_FILE] = "file", [CLI_FOLDER] = "folder", [CLI_REALS] = NULL};
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++) {
+        const char *kind = o->kind < sizeof kinds / sizeof kinds[0] ? kinds[o->kind] : NULL;
+        printf("--%s %s ", o->name, kind != NULL ? kind : "value");
+        cli_print_words(stdout, o, " ");
+        putchar('\n');
+    }
+}
