@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """spring-run: trajectories, rows, the envelope of the error, overflow."""
 import math
+import re
 import sys
 
 import pytest
-from tools import METHODS, RUN, STAGES, STEPPERS, column, order, parse, run, table
+from tools import ENERGY, METHODS, ROUNDING, RUN, SCENE, STAGES, STEPPERS, column, order, parse, run, table
 
 M, K, C, F, X0, V0 = 1.3, 2.7, 0.6, 0.9, 0.4, -1.1  # a spring with everything, nothing 1
 SPRING = ['--mass', '1.3', '--stiffness', '2.7', '--damping', '0.6', '--load', '0.9', '--x0', '0.4', '--v0', '-1.1',
@@ -131,6 +132,65 @@ def test_envelope(steps, parts, tmp_path):
     assert column(rows, 'error_min_m') == [min(e) for e in errors.values()]
     assert column(rows, 'error_max_m') == [max(e) for e in errors.values()]
     assert all(abs(t - (part + 0.5) * 7 / parts) <= 1e-14 for t, part in zip(column(rows, 't_s'), errors, strict=True))
+
+
+# --- how long, and how far apart ------------------------------------------------------------------------------------
+
+THREE = {  # a tool with what it needs besides; dt, steps and duration of the same run
+    RUN: (['--method', 'leapfrog', '--every', '1'], '0.25', '28', '7'),
+    ENERGY: (['--method', 'leapfrog'], '0.25', '400', '100'),
+    ROUNDING: (['--method', 'rk4', '--sum', 'plain'], '0.125', '80000', '10000'),
+    SCENE: (['--scene', 'cloth', '--method', 'leapfrog'], '0x1p-10', '256', '0.25'),
+}
+
+
+@pytest.mark.parametrize('tool', THREE)
+def test_two_give_the_third(tool):
+    """To the bit: the numbers are exact in binary."""
+    args, dt, steps, duration = THREE[tool]
+    runs = [table(tool, *args, *two) for two in (['--dt', dt, '--steps', steps], ['--dt', dt, '--duration', duration],
+                                                 ['--steps', steps, '--duration', duration])]
+    assert runs[0] == runs[1] == runs[2] and len(runs[0]) > 1
+
+
+@pytest.mark.parametrize('tool', THREE)
+def test_steps_are_rounded_and_that_is_said(tool):
+    args, dt, steps, duration = THREE[tool]
+    for part, more in ((-0.4, 0), (0.4, 0), (0.6, 1)):  # of a step
+        asked = float(duration) + part * float.fromhex(dt if dt.startswith('0x') else float(dt).hex())
+        result = run(tool, *args, '--dt', dt, '--duration', repr(asked))
+        assert result.returncode == 0
+        assert 'is not a whole number of steps of ' in result.stderr
+        assert f'takes {int(steps) + more} and ends at ' in result.stderr
+    assert 'whole number' not in run(tool, *args, '--dt', dt, '--duration', duration).stderr
+
+
+def test_times_of_a_given_step_are_its_multiples():
+    rows = table(RUN, '--method', 'exact', '--dt', '0.1', '--steps', '1000', '--every', '1')
+    assert column(rows, 't_s') == [0.1 * i for i in range(1001)]
+    assert max(abs(x - math.cos(0.1 * i)) for i, x in enumerate(column(rows, 'exact_x_m'))) <= 1e-14
+
+
+def stable_step(method, *spring):
+    """As the program says it: the number at the end of its remark on an enormous step."""
+    said = run(RUN, '--method', method, *spring, '--dt', '1e3', '--steps', '1').stderr
+    return float(re.search('not below the stable step of .* ([^ ]+) s$', said)[1])
+
+
+@pytest.mark.parametrize('how', [*STEPPERS, STAGES])
+def test_step_that_is_not_stable_is_remarked_on(how):
+    """One that grows, here by more than double, and none that does not."""
+    method, spring = how.split()[0], ['--stiffness', '2.7', '--damping', '0.6', '--mass', '1.3']
+    limit = stable_step(method, *spring)
+    start = ['--method', *how.split(), *spring, '--steps', '2000']
+    below, above = (run(RUN, *start, '--dt', repr(limit * factor)) for factor in (0.99, 1.01))
+    assert (below.stderr, 'stable step' in above.stderr, above.returncode) == ('', True, 0)
+    assert float(parse(below.stdout)[0]['energy_J']) < 1 < float(parse(above.stdout)[0]['energy_J']) / 2
+
+
+def test_method_that_is_never_stable():
+    result = run(RUN, '--method', 'euler', '--dt', '1e-3', '--steps', '10')
+    assert (result.returncode, result.stderr) == (0, 'spring-run: no step of euler is stable here\n')
 
 
 # --- overflow -------------------------------------------------------------------------------------------------------

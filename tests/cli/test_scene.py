@@ -248,6 +248,18 @@ def test_places_of_pushes(poke, place, frames_of):
     assert [(row['i'], row['j']) for row in last if float(row['z_m']) != 0] == [place]
 
 
+def test_disturbances_add_up(frames_of):
+    """On one axis water is linear: pokes and boxes together do what each does alone, summed up, but for rounding."""
+    pushes = [('--poke', '0,1,1,1e3,0.5'), ('--poke', '0.02,2.5,1.5,2e3,0.3'), ('--drop-box', '0.01,2'),
+              ('--drop-box', '0.04,3')]
+    water = [*FREE_WATER, '--stiffness', '2500']
+    alone = [column(frames_of(*water, *push)[0], 'z_m') for push in pushes]
+    together = column(frames_of(*water, *(word for push in pushes for word in push))[0], 'z_m')
+    largest = max(map(abs, together))
+    assert largest > 0 and max(abs(z - sum(parts)) for z, *parts in zip(together, *alone)) <= 1e-12 * largest
+    assert all(max(map(abs, moved)) > 1e-3 * largest for moved in alone)
+
+
 def test_seeds_of_rain():
     def rain(*args):
         return scene('water', '--duration', '1', '--rain', '20', *args)

@@ -3,6 +3,8 @@
 import os
 import re
 import shlex
+import subprocess
+import time
 
 import pytest
 from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, METHOD_TABLE, ORDER, PLAN, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
@@ -104,6 +106,18 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--drop-box 0,0', ['--drop-box', '"0"', 'greater than 0 kg']),
         (SCENE, '--rain 1e7', ['--rain', '"1e+07"', 'at most 1e+06']),
         (SCENE, '--steps-per-frame 2 --dt 0.1', ['--steps-per-frame', '"2"', '--dt']),
+        (SCENE, '--steps-per-frame 2 --steps 9', ['--steps-per-frame', '"2"', '--steps and --duration']),
+        (SCENE, '--dt 0.1 --steps 1', ['--dt, --steps, --duration', 'not three']),
+        (SCENE, '--links all', ['--links', '"all"', 'rope has structural links alone']),
+        (SCENE, '--scene chain --links structural', ['--links', '"structural"', 'chain has structural links alone']),
+        (SCENE, '--seed 1', ['--seed', '"1"', '--rain']),
+        (SCENE, '--push-duration 0.1', ['--push-duration', '"0.1"', '--poke', '--rain', '--drop-box']),
+        (SCENE, '--poke 0,1,0,1,1 ' * 101, ['--poke', '"0,1,0,1,1"', 'one too many', '100 times']),
+        (SCENE, '--poke 0,1,0,1,1 --poke 0,3,0,1,1', ['--poke', '"3,0"', 'X should be from 0 to 2']),
+        (SCENE, '--drop-box 0,1 --drop-box 0,-1', ['--drop-box', '"-1"', 'greater than 0 kg']),
+        (RUN, '--dt 0.1', ['--dt, --steps, --duration', 'not three']),
+        (ENERGY, '--dt 0.1 --steps 100', ['--dt, --steps, --duration', 'not three']),
+        (ROUNDING, '--dt 0.1 --duration 2000', ['--dt, --steps, --duration', 'not three']),
         (SCENE, '--frame-rate 50', ['--frame-rate', '"50"', '--steps-per-frame']),
         (SCENE, '--axes 3', ['--axes', '"3"', 'for water', 'rope it should be 2']),
         (SCENE, '--scene water --axes 2', ['--axes', '"2"', '1 or 3']),
@@ -118,6 +132,9 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{RUN} --method euler --duration 1', ['--dt, --steps, --duration', 'two of them']),
         (f'{RUN} --method euler --steps 1', ['--dt, --steps, --duration', 'two of them']),
         (f'{RUN} --method euler --duration 1 --steps 0 --steps 10', ['--steps', '"0"', COUNT_53]),
+        (f'{RUN} --method euler --dt 1', ['--dt, --steps, --duration', 'two of them']),
+        (f'{RUN} --method euler --dt 1e-9 --duration 1e9', ['--dt', '"1e-09"', '2^53 steps', 'at least 1.1']),
+        (f'{RUN} --method euler --dt 1e300 --steps 1e10', ['--dt', '"1e+300"', '10000000000 steps', 'finite']),
         (f'{VALIDATE} --case', ['--case', 'value is missing', 'one of']),
         (f'{ROUNDING} --method rk4', ['--sum', 'missing', 'one of plain, compensated']),
         (f'{SCENE} --scene rope', ['--method', 'missing', STEPPER]),
@@ -206,6 +223,16 @@ def test_progress_on_a_terminal(terminal):
     assert result.returncode == 0
     assert re.search(r'\rspring-energy: +\d+\.\d %', os.read(terminal[0], 4096).decode())
     assert result.stdout == run(ENERGY, *PROGRESS).stdout
+
+
+def test_time_left_on_a_terminal(terminal):
+    """As soon as there is an estimate."""
+    seen, patience = '', time.monotonic() + 30
+    with subprocess.Popen([ENERGY, '--method', 'rk4'], stdout=subprocess.DEVNULL, stderr=terminal[1]) as process:
+        while 'left' not in seen and time.monotonic() < patience:
+            seen += os.read(terminal[0], 4096).decode()
+        process.terminate()
+    assert re.search(r'\rspring-energy: +\d+\.\d %, \d+ (s|min) left +$', seen), seen
 
 
 def test_rows_begin_on_a_line_of_their_own(terminal):
