@@ -298,15 +298,29 @@ void cli_print_man(void)
 
 /* ------------------------------------------------------------------------------------------- for completion */
 
+static const char *kind_of_value(const cli_option *o)
+{
+    switch (o->kind) {
+    case CLI_FLAG:
+        return "flag";
+    case CLI_CHOICE:
+    case CLI_METHOD:
+        return "words";
+    case CLI_FILE:
+        return "file";
+    case CLI_FOLDER:
+        return "folder";
+    default:
+        return "value";
+    }
+}
+
 /* A line for each option: its name, what its value is, the words it can be. */
 void cli_print_completion(void)
 {
-    static const char *const kinds[] = {[CLI_FLAG] = "flag", [CLI_CHOICE] = "words",  [CLI_METHOD] = "words",
-                                        [CLI_FILE] = "file", [CLI_FOLDER] = "folder", [CLI_REALS] = NULL};
     const cli_option *o;
     for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++) {
-        const char *kind = o->kind < sizeof kinds / sizeof kinds[0] ? kinds[o->kind] : NULL;
-        printf("--%s %s ", o->name, kind != NULL ? kind : "value");
+        printf("--%s %s ", o->name, kind_of_value(o));
         cli_print_words(stdout, o, " ");
         putchar('\n');
     }
