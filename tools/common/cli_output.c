@@ -41,11 +41,13 @@ static void erase_progress(void)
     progress_shown = false;
 }
 
-/* If the rest goes on as what is done: "12 s left", "3 min left". */
+/* If the rest goes on as what is done: "12 s left", "3 min left". The clock ticks in seconds: the first says nothing. */
 static void describe_rest(char *text, size_t size, double fraction, double spent)
 {
     const double left = spent * (1 - fraction) / fraction, minute = 60, hour = 3600; /* [s] */
     text[0] = '\0';
+    if (spent < 2)
+        return;
     if (left < 100)
         snprintf(text, size, ", %.0f s left", left);
     else if (left < 100 * minute)
