@@ -39,7 +39,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 import tomllib
 import zlib
@@ -76,7 +75,7 @@ class Program(NamedTuple):
     command: list  # words; those that lie in the build directory are relative to it
     targets: list  # to build first
     tap: bool
-    limit: float  # [s]
+    limit: int  # [s]
     digest: str  # of the targets as they should be
 
 
@@ -139,28 +138,19 @@ def known_equivalents(mutants):
 
 
 def execute(program, build):
-    """What failed in a program, or "" if all is well."""
-    def stop():
-        stopped.append(True)
-        os.killpg(process.pid, signal.SIGKILL)
-
-    stopped = []
+    """What failed in a program, or "" if all is well. The limit is of processor time, which others do not use up."""
     points, plan = 0, None
-    with subprocess.Popen(program.command, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
+    limited = ["sh", "-c", f'ulimit -t {program.limit} && exec "$@"', "sh", *program.command]
+    with subprocess.Popen(limited, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True) as process:
-        timer = threading.Timer(program.limit, stop)
-        timer.start()
         for line in process.stdout:
             if program.tap and line.startswith("not ok"):
-                timer.cancel()
                 os.killpg(process.pid, signal.SIGKILL)
                 return line.strip().partition(" - ")[2]
             points += line.startswith("ok ")
             if line.startswith("1.."):
                 plan = int(line[3:].split()[0])
-        process.wait()
-        timer.cancel()
-    if stopped:
+    if process.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return TIME_LIMIT
     if process.returncode != 0:
         return f"status {process.returncode}"
@@ -206,7 +196,7 @@ def programs_of(build):
             sys.exit(f"{program.name} fails without any mutant: {failure}")
         duration = time.monotonic() - start
         whole = digest([build / target for target in program.targets])
-        return round(4 * duration), program._replace(limit=max(5, 10 * duration), digest=whole)
+        return round(4 * duration), program._replace(limit=5 + round(5 * duration), digest=whole)
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         costs = list(pool.map(timed, programs))
@@ -237,10 +227,7 @@ def try_program(build, program):
         return BROKEN
     if digest([build.path / target for target in program.targets]) == program.digest:
         return ""
-    failure = execute(program, build.path)
-    if failure == TIME_LIMIT:  # a program that hangs, or a machine that was busy?
-        failure = execute(program._replace(limit=4 * program.limit), build.path)
-    return failure
+    return execute(program, build.path)
 
 
 def try_mutant(mutant, builds, last_killer):
