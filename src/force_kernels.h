@@ -27,7 +27,7 @@ enum { most_together = 4 };
 
 SPRING_INLINE size_t links_together(uint32_t axes)
 {
-    return axes == 1 && SPRING_VECTOR == 64 ? 4 : 2;
+    return axes == 1 && SPRING_VECTOR != 32 ? 4 : 2;
 }
 
 /* Turns deltas from the lower ends of links to the upper into forces on the lower. Where there is no link that is 0,
@@ -152,11 +152,12 @@ typedef struct kept_forces {
 SPRING_INLINE void gather(const scene_links *s, ptrdiff_t t, size_t count, const kept_forces *plus, size_t pluses,
                           const kept_forces *minus, size_t minuses, uint32_t axes)
 {
-    enum { some = 2 }; /* vectors at once */
+    enum { most = 4 };
+    const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors at once */
     scalar *const to = s->force + t;
     const size_t stride = s->stride;
     for (size_t j = 0; j < count; j += some * lanes) {
-        real force[some][3];
+        real force[most][3];
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             SPRING_UNROLL

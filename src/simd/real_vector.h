@@ -64,7 +64,8 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     memcpy(&four, p, sizeof four);
     return (mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
 #elif defined(__wasm_simd128__) && SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
-    return (mask)wasm_i64x2_make(p[0], p[1]);
+    const v128_t both = wasm_v128_load16_splat(p);
+    return (mask)wasm_i8x16_shuffle(both, both, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
 #else
     mask t = {0};
     for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)

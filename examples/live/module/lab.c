@@ -240,11 +240,11 @@ EXPORT double lab_time(const lab *l)
     return spring_scene_time(l->scene);
 }
 
-/* 0: kinetic, 1: elastic, 2: of gravity [J] */
-EXPORT double lab_energy(const lab *l, uint32_t which)
+/* Kinetic, elastic, of gravity [J]; until it is called again. */
+EXPORT const spring_scene_energies *lab_energies(lab *l)
 {
-    const spring_scene_energies e = spring_scene_energy(l->scene);
-    return which == 0 ? e.kinetic : which == 1 ? e.elastic : e.gravity;
+    l->energies = spring_scene_energy(l->scene);
+    return &l->energies;
 }
 
 EXPORT double lab_stable_step(lab *l, uint32_t method)

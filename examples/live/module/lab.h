@@ -34,6 +34,7 @@ typedef struct lab {
     uint32_t *ends;       /* [links*2] */
     uint8_t *cut;         /* [links] */
     uint32_t cuts;        /* how many there are */
+    spring_scene_energies energies;
 
     bool held;
     uint32_t particle; /* in the hand */

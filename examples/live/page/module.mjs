@@ -97,9 +97,8 @@ export class Lab {
     }
 
     get energies() {
-        const [kinetic, elastic, gravity] = [0, 1, 2].map((which) =>
-            this.calls.lab_energy(this.address, which),
-        );
+        const address = this.calls.lab_energies(this.address);
+        const [kinetic, elastic, gravity] = new Float64Array(this.calls.memory.buffer, address, 3);
         return { kinetic, elastic, gravity, total: kinetic + elastic + gravity };
     }
 
