@@ -184,11 +184,16 @@ static void print_man_option(size_t i)
     if (o->help != NULL) {
         const int first = line_length(o->help);
         print_letters(o->help, first);
-        puts(o->help[first] != '\0' || o->kind != CLI_FLAG ? "\n.br" : "");
-        print_paragraphs(o->help + first);
+        putchar('\n');
+        if (o->help[first] != '\0') {
+            puts(".br");
+            print_paragraphs(o->help + first);
+        }
     }
     if (o->kind == CLI_FLAG)
         return;
+    if (o->help != NULL)
+        puts(".br");
     memory value;
     open_memory(&value);
     fputs("Value: ", value.stream);
