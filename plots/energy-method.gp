@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# {method}: the error in energy against the time run. Grey: the law, where the text gives one.
+# {{ method }}: the error in energy against the time run. Grey: the law, where the text gives one.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(4)"
 synchronised = ARG4
 ahead = ARGC > 4 ? ARG5 : "" # with the velocity half a step ahead

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# {method}: the error after one second against the number of steps, and the power law fitted through all of the points.
+# {{ method }}: the error after one second against the number of steps, and the power law fitted through all of the points.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3
 call plots."need.gp" ARG4 "n error_m"
 call plots."need.gp" ARG5 "coefficient_m exponent"

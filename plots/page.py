@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Makes the report from its template, its data and its figures: one page that needs no other file.
+"""Makes the report from its templates, its data and its figures: two pages that need no other file, nor each other.
 
 usage: page.py [--quick] --into FOLDER --cmark PROGRAM [--if-there FILE.tsv] FILE.tsv... FILE.svg... FILE.gif...
 
-report.md.in is Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by the names of
-their columns, and a figure from its picture and the comment that opens its script. Whatever is not there - a file, a row,
-a column, a name - is an error that names it; so is a claim that the template has checked and that does not hold. The data
-files are copied to FOLDER/data.
+index.md.in and evidence.md.in are Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by
+the names of their columns, and a figure from its picture and the comment that opens its script, a template, too. Figures
+are numbered through both pages, and each stands in one of them. Whatever is not there - a file, a row, a column, a name -
+is an error that names it; so is a claim that the template has checked and that does not hold. The data files are copied to
+FOLDER/data. Where FOLDER/../live/index.html exists, templates see that by the name live.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import base64
 import html
 import pathlib
 import re
+import shlex
 import shutil
 import struct
 import subprocess
@@ -22,6 +24,7 @@ import sys
 import jinja2
 
 HERE = pathlib.Path(__file__).resolve().parent
+PAGES = {"index": "Springs through time", "evidence": "Springs through time: the evidence"}  # and their titles
 
 
 class DataError(Exception):
@@ -82,6 +85,14 @@ class Table:
                 return line[len(key) + 1 :].strip()
         raise DataError(f'{self.name}: no comment "{key}:"')
 
+    def setting(self, option):
+        """What the command that made the file gave for --option, the last time where it was given twice."""
+        words = shlex.split(self.comment("command"))
+        for word, value in zip(reversed(words[:-1]), reversed(words[1:])):
+            if word == "--" + option:
+                return number(value)
+        raise DataError(f"{self.name}: made without --{option}")
+
 
 def number(text):
     """A cell as the number it is, or else as the text it is."""
@@ -116,8 +127,8 @@ def stem_of(path):
     return path.stem.removeprefix("quick-")
 
 
-def caption_of(script, method):
-    """The comment that opens a figure's script, without the licence line, about the method where it is about one."""
+def caption_of(script):
+    """The comment that opens a figure's script, without the licence line: a template."""
     lines = (HERE / f"{script}.gp").read_text(encoding="utf-8").splitlines()[1:]
     comment = []
     for line in lines:
@@ -126,7 +137,7 @@ def caption_of(script, method):
         comment.append(line[2:])
     if not comment:
         raise DataError(f"{script}.gp: no caption in its first comment")
-    return " ".join(comment).replace("{method}", method[:1].upper() + method[1:])
+    return " ".join(comment)
 
 
 def palette():
@@ -165,16 +176,60 @@ def drawing(path, label):
 
 
 def to_html(cmark, markdown):
-    """What the Markdown converter makes of the text."""
+    """What the Markdown converter makes of the text; headings can be linked to, and wide tables scrolled."""
     command = [cmark, "--unsafe", "--smart", "--extension", "table"]
-    return subprocess.run(command, input=markdown, capture_output=True, text=True, check=True, encoding="utf-8").stdout
+    text = subprocess.run(command, input=markdown, capture_output=True, text=True, check=True, encoding="utf-8").stdout
+    headings = []
+
+    def with_id(match):
+        title = match[1]
+        words = re.findall(r"[a-z0-9]+", re.sub("<.*?>", "", title).lower())
+        name = "-".join(["section", *words])  # figures have names, too
+        headings.append(f'<li><a href="#{name}">{title}</a></li>')
+        return f'<h2 id="{name}">{title}</h2>'
+
+    text = re.sub(r"<h2>(.*?)</h2>", with_id, text)
+    text = text.replace("<!-- contents -->", '<nav aria-label="Contents">\n<ol>\n' + "\n".join(headings) + "\n</ol>\n</nav>")
+    return text.replace("<table>", '<div class="table"><table>').replace("</table>", "</table></div>")
+
+
+class Figures:
+    """The pictures, the pages they are on, and their numbers."""
+
+    def __init__(self, files):
+        self.files = {stem_of(path): path for path in files}
+        self.places = {}  # by stem: page, number, picture
+
+    def place(self, page, stem, title, caption):
+        """A figure, with a mark where its picture goes when the Markdown has been converted."""
+        if stem in self.places:
+            raise DataError(f'picture "{stem}" is there twice')
+        self.places[stem] = (page, len(self.places) + 1, inline(self.files[stem], f"{title}. {caption}"))
+        return (
+            f'<figure id="{stem}">\n<p class="title">Figure {len(self.places)}. {html.escape(title)}</p>\n'
+            f"<!-- picture {stem} -->\n<figcaption>\n\n{caption}\n\n</figcaption>\n</figure>\n"
+        )
+
+    def fill(self, page, text):
+        """The text of a page with pictures where their marks are, and numbers where others are referred to."""
+        for stem in self.files:
+            if stem not in self.places:
+                raise DataError(f'picture "{stem}" is nowhere in the report')
+
+        def reference(match):
+            if match[1] not in self.places:
+                raise DataError(f'no picture "{match[1]}" to refer to')
+            where, place, _ = self.places[match[1]]
+            return f'<a href="{"" if where == page else where + ".html"}#{match[1]}">Figure {place}</a>'
+
+        text = re.sub(r"<!-- reference (\S+) -->", reference, text)
+        return re.sub(r"<!-- picture (\S+) -->", lambda match: self.places[match[1]][2], text)
 
 
 def make(arguments):
-    """Writes the page and copies its data."""
+    """Writes the pages and copies their data."""
     tables = {stem_of(path): Table(path) for path in arguments.files if path.suffix == ".tsv"}
-    pictures = {stem_of(path): path for path in arguments.files if path.suffix in (".svg", ".gif")}
-    used = {}
+    figures = Figures(path for path in arguments.files if path.suffix in (".svg", ".gif"))
 
     def data(stem):
         if stem not in tables:
@@ -188,29 +243,29 @@ def make(arguments):
         """The rows of the methods for springs or scenes, in the order of the table, without the exact solution."""
         return [row for row in data("methods").rows if getattr(row, shape) and row.order > 0]
 
-    def figure(stem, script=None, method=""):
-        if stem not in pictures:
+    @jinja2.pass_context
+    def figure(context, stem, title, script=None, method=""):
+        if stem not in figures.files:
             raise DataError(f'no picture "{stem}"')
-        caption = caption_of(script or stem, method)
-        used[f"<!-- picture {stem} -->"] = inline(pictures[stem], caption)
-        return f'<figure id="{stem}">\n<!-- picture {stem} -->\n<figcaption>\n\n{caption}\n\n</figcaption>\n</figure>\n'
+        caption = jinja.from_string(caption_of(script or stem)).render(method=method[:1].upper() + method[1:])
+        return figures.place(context["page"], stem, title, caption)
 
     jinja = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     jinja.filters.update(scientific=scientific, count=count)
     jinja.globals.update(check=check, data=data, figure=figure, label=label, steppers=steppers)
-    jinja.globals.update(quick=arguments.quick, stems=sorted(tables))
+    jinja.globals.update(reference="<!-- reference {} -->".format, quick=arguments.quick, stems=sorted(tables))
+    jinja.globals.update(live=(arguments.into.parent / "live/index.html").exists())
 
-    body = to_html(arguments.cmark, jinja.get_template("report.md.in").render())
-    for stem in pictures:
-        if f"<!-- picture {stem} -->" not in used:
-            raise DataError(f'picture "{stem}" is nowhere in the report')
-    body = body.replace("<table>", '<div class="table"><table>').replace("</table>", "</table></div>")
-    for mark, svg in used.items():
-        body = body.replace(mark, svg)
+    # All figures have their numbers before any is referred to.
+    bodies = {page: to_html(arguments.cmark, jinja.get_template(f"{page}.md.in").render(page=page)) for page in PAGES}
     colours = {name: "#%02X%02X%02X" % rgb for name, rgb in palette().items()}
-    page = jinja.get_template("page.html.in").render(body=body, colours=colours)
+    frame = jinja.get_template("page.html.in")
+    pages = {
+        page: frame.render(title=PAGES[page], body=figures.fill(page, body), colours=colours)
+        for page, body in bodies.items()
+    }
 
     copies = arguments.into / "data"
     shutil.rmtree(copies, ignore_errors=True)
@@ -218,14 +273,15 @@ def make(arguments):
     for path in arguments.files:
         if path.suffix == ".tsv":
             shutil.copyfile(path, copies / f"{stem_of(path)}.tsv")
-    (arguments.into / "index.html").write_text(page, encoding="utf-8")
+    for page, text in pages.items():
+        (arguments.into / f"{page}.html").write_text(text, encoding="utf-8")
 
 
 def main():
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="mark the page as that of a quick study")
-    parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of index.html and data/")
+    parser.add_argument("--quick", action="store_true", help="mark the pages as those of a quick study")
+    parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of the pages and data/")
     parser.add_argument("--cmark", required=True, help="the program cmark-gfm")
     parser.add_argument("--if-there", type=pathlib.Path, help="a data file that the template can do without")
     parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv), pictures (.svg) and animations (.gif)")
