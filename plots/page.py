@@ -204,9 +204,10 @@ class Figures:
         """A figure, with a mark where its picture goes when the Markdown has been converted."""
         if stem in self.places:
             raise DataError(f'picture "{stem}" is there twice')
+        title = html.escape(title, quote=False).replace("'", "’")  # as the Markdown converter does in a text
         self.places[stem] = (page, len(self.places) + 1, inline(self.files[stem], f"{title}. {caption}"))
         return (
-            f'<figure id="{stem}">\n<p class="title">Figure {len(self.places)}. {html.escape(title)}</p>\n'
+            f'<figure id="{stem}">\n<p class="title">Figure {len(self.places)}. {title}</p>\n'
             f"<!-- picture {stem} -->\n<figcaption>\n\n{caption}\n\n</figcaption>\n</figure>\n"
         )
 
