@@ -8,8 +8,9 @@
 
 set xrange [*:*]
 set yrange [*:*]
+longest = 0
 do for [r = 1:bars] {
-    stats ARG1 using (is(r) ? 1 : 0) nooutput
+    stats ARG1 using (is(r) ? (longest = size(r) > longest ? size(r) : longest, 1) : 0) nooutput
     if (STATS_sum != 1) {
         exit error sprintf("%s: %d rows for the bar %d, \"%s\"", ARG1, STATS_sum, r, titles[r])
     }
@@ -19,6 +20,8 @@ set lmargin at screen ARG2
 set rmargin at screen 0.89
 set grid noytics
 set xrange [0:*]
+unit = 10.0**floor(log10(longest))
+set xtics longest < 2*unit ? 0.5*unit : longest < 4*unit ? unit : 2*unit # three or four, that have room
 set yrange [-bars - 0.6:-0.4]
 set ytics scale 0 ("" 0)
 do for [r = 1:bars] {

@@ -24,10 +24,12 @@ set output ARG1
 set multiplot
 set tmargin at screen 0.94
 set bmargin at screen 0.58
-set label 1 labels[1] at screen 0.4,0.97 textcolor linetype types[1]
-set label 2 labels[2] at screen 0.65,0.97 textcolor linetype types[2]
+do for [m = 1:2] {
+    set label m labels[m] at screen 0.25*m + 0.16,0.975 offset 1,0 point linetype types[m] pointtype 5 pointsize 1.5
+}
 set xlabel "ns per spring and step, in cache"
 call plots."bars.gp" ARG3 0.4
+unset label
 steps = 1
 springs = 1e7
 set tmargin at screen 0.475

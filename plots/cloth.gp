@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# A cloth of 25 × 25 particles, held at two corners and let go level, moved by leapfrog in steps of a tenth of a frame,
+# A cloth of 25 × 25 particles, held at two corners, the dots, and let go level, moved by leapfrog in steps of a tenth of a frame,
 # 1/600 s.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 470
 call plots."need.gp" ARG3 "t_s"
@@ -26,11 +26,18 @@ set output ARG1
 set multiplot
 set margins 0,0,0,0
 set size 0.6,0.9 # panels overlap where nothing is
+do for [corner = 0:1] {
+    set label corner + 2 "" at x_at(0, corner*(edge - 1), 0),0,0 point linetype exact pointtype 7 pointsize 0.6 front
+}
+set arrow from 0,0,-1 to 2,0,-1 heads size 0.06,20 linetype exact
+set label 4 "2 m" at 1,0,-1.35 center
 do for [i = 1:words(instants)] {
     f = firsts[i]/particles
     set origin (i - 1)%3/3.0 - 0.1,0.25 - 0.5*((i - 1)/3)
     set label 1 word(instants, i)." s" at screen (i - 1)%3/3.0 + 0.03,0.96 - 0.5*((i - 1)/3)
     splot sample [u=0:edge-1][v=0:edge-1] '++' using (x_at(f, $1, $2)):(y_at(f, $1, $2)):(z_at(f, $1, $2)) \
           with lines linetype types[1] linewidth 0.7 dashtype solid
+    unset arrow
+    unset label 4
 }
 unset multiplot

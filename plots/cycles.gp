@@ -13,14 +13,14 @@ array titles[bars]
 array colours[bars]
 do for [r = 1:bars] {
     titles[r] = r % 2 ? loop_titles[(r + 1)/2] : " "
-    colours[r] = r % 2 ? 1 : 6
+    colours[r] = r % 2 ? exact : theory
 }
 is(r) = strcol("loop") eq loops[(r + 1)/2] && strcol("processor") eq processors[2 - r % 2] && column("vector") == 256 \
     && strcol("precision") eq "double" && strcol("item") ne "link-end"
 size(r) = column("cycles_per_item")
 set tmargin at screen 0.9
 do for [p = 1:2] {
-    set label p processor_titles[p] at screen 0.3*p,0.95 textcolor linetype (p == 1 ? 1 : 6)
+    set label p processor_titles[p] at screen 0.33*p - 0.02,0.95 offset 1,0 point linetype (p == 1 ? exact : theory) pointtype 5 pointsize 1.5
 }
 set xlabel "cycles a link"
 set output ARG1

@@ -26,14 +26,14 @@ set multiplot layout methods + 1,1 margins 0.17,0.94,75.0/height,1 - 30.0/height
 set ylabel "position / m"
 set yrange [-1.5:1.5]
 set ytics 1
-set label 1 "exact" at graph 0.01,1.13
+set label 1 "exact" at graph 0,1.15
 plot file(runs, 1) using "t_s":"exact_x_m" with lines linetype exact
 do for [m = 1:methods] {
     unit = 10.0**exponents[m]
     set ylabel sprintf("error / 10^{%d} m", exponents[m])
     set yrange [-1.2*largest[m]:1.2*largest[m]]
     set ytics largest[m] < 2 ? 1 : largest[m] < 5 ? 2 : 5
-    set label 1 labels[m] at graph 0.01,1.13 textcolor linetype types[m]
+    set label 1 labels[m] at graph 0.01,1.15 offset 1,0 point linetype types[m]
     if (m == methods) {
         set format x
         set xlabel "time / s"

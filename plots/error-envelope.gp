@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # How the error in position grows over the whole of the long run: of all the steps of about a second, the greatest.
 # Dotted: what theory says of Euler, leapfrog and RK4, of the last far less than can be seen: what is seen is rounding.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods + 1)"
 envelopes = ARG3
 call plots."need.gp" envelopes "t_s error_min_m error_max_m" methods
 call plots."need.gp" ARG4 "step t_s"
@@ -21,8 +21,9 @@ set ytics 1e3
 set mytics 1
 set xlabel "time / s"
 set ylabel "greatest error in position / m"
-call plots."key.gp" methods
+call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] file(envelopes, m) using "t_s":(greater(column("error_min_m"), column("error_max_m"))) \
-         with lines linetype types[m] dashtype solid title labels[m], \
-     for [m = 1:methods] law(names[m], x) with lines linetype theory notitle
+         with lines linetype types[m] dashtype solid linewidth 2 title labels[m], \
+     for [m = 1:methods] law(names[m], x) with lines linetype theory notitle, \
+     NaN with lines linetype theory title "theory"

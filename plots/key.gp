@@ -5,5 +5,5 @@
 #
 # The height of a figure has to make room for it: "390 + key_height(methods)".
 
-set key at screen 0.5,1 - 4.0/height center top vertical Left reverse samplen 2 maxrows (int(ARG1) + 1)/2
+set key at screen 0.02,1 - 4.0/height left top vertical Left reverse samplen 2 maxrows (int(ARG1) + 1)/2
 set tmargin at screen key_bottom(int(ARG1))

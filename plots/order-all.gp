@@ -26,15 +26,16 @@ spaced(x) = (step = floor(markers_a_decade*log10(x)), step > last ? (last = step
 
 set logscale xy
 set xrange [4:20000]
-set yrange [1e-15:1]
+set yrange [1e-16:1]
 set format x "10^{%T}"
 set format y "10^{%T}"
 set ytics 1e3
 set mytics 1
 set ylabel "error in position / m"
-call plots."key.gp" methods
+call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] law(m, x) with lines linetype theory notitle, \
      for [m = 1:methods] file(errors, m) using ARG2:"error_m" with lines linetype types[m] notitle, \
      for [m = 1:methods] last = -1, file(errors, m) using (spaced(column(ARG2))):"error_m" with points linetype types[m] notitle, \
-     for [m = 1:methods] NaN with linespoints linetype types[m] title labels[m]
+     for [m = 1:methods] NaN with linespoints linetype types[m] title labels[m], \
+     NaN with lines linetype theory title "theory, not fitted"

@@ -10,9 +10,13 @@ exponent = STATS_max
 
 set logscale xy
 set format xy "10^{%T}"
+set xrange [4:20000] # of all methods, and of order.gp
+set yrange [1e-16:1]
+set ytics 1e3
+set mytics 1
 set xlabel "steps n in 1 s"
 set ylabel "error in position / m"
-set key bottom left
+set key top right
 set output ARG1
 plot ARG4 using "n":"error_m" with lines linetype types[1] dashtype solid linewidth 7 title "measured", \
      coefficient * x**exponent with lines linetype exact dashtype (6,4) title sprintf("%#.4g n^{ −%.4f}", coefficient, -exponent)

@@ -25,7 +25,7 @@ set key at screen 0.18,0.99 left top Left reverse samplen 1
 set output ARG1
 set multiplot layout 3,1 margins 0.23,0.95,0.095,0.92 spacing 0.03
 do for [i = 1:3] {
-    set label 1 titles[i] at graph 0.97,0.08 right textcolor linetype colours[i]
+    set label 1 titles[i] at graph 0.97,0.08 right
     set label 2 "√n ε" at 3e4,epsilon*sqrt(3e4) offset 0,0.9 textcolor linetype theory
     set label 3 "n ε" at 1e7,epsilon*1e7 offset -3.5,0.2 textcolor linetype theory
     if (i < 3) {

@@ -3,18 +3,19 @@
 # more than the whole of it. White: the largest stable step. Around ζ = 1 a spring has come to rest after ten periods, so
 # there even a coarse step leaves no error to speak of, if only it is stable. Leapfrog is stable for every damping, and of
 # no use where damping is strong and the step coarse: there a part of its velocity changes sign at every step.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "190 + 245*((methods + 1)/2)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "200 + 250*((methods + 1)/2)"
 map = ARG3
 limits = ARG4
 call plots."need.gp" map "method omega_dt damping_ratio error"
 call plots."need.gp" limits "method damping_ratio limit_theory"
 
-# An image takes whole rows of pixels: the block of the table that is the method's.
+# An image takes whole rows of pixels: the block of the table that is the method's. (A column by its name, or the header
+# would count as a row.)
 array firsts[methods]
 array lasts[methods]
 do for [m = 1:methods] {
     STATS_records = 0
-    stats map using (strcol("method") eq names[m] ? $0 : NaN) nooutput
+    stats map using (strcol("method") eq names[m] ? $0 + 0*column("error") : NaN) nooutput
     if (STATS_records == 0) {
         exit error map.": no rows of method ".names[m]
     }
@@ -32,22 +33,23 @@ edge(m) = strcol("method") eq names[m] && column("damping_ratio") > 0 ? log10(co
 set palette maxcolors 0 defined (-8 "#00224E", -7.1 "#123570", -6.2 "#3B496C", -5.3 "#575D6D", -4.4 "#707173", \
     -3.6 "#8A8678", -2.7 "#A59C74", -1.8 "#C3B369", -0.9 "#E1CC55", 0 "#FEE838", 0 "#D65E00", exploded "#D65E00")
 set cbrange [least:exploded]
-set cbtics ("≤10^{−8}" -8, "10^{−6}" -6, "10^{−4}" -4, "10^{−2}" -2, ">1" 0.3) scale 0
+set cbtics ("≤10^{−8}" -8, "10^{−6}" -6, "10^{−4}" -4, "10^{−2}" -2, "≥1" 0.3) scale 0
 set cblabel "error after ten periods" offset 0,0.4
 set colorbox horizontal user origin 0.24,1 - 35.0/height size 0.66,14.0/height
 
-set xrange [-3:1]
-set yrange [-2:2]
+pixel = 0.02 # half of one at the edges: an image that is cut becomes 14400 polygons
+set xrange [-3 - pixel:1 + pixel]
+set yrange [-2 - pixel:2 + pixel]
 set xtics ("" -3, "0.01" -2, "" -1, "1" 0, "" 1)
 unset grid
 unset key
 set output ARG1
-set multiplot layout (methods + 1)/2,2 margins 0.17,0.96,80.0/height,1 - 140.0/height spacing 0.05,60.0/height
+set multiplot layout (methods + 1)/2,2 margins 0.2,0.96,80.0/height,1 - 148.0/height spacing 0.05,66.0/height
 do for [m = 1:methods] {
-    set title labels[m] offset 0,-0.7
+    set title labels[m] offset 0,-0.9
     if (m % 2) {
         set ytics ("0.01" -2, "0.1" -1, "1" 0, "10" 1, "100" 2)
-        set ylabel "damping ratio ζ"
+        set ylabel "damping ratio ζ" offset 1,0
     } else {
         set ytics ("" -2, "" -1, "" 0, "" 1, "" 2)
         unset ylabel

@@ -2,7 +2,7 @@
 # The largest stable step, as ω dt, over the damping ratio. Marks: found by taking steps and watching whether they grow,
 # without any formula. Lines: theory. Euler is stable only where there is damping, and best at critical damping; leapfrog
 # does not mind damping at all; RK4's limit falls where damping is strong.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods + 1)"
 stability = ARG3
 call plots."need.gp" stability "method damping_ratio limit_measured limit_theory"
 
@@ -17,9 +17,10 @@ set xtics 10
 set mxtics 1
 set xlabel "damping ratio ζ"
 set ylabel "largest stable ω dt"
-call plots."key.gp" methods
+call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] stability using "damping_ratio":(of(m, column("limit_theory"))) with lines linetype theory dashtype solid notitle, \
      for [m = 1:methods] stability using "damping_ratio":(of(m, column("limit_measured"))) with points linetype types[m] pointsize 0.45 \
          notitle, \
-     for [m = 1:methods] NaN with points linetype types[m] title labels[m]
+     for [m = 1:methods] NaN with points linetype types[m] title labels[m], \
+     NaN with lines linetype theory dashtype solid title "theory"

@@ -21,6 +21,8 @@ exact = 8
 theory = 9
 grid = 10
 page = 11
+gsl = 12
+sundials = 13
 set linetype 1      linecolor rgb "#D55E00" linewidth 2.5 dashtype solid          pointtype 7  pointsize 0.8
 set linetype 2      linecolor rgb "#CC79A7" linewidth 2.5 dashtype (16,3)         pointtype 13 pointsize 1
 set linetype 3      linecolor rgb "#0072B2" linewidth 2.5 dashtype (12,4)         pointtype 5  pointsize 0.8
@@ -32,12 +34,15 @@ set linetype exact  linecolor rgb "#000000" linewidth 1.5 dashtype solid        
 set linetype theory linecolor rgb "#767676" linewidth 1.5 dashtype (3,3)          pointtype 2
 set linetype grid   linecolor rgb "#D9D9D9" linewidth 0.5 dashtype solid
 set linetype page   linecolor rgb "#FFFFFF"
+# External solvers, by their library: an open marker each, see externals.gp.
+set linetype gsl      linecolor rgb "#5F6F7A" linewidth 1.5 dashtype solid
+set linetype sundials linecolor rgb "#8A5A3C" linewidth 1.5 dashtype (6,3)
 
 call plots."methods.gp" ARG2 ARG3
 
 width = 520
 height = 390
-key_height(entries) = 24*((entries + 1)/2) # [px] of a key above the picture, see key.gp
+key_height(entries) = 24*((entries + 1)/2) + 14 # [px] of a key above the picture, see key.gp, and of a gap below it
 key_bottom(entries) = 1 - (20.0 + key_height(entries))/height
 if (ARGC > 3) {
     eval "height = int(".ARG4.")"

@@ -23,7 +23,7 @@ exploded = 1   # [m] from here on a surface is no longer one
 metres(z) = z < 1000 ? sprintf("%.0f m", z) : sprintf("%.0f⋅10^{%d} m", z/10**floor(log10(z)), floor(log10(z)))
 shown(z) = z > highest ? highest : z < -highest ? -highest : z
 
-# Beside the pictures there is room for a dozen letters in a line.
+# Below a cell: how far an exploded surface reaches. Beside the pictures there is room for a dozen letters in a line.
 two_lines(text) = strstrt(text, " ") > 0 \
     ? text[1:strstrt(text, " ") - 1]."\n".text[strstrt(text, " ") + 1:*] : text
 
@@ -39,7 +39,7 @@ set cbtics ("≤ −10" -highest, "−5" -0.5*highest, "0" 0, "5" 0.5*highest, "
 set border 15 linewidth 0.5
 set autoscale fix
 set output ARG1
-set multiplot layout methods,columns margins 0.115,0.985,6.0/height,1 - 95.0/height spacing 0.02,10.0/height
+set multiplot layout methods,columns margins 0.115,0.985,34.0/height,1 - 95.0/height spacing 0.02,36.0/height
 set label 1 "height / cm" at screen 0.02,1 - 20.0/height
 do for [m = 1:methods] {
     do for [t = 1:columns] {
@@ -53,12 +53,10 @@ do for [m = 1:methods] {
             set label 3 two_lines(labels[m]) at graph (strstrt(labels[m], " ") ? -0.38 : -0.2),0.5 center rotate
         }
         if (STATS_max > exploded) {
-            set object 1 rectangle from graph 0,0 to graph 1,0.24 front fillcolor rgb "#FEFEFE" fillstyle solid noborder
-            set label 4 metres(STATS_max) at graph 0.5,0.11 center textcolor rgb "#020202" front
+            set label 4 metres(STATS_max) at graph 0.5,-0.12 center
         }
         plot file(positions, m) every ::first::last using "x_m":"y_m":(shown(column("z_m"))) with image
         unset colorbox
-        unset object
         unset label
     }
 }

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 # The ideal spring after one period and after ten: error against force evaluations. Dotted: what theory says, exactly, of
 # Euler, leapfrog and RK4. Markers inside each other: the methods agree. The vertical line is where RK4 passes leapfrog.
-# At the end rounding is all that is left, and more steps make it more. Grey: GSL's rk4 and rk8pd.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "840 + key_height(methods + 2)"
+# At the end rounding is all that is left, and more steps make it more. Open markers: GSL.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "855 + key_height(methods + 2)"
 output = ARG1
 work = ARG3
+call plots."externals.gp"
 call plots."need.gp" work "problem solver effort force_evaluations error"
 is(solver, why) = strcol("problem") eq panel && strcol("effort") eq why && strcol("solver") eq solver
 evaluations(solver) = is(solver, "sweep") ? column("force_evaluations") : NaN
@@ -45,11 +46,11 @@ set yrange [1e-16:3]
 set ytics 1e3
 set mxtics 1
 set mytics 1
-set ylabel "error / size of the motion"
+set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 2
 call plots."key.gp" entries
 set output output
-set multiplot layout 2,1 margins 0.19,0.94,75.0/height,key_bottom(entries) - 35.0/height spacing 75.0/height
+set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 75.0/height
 do for [k = 1:2] {
     periods = lengths[k]
     panel = "ideal-".periods
@@ -63,9 +64,8 @@ do for [k = 1:2] {
     }
     plot for [m = 1:methods] work using (evaluations(names[m])):"error" with points linetype types[m] pointsize size(m) \
              title labels[m], \
-         for [other in "gsl-rk4 gsl-rk8pd"] work using (evaluations(other)):"error" with linespoints linetype theory \
-             dashtype solid linewidth 0.8 pointtype (other eq "gsl-rk4" ? 4 : 6) pointsize 0.6 \
-             title other eq "gsl-rk4" ? "GSL rk4" : "GSL rk8pd", \
+         for [s = 1:2] work using (evaluations(externals[s])):"error" with linespoints linetype external_types[s] \
+             pointtype external_markers[s] title external_titles[s], \
          for [m = 1:methods] visible(m, x) with lines linetype theory linewidth 2 notitle
 }
 unset multiplot

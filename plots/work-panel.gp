@@ -4,9 +4,7 @@
 #     call plots."work-panel.gp" FILE                  before the first panel: checks the file, sets what panels share
 #     call plots."work-panel.gp" FILE PROBLEM TITLE EXACT       EXACT: 1 where there is an exact solution, or 0
 
-array solvers[5] = ["gsl-rk4", "gsl-rk8pd", "arkode-adaptive", "cvode-adams", "cvode-bdf"]
-array titles[5] = ["GSL rk4", "GSL rk8pd", "ARKODE, order 4", "CVODE Adams", "CVODE BDF"]
-array markers[5] = [4, 6, 8, 2, 1]
+array shown[5] = [1, 2, 4, 5, 6] # of the external solvers
 work = ARG1
 panel = ARG2
 is(solver) = strcol("problem") eq panel && strcol("effort") eq "sweep" && strcol("solver") eq solver
@@ -15,6 +13,7 @@ drawn(error) = error > least ? error : least
 seconds(solver) = is(solver) ? column("time_s") : NaN
 
 if (ARGC == 1) {
+    call plots."externals.gp"
     call plots."need.gp" work "problem solver effort time_s error"
     set datafile missing NaN
     set logscale xy
@@ -24,17 +23,17 @@ if (ARGC == 1) {
     set xtics 10
     set mxtics 1
     set mytics 1
-    set ylabel "error / size of the motion"
+    set ylabel "error / size of the motion" offset 1.5,0
     call plots."key.gp" entries
 } else {
     with_exact = int(ARG4)
     set title ARG3 offset 0,-0.6
-    plot for [s = 1:5] work using (seconds(solvers[s])):(drawn(column("error"))) with linespoints linetype theory \
-             dashtype solid linewidth 0.8 pointtype markers[s] pointsize 0.6 notitle, \
+    plot for [s = 1:5] work using (seconds(externals[shown[s]])):(drawn(column("error"))) with linespoints \
+             linetype external_types[shown[s]] pointtype external_markers[shown[s]] notitle, \
          for [m = 1:methods] work using (seconds(names[m])):(drawn(column("error"))) with linespoints linetype types[m] \
-             linewidth 1.5 dashtype solid pointsize 0.6 title labels[m], \
+             linewidth 2 title labels[m], \
          work using (with_exact ? seconds("exact") : NaN):(drawn(column("error"))) with points linetype exact pointtype 3 \
              pointsize 1.4 title with_exact ? label_of("exact") : "", \
-         for [s = 1:5] NaN with linespoints linetype theory dashtype solid linewidth 0.8 pointtype markers[s] pointsize 0.6 \
-             title titles[s]
+         for [s = 1:5] NaN with linespoints linetype external_types[shown[s]] \
+             pointtype external_markers[shown[s]] title external_titles[shown[s]]
 }

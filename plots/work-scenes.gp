@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 # Scenes, error at the end against run time: one particle on a spring that swings, a cloth of 25 × 25 particles that
-# falls, and a sheet of water of 25 × 25, which is linear. Grey: GSL and SUNDIALS.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1100 + key_height(methods + 5)"
+# falls, and a sheet of water of 25 × 25, which is linear. Open markers: GSL, grey, and
+# SUNDIALS (ARKODE, CVODE), brown.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 5)"
 output = ARG1
 work = ARG3
 entries = methods + 5
 call plots."work-panel.gp" work
 set output output
-set multiplot layout 3,1 margins 0.19,0.94,75.0/height,key_bottom(entries) - 35.0/height spacing 75.0/height
+set multiplot layout 3,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 75.0/height
 call plots."work-panel.gp" work "elastic-pendulum" "elastic pendulum" 0
 unset key
 call plots."work-panel.gp" work "cloth" "cloth" 0

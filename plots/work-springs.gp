@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 # One spring, error at the end against the time the run took: ten periods without damping, and five with a damping ratio
-# of a tenth. Grey: GSL and SUNDIALS. The star is the exact solution, which takes no steps.
+# of a tenth. Open markers: GSL, grey, and
+# SUNDIALS (ARKODE, CVODE), brown. The star is the exact solution, which takes no steps.
 # Errors below 10⁻¹⁶ are drawn there.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "820 + key_height(methods + 6)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "835 + key_height(methods + 6)"
 output = ARG1
 work = ARG3
 entries = methods + 6
 call plots."work-panel.gp" work
 set output output
-set multiplot layout 2,1 margins 0.19,0.94,75.0/height,key_bottom(entries) - 35.0/height spacing 75.0/height
+set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 75.0/height
 call plots."work-panel.gp" work "ideal-10" "ideal, ten periods" 1
 unset key
 set xlabel "run time / s"
