@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a step of one spring costs in a batch of double precision, with each feature. Above: 1000 springs, 16 steps a call, in
-# the cache. Below: 10^7 springs, one step a call, from memory.
+# What a step of one spring costs in a batch of double precision, with each feature. Above: few springs, many steps a
+# call, in the cache. Below: many springs, one step a call, from memory.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 1000
 call plots."need.gp" ARG3 "kernel precision count ns_per_spring_step"
 

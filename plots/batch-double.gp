@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What one step of one spring costs in a batch of double precision, against the number of springs, for one step
-# a call and for 16. Dotted, in the colour of the
-# method: the limit. For one step a call it is a kernel that only moves the same memory, and rises where one cache after
-# the other is full; for 16 steps a call it is a kernel that only does the arithmetic.
+# What one step of one spring costs in a batch of double precision, against the number of springs, for one step a call
+# and for many. Dotted, in the colour of the method: the limit. For one step a call it is a kernel that only moves the
+# same memory, and rises where one cache after the other is full; for many it is a kernel that only does the arithmetic.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "rk4 leapfrog" "390 + key_height(5)"
 call plots."batch-precision.gp" ARG1 ARG3 double

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The error in energy against the time run, in steps of 0.01 s. Euler gains without end. The energies of leapfrog and
-# symplectic Euler swing, by as much at the end as at the beginning; leapfrog's swings by far more where its velocity is
-# taken half a step ahead of its position. RK4 loses, slowly, and never stops. Grey: the laws of the text.
+# The error in energy against the time run, in steps of {{ data('energy-euler').rows[0].duration_s /
+# data('energy-euler').rows[0].steps }} s. Euler gains without end. The energies of leapfrog and symplectic Euler swing,
+# by as much at the end as at the beginning; leapfrog's swings by far more where its velocity is taken half a step ahead
+# of its position. RK4 loses, slowly, and never stops. Grey: the laws of the text.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods + 2)"
 call plots."need.gp" ARG3 "duration_s steps energy_error_J" methods
 call plots."need.gp" ARG4 "duration_s energy_error_J"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The water of the figure above, poked in the middle, a picture for each step of 2 ms, slowed down fifty times. What is
-# above or below 50 cm is drawn there.
+# The water of the figure above, poked in the middle, a picture for each step of {{ step('water-2ms-euler-energy') }},
+# slowed down. What is very high or very low is cut off.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "40 + 230*((methods + 2)/3)" 10
 call plots."grid.gp" ARG3 methods
 call plots."water-surface.gp"

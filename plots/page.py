@@ -244,6 +244,14 @@ def make(arguments):
         """The rows of the methods for springs or scenes, in the order of the table, without the exact solution."""
         return [row for row in data("methods").rows if getattr(row, shape) and row.order > 0]
 
+    def step(stem):
+        """The step of the run that made a data file."""
+        return f"{1000 * data(stem).setting('dt'):.3g} ms"
+
+    def step(stem):
+        """The step of the run that made a data file."""
+        return f"{1000 * data(stem).setting('dt'):.3g} ms"
+
     @jinja2.pass_context
     def figure(context, stem, title, script=None, method=""):
         if stem not in figures.files:
@@ -255,7 +263,7 @@ def make(arguments):
         loader=jinja2.FileSystemLoader(HERE), undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     jinja.filters.update(scientific=scientific, count=count)
-    jinja.globals.update(check=check, data=data, figure=figure, label=label, steppers=steppers)
+    jinja.globals.update(check=check, data=data, figure=figure, label=label, step=step, steppers=steppers)
     jinja.globals.update(reference="<!-- reference {} -->".format, quick=arguments.quick, stems=sorted(tables))
     jinja.globals.update(live=(arguments.into.parent / "live/index.html").exists())
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The energy of the rope as it swings, without drag, with leapfrog in steps of 0.1 ms: what gravity gives becomes motion, and
-# back; the sum stays what it was.
+# The energy of the rope as it swings, without drag, with leapfrog in steps of {{ step('rope-energy') }}: what gravity
+# gives becomes motion, and back; the sum stays what it was.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog"
 call plots."need.gp" ARG3 "t_s energy_J kinetic_J elastic_J gravity_J"
 kilojoule(y) = y/1000

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# What a step of a scene costs with each feature: a sheet of 35 x 35 particles with six links each, 16 steps a call, double unless
-# said. The unit is the time of a plain loop over an array of links, as anybody would write it, for the same sheet with
-# nothing of all this. RK4 evaluates forces four times a step, RKN8 eight times, the others once.
+# What a step of a scene costs with each feature: a sheet, many steps a call, double unless said. The unit is the time
+# of a plain loop over an array of links, as anybody would write it, for the same sheet with nothing of all this. What
+# counts is how often a method evaluates forces in a step.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 600
 call plots."need.gp" ARG3 "kernel precision count ns_per_spring_step baseline_ns"
 

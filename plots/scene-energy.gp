@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-# The energy of the water without drag, in steps of 2 ms, below leapfrog's stable step. The poke brings it in within 20
-# ms; from then on it should stay what it is, the dotted line, from leapfrog in steps of 0.02 ms. Euler gains without
-# end. RK4 loses, fast at first, while there are short waves. Leapfrog swings about the truth, by up to 4 % with so long
-# a step, and does not drift. What leaves the picture at the top explodes.
+# The energy of the water without drag, in steps of {{ step('scene-energy-euler') }}, below leapfrog's stable step. The
+# poke brings it in at the beginning; from then on it should stay what it is, the dotted line, from leapfrog in steps of
+# {{ step('scene-energy-exact') }}. Euler gains without end. RK4 loses, fast at first, while there are short waves.
+# Leapfrog swings about the true energy, by a few percent with so long a step, and does not drift. What leaves the
+# picture at the top explodes.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "390 + key_height(methods + 1)"
 energies = ARG3
 call plots."need.gp" energies "t_s energy_J" methods

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Rain on the water, and a box after a quarter of a second, slowed down five times; heights are exaggerated. Leapfrog,
-# two steps of 4 ms for each picture; links of 1000 N/m, drag 4 N s/m.
+# Rain on the water, and a box after a quarter of a second, slowed down; heights are exaggerated. Leapfrog, two steps of
+# {{ step('water-rain-energy') }} for each picture.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 320 4
 call plots."grid.gp" ARG3 1
 call plots."water-surface.gp"

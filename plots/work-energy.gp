@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The ideal spring after 10⁴ periods: error of the energy, relative to what it was, against run time. With long steps
-# RK4 loses all of it, while leapfrog's error depends on the step alone, not on how long the run is. Open markers: GSL.
+# The ideal spring after ten thousand periods: error of the energy, relative to what it was, against run time. With long
+# steps RK4 loses all of it, while leapfrog's error depends on the step alone, not on how long the run is. Open markers:
+# GSL.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "420 + key_height(methods + 3)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s energy_error"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Scenes, error at the end against run time: one particle on a spring that swings, a cloth of 25 × 25 particles that
-# falls, and a sheet of water of 25 × 25, which is linear. Open markers: GSL, grey, and
-# SUNDIALS (ARKODE, CVODE), brown.
+# Scenes, error at the end against run time: one particle on a spring that swings, a cloth that falls, and a sheet of
+# water, which is linear. Open markers: GSL, grey, and SUNDIALS (ARKODE, CVODE), brown.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 5)"
 output = ARG1
 work = ARG3

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 # One spring, error at the end against the time the run took: ten periods without damping, and five with a damping ratio
-# of a tenth. Open markers: GSL, grey, and
-# SUNDIALS (ARKODE, CVODE), brown. The star is the exact solution, which takes no steps.
-# Errors below 10⁻¹⁶ are drawn there.
+# of a tenth. Open markers: GSL, grey, and SUNDIALS (ARKODE, CVODE), brown. The star is the exact solution, which takes
+# no steps. Smaller errors than the axis shows are drawn at its end.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "835 + key_height(methods + 6)"
 output = ARG1
 work = ARG3
