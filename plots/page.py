@@ -223,7 +223,7 @@ class Figures:
             where, place, _ = self.places[match[1]]
             return f'<a href="{"" if where == page else where + ".html"}#{match[1]}">Figure {place}</a>'
 
-        text = re.sub(r"<!-- reference (\S+) -->", reference, text)
+        text = re.sub(r'<a href="figure:([^"]*)"></a>', reference, text)
         return re.sub(r"<!-- picture (\S+) -->", lambda match: self.places[match[1]][2], text)
 
 
@@ -264,7 +264,7 @@ def make(arguments):
     )
     jinja.filters.update(scientific=scientific, count=count)
     jinja.globals.update(check=check, data=data, figure=figure, label=label, step=step, steppers=steppers)
-    jinja.globals.update(reference="<!-- reference {} -->".format, quick=arguments.quick, stems=sorted(tables))
+    jinja.globals.update(reference="[](figure:{})".format, quick=arguments.quick, stems=sorted(tables))
     jinja.globals.update(live=(arguments.into.parent / "live/index.html").exists())
 
     # All figures have their numbers before any is referred to.
