@@ -2,7 +2,7 @@
 # Where the particles of the rope are along x, soon after it was let go. Left: what Euler makes of it in steps of {{
 # step('rope-euler-energy') }}. Right: leapfrog in steps of {{ step('rope-coarse-energy') }}, just above its stable
 # step. The rope is torn apart before it has begun to fall. Dotted: where the particles belong.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 300
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 310
 call plots."need.gp" ARG3 "t_s particle x_m" 2
 array torn[2] = [word(ARG3, 1), word(ARG3, 2)]
 array after[2] = [0.012, 0.01] # [s]
@@ -24,7 +24,7 @@ set ytics 2
 set xlabel "particle"
 set ylabel "x / m"
 set output ARG1
-set multiplot layout 1,2 margins 0.14,0.96,75.0/height,1 - 45.0/height spacing 0.05,0
+set multiplot layout 1,2 margins 0.14,0.96,82.0/height,1 - 45.0/height spacing 0.05,0
 do for [i = 1:2] {
     set label 1 sprintf("%s, %.0f ms", label_of(of[i]), 1000*after[i]) at graph 0.5,1.12 center
     plot length*x/last_particle with lines linetype theory, \

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
 # How many times as fast as a plain loop over the links a step of a scene is, against the number of links; one dot a
 # measurement. The loop is what anybody would write, over an array of links and one of particles, for the same scene in
-# the same order. On the line both take the same time, below it the plain loop is faster.
+# the same order. On the line both take the same time, below it the plain loop is faster. Brown: a sheet whose links, or links
+# and particles, are in random order.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "440 + key_height(6)"
 call plots."need.gp" ARG3 "kernel precision count speedup"
 bench = ARG3
 
 array kernels[6] = ["leapfrog_rope_16", "leapfrog_sheet_16", "leapfrog_jelly_16", "leapfrog_sheet_16_damping", \
     "leapfrog_sheet_1_links_shuffled", "leapfrog_sheet_1_shuffled"]
-array titles[6] = ["rope", "sheet", "jelly", "sheet, damped links", "… links shuffled", "… all shuffled"]
+array titles[6] = ["rope", "sheet", "jelly", "sheet, damped", "links shuffled", "all shuffled"]
 array looks[6] = [types[1], types[1], types[1], types[1], sundials, sundials]
 array markers[6] = [7, 5, 9, 4, 10, 12]
 speedup(k) = strcol("kernel") eq kernels[k] && strcol("precision") eq "double" ? column("speedup") : NaN

@@ -45,19 +45,51 @@ const overlap = (a, b) => Math.min(
 );
 const holds = (box, x, y) => box.left <= x && x <= box.right && box.top <= y && y <= box.bottom;
 
-// Does the line or the area of a shape pass through a box of the screen?
+// Does the line or the area of a shape of gnuplot pass through a box of the screen? Its lines are polygons: "M x,y L x,y".
 function passes(shape, box) {
-    const toShape = shape.getScreenCTM().inverse();
     const style = getComputedStyle(shape);
-    for (let y = box.top + 1; y < box.bottom; y += 1) {
-        for (let x = box.left + 1; x < box.right; x += 1) {
-            const point = new DOMPoint(x, y).matrixTransform(toShape);
-            if ((style.stroke !== "none" && shape.isPointInStroke(point)) || (style.fill !== "none" && shape.isPointInFill(point))) {
+    const toShape = shape.getScreenCTM().inverse();
+    const [from, to] = [[box.left, box.top], [box.right, box.bottom]].map(([x, y]) => new DOMPoint(x, y).matrixTransform(toShape));
+    if (style.fill !== "none") {
+        for (let x = from.x; x <= to.x; x += 2) {
+            for (let y = from.y; y <= to.y; y += 2) {
+                if (shape.isPointInFill(new DOMPoint(x, y))) {
+                    return true;
+                }
+            }
+        }
+    }
+    if (style.stroke === "none") {
+        return false;
+    }
+    const numbers = (text) => text.match(/-?[\d.]+/g).map(Number);
+    for (const line of (shape.getAttribute("d") ?? "").split("M").slice(1)) {
+        const at = numbers(line);
+        for (let i = 0; i + 3 < at.length; i += 2) {
+            if (meets(at[i], at[i + 1], at[i + 2], at[i + 3], from, to)) {
                 return true;
             }
         }
     }
     return false;
+}
+
+// Does the line from (x0, y0) to (x1, y1) meet the box? It is cut by one pair of sides after the other (Liang and Barsky).
+function meets(x0, y0, x1, y1, from, to) {
+    let begin = 0;
+    let end = 1;
+    for (const [start, length, least, most] of [[x0, x1 - x0, from.x, to.x], [y0, y1 - y0, from.y, to.y]]) {
+        if (length === 0) {
+            if (start < least || start > most) {
+                return false;
+            }
+            continue;
+        }
+        const cuts = [(least - start) / length, (most - start) / length];
+        begin = Math.max(begin, Math.min(...cuts));
+        end = Math.min(end, Math.max(...cuts));
+    }
+    return begin < end;
 }
 
 function colour(text) {
