@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # {{ method }}: the error after one second against the number of steps, and the power law fitted through all of the points.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(2)"
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(3)"
 call plots."need.gp" ARG4 "n error_m"
 call plots."need.gp" ARG5 "coefficient_m exponent"
 stats ARG5 using "coefficient_m" nooutput
@@ -16,7 +16,7 @@ set ytics 1e3
 set mytics 1
 set xlabel "steps n in 1 s"
 set ylabel "error in position / m"
-call plots."key.gp" 2
+call plots."key.gp" 3 # two rows in one column
 set output ARG1
 plot ARG4 using "n":"error_m" with lines linetype types[1] dashtype solid linewidth 7 title "measured", \
      coefficient * x**exponent with lines linetype exact dashtype (6,4) title sprintf("%#.4g n^{ −%.4f}", coefficient, -exponent)

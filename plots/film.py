@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""What the animations share: scenes in perspective, a picture for each instant, as one SVG that plays by style alone.
+
+It plays wherever a browser or a code host shows pictures, takes the colours of the dark, stands still for those who ask for
+that, and can be paused by a style of the page around it. A script is called as those for gnuplot are: OUTPUT METHODS DATA...
+"""
+
+import math
+import pathlib
+import sys
+
+SCALE = 4  # coordinates are quarters of a pixel
+
+STYLE = """
+.{name} .frame {{ visibility: hidden; animation: {name} {seconds:g}s step-end infinite }}
+@keyframes {name} {{ 0% {{ visibility: visible }} {share:.4f}% {{ visibility: hidden }} }}
+@media (prefers-reduced-motion: reduce) {{
+.{name} .frame {{ animation: none }}
+.{name} .still {{ visibility: visible }}
+}}
+.{name} {{ color: #1b1b1b; --thread: #0072b2; --water: #dcebf7; --quiet: #b4b4b4; --box: #b35a1f }}
+@media (prefers-color-scheme: dark) {{
+.{name} {{ color: #e8e8e8; --thread: #62b8f2; --water: #17293a; --quiet: #5a5e62; --box: #ff9a52 }}
+}}
+.{name} path {{ fill: none; stroke: var(--thread); stroke-width: 4; stroke-linejoin: round }}
+.{name} .water {{ fill: var(--water); stroke-width: 3 }}
+.{name} .wall {{ stroke: var(--quiet) }}
+.{name} .quiet {{ stroke: var(--quiet); stroke-width: 5 }}
+.{name} .box {{ fill: var(--box); stroke: var(--water); stroke-width: 6 }}
+.{name} .pin {{ fill: currentColor }}
+.{name} text {{ fill: currentColor; font: {size}px sans-serif }}
+"""
+
+
+class DataError(Exception):
+    """What a data file lacks."""
+
+
+def columns(path, names):
+    """The columns of a data file, by their names, as text: a list of rows."""
+    with open(path, encoding="utf-8") as file:
+        lines = [line.rstrip("\n").split("\t") for line in file if not line.startswith("#")]
+    header = lines[0] if lines else []
+    for name in names:
+        if name not in header:
+            raise DataError(f'{path}: no column "{name}"')
+        if not any(line[header.index(name)] for line in lines[1:]):
+            raise DataError(f'{path}: no value in column "{name}"')
+    places = [header.index(name) for name in names]
+    return [[line[place] for place in places] for line in lines[1:]]
+
+
+def setting(path, option):
+    """The value of an option of the command that wrote a data file; it stands in its first lines."""
+    with open(path, encoding="utf-8") as file:
+        words = next(line for line in file if line.startswith("# command:")).split()
+    return words[words.index(option) + 1]
+
+
+def steppers(table):
+    """Names and labels of the methods for scenes, in the order of the table, without the exact solution."""
+    rows = columns(table, ["method", "label", "order", "scenes"])
+    return [(name, label) for name, label, order, scenes in rows if int(order) > 0 and scenes == "1"]
+
+
+class Sheet:
+    """The positions of a square sheet at all its instants: at(frame, i, j) is (x, y, z)."""
+
+    def __init__(self, path):
+        rows = columns(path, ["t_s", "i", "x_m", "y_m", "z_m"])
+        self.edge = max(int(row[1]) for row in rows) + 1
+        particles = self.edge**2
+        self.times = [float(row[0]) for row in rows[::particles]]
+        self._points = [tuple(map(float, row[2:])) for row in rows]
+
+    def at(self, frame, i, j):
+        """Where the particle i along x and j along y is."""
+        return self._points[(frame * self.edge + j) * self.edge + i]
+
+    def highest(self, frame):
+        """The largest distance from z = 0."""
+        particles = self.edge**2
+        return max(abs(z) for _, _, z in self._points[frame * particles : (frame + 1) * particles])
+
+
+class View:
+    """From the right of the y axis by some degrees and from above by some: where a point is in the picture."""
+
+    def __init__(self, across, above, scale, origin, up=1):
+        a, e = math.radians(across), math.radians(above)
+        self._x = (scale * math.cos(a), scale * math.sin(a), 0)
+        self._y = (scale * math.sin(a) * math.sin(e), -scale * math.cos(a) * math.sin(e), -scale * up * math.cos(e))
+        self._origin = origin
+
+    def __call__(self, point):
+        """In units of the drawing."""
+        return tuple(round(SCALE * (o + sum(a * p for a, p in zip(axis, point))))
+                     for axis, o in ((self._x, self._origin[0]), (self._y, self._origin[1])))
+
+
+def path(points, kind="", closed=False):
+    """A line through points of the drawing."""
+    (x0, y0), *others = points
+    steps = []
+    for x, y in others:
+        steps.append(f"{x - x0} {y - y0}".replace(" -", "-"))
+        x0, y0 = x, y
+    data = f"M{points[0][0]} {points[0][1]}l" + " ".join(steps) + "z" * closed
+    data = data.replace(" -", "-")
+    return f'<path{kind and f" class={chr(34)}{kind}{chr(34)}"} d="{data}"/>'
+
+
+def text(words, x, y, anchor="start"):
+    """Words at a place in pixels."""
+    return f'<text x="{SCALE * x:g}" y="{SCALE * y:g}" text-anchor="{anchor}">{words}</text>'
+
+
+def pin(point):
+    """A dot where a particle is held."""
+    return f'<circle class="pin" cx="{point[0]}" cy="{point[1]}" r="{5 * SCALE}"/>'
+
+
+def water(sheet, frame, view, every=1, most=math.inf):
+    """A surface seen from the front: strips from the back to the front, each in front of those behind it."""
+    shown = lambda p: (p[0], p[1], max(-most, min(most, p[2])))
+    rows = [[view(shown(sheet.at(frame, i, j))) for i in range(sheet.edge)] for j in range(0, sheet.edge, every)]
+    return "".join(path(back + front[::-1], "water", True) for back, front in zip(rows[:0:-1], rows[-2::-1]))
+
+
+def walls(view, length, depth):
+    """The two sides that are seen of a block of water, whose edges are held: they hide what reaches lower than its front."""
+    front = [(0, 0, 0), (length, 0, 0), (length, 0, -depth), (0, 0, -depth)]
+    right = [(length, 0, 0), (length, length, 0), (length, length, -depth), (length, 0, -depth)]
+    return "".join(path([view(p) for p in side], "water wall", True) for side in (front, right))
+
+
+def write(output, name, height, frames, seconds, still, below="", above=""):
+    """The SVG of frames, each a text of its elements, shown for so many seconds each, between what does not move.
+
+    The frame numbered still is shown where nothing may move.
+    """
+    if pathlib.Path(output).suffix != ".svg":
+        raise DataError(f'"{output}": an animation is written to a file that ends in .svg')
+    width = 520
+    style = STYLE.format(name=name, seconds=seconds * len(frames), share=100 / len(frames), size=18 * SCALE)
+    groups = "\n".join(f'<g class="frame{" still" * (k == still)}" style="animation-delay:{k * seconds:.3f}s">{frame}</g>'
+                       for k, frame in enumerate(frames))
+    pathlib.Path(output).write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="film {name}"\n width="{width}" height="{height}"\n'
+        f' viewBox="0 0 {SCALE * width} {SCALE * height}">\n<style>{style}</style>\n{below}\n{groups}\n{above}\n</svg>\n',
+        encoding="utf-8")
+
+
+def main(draw, files):
+    """Calls draw(output, table, data files), of which there are so many, or as many as there are methods for scenes."""
+    output, table, data = sys.argv[1], sys.argv[2], sys.argv[3].split()
+    try:
+        count = files or len(steppers(table))
+        if len(data) != count:
+            raise DataError(f"{len(data)} data files where there should be {count}: {sys.argv[3]}")
+        draw(output, table, data)
+    except (DataError, OSError) as error:
+        sys.exit(f"{sys.argv[0]}: {error}")
