@@ -9,7 +9,7 @@ do for [i = 1:words(instants)] {
     call plots."instant.gp" ARG3 seconds
     firsts[i] = first
 }
-call plots."grid.gp" ARG3 1
+call plots."grid.gp" ARG3
 
 unset key
 unset border

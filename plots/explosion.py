@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The water of the figure above, poked in the middle, a picture for each step of 2 ms, slowed down fifty times. What is
-# above or below 50 cm is drawn there.
+# The water of the figure above, poked in the middle, a picture for each step of {{ step('water-2ms-euler-energy') }},
+# slowed down. What is very high or very low is cut off; how high it is stands below it.
 import math
 
 import film

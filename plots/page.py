@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes the report from its templates, its data and its figures: two pages that need no other file, nor each other.
 
-usage: page.py [--quick] --into FOLDER --cmark PROGRAM [--if-there FILE.tsv] FILE.tsv... FILE.svg... FILE.gif...
+usage: page.py [--quick] --into FOLDER --cmark PROGRAM [--if-there FILE.tsv] FILE.tsv... FILE.svg...
 
 index.md.in and evidence.md.in are Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by
 the names of their columns, and a figure from its picture and the comment that opens its script, a template, too. Figures
@@ -11,13 +11,11 @@ FOLDER/data. Where FOLDER/../live/index.html exists, templates see that by the n
 """
 
 import argparse
-import base64
 import html
 import pathlib
 import re
 import shlex
 import shutil
-import struct
 import subprocess
 import sys
 
@@ -129,14 +127,17 @@ def stem_of(path):
 
 def caption_of(script):
     """The comment that opens a figure's script, without the licence line: a template."""
-    lines = (HERE / f"{script}.gp").read_text(encoding="utf-8").splitlines()[1:]
+    path = HERE / f"{script}.gp"
+    if not path.exists():
+        path = path.with_suffix(".py")
+    lines = path.read_text(encoding="utf-8").splitlines()[1:]
     comment = []
     for line in lines:
         if not line.startswith("# "):
             break
         comment.append(line[2:])
     if not comment:
-        raise DataError(f"{script}.gp: no caption in its first comment")
+        raise DataError(f"{path.name}: no caption in its first comment")
     return " ".join(comment)
 
 
@@ -146,23 +147,11 @@ def palette():
     return {"method-" * name.isdigit() + name: tuple(bytes.fromhex(colour)) for name, colour in lines}
 
 
-def inline(path, label):
-    """What shows a picture in the page, without another file."""
-    return (animation if path.suffix == ".gif" else drawing)(path, html.escape(label))
-
-
-def animation(path, label):
-    """An animation as it is, with its size, which a GIF has behind six bytes, so that the text need not move for it."""
-    content = path.read_bytes()
-    if content[:6] != b"GIF89a":
-        raise DataError(f"{path.name}: not an animation")
-    width, height = struct.unpack_from("<HH", content, 6)
-    source = "data:image/gif;base64," + base64.b64encode(content).decode()
-    return f'<img src="{source}" width="{width}" height="{height}" alt="{label}">'
-
-
 def drawing(path, label):
-    """A drawing: its names its own, its colours those of the page, its size the column's."""
+    """A drawing, inside the page: its names its own, its colours those of the page, its size the column's.
+
+    An animation plays by its own style; what pauses it stands before it.
+    """
     stem = stem_of(path)
     svg = path.read_text(encoding="utf-8")
     svg = svg[svg.index("<svg") :]
@@ -172,7 +161,11 @@ def drawing(path, label):
     svg = re.sub(r"""(["'])black\1""", r"\1currentColor\1", svg)
     for name, rgb in palette().items():
         svg = re.sub(r"rgb\( *%d, *%d, *%d\)" % rgb, f"var(--{name})", svg)
-    return re.sub(r'\n width="\d+" height="\d+"', f'\n role="img" aria-label="{label}"', svg, count=1)
+    svg = re.sub(r'\n width="\d+" height="\d+"', f'\n role="img" aria-label="{html.escape(label)}"', svg, count=1)
+    if 'class="film ' in svg:
+        pause = f"{stem}-pause"
+        svg = f'<input class="pause" type="checkbox" id="{pause}"><label class="pause" for="{pause}">Pause</label>\n{svg}'
+    return svg
 
 
 def to_html(cmark, markdown):
@@ -205,7 +198,7 @@ class Figures:
         if stem in self.places:
             raise DataError(f'picture "{stem}" is there twice')
         title = html.escape(title, quote=False).replace("'", "’")  # as the Markdown converter does in a text
-        self.places[stem] = (page, len(self.places) + 1, inline(self.files[stem], f"{title}. {caption}"))
+        self.places[stem] = (page, len(self.places) + 1, drawing(self.files[stem], f"{title}. {caption}"))
         return (
             f'<figure id="{stem}">\n<p class="title">Figure {len(self.places)}. {title}</p>\n'
             f"<!-- picture {stem} -->\n<figcaption>\n\n{caption}\n\n</figcaption>\n</figure>\n"
@@ -230,7 +223,7 @@ class Figures:
 def make(arguments):
     """Writes the pages and copies their data."""
     tables = {stem_of(path): Table(path) for path in arguments.files if path.suffix == ".tsv"}
-    figures = Figures(path for path in arguments.files if path.suffix in (".svg", ".gif"))
+    figures = Figures(path for path in arguments.files if path.suffix == ".svg")
 
     def data(stem):
         if stem not in tables:
@@ -293,7 +286,7 @@ def main():
     parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of the pages and data/")
     parser.add_argument("--cmark", required=True, help="the program cmark-gfm")
     parser.add_argument("--if-there", type=pathlib.Path, help="a data file that the template can do without")
-    parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv), pictures (.svg) and animations (.gif)")
+    parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv) and pictures (.svg)")
     arguments = parser.parse_args()
     if arguments.if_there and arguments.if_there.exists():
         arguments.files.append(arguments.if_there)

@@ -5,8 +5,6 @@
 #
 #     call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 #
-# An animation gives the height, and then the time of each of its frames in hundredths of a second.
-#
 # It chooses the terminal by the output's suffix, and sets plots, the folder of the scripts that figures share. A figure
 # is 520 pixels wide with letters of 18: still legible when a phone shrinks it to 360.
 
@@ -48,12 +46,7 @@ if (ARGC > 3) {
     eval "height = int(".ARG4.")"
 }
 suffix = ARG1[strstrt(ARG1, ".") > 0 ? strlen(ARG1) - 3 : 1 : *]
-if (ARGC > 4) {
-    if (suffix ne ".gif") {
-        exit error "\"".ARG1."\": an animation is written to a file that ends in .gif"
-    }
-    set terminal gif animate delay int(ARG5) loop 0 optimize size width,height enhanced font "DejaVu Sans,13"
-} else { if (suffix eq ".svg") {
+if (suffix eq ".svg") {
     set terminal svg size width,height enhanced font "sans-serif,18" dashlength 0.7
 } else { if (suffix eq ".png") {
     set terminal pngcairo size 2*width,2*height enhanced font "DejaVu Sans,13.5" fontscale 2 linewidth 2 pointscale 2
@@ -61,7 +54,7 @@ if (ARGC > 4) {
     set terminal pdfcairo size width/100.0,height/100.0 enhanced font "DejaVu Sans,12.5" linewidth 1
 } else {
     exit error "\"".ARG1."\": a figure is written to a file that ends in .svg, .png or .pdf"
-}}}}
+}}}
 
 set grid linetype grid
 set border 3 linecolor rgb "#000000"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Rain on the water, and a box after a quarter of a second, slowed down five times; heights are exaggerated. The box is
-# taken away when it has come to rest. Leapfrog, two steps of 4 ms for each picture; links of 1000 N/m, drag 4 N s/m.
+# Rain on the water, and a box after a quarter of a second, slowed down; the heights of the water are exaggerated. The box is
+# taken away when it has come to rest. Leapfrog, two steps of {{ step('water-rain-energy') }} for each picture.
 import math
 
 import film
