@@ -20,7 +20,7 @@ is(r) = strcol("loop") eq loops[(r + 1)/2] && strcol("processor") eq processors[
 size(r) = column("cycles_per_item")
 set tmargin at screen 0.9
 do for [p = 1:2] {
-    set label p processor_titles[p] at screen 0.33*p - 0.02,0.95 offset 1,0 point linetype (p == 1 ? exact : theory) pointtype 5 pointsize 1.5
+    set label p processor_titles[p] at screen 0.31*p - 0.02,0.95 offset 1,0 point linetype (p == 1 ? exact : theory) pointtype 5 pointsize 1.5
 }
 set xlabel "cycles a link"
 set output ARG1

@@ -38,4 +38,4 @@ plot for [m = 1:methods] law(m, x) with lines linetype theory notitle, \
      for [m = 1:methods] file(errors, m) using ARG2:"error_m" with lines linetype types[m] notitle, \
      for [m = 1:methods] last = -1, file(errors, m) using (spaced(column(ARG2))):"error_m" with points linetype types[m] notitle, \
      for [m = 1:methods] NaN with linespoints linetype types[m] title labels[m], \
-     NaN with lines linetype theory title "theory, not fitted"
+     NaN with lines linetype theory title "theory"

@@ -241,10 +241,6 @@ def make(arguments):
         """The step of the run that made a data file."""
         return f"{1000 * data(stem).setting('dt'):.3g} ms"
 
-    def step(stem):
-        """The step of the run that made a data file."""
-        return f"{1000 * data(stem).setting('dt'):.3g} ms"
-
     @jinja2.pass_context
     def figure(context, stem, title, script=None, method=""):
         if stem not in figures.files:
