@@ -21,7 +21,7 @@ def draw(output, table, data):
     sheets = [film.Sheet(path) for path in data]
     length = sheets[0].at(0, sheets[0].edge - 1, 0)[0]
     names = "".join(film.text(label, *place(m, 24), "middle") for m, (_, label) in enumerate(film.steppers(table)))
-    first = next(f for f in range(len(sheets[0].times)) if sheets[0].highest(f) > 0.02)
+    first = next((f for f in range(len(sheets[0].times)) if sheets[0].highest(f) > 0.02), 0)
     frames = []
     for f in range(first, len(sheets[0].times)):
         elements = []

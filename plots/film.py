@@ -53,7 +53,9 @@ def columns(path, names):
 def setting(path, option):
     """The value of an option of the command that wrote a data file; it stands in its first lines."""
     with open(path, encoding="utf-8") as file:
-        words = next(line for line in file if line.startswith("# command:")).split()
+        words = next((line for line in file if line.startswith("# command:")), "").split()
+    if option not in words:
+        raise DataError(f"{path}: made without {option}")
     return words[words.index(option) + 1]
 
 
@@ -137,13 +139,13 @@ def walls(view, length, depth):
 def write(output, name, height, frames, seconds, still, below="", above=""):
     """The SVG of frames, each a text of its elements, shown for so many seconds each, between what does not move.
 
-    The frame numbered still is shown where nothing may move.
+    The frame numbered still, or the last, is shown where nothing may move.
     """
     if pathlib.Path(output).suffix != ".svg":
         raise DataError(f'"{output}": an animation is written to a file that ends in .svg')
     width = 520
     style = STYLE.format(name=name, seconds=seconds * len(frames), share=100 / len(frames), size=18 * SCALE)
-    groups = "\n".join(f'<g class="frame{" still" * (k == still)}" style="animation-delay:{k * seconds:.3f}s">{frame}</g>'
+    groups = "\n".join(f'<g class="frame{" still" * (k == min(still, len(frames) - 1))}" style="animation-delay:{k * seconds:.3f}s">{frame}</g>'
                        for k, frame in enumerate(frames))
     pathlib.Path(output).write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" class="film {name}"\n width="{width}" height="{height}"\n'
@@ -159,5 +161,7 @@ def main(draw, files):
         if len(data) != count:
             raise DataError(f"{len(data)} data files where there should be {count}: {sys.argv[3]}")
         draw(output, table, data)
-    except (DataError, OSError) as error:
+    except DataError as error:
         sys.exit(f"{sys.argv[0]}: {error}")
+    except OSError as error:
+        sys.exit(f"{sys.argv[0]}: {error.filename}: {error.strerror}")

@@ -18,7 +18,7 @@ def draw(output, _, data):
     hits = float(film.setting(data[0], "--drop-box").split(",")[0])  # [s]
     stops = hits + float(film.setting(data[0], "--push-duration"))
     view = film.View(22, 27, 355 / length, (20, 275), EXAGGERATED)
-    first = next(f for f in range(len(sheet.times)) if sheet.highest(f) > 0.01)
+    first = next((f for f in range(len(sheet.times)) if sheet.highest(f) > 0.01), 0)
     frames = []
     for f in range(first, len(sheet.times)):
         time = sheet.times[f]

@@ -207,6 +207,9 @@ for (const picture of pictures) {
     }
 }
 measureProse();
+for (const animation of document.getAnimations()) { // the window asks for less motion
+    fault("motion", nameOf(animation.effect.target), "moves");
+}
 if (document.documentElement.scrollWidth > innerWidth) {
     fault("outside", page, `is ${document.documentElement.scrollWidth} px wide in a window of ${innerWidth}`);
 }
