@@ -24,6 +24,6 @@ set ylabel "greatest error in position / m"
 call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] file(envelopes, m) using "t_s":(greater(column("error_min_m"), column("error_max_m"))) \
-         with lines linetype types[m] dashtype solid linewidth 2 title labels[m], \
+         with lines linetype types[m] linewidth 2 title labels[m], \
      for [m = 1:methods] law(names[m], x) with lines linetype theory notitle, \
      NaN with lines linetype theory title "theory"

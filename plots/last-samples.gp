@@ -8,7 +8,7 @@ call plots."need.gp" runs "t_s x_m exact_x_m" methods
 first = 999.935
 last = 999.995
 picked(t) = t > first && t < last ? t : NaN
-size(m) = 2.4*0.7**(m - 1)
+size(m) = 1.7*0.7**(m - 1)
 set xlabel "time / s"
 set ylabel "position / m"
 set xrange [first:last]
@@ -20,6 +20,6 @@ set ytics 0.02
 entries = methods + 1
 call plots."key.gp" entries
 set output ARG1
-plot file(runs, 1) using (picked(column("t_s"))):"exact_x_m" with points linetype exact pointtype 6 pointsize 3 title "exact", \
+plot file(runs, 1) using (picked(column("t_s"))):"exact_x_m" with points linetype exact pointtype 6 pointsize 2.1 title "exact", \
      for [m = 1:methods] file(runs, m) using (picked(column("t_s"))):"x_m" \
          with points linetype types[m] pointsize size(m) title labels[m]

@@ -19,10 +19,10 @@ do for [m = 1:methods] {
 }
 law(m, x) = constants[m] * (x / a_step[m])**-orders[m]
 
-# Of points close together on the logarithmic axis, the first.
-markers_a_decade = 5
+# Of points close together on the logarithmic axis, the first; those of one method between those of the others.
+markers_a_decade = 3
 last = -1
-spaced(x) = (step = floor(markers_a_decade*log10(x)), step > last ? (last = step, x) : NaN)
+spaced(m, x) = (step = floor(markers_a_decade*log10(x) + real(m)/methods), step > last ? (last = step, x) : NaN)
 
 set logscale xy
 set xrange [4:20000]
@@ -36,6 +36,6 @@ call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] law(m, x) with lines linetype theory notitle, \
      for [m = 1:methods] file(errors, m) using ARG2:"error_m" with lines linetype types[m] notitle, \
-     for [m = 1:methods] last = -1, file(errors, m) using (spaced(column(ARG2))):"error_m" with points linetype types[m] notitle, \
+     for [m = 1:methods] last = -1, file(errors, m) using (spaced(m, column(ARG2))):"error_m" with points linetype types[m] notitle, \
      for [m = 1:methods] NaN with linespoints linetype types[m] title labels[m], \
      NaN with lines linetype theory title "theory"

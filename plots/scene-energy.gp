@@ -23,6 +23,6 @@ set output ARG1
 
 shown(y) = y < 10*top ? y : 10*top
 plot for [m = 1:methods] file(energies, m) using "t_s":(shown(kilojoule(column("energy_J")))) \
-         with lines linetype types[m] linewidth (symplectic[m] ? 0.7 : 2) dashtype solid \
-         title labels[m], \
+         with lines linetype types[m] linewidth (symplectic[m] ? 0.7 : 2) dashtype solid notitle, \
+     for [m = 1:methods] NaN with lines linetype types[m] dashtype solid title labels[m], \
      ARG4 using "t_s":(kilojoule(column("energy_J"))) with lines linetype theory title "true energy"

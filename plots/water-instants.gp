@@ -53,7 +53,7 @@ do for [m = 1:methods] {
             set label 3 two_lines(labels[m]) at graph (strstrt(labels[m], " ") ? -0.38 : -0.2),0.5 center rotate
         }
         if (STATS_max > exploded) {
-            set label 4 metres(STATS_max) at graph 0.5,-0.12 center
+            set label 4 metres(STATS_max) at graph 0.5,-0.15 center
         }
         plot file(positions, m) every ::first::last using "x_m":"y_m":(shown(column("z_m"))) with image
         unset colorbox

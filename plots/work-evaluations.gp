@@ -27,7 +27,7 @@ theory_of(m, x) = law(names[m], 2*pi*periods*forces[m]/x, x/forces[m])
 # The laws are computed with 16 digits, of which RK4's logarithm loses some at every step.
 visible(m, x) = x > 8*periods*sqrt(forces[m]) && theory_of(m, x) > (names[m] eq "rk4" ? 1e-16*x : 1e-14) ? theory_of(m, x) : NaN
 
-size(m) = 2*0.7**(m - 1)
+size(m) = 1.5*0.75**(m - 1)
 
 set datafile missing NaN
 array lengths[2] = [1, 10]
@@ -50,7 +50,7 @@ set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 2
 call plots."key.gp" entries
 set output output
-set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 75.0/height
+set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 do for [k = 1:2] {
     periods = lengths[k]
     panel = "ideal-".periods
