@@ -18,7 +18,7 @@ def metres(z):
 
 def draw(output, table, data):
     """A surface for each method, and below it how high it is where it has exploded; from the first that is seen on."""
-    sheets = [film.Sheet(path) for path in data]
+    sheets = [film.Sheet(name) for name in data]
     length = sheets[0].at(0, sheets[0].edge - 1, 0)[0]
     names = "".join(film.text(label, *place(m, 24), "middle") for m, (_, label) in enumerate(film.steppers(table)))
     first = next((f for f in range(len(sheets[0].times)) if sheets[0].highest(f) > 0.02), 0)

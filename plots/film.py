@@ -9,6 +9,7 @@ import math
 import pathlib
 import sys
 
+WIDTH = 520  # [px], as in style.gp
 SCALE = 4  # coordinates are quarters of a pixel
 
 STYLE = """
@@ -36,26 +37,26 @@ class DataError(Exception):
     """What a data file lacks."""
 
 
-def columns(path, names):
+def columns(file_name, names):
     """The columns of a data file, by their names, as text: a list of rows."""
-    with open(path, encoding="utf-8") as file:
+    with open(file_name, encoding="utf-8") as file:
         lines = [line.rstrip("\n").split("\t") for line in file if not line.startswith("#")]
     header = lines[0] if lines else []
     for name in names:
         if name not in header:
-            raise DataError(f'{path}: no column "{name}"')
+            raise DataError(f'{file_name}: no column "{name}"')
         if not any(line[header.index(name)] for line in lines[1:]):
-            raise DataError(f'{path}: no value in column "{name}"')
+            raise DataError(f'{file_name}: no value in column "{name}"')
     places = [header.index(name) for name in names]
     return [[line[place] for place in places] for line in lines[1:]]
 
 
-def setting(path, option):
+def setting(file_name, option):
     """The value of an option of the command that wrote a data file; it stands in its first lines."""
-    with open(path, encoding="utf-8") as file:
+    with open(file_name, encoding="utf-8") as file:
         words = next((line for line in file if line.startswith("# command:")), "").split()
     if option not in words:
-        raise DataError(f"{path}: made without {option}")
+        raise DataError(f"{file_name}: made without {option}")
     return words[words.index(option) + 1]
 
 
@@ -68,8 +69,8 @@ def steppers(table):
 class Sheet:
     """The positions of a square sheet at all its instants: at(frame, i, j) is (x, y, z)."""
 
-    def __init__(self, path):
-        rows = columns(path, ["t_s", "i", "x_m", "y_m", "z_m"])
+    def __init__(self, file_name):
+        rows = columns(file_name, ["t_s", "i", "x_m", "y_m", "z_m"])
         self.edge = max(int(row[1]) for row in rows) + 1
         particles = self.edge**2
         self.times = [float(row[0]) for row in rows[::particles]]
@@ -100,16 +101,13 @@ class View:
                      for axis, o in ((self._x, self._origin[0]), (self._y, self._origin[1])))
 
 
-def path(points, kind="", closed=False):
-    """A line through points of the drawing."""
-    (x0, y0), *others = points
-    steps = []
-    for x, y in others:
-        steps.append(f"{x - x0} {y - y0}".replace(" -", "-"))
-        x0, y0 = x, y
-    data = f"M{points[0][0]} {points[0][1]}l" + " ".join(steps) + "z" * closed
-    data = data.replace(" -", "-")
-    return f'<path{kind and f" class={chr(34)}{kind}{chr(34)}"} d="{data}"/>'
+def lines(kind, *lists, closed=False):
+    """Lines through points of the drawing: of each the distance from the one before, which takes the fewest letters."""
+    data = ""
+    for points in lists:
+        steps = [f"{x - x0} {y - y0}" for (x0, y0), (x, y) in zip(points, points[1:])]
+        data += f"M{points[0][0]} {points[0][1]}l{' '.join(steps)}{'z' * closed}".replace(" -", "-")
+    return f'<path class="{kind}" d="{data}"/>'
 
 
 def text(words, x, y, anchor="start"):
@@ -123,17 +121,21 @@ def pin(point):
 
 
 def water(sheet, frame, view, every=1, most=math.inf):
-    """A surface seen from the front: strips from the back to the front, each in front of those behind it."""
-    shown = lambda p: (p[0], p[1], max(-most, min(most, p[2])))
-    rows = [[view(shown(sheet.at(frame, i, j))) for i in range(sheet.edge)] for j in range(0, sheet.edge, every)]
-    return "".join(path(back + front[::-1], "water", True) for back, front in zip(rows[:0:-1], rows[-2::-1]))
+    """A surface seen from the front: strips from the back to the front, each in front of those behind it; none beyond most."""
+
+    def place(i, j):
+        x, y, z = sheet.at(frame, i, j)
+        return view((x, y, max(-most, min(most, z))))
+
+    rows = [[place(i, j) for i in range(sheet.edge)] for j in range(0, sheet.edge, every)]
+    return "".join(lines("water", back + front[::-1], closed=True) for back, front in zip(rows[:0:-1], rows[-2::-1]))
 
 
 def walls(view, length, depth):
     """The two sides that are seen of a block of water, whose edges are held: they hide what reaches lower than its front."""
     front = [(0, 0, 0), (length, 0, 0), (length, 0, -depth), (0, 0, -depth)]
     right = [(length, 0, 0), (length, length, 0), (length, length, -depth), (length, 0, -depth)]
-    return "".join(path([view(p) for p in side], "water wall", True) for side in (front, right))
+    return "".join(lines("water wall", [view(p) for p in side], closed=True) for side in (front, right))
 
 
 def write(output, name, height, frames, seconds, still, below="", above=""):
@@ -143,13 +145,12 @@ def write(output, name, height, frames, seconds, still, below="", above=""):
     """
     if pathlib.Path(output).suffix != ".svg":
         raise DataError(f'"{output}": an animation is written to a file that ends in .svg')
-    width = 520
     style = STYLE.format(name=name, seconds=seconds * len(frames), share=100 / len(frames), size=18 * SCALE)
     groups = "\n".join(f'<g class="frame{" still" * (k == min(still, len(frames) - 1))}" style="animation-delay:{k * seconds:.3f}s">{frame}</g>'
                        for k, frame in enumerate(frames))
     pathlib.Path(output).write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="film {name}"\n width="{width}" height="{height}"\n'
-        f' viewBox="0 0 {SCALE * width} {SCALE * height}">\n<style>{style}</style>\n{below}\n{groups}\n{above}\n</svg>\n',
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="film {name}"\n width="{WIDTH}" height="{height}"\n'
+        f' viewBox="0 0 {SCALE * WIDTH} {SCALE * height}">\n<style>{style}</style>\n{below}\n{groups}\n{above}\n</svg>\n',
         encoding="utf-8")
 
 

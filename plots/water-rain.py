@@ -38,7 +38,7 @@ def cube(view, length, above):
         [(high, low, above), (high, high, above), (high, high, top), (high, low, top)],
         [(low, low, top), (high, low, top), (high, high, top), (low, high, top)],
     )
-    return "".join(film.path([view(p) for p in face], "box", True) for face in faces)
+    return "".join(film.lines("box", [view(p) for p in face], closed=True) for face in faces)
 
 
 film.main(draw, 1)
