@@ -50,6 +50,12 @@ skipped() {
     echo "ok $tap_count - $1 # SKIP $2"
 }
 
+# cloned SOURCE-ROOT CLONE: a repository of what git has there, or would have
+cloned() {
+    git init -q -b main "$2" && (cd "$1" && git -c core.excludesFile= --git-dir "$2/.git" --work-tree . add .) &&
+        git -C "$2" -c user.name=a -c user.email=a@example.org commit -qm a && git -C "$2" reset -q --hard
+}
+
 # Last in a script: status 0 after a complete plan, as TAP wants.
 tap_done() {
     echo "1..$tap_count"
