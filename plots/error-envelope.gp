@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# How the error in position grows over the whole of the long run: of all the steps of about a second, the greatest.
-# Dotted: what theory says of Euler, leapfrog and RK4, of the last far less than can be seen: what is seen is rounding.
+# The greatest error in position of each second or so of the long run. Dotted: what theory says of Euler, leapfrog and
+# RK4. What is seen of RK4 is rounding, far above its own error. Symplectic Euler's error swings in each period, and hardly
+# grows.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods + 1)"
 envelopes = ARG3
 call plots."need.gp" envelopes "t_s error_min_m error_max_m" methods
