@@ -244,6 +244,9 @@ void cli_print_expectation(FILE *out, const cli_option *o)
     case CLI_FOLDER:
         fprintf(out, "the name of a %s", o->kind == CLI_FILE ? "file" : "folder");
         break;
+    case CLI_WORDS:
+        fputs(o->value, out);
+        break;
     }
 }
 
@@ -311,6 +314,16 @@ static _Noreturn void fail_as_no_option(const char *word)
              best.word != NULL ? "? " : "", cli_asked.program->name);
 }
 
+static bool add_word(cli_words *words, const char *word)
+{
+    const char **more = realloc(words->word, (words->count + 1) * sizeof *more);
+    if (more == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    words->word = more;
+    words->word[words->count++] = word;
+    return word[0] != '\0';
+}
+
 static bool store(const cli_option *o, const char *value)
 {
     switch (o->kind) {
@@ -333,6 +346,8 @@ static bool store(const cli_option *o, const char *value)
     case CLI_FOLDER:
         *o->file = value;
         return value[0] != '\0';
+    case CLI_WORDS:
+        return add_word(o->words, value);
     }
     return false;
 }
@@ -370,7 +385,7 @@ static const cli_option *option_of(const char *word, const char **value)
 /* Where the output goes is no part of how it was made: it is not stamped, and of other files only that there are. */
 static void record(FILE *words, const cli_option *o, const char *value)
 {
-    if (o == &common_options[0])
+    if (o == &common_options[0] || o->unstamped)
         return;
     fprintf(words, " --%s", o->name);
     if (o->kind != CLI_FLAG)
@@ -446,6 +461,10 @@ void cli_parse(const cli_program *p, int argc, char **argv)
             take_value(o, value);
         }
         record(words, o, value);
+        while (o->kind == CLI_WORDS && i + 1 < argc && argv[i + 1][0] != '-') {
+            take_value(o, argv[++i]);
+            record(words, o, argv[i]);
+        }
         for (size_t k = 0; k < count; k++)
             if (o == cli_option_at(k))
                 given |= UINT64_C(1) << k;

@@ -32,8 +32,14 @@ typedef enum cli_kind {
     CLI_CHOICE,       /* one of a list of words */
     CLI_METHOD,       /* the name of a method that the tool offers */
     CLI_FILE,         /* the name of a file to write */
-    CLI_FOLDER        /* the name of a folder to write to */
+    CLI_FOLDER,       /* the name of a folder to write to */
+    CLI_WORDS         /* all words up to the next option; given several times, they add up */
 } cli_kind;
+
+typedef struct cli_words {
+    const char **word; /* [count] */
+    size_t count;
+} cli_words;
 
 /* One row of a tool's table of options, from which --help, the man page and the completion of a shell are made. What
    the pointer points to holds the default, and --help says so, if it is a value that the option could have; choice: -1
@@ -47,6 +53,7 @@ typedef struct cli_option {
         double *real; /* CLI_REALS: the first of them */
         int *choice;  /* index into choices; CLI_METHOD: a spring_method */
         const char **file;
+        cli_words *words;
     };
     const char *value;          /* what --help calls the value */
     const char *help;           /* the first line is in --help, all of them in the man page; NULL: the words say it */
@@ -55,6 +62,7 @@ typedef struct cli_option {
     uint64_t least, most; /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
     uint64_t *times;      /* CLI_REALS: how often it is given, at most `most` times, one set behind the other */
     bool required;
+    bool unstamped; /* says nothing of what the rows are */
 } cli_option;
 
 typedef struct cli_program {
@@ -66,6 +74,7 @@ typedef struct cli_program {
     const char *meaning;       /* for the man page: what is in the columns; like `details` */
     const char *shown[2];      /* columns that make a chart, x and y */
     const char *examples[3];   /* the options of three runs that take no long time */
+    bool stamps_itself;        /* its tables start with the rows that it writes */
 } cli_program;
 
 /* What tools offer: methods for one spring, those of them that take steps, methods for scenes. */
@@ -97,6 +106,12 @@ void cli_warn(const char *format, ...) CLI_PRINTF(1);
 /* A table of tab-separated values with its stamp: tool, version, command line and compiler, in lines that start with
    "#". The bytes depend on nothing else, so two runs give the same file. */
 typedef struct cli_table cli_table;
+
+/** The file of --output, as it was given; NULL: standard output. */
+const char *cli_output_path(void);
+
+/** The options as they were understood, as they stand in the stamp. */
+const char *cli_stamped_command(void);
 
 /** Open the table for the rows: the file of --output, or standard output. */
 cli_table *cli_open_output(void);

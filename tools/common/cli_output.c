@@ -213,6 +213,16 @@ cli_table *cli_open_file(const char *option, const char *path)
     return table;
 }
 
+const char *cli_output_path(void)
+{
+    return cli_asked.output;
+}
+
+const char *cli_stamped_command(void)
+{
+    return cli_asked.text;
+}
+
 cli_table *cli_open_output(void)
 {
     return cli_open_file("output", cli_asked.output);
@@ -237,7 +247,7 @@ static void print_line(cli_table *table, const char *start, const char *format, 
 {
     if (table->stream == stdout)
         erase_progress();
-    if (!table->stamped)
+    if (!table->stamped && !cli_asked.program->stamps_itself)
         stamp(table);
     if (fputs(start, table->stream) == EOF || vfprintf(table->stream, format, arguments) < 0 ||
         fputc('\n', table->stream) == EOF)

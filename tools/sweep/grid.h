@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The grid of a sweep: its axes, the values of a point, and the blocks in which points are done.
+ *
+ * The first axis changes slowest, methods change fastest. Values have the same bits wherever they are computed: of
+ * + - * / and sqrt() alone. Nothing here prints or ends the program.
+ */
+#ifndef SPRINGSTEP_SWEEP_GRID_H
+#define SPRINGSTEP_SWEEP_GRID_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "sweep/point.h"
+
+typedef enum axis_kind { AXIS_LIST, AXIS_LINEAR, AXIS_LOGARITHMIC } axis_kind;
+
+typedef struct axis {
+    sweep_parameter parameter;
+    axis_kind kind;
+    double first, last;
+    double *list; /* [count] AXIS_LIST */
+    uint64_t count;
+} axis;
+
+typedef struct grid {
+    int scene;
+    size_t axes;
+    axis axis[SWEEP_PARAMETERS];
+    size_t methods;
+    spring_method method[SPRING_METHOD_COUNT];
+    size_t measures; /* besides those that are always there */
+    sweep_measure measure[SWEEP_MEASURES];
+    uint64_t points, blocks, points_of_block;
+    char message[400]; /* what is wrong, after a function that has returned false */
+} grid;
+
+/* No axes yet, no methods, of one spring. */
+void grid_init(grid *g);
+void grid_clear(grid *g);
+
+bool grid_set_scene(grid *g, const char *name); /* before the axes */
+bool grid_add_axis(grid *g, const char *text);  /* NAME=A:B:N, NAME=A:B:log:N, NAME=A,B,... */
+bool grid_add_methods(grid *g,
+                      const char *names); /* separated by commas; all: those there are for one spring, or scenes */
+bool grid_add_measures(grid *g, const char *names); /* separated by commas */
+bool grid_finish(grid *g);                          /* all is said: is it a grid? Counts points and blocks */
+
+double axis_value(const axis *a, uint64_t i);
+
+/** The parameters of a point [SWEEP_PARAMETERS], NaN where there is no axis. */
+void grid_point(const grid *g, uint64_t point, double *value);
+
+/** How many points a block has: the last one may have fewer. */
+uint64_t grid_block_size(const grid *g, uint64_t block);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/* The rows of a sweep as text. Nothing here prints or ends the program. */
+#ifndef SPRINGSTEP_SWEEP_ROWS_H
+#define SPRINGSTEP_SWEEP_ROWS_H
+
+#include "sweep/grid.h"
+
+/** The names of the columns, separated by tabs, and "\n"; at most `size` characters. */
+void grid_columns(const grid *g, char *text, size_t size);
+
+/** The rows of a block as text, released by free(); NULL: no memory. */
+char *grid_block(const grid *g, sweep_memory *memory, uint64_t block, size_t *length);
+
+#endif

@@ -1,0 +1,464 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * spring-sweep: what becomes of one spring, or of a preset scene, at every point of a grid of parameters.
+ *
+ * Points are independent, so the grid is cut into blocks, and every N-th block is a part: a file that is the journal of its
+ * own work (journal.h). Parts are done by processes that know nothing of each other, here or on other machines, and joined
+ * in the order of the grid. The rows, and the lines above them, do not say how many there were.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "harness/presets.h"
+#include "sweep/grid.h"
+#include "sweep/journal.h"
+#include "sweep/rows.h"
+
+enum { most_parts = 1000000, header_size = 65536 };
+
+static cli_words over, methods, measures, part, joined;
+static uint64_t jobs; /* 0: not asked for */
+static int scene;
+static const char *scenes[preset_kinds + 2]; /* filled in before options are read */
+static bool list;
+
+static const cli_option options[] = {
+    {"over", CLI_WORDS, .words = &over, .value = "NAME=A:B:N",
+     .help = "an axis: N values from A to B; A:B:log:N with equal ratios; A,B,...\n"
+             "Of several axes the first changes slowest. --list says which names there are."},
+    {"scene", CLI_CHOICE, .choice = &scene, .choices = scenes, .value = "S",
+     .help = "one spring, or rope, cloth, jelly, chain, water"},
+    {"method", CLI_WORDS, .words = &methods, .value = "M,...", .help = "methods, or all, as if nothing is said"},
+    {"measure", CLI_WORDS, .words = &measures, .value = "C,...",
+     .help = "further columns\n"
+             "steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
+    {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = 1024, .unstamped = true,
+     .help = "work with J processes on this machine; --output is needed\n"
+             "What they have done lies beside it in FILE.1-of-J, FILE.2-of-J, ... until all is done: the same "
+             "command goes on with it."},
+    {"part", CLI_WORDS, .words = &part, .value = "I/N", .unstamped = true,
+     .help = "do the I-th of N parts alone, into the file of --output\n"
+             "If that is there it goes on behind its last whole block."},
+    {"join", CLI_WORDS, .words = &joined, .value = "FILE...", .unstamped = true,
+     .help = "write the rows of all parts, in the order of the grid"},
+    {"list", CLI_FLAG, .flag = &list, .help = "print the parameters of the scene, and end", .unstamped = true},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-sweep",
+    .summary = "What becomes of a spring, or of a scene, at every point of a grid of parameters.",
+    .details =
+        "The rows are the same, to the last byte, for any number of parts and jobs, on any machine. Work with\n"
+        "--jobs or --part that was interrupted goes on where it was when the same command is given again.\n\n"
+        "One spring has omega 1/s, and runs for 10 periods unless another number is chosen. A scene runs for\n"
+        "2 s in 8 steps a frame of 1/60 s, is looked at after each frame, and is otherwise as spring-scene\n"
+        "makes it.",
+    .columns = "omega_dt method error energy_error status",
+    .meaning =
+        "The first columns are the parameters of the axes, here omega_dt.\n\n"
+        "error: against the exact solution, from the worst start; of a scene against leapfrog in steps of a\n"
+        "sixteenth of its stable step, over the motion. energy_error: the largest, with its sign, over the\n"
+        "energy at the start; of a scene over its largest kinetic energy. settling_time_s: until it stays\n"
+        "below 1 % of the start; a scene below 1 % of its largest speed.\n\n"
+        "status: stable; growing (beyond the stable step) and exploded (a hundredfold energy; of a scene ten\n"
+        "times the kinetic energy it should have, or no finite numbers); unsupported; no_step (none is\n"
+        "accurate enough, or the stable step is 0); too_long; invalid. What is not known is nan.",
+    .shown = {"omega_dt", "error"},
+    .examples = {"--over omega_dt=0.01:3:log:50 damping_ratio=0:2:21 -o map.tsv",
+                 "--scene rope --over stiffness=100:10000:log:5 steps_per_frame=1,2,4,8 --jobs 2 -o rope.tsv",
+                 "--over tolerance=1e-6:0.1:log:6 periods=1,10,100 --measure force_evaluations"},
+    .options = options,
+    .stamps_itself = true,
+};
+
+/* ---------------------------------------------------------------------------------------------------------- the grid */
+
+static void check(bool done, const char *option, const grid *g)
+{
+    if (!done)
+        cli_fail(CLI_USAGE, "--%s: %s", option, g->message);
+}
+
+static void make_grid(grid *g)
+{
+    grid_init(g);
+    check(grid_set_scene(g, scenes[scene]), "scene", g);
+    for (size_t i = 0; i < over.count; i++)
+        check(grid_add_axis(g, over.word[i]), "over", g);
+    if (methods.count == 0)
+        check(grid_add_methods(g, "all"), "method", g);
+    for (size_t i = 0; i < methods.count; i++)
+        check(grid_add_methods(g, methods.word[i]), "method", g);
+    for (size_t i = 0; i < measures.count; i++)
+        check(grid_add_measures(g, measures.word[i]), "measure", g);
+    check(grid_finish(g), "over", g);
+}
+
+static void list_parameters(void)
+{
+    cli_table *table = cli_open_output();
+    cli_columns(table, "name column least most whole meaning");
+    for (int p = 0; p < SWEEP_PARAMETERS; p++) {
+        const sweep_parameter_info *info = &sweep_parameters[p];
+        if (sweep_has(scene, (sweep_parameter)p))
+            cli_row(table, "%s\t%s\t%.17g\t%.17g\t%d\t%s", info->name, info->column, info->least, info->most,
+                    info->whole, info->help);
+    }
+    cli_finish();
+}
+
+/* The lines above the rows; those of a part say which. No compiler: the rows do not depend on it. */
+static void print_header(char *text, size_t size, const grid *g, uint64_t number, uint64_t parts)
+{
+    char columns[1000], line[100] = "";
+    grid_columns(g, columns, sizeof columns);
+    if (parts > 0)
+        snprintf(line, sizeof line, "# part %" PRIu64 " of %" PRIu64 ", %" PRIu64 " blocks\n", number, parts,
+                 g->blocks);
+    if (snprintf(text, size, "# springstep %s, %s\n# command: %s\n%s%s", spring_version(), program.name, cli_stamped_command(),
+                 line, columns) >= (int)size)
+        cli_fail(CLI_USAGE, "--over: these axes are too long to be written down");
+}
+
+/* ------------------------------------------------------------------------------------------------------------- parts */
+
+typedef struct work {
+    const grid *grid;
+    const char *path;
+    uint64_t number, parts; /* part `number` of 1 to `parts` */
+    int done;               /* a byte for each block is written to it; -1: to none */
+} work;
+
+static _Noreturn void fail_journal(journal *j)
+{
+    char message[sizeof journal_message];
+    strcpy(message, journal_message);
+    journal_close(j);
+    cli_fail(CLI_IO, "%s", message);
+}
+
+static char *block_text(const grid *g, sweep_memory *memory, uint64_t block, size_t *length)
+{
+    char *text = grid_block(g, memory, block, length);
+    if (text == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    return text;
+}
+
+static sweep_memory *new_memory(void)
+{
+    sweep_memory *memory = sweep_memory_new();
+    if (memory == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    return memory;
+}
+
+/* Who waits for the bytes may be gone: then this process ends by SIGPIPE, and its journal holds what was done. */
+static void tell_done(const work *w, uint64_t block)
+{
+    if (w->done < 0)
+        cli_progress((double)(block + 1) / (double)w->grid->blocks);
+    else if (write(w->done, "", 1) < 0)
+        cli_fail(CLI_IO, "the process that waits for this one is gone");
+}
+
+static void do_part(const work *w)
+{
+    char header[header_size];
+    print_header(header, sizeof header, w->grid, w->number, w->parts);
+    journal *j = journal_open(w->path, header, w->number - 1, w->parts, w->grid->blocks);
+    if (j == NULL)
+        cli_fail(CLI_IO, "%s", journal_message);
+    if (journal_damaged(j) > 0)
+        cli_warn("\"%s\": %" PRIu64 " damaged blocks are done again", w->path, journal_damaged(j));
+    sweep_memory *memory = new_memory();
+    for (uint64_t block = w->number - 1; block < w->grid->blocks; block += w->parts) {
+        bool there;
+        if (!journal_has(j, block, &there))
+            fail_journal(j);
+        if (!there) {
+            size_t length;
+            char *rows = block_text(w->grid, memory, block, &length);
+            if (!journal_add(j, block, rows, length))
+                fail_journal(j);
+            free(rows);
+        }
+        tell_done(w, block);
+    }
+    sweep_memory_free(memory);
+    if (!journal_close(j))
+        cli_fail(CLI_IO, "%s", journal_message);
+}
+
+static uint64_t read_number(const char *text, char **end)
+{
+    errno = 0;
+    const unsigned long long number = text[0] >= '0' && text[0] <= '9' ? strtoull(text, end, 10) : 0;
+    return errno == 0 ? number : 0;
+}
+
+static void do_one_part(const grid *g)
+{
+    char *end = NULL;
+    const char *text = part.word[part.count - 1];
+    const uint64_t number = read_number(text, &end);
+    const uint64_t parts = number > 0 && *end == '/' ? read_number(end + 1, &end) : 0;
+    if (parts == 0 || *end != '\0' || number > parts || parts > most_parts)
+        cli_fail(CLI_USAGE, "--part: \"%s\" is not I/N with 1 <= I <= N <= %d", text, most_parts);
+    if (cli_output_path() == NULL)
+        cli_fail(CLI_USAGE, "--part: a part is a file; --output should name it");
+    do_part(&(work){.grid = g, .path = cli_output_path(), .number = number, .parts = parts, .done = -1});
+}
+
+/* -------------------------------------------------------------------------------------------------------------- join */
+
+typedef struct found {
+    journal_reader reader;
+    const char *header; /* up to the columns, without the line of the part; NULL: this part has not been seen */
+} found;
+
+/* Takes the line "# part I of N, K blocks" out of a header. */
+static bool take_part_line(char *header, uint64_t *number, uint64_t *parts, uint64_t *blocks)
+{
+    static const char start[] = "\n# part ";
+    char *line = strstr(header, start);
+    int read = 0;
+    if (line == NULL ||
+        sscanf(line + 1, "# part %" SCNu64 " of %" SCNu64 ", %" SCNu64 " blocks%n", number, parts, blocks, &read) !=
+            3 ||
+        read == 0 || line[1 + read] != '\n' || *number == 0 || *number > *parts || *parts > most_parts)
+        return false;
+    memmove(line, line + 1 + read, strlen(line + 1 + read) + 1);
+    return true;
+}
+
+/* The line in which two headers differ. */
+static int different_line(const char *a, const char *b, const char **line_a, const char **line_b)
+{
+    size_t same = 0, line = 0;
+    for (; a[same] == b[same] && a[same] != '\0'; same++)
+        if (a[same] == '\n')
+            line = same + 1;
+    *line_a = a + line;
+    *line_b = b + line;
+    return (int)strcspn(*line_a, "\n");
+}
+
+static void look_at_part(const char *path, const char *first_path, found **all, uint64_t *parts, uint64_t *blocks,
+                         const char **header)
+{
+    journal_reader reader;
+    uint64_t number, of, its_blocks;
+    char *own = journal_header(path, &reader);
+    if (own == NULL)
+        cli_fail(CLI_IO, "--join: %s", journal_message);
+    if (!take_part_line(own, &number, &of, &its_blocks))
+        cli_fail(CLI_FAILED, "--join: \"%s\" is no part of a sweep", path);
+    if (*all == NULL) {
+        *parts = of;
+        *blocks = its_blocks;
+        *header = own;
+        *all = calloc(of, sizeof **all);
+        if (*all == NULL)
+            cli_fail(CLI_FAILED, "out of memory");
+    }
+    const char *this, *that;
+    if (strcmp(own, *header) != 0) {
+        const int width = different_line(own, *header, &this, &that);
+        cli_fail(CLI_FAILED, "--join: \"%s\" is of another sweep: it has \"%.*s\" where \"%s\" has \"%.*s\"", path,
+                 width, this, first_path, (int)strcspn(that, "\n"), that);
+    }
+    if (of != *parts || its_blocks != *blocks)
+        cli_fail(CLI_FAILED,
+                 "--join: \"%s\" is one of %" PRIu64 " parts with %" PRIu64 " blocks, \"%s\" one of %" PRIu64
+                 " with %" PRIu64,
+                 path, of, its_blocks, first_path, *parts, *blocks);
+    found *place = &(*all)[number - 1];
+    if (place->header != NULL)
+        cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", path, number, place->reader.path);
+    *place = (found){reader, *header};
+    if (own != *header)
+        free(own);
+}
+
+/* Fails for the first few parts that are not there. */
+static void check_missing(const found *all, uint64_t parts)
+{
+    char names[100] = "";
+    uint64_t missing = 0;
+    for (uint64_t i = 0; i < parts; i++) {
+        if (all[i].header != NULL)
+            continue;
+        if (missing < 5)
+            snprintf(names + strlen(names), sizeof names - strlen(names), "%s%" PRIu64, missing > 0 ? ", " : "", i + 1);
+        missing++;
+    }
+    if (missing > 0)
+        cli_fail(CLI_FAILED, "--join: %" PRIu64 " of %" PRIu64 " parts are missing: %s%s", missing, parts, names,
+                 missing > 5 ? ", ..." : "");
+}
+
+/* Text that ends with "\n", as it is. */
+static void write_text(cli_table *table, const char *text, size_t length)
+{
+    if (length > 0)
+        cli_row(table, "%.*s", (int)length - 1, text);
+}
+
+static void join(const char *const *paths, size_t count)
+{
+    found *all = NULL;
+    const char *header = NULL;
+    uint64_t parts = 0, blocks = 0;
+    for (size_t i = 0; i < count; i++)
+        look_at_part(paths[i], paths[0], &all, &parts, &blocks, &header);
+    check_missing(all, parts);
+    cli_table *table = cli_open_output();
+    write_text(table, header, strlen(header));
+    for (uint64_t block = 0; block < blocks; block++) {
+        size_t length;
+        char *rows = journal_read(&all[block % parts].reader, block, &length);
+        if (rows == NULL)
+            cli_fail(CLI_FAILED, "--join: %s", journal_message);
+        write_text(table, rows, length);
+        free(rows);
+    }
+    for (uint64_t i = 0; i < parts; i++)
+        if (!journal_ends(&all[i].reader))
+            cli_fail(CLI_FAILED, "--join: %s", journal_message);
+    cli_finish();
+    free((char *)header);
+    free(all);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- jobs */
+
+/* Without a journal. */
+static void stream(const grid *g)
+{
+    char header[header_size];
+    print_header(header, sizeof header, g, 0, 0);
+    cli_table *table = cli_open_output();
+    write_text(table, header, strlen(header));
+    sweep_memory *memory = new_memory();
+    for (uint64_t block = 0; block < g->blocks; block++) {
+        size_t length;
+        char *rows = block_text(g, memory, block, &length);
+        write_text(table, rows, length);
+        free(rows);
+        cli_progress((double)(block + 1) / (double)g->blocks);
+    }
+    sweep_memory_free(memory);
+    cli_finish();
+}
+
+static char *path_of_part(uint64_t number)
+{
+    const size_t size = strlen(cli_output_path()) + 50;
+    char *path = malloc(size);
+    if (path == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    snprintf(path, size, "%s.%" PRIu64 "-of-%" PRIu64, cli_output_path(), number, jobs);
+    return path;
+}
+
+static void start_jobs(const grid *g, const char *const *paths, int done)
+{
+    for (uint64_t i = 0; i < jobs; i++) {
+        const pid_t child = fork();
+        if (child < 0)
+            cli_fail(CLI_FAILED, "cannot start a process: %s", strerror(errno));
+        if (child == 0) {
+            do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = jobs, .done = done});
+            exit(0);
+        }
+    }
+}
+
+/* Until no process is there to write. */
+static void show_progress(const grid *g, int done)
+{
+    char bytes[4096];
+    uint64_t count = 0;
+    for (;;) {
+        const ssize_t some = read(done, bytes, sizeof bytes);
+        if (some == 0)
+            return;
+        if (some < 0 && errno != EINTR)
+            cli_fail(CLI_FAILED, "cannot wait for the other processes: %s", strerror(errno));
+        count += some > 0 ? (uint64_t)some : 0;
+        cli_progress((double)count / (double)g->blocks);
+    }
+}
+
+static void wait_for_jobs(void)
+{
+    int status, worst = 0;
+    while (wait(&status) > 0)
+        if (worst == 0 && status != 0)
+            worst = WIFEXITED(status) ? WEXITSTATUS(status) : CLI_FAILED;
+    if (worst != 0)
+        cli_fail((cli_status)worst,
+                 "not all is done; what is done lies in %s.*-of-%" PRIu64 ", and the same command goes on with it",
+                 cli_output_path(), jobs);
+}
+
+static void run_jobs(const grid *g)
+{
+    if (cli_output_path() == NULL)
+        cli_fail(CLI_USAGE, "--jobs: what is done lies in files beside that of --output, which should name it");
+    const char **paths = calloc(jobs, sizeof *paths);
+    int ends[2];
+    if (paths == NULL || pipe(ends) != 0)
+        cli_fail(CLI_FAILED, "out of memory");
+    for (uint64_t i = 0; i < jobs; i++)
+        paths[i] = path_of_part(i + 1);
+    start_jobs(g, paths, ends[1]);
+    close(ends[1]);
+    show_progress(g, ends[0]);
+    wait_for_jobs();
+    join(paths, jobs);
+    for (uint64_t i = 0; i < jobs; i++) {
+        unlink(paths[i]);
+        free((char *)paths[i]);
+    }
+    free(paths);
+}
+
+int main(int argc, char **argv)
+{
+    for (int i = 0; i <= preset_kinds; i++)
+        scenes[i] = sweep_scene_name(i);
+    cli_parse(&program, argc, argv);
+    if (list) {
+        list_parameters();
+        return 0;
+    }
+    if (joined.count > 0) {
+        if (over.count + methods.count + measures.count + part.count + jobs > 0)
+            cli_fail(CLI_USAGE, "--join: the parts say which sweep they are of; it should be alone but for --output");
+        join(joined.word, joined.count);
+        return 0;
+    }
+    grid g;
+    make_grid(&g);
+    if (part.count > 0 && jobs > 0)
+        cli_fail(CLI_USAGE, "--part: this is the work of one process; it should be without --jobs");
+    if (part.count > 0)
+        do_one_part(&g);
+    else if (jobs > 0)
+        run_jobs(&g);
+    else
+        stream(&g);
+    grid_clear(&g);
+    return 0;
+}
