@@ -12,6 +12,7 @@ VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-r
 SCENE, MAP = 'spring-scene', 'spring-scene-map'
 PLAN = 'spring-plan'  # with --presets it measures no time
 METHOD_TABLE = 'spring-methods'
+SWEEP = 'spring-sweep'
 BENCH, WORK = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
 ENGINES = 'spring-engines'  # built where there are engines
 SHORT = {  # for every tool that gives the same bytes twice a run that takes no time
@@ -23,6 +24,7 @@ SHORT = {  # for every tool that gives the same bytes twice a run that takes no 
     ROUNDING: ['--method', 'rk4', '--sum', 'plain', '--steps', '1e4'],
     SCENE: ['--scene', 'rope', '--method', 'leapfrog', '--duration', '0.1'],
     MAP: ['--scene', 'chain', '--method', 'rk4', '--quick'],
+    SWEEP: ['--over', 'omega_dt=0.1:3:log:3', '--method', 'rk4', '--scene', 'spring'],  # the last takes one word
     PLAN: ['--presets', '--scene', 'chain', '--quick'],
     METHOD_TABLE: [],
 }

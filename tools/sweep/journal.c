@@ -35,7 +35,6 @@ struct journal {
     uint64_t next;         /* the first block that is not in the file yet, or not known to be */
     uint64_t first, every; /* blocks first, first + every, ... */
     uint64_t blocks;       /* of the whole sweep */
-    uint64_t damaged;      /* blocks */
     time_t synced;
 };
 
@@ -187,11 +186,12 @@ static bool scan(journal *j)
     char *text = NULL;
     size_t length, size = 0;
     uint64_t block, next = j->first;
-    bool whole, kept = true;
+    bool whole, kept = true, broken = false;
     while (kept && read_record(j->in, &text, &length, &size, &block, &whole)) {
         const long long end = ftello(j->in);
         whole = whole && is_ours(j, block) && block >= next;
-        if (whole && block == j->next && j->laters == 0) {
+        broken = broken || !whole || block != j->next;
+        if (!broken) {
             j->end = end;
             next = j->next = block + j->every;
         } else if (whole) {
@@ -202,8 +202,6 @@ static bool scan(journal *j)
         }
     }
     free(text);
-    if (j->laters > 0)
-        j->damaged = (j->later[j->laters - 1].block - j->next) / j->every + 1 - j->laters;
     return kept;
 }
 
@@ -230,7 +228,7 @@ static bool has_header(const journal *j, FILE *in, const char *header, bool *tor
 
 static bool take_over(journal *j, const char *header)
 {
-    bool torn, done = has_header(j, j->in, header, &torn);
+    bool torn = false, done = has_header(j, j->in, header, &torn);
     if (done && !torn) {
         j->end = (long long)strlen(header);
         done = scan(j);
@@ -312,9 +310,9 @@ journal *journal_open(const char *path, const char *header, uint64_t first, uint
     return NULL;
 }
 
-uint64_t journal_damaged(const journal *j)
+bool journal_damaged(const journal *j)
 {
-    return j->damaged;
+    return j->laters > 0;
 }
 
 bool journal_has(journal *j, uint64_t block, bool *there)

@@ -31,8 +31,8 @@ extern char journal_message[1000];
  */
 journal *journal_open(const char *path, const char *header, uint64_t first, uint64_t every, uint64_t blocks);
 
-/** Blocks that were found damaged, before others that are whole. */
-uint64_t journal_damaged(const journal *j);
+/** Was the file found damaged, before blocks that are whole? Then these are kept, and the others are done again. */
+bool journal_damaged(const journal *j);
 
 /** Is the block there? Blocks are asked for in their order, and one that is not there is added before the next. */
 bool journal_has(journal *j, uint64_t block, bool *there);

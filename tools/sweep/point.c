@@ -8,8 +8,9 @@
 
 #include "harness/disturbances.h"
 #include "harness/presets.h"
+#include "harness/scene_run.h"
 
-static const double frame_time = 1.0 / 60;      /* [s] */
+static const double frame_rate = 60;            /* [1/s] */
 static const double most_steps = 1e7;           /* of one spring: a tenth of a second */
 static const double most_particle_steps = 1e10; /* of a scene: a minute or two */
 static const double most_numbers = 2e7;         /* that a reference keeps: 160 MB */
@@ -37,12 +38,11 @@ const sweep_parameter_info sweep_parameters[SWEEP_PARAMETERS] = {
     [SWEEP_DAMPING_RATIO] = {"damping_ratio", "damping_ratio", "1 is critical (0)", 0, 1e6, false, SPRING, NOTHING},
     [SWEEP_PERIODS] = {"periods", "periods", "duration in periods without damping, to the nearest whole step (10)",
                        1e-6, 1e9, false, SPRING, NOTHING},
-    [SWEEP_TOLERANCE] = {"tolerance", "tolerance",
-                         "instead of omega_dt: the longest step whose error\nis at most that much", 1e-16, 1, false,
-                         SPRING, SWEEP_OMEGA_DT},
+    [SWEEP_TOLERANCE] = {"tolerance", "tolerance", "instead of omega_dt: the longest step whose error is at most that",
+                         1e-16, 1, false, SPRING, SWEEP_OMEGA_DT},
     [SWEEP_STEPS_PER_FRAME] = {"steps_per_frame", "steps_per_frame", "of 1/60 s (8)", 1, 4096, true, SCENES, NOTHING},
     [SWEEP_STABLE_FRACTION] = {"stable_fraction", "stable_fraction",
-                               "instead of steps_per_frame: the step over the stable\nstep at the start", 1e-3, 100,
+                               "instead of steps_per_frame: the step over the stable step at the start", 1e-3, 100,
                                false, SCENES, SWEEP_STEPS_PER_FRAME},
     [SWEEP_DURATION] = {"duration", "duration_s", "in whole frames (2)", 1e-6, 3600, false, SCENES, NOTHING},
     [SWEEP_SIZE] = {"size", "size", "particles along an edge", 2, 1e6, true, SCENES, NOTHING},
@@ -219,7 +219,7 @@ typedef struct subject {
     preset preset;
     disturbances *poke; /* NULL: none */
     size_t numbers;     /* of the positions */
-    double frame;       /* [s] */
+    double frame, dt;   /* [s] */
     uint64_t frames;
 } subject;
 
@@ -395,7 +395,7 @@ static sweep_status remember(sweep_memory *r, const subject *s, int scene_number
 
 /* Stops where the scene explodes. */
 static bool run_scene(looks *l, const sweep_memory *r, const subject *s, spring_scene *scene, spring_method m,
-                      double dt, uint64_t substeps)
+                      uint64_t substeps)
 {
     const double tenfold = 10, quiet = 1e-4; /* of the largest kinetic energy; a hundredth of the speed */
     double *now = malloc(s->numbers * sizeof *now);
@@ -403,7 +403,7 @@ static bool run_scene(looks *l, const sweep_memory *r, const subject *s, spring_
         return false;
     for (uint64_t i = 1; i <= s->frames && l->exploded_at == INFINITY; i++) {
         const double t = s->frame * (double)i;
-        const bool holds = spring_scene_advance(scene, m, dt, substeps) == SPRING_OK;
+        const bool holds = spring_scene_advance(scene, m, s->dt, substeps) == SPRING_OK;
         const spring_scene_energies e = spring_scene_energy(scene);
         positions_of(s, scene, now);
         const double error = distance(now, &r->position[i * s->numbers], s->numbers) / r->motion;
@@ -426,12 +426,13 @@ static bool too_long(const subject *s, double particles, double substeps)
 /* Steps a frame as they are chosen, or from the stable step: then a frame is a whole number of them, about 1/60 s. */
 static double divide(subject *s, const double *value, double stable)
 {
-    double substeps = chosen(value, SWEEP_STEPS_PER_FRAME, 8), dt = frame_time / substeps;
-    s->frame = frame_time;
+    double substeps = chosen(value, SWEEP_STEPS_PER_FRAME, 8);
+    s->frame = 1 / frame_rate;
+    s->dt = scene_run_step(frame_rate, (uint64_t)substeps);
     if (!isnan(value[SWEEP_STABLE_FRACTION])) {
-        dt = value[SWEEP_STABLE_FRACTION] * stable;
-        substeps = fmax(floor(frame_time / dt), 1);
-        s->frame = dt * substeps;
+        s->dt = value[SWEEP_STABLE_FRACTION] * stable;
+        substeps = fmax(floor(s->frame / s->dt), 1);
+        s->frame = s->dt * substeps;
     }
     s->frames = (uint64_t)fmin(fmax(rint(chosen(value, SWEEP_DURATION, 2) / s->frame), 1), most_numbers);
     return substeps;
@@ -443,8 +444,8 @@ static sweep_status measure_started(sweep_memory *memory, sweep_result *r, subje
     const double stable = spring_scene_stable_step(scene, m);
     if (!isnan(value[SWEEP_STABLE_FRACTION]) && !(stable > 0 && stable < INFINITY))
         return SWEEP_NO_STEP;
-    const double substeps = divide(s, value, stable), dt = s->frame / substeps;
-    tell_steps(r, m, substeps * (double)s->frames, dt, stable);
+    const double substeps = divide(s, value, stable);
+    tell_steps(r, m, substeps * (double)s->frames, s->dt, stable);
     if (too_long(s, (double)s->preset.def.particles, substeps))
         return SWEEP_TOO_LONG;
     const sweep_status status = remember(memory, s, scene_number, value);
@@ -453,7 +454,7 @@ static sweep_status measure_started(sweep_memory *memory, sweep_result *r, subje
     if (memory->overflows || !(memory->motion > 0))
         return SWEEP_INVALID;
     looks l = no_looks;
-    if (!run_scene(&l, memory, s, scene, m, dt, (uint64_t)substeps))
+    if (!run_scene(&l, memory, s, scene, m, (uint64_t)substeps))
         return SWEEP_FAILED;
     tell(r, &l);
     return l.exploded_at < INFINITY ? SWEEP_EXPLODED : SWEEP_STABLE;
@@ -468,8 +469,9 @@ static sweep_status measure_scene(sweep_memory *memory, sweep_result *r, int sce
         return SWEEP_UNSUPPORTED;
     if (particles_of(&settings) * 3 > most_numbers)
         return SWEEP_TOO_LONG;
-    if (begin(&s, &settings, value) != SPRING_OK)
-        return SWEEP_FAILED;
+    const spring_status begun = begin(&s, &settings, value);
+    if (begun != SPRING_OK)
+        return begun == SPRING_ENOMEM ? SWEEP_FAILED : SWEEP_INVALID;
     sweep_status status = preset_takes(&s.preset, SPRING_LEAPFROG) ? SWEEP_UNSUPPORTED : SWEEP_INVALID;
     if (preset_takes(&s.preset, m)) {
         spring_scene *scene = start(&s, m);

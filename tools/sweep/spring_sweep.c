@@ -56,22 +56,20 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-sweep",
     .summary = "What becomes of a spring, or of a scene, at every point of a grid of parameters.",
-    .details =
-        "The rows are the same, to the last byte, for any number of parts and jobs, on any machine. Work with\n"
-        "--jobs or --part that was interrupted goes on where it was when the same command is given again.\n\n"
-        "One spring has omega 1/s, and runs for 10 periods unless another number is chosen. A scene runs for\n"
-        "2 s in 8 steps a frame of 1/60 s, is looked at after each frame, and is otherwise as spring-scene\n"
-        "makes it.",
+    .details = "The rows are the same, to the last byte, for any number of parts and jobs, on any machine. Work with\n"
+               "--jobs or --part that was interrupted goes on where it was when the same command is given again.\n\n"
+               "One spring has omega 1/s, and runs for 10 periods unless another number is chosen. A scene runs for\n"
+               "2 s in 8 steps a frame of 1/60 s, is looked at after each frame, and is otherwise as spring-scene\n"
+               "makes it.",
     .columns = "omega_dt method error energy_error status",
-    .meaning =
-        "The first columns are the parameters of the axes, here omega_dt.\n\n"
-        "error: against the exact solution, from the worst start; of a scene against leapfrog in steps of a\n"
-        "sixteenth of its stable step, over the motion. energy_error: the largest, with its sign, over the\n"
-        "energy at the start; of a scene over its largest kinetic energy. settling_time_s: until it stays\n"
-        "below 1 % of the start; a scene below 1 % of its largest speed.\n\n"
-        "status: stable; growing (beyond the stable step) and exploded (a hundredfold energy; of a scene ten\n"
-        "times the kinetic energy it should have, or no finite numbers); unsupported; no_step (none is\n"
-        "accurate enough, or the stable step is 0); too_long; invalid. What is not known is nan.",
+    .meaning = "The first columns are the parameters of the axes, here omega_dt.\n\n"
+               "error: against the exact solution, from the worst start; of a scene against leapfrog in steps of a\n"
+               "sixteenth of its stable step, over the motion. energy_error: the largest, with its sign, over the\n"
+               "energy at the start; of a scene over its largest kinetic energy. settling_time_s: until it stays\n"
+               "below 1 % of the start; a scene below 1 % of its largest speed.\n\n"
+               "status: stable; growing (beyond the stable step) and exploded (a hundredfold energy; of a scene ten\n"
+               "times the kinetic energy it should have, or no finite numbers); unsupported; no_step (none is\n"
+               "accurate enough, or the stable step is 0); too_long; invalid. What is not known is nan.",
     .shown = {"omega_dt", "error"},
     .examples = {"--over omega_dt=0.01:3:log:50 damping_ratio=0:2:21 -o map.tsv",
                  "--scene rope --over stiffness=100:10000:log:5 steps_per_frame=1,2,4,8 --jobs 2 -o rope.tsv",
@@ -124,8 +122,8 @@ static void print_header(char *text, size_t size, const grid *g, uint64_t number
     if (parts > 0)
         snprintf(line, sizeof line, "# part %" PRIu64 " of %" PRIu64 ", %" PRIu64 " blocks\n", number, parts,
                  g->blocks);
-    if (snprintf(text, size, "# springstep %s, %s\n# command: %s\n%s%s", spring_version(), program.name, cli_stamped_command(),
-                 line, columns) >= (int)size)
+    if (snprintf(text, size, "# springstep %s, %s\n# command: %s\n%s%s", spring_version(), program.name,
+                 cli_stamped_command(), line, columns) >= (int)size)
         cli_fail(CLI_USAGE, "--over: these axes are too long to be written down");
 }
 
@@ -178,8 +176,8 @@ static void do_part(const work *w)
     journal *j = journal_open(w->path, header, w->number - 1, w->parts, w->grid->blocks);
     if (j == NULL)
         cli_fail(CLI_IO, "%s", journal_message);
-    if (journal_damaged(j) > 0)
-        cli_warn("\"%s\": %" PRIu64 " damaged blocks are done again", w->path, journal_damaged(j));
+    if (journal_damaged(j))
+        cli_warn("\"%s\" is damaged: what is not whole is done again", w->path);
     sweep_memory *memory = new_memory();
     for (uint64_t block = w->number - 1; block < w->grid->blocks; block += w->parts) {
         bool there;
@@ -314,6 +312,34 @@ static void write_text(cli_table *table, const char *text, size_t length)
         cli_row(table, "%.*s", (int)length - 1, text);
 }
 
+/* All blocks in their order; NULL: they are only looked at. */
+static void read_blocks(found *all, uint64_t parts, uint64_t blocks, cli_table *table)
+{
+    for (uint64_t block = 0; block < blocks; block++) {
+        size_t length;
+        char *rows = journal_read(&all[block % parts].reader, block, &length);
+        if (rows == NULL)
+            cli_fail(CLI_FAILED, "--join: %s", journal_message);
+        if (table != NULL)
+            write_text(table, rows, length);
+        free(rows);
+    }
+}
+
+/* What is torn is found before a row is written. */
+static void check_blocks(const found *all, uint64_t parts, uint64_t blocks)
+{
+    found *copy = malloc(parts * sizeof *copy);
+    if (copy == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    memcpy(copy, all, parts * sizeof *copy);
+    read_blocks(copy, parts, blocks, NULL);
+    for (uint64_t i = 0; i < parts; i++)
+        if (!journal_ends(&copy[i].reader))
+            cli_fail(CLI_FAILED, "--join: %s", journal_message);
+    free(copy);
+}
+
 static void join(const char *const *paths, size_t count)
 {
     found *all = NULL;
@@ -322,19 +348,10 @@ static void join(const char *const *paths, size_t count)
     for (size_t i = 0; i < count; i++)
         look_at_part(paths[i], paths[0], &all, &parts, &blocks, &header);
     check_missing(all, parts);
+    check_blocks(all, parts, blocks);
     cli_table *table = cli_open_output();
     write_text(table, header, strlen(header));
-    for (uint64_t block = 0; block < blocks; block++) {
-        size_t length;
-        char *rows = journal_read(&all[block % parts].reader, block, &length);
-        if (rows == NULL)
-            cli_fail(CLI_FAILED, "--join: %s", journal_message);
-        write_text(table, rows, length);
-        free(rows);
-    }
-    for (uint64_t i = 0; i < parts; i++)
-        if (!journal_ends(&all[i].reader))
-            cli_fail(CLI_FAILED, "--join: %s", journal_message);
+    read_blocks(all, parts, blocks, table);
     cli_finish();
     free((char *)header);
     free(all);

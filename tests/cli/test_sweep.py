@@ -1,0 +1,514 @@
+# SPDX-License-Identifier: MIT
+"""spring-sweep: the same bytes for any number of parts, processes and interruptions, and what is in them."""
+import cmath
+import contextlib
+import itertools
+import math
+import os
+import random
+import resource
+import signal
+import subprocess
+import time
+
+import pytest
+from test_methods import SPRINGS, TABLE
+from test_scene import SCENES
+from tools import PLAN, RUN, SCENE, SWEEP, column, is_failure, parse, run, table
+
+FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
+GRID = ['--over', 'omega_dt=0.02:3:log:60', '--over', 'damping_ratio=0:2:50', '--method', 'all']
+
+
+def part(number, parts, path, grid=GRID, **how):
+    return run(SWEEP, *grid, '--part', f'{number}/{parts}', '-o', path, **how)
+
+
+def join(*paths):
+    return run(SWEEP, '--join', *paths)
+
+
+def is_done(result):
+    assert (result.returncode, result.stdout, result.stderr) == (0, '', ''), result.args
+
+
+@pytest.fixture(scope='module')
+def whole():
+    """The rows of GRID, by one process."""
+    result = run(SWEEP, *GRID)
+    assert (result.returncode, result.stderr) == (0, '')
+    return result.stdout
+
+
+@pytest.fixture(scope='module')
+def parts(tmp_path_factory):
+    """GRID in three parts, as files."""
+    folder = tmp_path_factory.mktemp('parts')
+    for i in (3, 1, 2):
+        is_done(part(i, 3, folder / str(i)))
+    return [folder / str(i) for i in (1, 2, 3)]
+
+
+def copies(parts, folder):
+    for path in parts:
+        (folder / path.name).write_bytes(path.read_bytes())
+    return [folder / path.name for path in parts]
+
+
+# --- the same bytes -------------------------------------------------------------------------------------------------
+
+def test_header(whole):
+    assert whole.splitlines()[1:3] == ['# command: spring-sweep ' + ' '.join(GRID),
+                                       'omega_dt\tdamping_ratio\tmethod\terror\tenergy_error\tstatus']
+
+
+@pytest.mark.parametrize('count', [1, 2, 7, 40])
+def test_parts_in_any_order(count, whole, tmp_path):
+    numbers = random.Random(count).sample(range(1, count + 1), count)
+    for i in numbers:
+        is_done(part(i, count, tmp_path / f'{i}'))
+    paths = random.Random(-count).sample([tmp_path / f'{i}' for i in numbers], count)
+    assert join(*paths).stdout == whole
+
+
+def test_more_parts_than_blocks_and_more_than_files_may_be_open(tmp_path):
+    grid = ['--over', 'omega_dt=0.5:1.5:5']
+    paths = [tmp_path / str(i) for i in range(1, 41)]
+    for i, path in enumerate(paths, 1):
+        is_done(part(i, 40, path, grid))
+    result = run(SWEEP, '--join', *paths,
+                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (16, 16)))
+    assert (result.stdout, result.stderr) == (run(SWEEP, *grid).stdout, '')
+
+
+@pytest.mark.parametrize('count', [1, 2, 3])
+def test_jobs(count, whole, tmp_path):
+    is_done(run(SWEEP, *GRID, '--jobs', str(count), '-o', tmp_path / 'map.tsv'))
+    assert [path.name for path in tmp_path.iterdir()] == ['map.tsv'] and (tmp_path / 'map.tsv').read_text() == whole
+
+
+SCENE_GRID = ['--scene', 'rope', '--over', 'stiffness=500:5000:log:6', 'steps_per_frame=1,4,16', 'duration=0.5',
+              '--measure', 'steps,explode_time_s']
+
+
+def test_parts_of_a_scene(tmp_path):
+    """What a process remembers from one point for the next is seen nowhere."""
+    for i in range(1, 6):
+        is_done(part(i, 5, tmp_path / str(i), SCENE_GRID))
+    assert join(*(tmp_path / str(i) for i in range(1, 6))).stdout == run(SWEEP, *SCENE_GRID).stdout
+
+
+# --- interruptions --------------------------------------------------------------------------------------------------
+
+def kill_when(moment, *args):
+    """Its status, or that it was killed at a moment."""
+    with subprocess.Popen([SWEEP, *args], stdin=subprocess.DEVNULL, start_new_session=True) as process:
+        while process.poll() is None and not moment():
+            time.sleep(0.0005)
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    return process.returncode
+
+
+def kill_after(delay, *args):
+    end = time.monotonic() + delay
+    return kill_when(lambda: time.monotonic() > end, *args)
+
+
+def size_of(path):
+    return path.stat().st_size if path.exists() else 0
+
+
+def test_killed_twenty_times(whole, parts, tmp_path):
+    """At random moments of the work, which does not begin anew."""
+    path, chance = tmp_path / '1', random.Random(24)
+    killed = 0
+    for size in sorted(chance.uniform(0, size_of(parts[0])) for _ in range(20)):
+        killed += kill_when(lambda: size_of(path) > size, *GRID, '--part', '1/3', '-o', path) < 0
+        assert size_of(path) > size
+    is_done(part(1, 3, path))
+    assert path.read_bytes() == parts[0].read_bytes()
+    assert join(path, *parts[1:]).stdout == whole
+    assert killed >= 10
+
+
+def test_jobs_are_killed_and_go_on(whole, tmp_path):
+    command = [*GRID, '--jobs', '2', '-o', tmp_path / 'map.tsv']
+    delay = 0.05
+    while kill_after(delay, *command) != 0:  # those that were killed may not be gone yet: then it says so, and ends
+        delay *= 1.2
+        left = {path.name for path in tmp_path.iterdir() if path.suffix != '.part'}  # of the table that it joins to
+        assert left <= {'map.tsv.1-of-2', 'map.tsv.2-of-2'}
+    assert [path.name for path in tmp_path.iterdir() if path.suffix != '.part'] == ['map.tsv']
+    assert (tmp_path / 'map.tsv').read_text() == whole
+
+
+LONG = ['--over', 'omega_dt=0.1:3:log:3000', 'damping_ratio=0:2:3000']
+
+
+def test_jobs_end_with_the_process_that_started_them(tmp_path):
+    with subprocess.Popen([SWEEP, *LONG, '--jobs', '2', '-o', tmp_path / 'map.tsv']) as process:
+        time.sleep(0.5)
+        process.kill()
+    sizes = []
+    while len(sizes) < 2 or sizes[-1] != sizes[-2]:
+        time.sleep(1)
+        sizes.append(sorted(path.stat().st_size for path in tmp_path.iterdir()))
+        assert len(sizes) < 20, 'a block takes a tenth of a second'
+    assert len(sizes[0]) == 2
+
+
+@pytest.mark.parametrize('cut', [1, 20, 25, 1000, 5000, -1, -60, -100, -150, -200])
+def test_torn(cut, whole, parts, tmp_path):
+    """Wherever it is torn, in the header, too; and what is torn is not joined."""
+    path, *others = copies(parts, tmp_path)
+    size = path.stat().st_size
+    os.truncate(path, cut if cut > 0 else size + cut)
+    is_failure(join(path, *others), 3 if cut < 200 and cut > 0 else 1, '--join: ', str(path))
+    is_done(part(1, 3, path))
+    assert path.read_bytes() == parts[0].read_bytes()
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_damaged(seed, whole, parts, tmp_path):
+    """Bytes that are changed, lost or too many in several places: noticed, done again, the rest kept."""
+    chance = random.Random(seed)
+    path, *others = copies(parts, tmp_path)
+    data = bytearray(path.read_bytes())
+    header = data.index(b'status\n') + 7
+    for _ in range(chance.randint(1, 4)):
+        at = chance.randrange(header, len(data) * 9 // 10)
+        if seed % 3 == 0:
+            data[at] ^= 1 << chance.randrange(8)
+        elif seed % 3 == 1:
+            del data[at:at + chance.randrange(1, 3000)]
+        else:
+            data[at:at] = data[at - chance.randrange(1, 500):at]
+    path.write_bytes(data)
+    is_failure(join(path, *others), 1, '--join: ', str(path), 'run this part again')
+    result = part(1, 3, path)
+    assert (result.returncode, result.stdout) == (0, '')
+    assert result.stderr == f'{SWEEP}: "{path}" is damaged: what is not whole is done again\n'
+    assert path.read_bytes() == parts[0].read_bytes() and join(path, *others).stdout == whole
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_killed_while_it_repairs(parts, tmp_path):
+    path, *_ = copies(parts, tmp_path)
+    data = bytearray(path.read_bytes())
+    for at in range(2000, len(data) - 20000, 7000):
+        data[at] ^= 1
+    path.write_bytes(data)
+    for delay in (0.01, 0.02, 0.05, 0.1):
+        if kill_after(delay, *GRID, '--part', '1/3', '-o', path) < 0:
+            assert path.read_bytes() == data, 'the damaged file stays until the other is whole'
+    part(1, 3, path)
+    assert path.read_bytes() == parts[0].read_bytes()
+
+
+def test_one_writer(tmp_path):
+    with subprocess.Popen([SWEEP, *LONG, '--part', '1/1', '-o', tmp_path / 'p']) as process:
+        time.sleep(0.3)
+        result = part(1, 1, tmp_path / 'p', LONG)
+        process.kill()
+    is_failure(result, 3, 'is being written by another process')
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """100 KB."""
+    folder = tmp_path / 'disk'
+    folder.mkdir()
+    if subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=100k', 'none', folder], check=False).returncode != 0:
+        pytest.skip('cannot mount a small disk: needs root')
+    yield folder
+    subprocess.run(['umount', folder], check=True)
+
+
+def test_full_disk(whole, parts, small_disk):
+    path = small_disk / '1'
+    is_failure(part(1, 3, path), 3, f'cannot write "{path}": No space left on device')
+    kept = path.read_bytes()
+    assert len(kept) > 50000 and parts[0].read_bytes().startswith(kept) and kept.splitlines()[-1].startswith(b'# block ')
+    is_failure(part(1, 3, path), 3, 'No space left on device')
+    assert path.read_bytes() == kept
+    subprocess.run(['mount', '-o', 'remount,size=4m', small_disk], check=True)
+    is_done(part(1, 3, path))
+    assert path.read_bytes() == parts[0].read_bytes()
+
+
+def test_full_disk_with_jobs(whole, small_disk):
+    command = [*GRID, '--jobs', '2', '-o', small_disk / 'map.tsv']
+    result = run(SWEEP, *command)
+    assert result.returncode == 3 and 'No space left on device' in result.stderr
+    assert 'the same command goes on with it' in result.stderr.splitlines()[-1]
+    subprocess.run(['mount', '-o', 'remount,size=8m', small_disk], check=True)
+    is_done(run(SWEEP, *command))
+    assert (small_disk / 'map.tsv').read_text() == whole
+
+
+# --- what is not joined ---------------------------------------------------------------------------------------------
+
+def test_missing_and_double_parts(parts):
+    is_failure(join(*parts[1:]), 1, '--join: 1 of 3 parts are missing: 1')
+    is_failure(join(parts[0]), 1, '2 of 3 parts are missing: 2, 3')
+    is_failure(join(*parts, parts[1]), 1, f'"{parts[1]}" is part 2, and so is "{parts[1]}"')
+
+
+def test_foreign_parts(parts, tmp_path):
+    other = [*GRID[:-1], 'leapfrog']
+    is_done(part(2, 3, tmp_path / 'other', other))
+    is_failure(join(parts[0], tmp_path / 'other', parts[2]), 1, str(tmp_path / 'other'), 'another sweep', '--method all',
+               '--method leapfrog')
+    is_done(part(2, 4, tmp_path / 'four'))
+    is_failure(join(parts[0], tmp_path / 'four', parts[2]), 1, 'one of 4 parts', 'one of 3')
+    older = tmp_path / 'older'
+    older.write_bytes(parts[1].read_bytes().replace(b'# springstep ', b'# springstep 0', 1))
+    is_failure(join(parts[0], older, parts[2]), 1, 'another sweep', '# springstep 0')
+    is_failure(join(parts[0], __file__, parts[2]), 1, __file__, 'no part of a sweep')
+    is_failure(join(parts[0], tmp_path / 'nothing'), 3, 'No such file')
+    whole = tmp_path / 'whole'
+    is_done(run(SWEEP, *GRID, '-o', whole))
+    is_failure(join(whole), 1, 'no part of a sweep')
+
+
+def test_a_block_in_the_place_of_another(parts, tmp_path):
+    path, *others = copies(parts, tmp_path)
+    path.write_bytes(path.read_bytes().split(b'status\n')[0] + b'status\n' + others[0].read_bytes().split(b'status\n')[1])
+    is_failure(join(path, *others), 1, 'not in its place')
+    path.write_bytes(parts[0].read_bytes() + b'more\n')
+    is_failure(join(path, *others), 1, 'more than its last block')
+
+
+def test_a_file_of_something_else_is_left_alone(parts, older):
+    is_failure(part(1, 3, older), 3, str(older), '"older"', 'is not this part of this sweep')
+    assert older.read_text() == 'older\n'
+    before = parts[1].read_bytes()
+    is_failure(part(1, 3, parts[1]), 3, '# part 2 of 3', '# part 1 of 3')
+    assert parts[1].read_bytes() == before
+
+
+# --- the grid -------------------------------------------------------------------------------------------------------
+
+def sweep(*args):
+    return table(SWEEP, *' '.join(args).split())
+
+
+def test_order_and_values():
+    rows = sweep('--over omega_dt=0.25:1:4 --over damping_ratio=0.5,0.1 --method rk4,euler')
+    assert [(row['omega_dt'], row['damping_ratio'], row['method']) for row in rows] == [
+        (step, ratio, method) for step in ('0.25', '0.5', '0.75', '1')
+        for ratio in ('0.5', '0.10000000000000001') for method in ('rk4', 'euler')]
+
+
+@pytest.mark.parametrize('first, last, count', [(0.01, 3, 301), (1, 1e-6, 61), (2e-6, 7e5, 1000)])
+def test_logarithmic(first, last, count):
+    values = column(sweep(f'--over omega_dt={first}:{last}:log:{count} periods=1e-6 --method exact'), 'omega_dt')
+    assert len(values) == count and (values[0], values[-1]) == (first, last)
+    for i, value in enumerate(values):
+        want = first * (last / first) ** (i / (count - 1))
+        assert value == float(f'{value:.11e}') and abs(value / want - 1) <= 6e-12, 'rounded to 12 digits'
+
+
+def test_linear():
+    values = column(sweep('--over damping_ratio=0:2:201 --method exact --over periods=0.1'), 'damping_ratio')
+    assert values == [2 * i / 200 for i in range(201)]
+
+
+# --- what is measured -----------------------------------------------------------------------------------------------
+
+def exact_matrix(ratio, t):
+    """Of (x, v), omega = 1, from the roots."""
+    root = cmath.sqrt(ratio**2 - 1)
+    a, b = -ratio + root, -ratio - root
+    ea, eb = cmath.exp(a * t), cmath.exp(b * t)
+    d = (ea - eb) / (a - b)
+    return [[((a * eb - b * ea) / (a - b)).real, d.real], [(-a * b * d).real, ((a * ea - b * eb) / (a - b)).real]]
+
+
+def step_matrix(method, ratio, h):
+    g = 2 * ratio
+    if method == 'euler':
+        return [[1, h], [-h, 1 - h * g]]
+    if method == 'symplectic-euler':
+        v = [-h / (1 + h * g), 1 / (1 + h * g)]
+        return [[1 + h * v[0], h * v[1]], v]
+    if method == 'leapfrog':
+        middle = [-h / 2, 1 - h / 2 * g]
+        x = [1 + h * middle[0], h * middle[1]]
+        return [x, [(m - h / 2 * y) / (1 + g * h / 2) for m, y in zip(middle, x)]]
+    m, term, total = [[0, h], [-h, -h * g]], [[1, 0], [0, 1]], [[1, 0], [0, 1]]
+    for k in range(1, 5):
+        term = [[e / k for e in row] for row in product(term, m)]
+        total = [[p + q for p, q in zip(*rows)] for rows in zip(total, term)]
+    return total
+
+
+def product(a, b):
+    return [[sum(p * q for p, q in zip(row, column)) for column in zip(*b)] for row in a]
+
+
+def norm(m):
+    (a, b), (c, d) = m
+    return (math.hypot(a + d, b - c) + math.hypot(a - d, b + c)) / 2
+
+
+@pytest.mark.parametrize('ratio', [0, 0.1, 0.7, 1.3, 6])
+@pytest.mark.parametrize('step', [0.3, 0.8, 1.7, 2.5])
+def test_a_spring(ratio, step):
+    """By the textbook's matrices, written down a second time."""
+    rows = sweep(f'--over omega_dt={step} damping_ratio={ratio} periods=5 '
+                 '--measure steps,force_evaluations,dt_s,stable_step_s,explode_time_s,settling_time_s')
+    steps = round(10 * math.pi / step)
+    assert [row['method'] for row in rows] == SPRINGS
+    for row in rows:
+        method = row['method']
+        assert (int(row['steps']), float(row['dt_s'])) == (steps, step)
+        assert int(row['force_evaluations']) == steps * FORCES[method]
+        r = step_matrix(method, ratio, step) if method != 'exact' else exact_matrix(ratio, step)
+        power, most, energy_error, exploded, settled = [[1, 0], [0, 1]], 0, 0, math.inf, math.inf
+        for i in range(1, steps + 1):
+            power, exact = product(r, power), exact_matrix(ratio, step * i)
+            most = max(most, norm([[p - q for p, q in zip(*rows)] for rows in zip(power, exact)]))
+            energies = [sum(row[k]**2 for row in power) for k in (0, 1)]
+            for k in (0, 1):
+                off = energies[k] - sum(row[k]**2 for row in exact)
+                energy_error = off if abs(off) > abs(energy_error) else energy_error
+            exploded = min(exploded, step * i) if max(energies) > 100 else exploded
+            if max(abs(power[0][0]), abs(power[1][0])) > 0.01:
+                settled = math.inf
+            elif settled == math.inf:
+                settled = step * i
+        rounding = 1e-11
+        assert abs(float(row['error']) - most) <= rounding * max(1, most)
+        assert abs(float(row['energy_error']) - energy_error) <= rounding * max(1, abs(energy_error))
+        assert (float(row['explode_time_s']), float(row['settling_time_s'])) == (exploded, settled)
+        stable = step < float(row['stable_step_s'])
+        assert row['status'] == ('stable' if stable else 'exploded' if exploded < math.inf else 'growing')
+
+
+def test_a_run_of_the_library():
+    """Bit by bit: the last state of spring-run, and what that is off."""
+    row, = sweep('--over omega_dt=0.25 damping_ratio=0.05 periods=3 --method leapfrog --measure steps,dt_s')
+    rows = [table(RUN, *f'--method leapfrog --duration {0.25 * int(row["steps"])!r} --steps {row["steps"]} --every 1 '
+                  f'--mass 1 --stiffness 1 --damping 0.1 --x0 {x} --v0 {v}'.split()) for x, v in ((1, 0), (0, 1))]
+    most = 0
+    for i in range(int(row['steps']) + 1):
+        exact = exact_matrix(0.05, 0.25 * i)
+        off = [[float(rows[k][i][name]) - exact[n][k] for k in (0, 1)] for n, name in enumerate(('x_m', 'v_m_per_s'))]
+        most = max(most, norm(off))
+    assert abs(float(row['error']) - most) <= 1e-14
+
+
+def test_a_long_run_is_looked_at_often_enough():
+    """Not at each step; yet the step that spring_accurate_step() gives for the error that was seen is the step."""
+    for row in sweep('--over omega_dt=0.003 damping_ratio=0,0.2,3 periods=20 --method euler,leapfrog,rk4'):
+        if float(row['error']) > 1e-9:
+            plan, = sweep(f'--over tolerance={row["error"]} damping_ratio={row["damping_ratio"]} periods=20 '
+                          f'--method {row["method"]} --measure dt_s')
+            assert 0.95 < float(plan['dt_s']) / 0.003 < 1.06
+
+
+def test_tolerance_is_the_plan():
+    rows = sweep('--over tolerance=1e-2,1e-5 damping_ratio=0,0.3 periods=7 --measure steps,dt_s,force_evaluations')
+    for (tolerance, ratio), some in itertools.groupby(rows, lambda row: (row['tolerance'], row['damping_ratio'])):
+        plan = {row['method']: row for row in table(
+            PLAN, '--duration', repr(2 * math.pi * 7), '--error', tolerance, '--stiffness', '1', '--damping',
+            repr(2 * float(ratio)))}
+        for row in some:
+            other = plan[row['method']]
+            assert (row['steps'], row['dt_s'], row['error']) == (other['steps'], other['dt_s'], other['predicted_error'])
+            assert (row['energy_error'], row['force_evaluations']) == ('nan', other['force_evaluations'])
+
+
+def test_what_cannot_be_done_has_a_word():
+    status = [row['status'] for row in sweep('--over omega_dt=1e-6 periods=1e8 --method rk4')]
+    assert status == ['too_long']
+    status = [row['status'] for row in sweep('--over tolerance=1e-16 periods=1e3 --method leapfrog,exact')]
+    assert status == ['no_step', 'stable']
+    status = [row['status'] for row in sweep('--scene rope --over damping=0.01 duration=0.1 --method rkn8,rk4')]
+    assert status == ['unsupported', 'stable']
+    status = [row['status'] for row in sweep('--scene chain --over stable_fraction=0.5 duration=0.1 --method euler')]
+    assert status == ['no_step']
+    status = [row['status'] for row in sweep('--scene cloth --over size=1000000 --method rk4')]
+    assert status == ['too_long']
+    status = [row['status'] for row in sweep('--scene water --over stretch=0.5 duration=0.1 --method rk4')]
+    assert status == ['invalid']
+
+
+@pytest.mark.parametrize('scene', SCENES)
+def test_a_scene(scene):
+    """Its energies by spring-scene, in the steps that are asked for and in short ones."""
+    def energies(method, substeps):
+        result = run(SCENE, *f'--scene {scene} --method {method} --steps-per-frame {substeps} --duration 0.25'.split())
+        return parse(result.stdout)
+    rows = sweep(f'--scene {scene} --over steps_per_frame=4 duration=0.25 '
+                 '--measure steps,force_evaluations,dt_s,stable_step_s')
+    stable, = (float(row['stable_step_s']) for row in rows if row['method'] == 'leapfrog')
+    reference = energies('leapfrog', math.ceil(1 / 60 / (stable / 16)))
+    kinetic = max(column(reference, 'kinetic_J'))
+    for row in rows:
+        assert (int(row['steps']), float(row['dt_s'])) == (60, 1 / 240)
+        assert int(row['force_evaluations']) == 60 * FORCES[row['method']]
+        measured = energies(row['method'], 4)
+        off = [float(a['energy_J']) - float(b['energy_J']) for a, b in zip(measured, reference)]
+        exploded = any(float(a['kinetic_J']) > 10 * kinetic for a in measured)
+        assert (row['status'] == 'exploded') == exploded
+        if not exploded:
+            assert abs(abs(float(row['energy_error'])) - max(map(abs, off)) / kinetic) <= 1e-9
+            assert 0 < float(row['error']) < 1
+
+
+def test_angle():
+    """Let go where it hangs, the rope does not swing: what moves is its length, far less than a swing."""
+    hanging, level = sweep('--scene rope --over size=2 angle=1,90 steps_per_frame=64 duration=1 --method leapfrog')
+    assert hanging['status'] == level['status'] == 'stable' and 0 < float(hanging['error']) < 1e-2
+
+
+# --- bad input ------------------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize('args, words', [
+    ('--over', ['--over', 'the value is missing']),
+    ('--over omega=1', ['--over', '"omega" is no parameter of one spring', 'omega_dt, damping_ratio']),
+    ('--over size=9', ['--over', '"size" is no parameter of one spring']),
+    ('--scene rope --over omega_dt=1', ['"omega_dt" is no parameter of the scene rope', 'stretch, angle']),
+    ('--scene cloth --over angle=1', ['"angle" is no parameter of the scene cloth']),
+    ('--over omega_dt', ['"omega_dt" is not NAME=A:B:N']),
+    *[(f'--over omega_dt={values}', [f'"omega_dt={values}" is not NAME=A:B:N'])
+      for values in ['', ':', '1:2', '1:2:1', '1:2:0', '1:2:-3', '1:2:3:4', '1:2:x', '1:2:log', '1:2:lin:3', '1,,2', '1,',
+                     ',1', 'nan', 'inf', '1x', '1:nan:3', '1:2:1e3', '1:2:99999999999999999999']],
+    ('--over omega_dt=0:1:3', ['"omega_dt=0:1:3" has the value 0', 'from 1e-06 to 1e+06']),
+    ('--over damping_ratio=0:1:log:3', ['logarithmic', 'greater than 0']),
+    ('--over damping_ratio=-1:1:log:3', ['logarithmic', 'greater than 0']),
+    ('--scene rope --over size=2:3:3', ['"size=2:3:3" has the value 2.5', 'whole number']),
+    ('--over omega_dt=1 omega_dt=2', ['"omega_dt=2"', 'already']),
+    ('--over omega_dt=1 tolerance=0.1', ['"tolerance=0.1"', 'either', '"omega_dt"']),
+    ('--scene rope --over stable_fraction=1 steps_per_frame=2', ['"steps_per_frame=2"', 'either']),
+    ('--over omega_dt=1:2:9000000000 damping_ratio=0:1:9000000000', ['--over', 'more than 9007199254740992 points']),
+    ('--method nothing', ['--method', '"nothing" is not one of all, euler']),
+    ('--method rkn8', ['--method', '"rkn8" is not one of all, euler']),
+    ('--method rk4,rk4', ['--method', '"rk4" is there twice']),
+    ('--method rk4,', ['--method', '"" is not one of']),
+    ('--measure error', ['--measure', '"error" is not one of steps']),
+    ('--measure steps --measure steps', ['--measure', '"steps" is there twice']),
+    ('--scene sea', ['--scene', '"sea" is not one of spring, rope']),
+    *[(f'--part {text} -o x', ['--part', f'"{text}" is not I/N'])
+      for text in ['0/3', '4/3', '1', '1/', '/3', '1/3/4', '-1/3', 'a/3', '1/99999999999', '1/3x']],
+    ('--part 1/3', ['--part', '--output']),
+    ('--jobs 2', ['--jobs', '--output']),
+    ('--jobs 0 -o x', ['--jobs', '"0"', '1 to 1024']),
+    ('--jobs 2 --part 1/3 -o x', ['--part', 'without --jobs']),
+    ('--join a --over omega_dt=1', ['--join', 'should be alone']),
+])
+def test_refused(args, words, tmp_path):
+    is_failure(run(SWEEP, *args.split(), cwd=tmp_path), 2, *words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_list():
+    rows = table(SWEEP, '--list', '--scene', 'rope')
+    assert {'mass_ratio', 'angle', 'steps_per_frame'} <= {row['name'] for row in rows}
+    for row in rows:
+        least = row['name'] + '=' + row['least']
+        assert len(row['meaning']) > 4 and list(table(SWEEP, '--scene', 'rope', '--over', least, *(
+            () if row['name'] == 'duration' else ('duration=0.05',)), '--method', 'rk4')[0])[0] == row['column']
