@@ -21,6 +21,39 @@ extern "Python" void springstep_forcef(void *, double, size_t, const float *cons
                                        float *const *);
 """
 
+# What springstep.sweep() calls of tools/sweep, for the points of spring-sweep.
+SWEEP = """
+typedef struct sweep_memory sweep_memory;
+typedef struct { double number[...]; int status; } sweep_result;
+typedef struct { int parameter; ...; } axis;
+typedef struct { const char *column; ...; } sweep_parameter_info;
+typedef struct {
+    size_t axes;
+    axis axis[...];
+    size_t methods;
+    spring_method method[...];
+    size_t measures;
+    int measure[...];
+    uint64_t points;
+    char message[...];
+    ...;
+} grid;
+extern const sweep_parameter_info sweep_parameters[];
+extern const char *const sweep_measure_names[];
+extern const char *const sweep_status_names[];
+void grid_init(grid *g);
+void grid_clear(grid *g);
+bool grid_set_scene(grid *g, const char *name);
+bool grid_add_axis(grid *g, const char *text);
+bool grid_add_methods(grid *g, const char *names);
+bool grid_add_measures(grid *g, const char *names);
+bool grid_finish(grid *g);
+bool grid_measure(const grid *g, sweep_memory *memory, uint64_t first, uint64_t count, double *values,
+                  sweep_result *results);
+sweep_memory *sweep_memory_new(void);
+void sweep_memory_free(sweep_memory *memory);
+"""
+
 
 def included(include):
     """C that includes every public header."""
@@ -54,8 +87,8 @@ def numbers(include):
 def python(include, _, compiler, output):
     from cffi import FFI
     ffi = FFI()
-    ffi.cdef(declarations(include, compiler) + "".join(f"\n#define {name} ..." for name, _ in numbers(include)) + CALLBACKS)
-    ffi.set_source("springstep._native", included(include))
+    ffi.cdef(declarations(include, compiler) + "".join(f"\n#define {name} ..." for name, _ in numbers(include)) + CALLBACKS + SWEEP)
+    ffi.set_source("springstep._native", included(include) + '#include "sweep/grid.h"\n')
     ffi.emit_c_code(str(output))
 
 

@@ -324,7 +324,8 @@ uint64_t grid_block_size(const grid *g, uint64_t block)
     return left < g->points_of_block ? left : g->points_of_block;
 }
 
-void grid_point(const grid *g, uint64_t point, double *value)
+/* The parameters of a point, NaN where there is no axis. */
+static void find_point(const grid *g, uint64_t point, double *value)
 {
     for (int p = 0; p < SWEEP_PARAMETERS; p++)
         value[p] = NAN;
@@ -333,4 +334,21 @@ void grid_point(const grid *g, uint64_t point, double *value)
         value[a->parameter] = axis_value(a, point % a->count);
         point /= a->count;
     }
+}
+
+bool grid_measure(const grid *g, sweep_memory *memory, uint64_t first, uint64_t count, double *values,
+                  sweep_result *results)
+{
+    double value[SWEEP_PARAMETERS];
+    for (uint64_t i = 0; i < count; i++) {
+        find_point(g, first + i, value);
+        for (size_t k = 0; k < g->axes; k++)
+            *values++ = value[g->axis[k].parameter];
+        for (size_t k = 0; k < g->methods; k++, results++) {
+            sweep_measure_point(memory, g->scene, value, g->method[k], results);
+            if (results->status == SWEEP_FAILED)
+                return false;
+        }
+    }
+    return true;
 }

@@ -49,8 +49,15 @@ bool grid_finish(grid *g);                          /* all is said: is it a grid
 
 double axis_value(const axis *a, uint64_t i);
 
-/** The parameters of a point [SWEEP_PARAMETERS], NaN where there is no axis. */
-void grid_point(const grid *g, uint64_t point, double *value);
+/**
+ * Measure points.
+ *
+ * @param[out] values   [count*axes] of the axes
+ * @param[out] results  [count*methods]
+ * @return false: no memory
+ */
+bool grid_measure(const grid *g, sweep_memory *memory, uint64_t first, uint64_t count, double *values,
+                  sweep_result *results);
 
 /** How many points a block has: the last one may have fewer. */
 uint64_t grid_block_size(const grid *g, uint64_t block);

@@ -33,22 +33,21 @@ static void print_number(FILE *out, double x)
 static bool print_rows(FILE *out, const grid *g, sweep_memory *memory, uint64_t point)
 {
     double value[SWEEP_PARAMETERS];
-    grid_point(g, point, value);
+    sweep_result results[SPRING_METHOD_COUNT];
+    if (!grid_measure(g, memory, point, 1, value, results))
+        return false;
     for (size_t k = 0; k < g->methods; k++) {
-        sweep_result r;
-        sweep_measure_point(memory, g->scene, value, g->method[k], &r);
-        if (r.status == SWEEP_FAILED)
-            return false;
+        const sweep_result *r = &results[k];
         for (size_t i = 0; i < g->axes; i++)
-            fprintf(out, "%.17g\t", value[g->axis[i].parameter]);
+            fprintf(out, "%.17g\t", value[i]);
         fprintf(out, "%s\t", spring_method_name(g->method[k]));
-        print_number(out, r.number[SWEEP_ERROR]);
+        print_number(out, r->number[SWEEP_ERROR]);
         fputc('\t', out);
-        print_number(out, r.number[SWEEP_ENERGY_ERROR]);
-        fprintf(out, "\t%s", sweep_status_names[r.status]);
+        print_number(out, r->number[SWEEP_ENERGY_ERROR]);
+        fprintf(out, "\t%s", sweep_status_names[r->status]);
         for (size_t i = 0; i < g->measures; i++) {
             fputc('\t', out);
-            print_number(out, r.number[g->measure[i]]);
+            print_number(out, r->number[g->measure[i]]);
         }
         fputc('\n', out);
     }

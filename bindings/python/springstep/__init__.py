@@ -11,10 +11,12 @@ from springstep._common import (InvalidError, Method, NonFiniteError, RangeError
 from springstep._native import ffi, lib
 from springstep._scene import LINK, Energies, Grid, Scene, Snapshot, grid
 from springstep._spring import Spring
+from springstep._sweep import sweep
 
 __version__: str = ffi.string(lib.spring_version()).decode()
 
 __all__ = [
     "Batch", "Clock", "Energies", "Grid", "InvalidError", "LINK", "Method", "NonFiniteError", "RangeError", "Scene",
     "Snapshot", "Spring", "SpringError", "UnsupportedError", "ffi", "grid", "lib", "methods", "self_test",
+    "sweep",
 ]

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Sweeps: the rows of spring-sweep, by one process, and by the workers of a Dask client of which one is killed."""
+import os
+import signal
+import subprocess
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import springstep
+
+OVER = {"omega_dt": "0.05:3:log:20", "damping_ratio": [0, 0.3, 1.7]}
+WORDS = ["--over", "omega_dt=0.05:3:log:20", "--over", "damping_ratio=0,0.3,1.7"]
+MORE = ["steps", "explode_time_s", "settling_time_s"]
+
+
+def of_the_tool(*arguments):
+    text = subprocess.run(["spring-sweep", *arguments], capture_output=True, text=True, check=True).stdout
+    return [line.split("\t") for line in text.splitlines() if not line.startswith("#")]
+
+
+def as_the_tool_writes(rows):
+    """Columns and rows, a number with 17 digits."""
+    return [list(rows.dtype.names), *([value if isinstance(value, str) else f"{value:.17g}" for value in row]
+                                      for row in rows.tolist())]
+
+
+def test_a_spring():
+    assert as_the_tool_writes(springstep.sweep(OVER, measure=MORE)) == of_the_tool(*WORDS, "--measure", ",".join(MORE))
+
+
+@pytest.mark.parametrize("scene", ["rope", "cloth", "jelly", "chain", "water"])
+def test_a_scene(scene):
+    rows = springstep.sweep({"stiffness": np.array([700.0, 3e3]), "duration": 0.1, "size": 5}, ("leapfrog", "rk4"),
+                            scene=scene)
+    assert as_the_tool_writes(rows) == of_the_tool("--scene", scene, "--over", "stiffness=700,3000", "duration=0.1",
+                                                   "size=5", "--method", "leapfrog,rk4")
+
+
+def test_the_plan():
+    rows = springstep.sweep({"tolerance": "1e-6:0.1:log:6", "periods": [1, 50]}, measure="force_evaluations")
+    assert as_the_tool_writes(rows) == of_the_tool("--over", "tolerance=1e-6:0.1:log:6", "periods=1,50", "--measure",
+                                                   "force_evaluations")
+
+
+@pytest.mark.parametrize("field, arguments", [
+    ("over", {"over": {"omega": 1}}), ("over", {"over": {"omega_dt": -1}}), ("over", {"over": {"omega_dt": "1:2"}}),
+    ("over", {"over": {"omega_dt": float("nan")}}), ("over", {"over": {"omega_dt": []}}),
+    ("methods", {"over": {}, "methods": "rkn8"}), ("scene", {"over": {}, "scene": "sea"}),
+    ("measure", {"over": {}, "measure": "error"}),
+    ("over", {"over": {"omega_dt": "1:2:9000000000", "damping_ratio": "0:1:9000000000"}}),
+])
+def test_refused(field, arguments):
+    with pytest.raises(springstep.InvalidError) as caught:
+        springstep.sweep(**arguments)
+    assert caught.value.field == field
+
+
+@pytest.fixture(scope="module")
+def client():
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            yield client
+
+
+def test_dask(client):
+    assert as_the_tool_writes(springstep.sweep(OVER, client=client)) == of_the_tool(*WORDS)
+
+
+def test_dask_with_a_worker_that_is_killed(client):
+    """In the middle of its work, which another one takes over."""
+    over = {"omega_dt": "0.05:3:log:200", "damping_ratio": "0:2:100"}
+    workers = {worker["id"]: pid for worker, pid in zip(client.scheduler_info()["workers"].values(),
+                                                        client.run(os.getpid).values())}
+    killed = []
+
+    def kill_one():
+        time.sleep(0.2)
+        os.kill(next(iter(workers.values())), signal.SIGKILL)
+        killed.append(time.monotonic())
+
+    thread = threading.Thread(target=kill_one)
+    thread.start()
+    rows = springstep.sweep(over, "leapfrog,rk4", client=client, points_per_task=50)
+    finished = time.monotonic()
+    thread.join()
+    assert killed and killed[0] < finished, "it was killed in the middle"
+    assert set(client.run(os.getpid).values()) != set(workers.values())
+    assert rows.tobytes() == springstep.sweep(over, "leapfrog,rk4").tobytes()
