@@ -388,14 +388,15 @@ static char *path_of_part(uint64_t number)
     return path;
 }
 
-static void start_jobs(const grid *g, const char *const *paths, int done)
+static void start_jobs(const grid *g, const char *const *paths, const int ends[2])
 {
     for (uint64_t i = 0; i < jobs; i++) {
         const pid_t child = fork();
         if (child < 0)
             cli_fail(CLI_FAILED, "cannot start a process: %s", strerror(errno));
         if (child == 0) {
-            do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = jobs, .done = done});
+            close(ends[0]); /* only while the first process holds it can be written */
+            do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = jobs, .done = ends[1]});
             exit(0);
         }
     }
@@ -439,7 +440,7 @@ static void run_jobs(const grid *g)
         cli_fail(CLI_FAILED, "out of memory");
     for (uint64_t i = 0; i < jobs; i++)
         paths[i] = path_of_part(i + 1);
-    start_jobs(g, paths, ends[1]);
+    start_jobs(g, paths, ends);
     close(ends[1]);
     show_progress(g, ends[0]);
     wait_for_jobs();
