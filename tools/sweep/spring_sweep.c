@@ -72,7 +72,7 @@ static const cli_program program = {
                "accurate enough, or the stable step is 0); too_long; invalid. What is not known is nan.",
     .shown = {"omega_dt", "error"},
     .examples = {"--over omega_dt=0.01:3:log:50 damping_ratio=0:2:21 -o map.tsv",
-                 "--scene rope --over stiffness=100:10000:log:5 steps_per_frame=1,2,4 --jobs 2 -o rope.tsv",
+                 "--scene rope --over stiffness=1e2:1e4:log:5 steps_per_frame=1,2 --jobs 2 -o rope.tsv",
                  "--over tolerance=1e-6:0.1:log:6 periods=1,10,100 --measure force_evaluations"},
     .options = options,
     .stamps_itself = true,
