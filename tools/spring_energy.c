@@ -74,18 +74,32 @@ static bool advance(spring_state *s, uint64_t n)
     return finite;
 }
 
+static uint64_t steps_to(double t)
+{
+    return (uint64_t)fmax(rint(t / length.dt), 1);
+}
+
+static uint64_t steps_to_last_row(void)
+{
+    double H = 1;
+    while (H * 10 <= length.duration)
+        H *= 10;
+    return steps_to(H);
+}
+
 static void write_energies(cli_table *table)
 {
     spring_state s = start;
     uint64_t step = 0;
+    const uint64_t last = steps_to_last_row();
     bool finite = true;
     for (double H = 1; H <= length.duration; H *= 10) {
-        const uint64_t steps = (uint64_t)fmax(rint(H / length.dt), 1);
+        const uint64_t steps = steps_to(H);
         while (finite && step < steps) {
             const uint64_t left = steps - step, n = left < stepper_leap ? left : stepper_leap;
             finite = advance(&s, n);
             step += n;
-            cli_progress((double)step * length.dt / length.duration);
+            cli_progress((double)step / (double)last);
         }
         cli_row(table, "%s\t%s\t%.17g\t%" PRIu64 "\t%.17g", stepper_name(&chosen),
                 half_step_velocity ? "half_step_ahead" : "synchronised", (double)steps * length.dt, steps,
@@ -106,7 +120,7 @@ int main(int argc, char **argv)
     cli_table *table = cli_open_output();
     stepper_comment(&chosen, table);
     cli_columns(table, program.columns);
-    stepper_remark(&chosen, &spring, &length);
+    stepper_remark(&chosen, &spring, (jitter ? 1.5 : 1) * length.dt); /* the longest that may be drawn */
     write_energies(table);
     cli_finish();
     return 0;

@@ -17,6 +17,8 @@
 static const char *const sums[] = {"plain", "compensated", NULL};
 enum { PLAIN, COMPENSATED };
 
+enum { first_row = 10000 }; /* steps */
+
 static int method, sum;
 static run_length length = {.steps = 10000000, .dt = 0.01};
 
@@ -24,7 +26,7 @@ static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_steps, .required = true, .value = "M"},
     {"sum", CLI_CHOICE, .choice = &sum, .choices = sums, .required = true, .value = "S",
      .help = "plain, as the library, or, of leapfrog and rk4, compensated"},
-    {"steps", CLI_COUNT, .count = &length.steps, .least = 10000, .most = UINT64_C(1) << 53, .value = "N",
+    {"steps", CLI_COUNT, .count = &length.steps, .least = first_row, .most = UINT64_C(1) << 53, .value = "N",
      .help = "rows up to N steps"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
@@ -98,6 +100,12 @@ static void compare(cli_table *table, const compensated_state *from, const compe
     reference_clear(&iterate);
 }
 
+/* 1e4, 3e4, 1e5, ... steps */
+static uint64_t next_row(uint64_t n)
+{
+    return n % 3 == 0 ? n / 3 * 10 : n * 3;
+}
+
 int main(int argc, char **argv)
 {
     const uint64_t leap = UINT64_C(1) << 22; /* steps between two looks at the clock */
@@ -106,18 +114,25 @@ int main(int argc, char **argv)
         cli_fail(CLI_USAGE, "--sum: \"compensated\" is for leapfrog and rk4 only; with --method %s it should be plain",
                  spring_method_name((spring_method)method));
     run_length_settle(&length);
+    if (length.steps < first_row)
+        cli_fail(CLI_USAGE,
+                 "--duration: \"%g\" makes %" PRIu64 " steps of %g s; it should be at least %d of them, %g s",
+                 length.duration, length.steps, length.dt, first_row, first_row * length.dt);
+    uint64_t last = first_row;
+    while (next_row(last) <= length.steps)
+        last = next_row(last);
     cli_table *table = cli_open_output();
     cli_columns(table, program.columns);
-    run_length_remark(&length, spring_stable_step(&spring, (spring_method)method), (spring_method)method);
+    run_length_remark_step(length.dt, spring_stable_step(&spring, (spring_method)method), (spring_method)method);
     const compensated_state from = starts();
     compensated_state s = from;
     uint64_t done = 0;
-    for (uint64_t n = 10000; n <= length.steps; n = n % 3 == 0 ? n / 3 * 10 : n * 3) {
+    for (uint64_t n = first_row; n <= last; n = next_row(n)) {
         while (done < n) {
             const uint64_t some = n - done < leap ? n - done : leap;
             advance(&s, some);
             done += some;
-            cli_progress((double)done / (double)length.steps);
+            cli_progress((double)done / (double)last);
         }
         compare(table, &from, &s, n);
     }

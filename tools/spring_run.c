@@ -202,7 +202,8 @@ int main(int argc, char **argv)
         stepper_comment(&chosen, e.table);
         cli_columns(e.table, "method t_s error_min_m error_max_m");
     }
-    stepper_remark(&chosen, &spring, &length);
+    run_length_remark_end(&length);
+    stepper_remark(&chosen, &spring, length.dt);
     const bool survived = run(table, &e);
     if (e.table != NULL)
         write_part(&e);

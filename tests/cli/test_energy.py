@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from tools import ENERGY, STAGES, column, table
+from tools import ENERGY, STAGES, column, run, table
 
 STUDY = {
     'euler': ['5.024831e-03', '5.258270e-02', '8.590730e-01', '1.100723e+04', '1.337355e+43'],
@@ -75,6 +75,12 @@ def test_jitter_breaks_the_bound_of_leapfrog():
     bound = 0.5 * 0.1**2 / 4
     assert max(column(fixed, 'energy_error_J')) <= bound < 10 * bound < float(varied[-1]['energy_error_J']) < 0.5
     assert energies('leapfrog --dt 0.1 --duration 1e4 --jitter') == varied
+
+
+def test_longest_step_of_jitter_is_compared():
+    """With the stable step, 2 s."""
+    told = {dt: run(ENERGY, '--method', 'leapfrog', '--duration', '10', '--jitter', '--dt', dt).stderr for dt in ('1.33', '1.34')}
+    assert told == {'1.33': '', '1.34': 'spring-energy: the step of 2.01 s is not below the stable step of leapfrog here, 2 s\n'}
 
 
 def test_jitter_is_no_matter_to_the_closed_form():

@@ -153,7 +153,7 @@ def test_two_give_the_third(tool):
     assert runs[0] == runs[1] == runs[2] and len(runs[0]) > 1
 
 
-@pytest.mark.parametrize('tool', THREE)
+@pytest.mark.parametrize('tool', [RUN, SCENE])
 def test_steps_are_rounded_and_that_is_said(tool):
     args, dt, steps, duration = THREE[tool]
     for part, more in ((-0.4, 0), (0.4, 0), (0.6, 1)):  # of a step
@@ -163,6 +163,14 @@ def test_steps_are_rounded_and_that_is_said(tool):
         assert 'is not a whole number of steps of ' in result.stderr
         assert f'takes {int(steps) + more} and ends at ' in result.stderr
     assert 'whole number' not in run(tool, *args, '--dt', dt, '--duration', duration).stderr
+
+
+@pytest.mark.parametrize('tool', [ENERGY, ROUNDING])
+def test_rows_alone_say_where_a_run_ends(tool):
+    """Before the duration, at a power of ten: nothing is said of the steps that it would take."""
+    args, _, _, duration = THREE[tool]
+    result = run(tool, *args, '--dt', '0.7', '--duration', duration)
+    assert (result.returncode, result.stderr) == (0, '')
 
 
 def test_times_of_a_given_step_are_its_multiples():

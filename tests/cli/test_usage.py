@@ -138,6 +138,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{RUN} --method euler --dt 1e300 --steps 1e10', ['--dt', '"1e+300"', '10000000000 steps', 'finite']),
         (f'{VALIDATE} --case', ['--case', 'value is missing', 'one of']),
         (f'{ROUNDING} --method rk4', ['--sum', 'missing', 'one of plain, compensated']),
+        (f'{ROUNDING} --method rk4 --sum plain --dt 1e-3 --duration 1', ['--duration', '"1"', '1000 steps', 'at least 10000 of them, 10 s']),
         (f'{SCENE} --scene rope', ['--method', 'missing', STEPPER]),
         (f'{SCENE} --method rk4', ['--scene', 'missing', 'rope']),
         (f'{PLAN} --duration 1 --hertz 1', ['--error', 'missing', 'such as 0.01']),
@@ -157,6 +158,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['stiffness', 'not finite']),
         (f'{PLAN} --presets --error 0.1', ['--error', '"0.1"', '--presets']),
         (f'{WORK} --problem ideal-2', ['--problem', '"ideal-2"', 'ideal-10000']),
+        (f'{BENCH} --part spring --kernel leapfrog_batch_1', ['no row', '--part, --kernel']),
         (f'{BENCH} --part scenery', ['--part', '"scenery"', 'batch']),
     ]],
 ]
@@ -225,6 +227,13 @@ def test_progress_on_a_terminal(terminal):
     assert result.returncode == 0
     assert re.search(r'\rspring-energy: +\d+\.\d %', os.read(terminal[0], 4096).decode())
     assert result.stdout == run(ENERGY, *PROGRESS).stdout
+
+
+def test_progress_is_that_towards_the_last_row(terminal):
+    """Which is far before the duration, here at 1e6 s of 9e6 s; a second or more."""
+    assert run(ENERGY, '--method', 'rk4', '--dt', '0.005', '--duration', '9e6', stderr=terminal[1]).returncode == 0
+    shown = re.findall(r'\d+\.\d(?= %)', os.read(terminal[0], 4096).decode())
+    assert 100 / 9 < float(shown[-1]) <= 100, shown
 
 
 def test_time_left_on_a_terminal(terminal):

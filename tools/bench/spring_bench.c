@@ -110,12 +110,24 @@ static bool wanted(const bench_row *r)
            (only_count == 0 || only_count == r->count);
 }
 
+static void check_any_wanted(void)
+{
+    size_t count;
+    const bench_row *rows = bench_rows(&count);
+    for (const bench_row *r = rows; r < rows + count; r++)
+        if (wanted(r))
+            return;
+    cli_fail(CLI_USAGE, "no row is of all that --part, --kernel, --precision and --count ask for%s",
+             quick ? "; --quick leaves some out" : "");
+}
+
 int main(int argc, char **argv)
 {
     bench_add_springs();
     bench_add_batches();
     bench_add_scenes();
     cli_parse(&program, argc, argv);
+    check_any_wanted();
     cli_table *table = cli_open_output();
     timing_stamp(table);
     cli_columns(table, program.columns);

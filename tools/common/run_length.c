@@ -40,16 +40,19 @@ void run_length_settle(run_length *run)
                  run->steps);
 }
 
-void run_length_remark(const run_length *run, double stable, spring_method m)
+void run_length_remark_end(const run_length *run)
 {
     const double end = (double)run->steps * run->dt, rounding = 1e-9; /* of what is typed with ten digits */
     if (!(fabs(end - run->duration) <= rounding * run->duration))
         cli_warn("a duration of %.10g s is not a whole number of steps of %.10g s: the run takes %" PRIu64
                  " and ends at %.10g s",
                  run->duration, run->dt, run->steps, end);
+}
+
+void run_length_remark_step(double dt, double stable, spring_method m)
+{
     if (stable == 0)
         cli_warn("no step of %s is stable here", spring_method_name(m));
-    else if (!(run->dt < stable))
-        cli_warn("the step of %g s is not below the stable step of %s here, %g s", run->dt, spring_method_name(m),
-                 stable);
+    else if (!(dt < stable))
+        cli_warn("the step of %g s is not below the stable step of %s here, %g s", dt, spring_method_name(m), stable);
 }

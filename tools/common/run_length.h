@@ -17,13 +17,17 @@ typedef struct run_length {
  * The third from the two that are given; a default stands in for what is missing.
  *
  * From a step and a duration the number of steps is the nearest whole number, at least 1. The duration stays what was
- * asked for: the run ends at dt steps. Exits with CLI_USAGE if all three are given, if too few are known, and for more
+ * asked for: the run ends at dt times steps. Exits with CLI_USAGE if all three are given, if too few are known, and for more
  * than 2^53 steps: up to there times are exact.
  */
 void run_length_settle(run_length *run);
 
-/** Say so if the run ends at another time than it was asked for, and if its step is not stable.
+/** Say so if the run ends at another time than it was asked for. */
+void run_length_remark_end(const run_length *run);
+
+/** Say so if a step is not stable.
+    @param dt      the longest step of the run [s]
     @param stable  the stable step [s]; 0: none is, infinity: all are */
-void run_length_remark(const run_length *run, double stable, spring_method m);
+void run_length_remark_step(double dt, double stable, spring_method m);
 
 #endif

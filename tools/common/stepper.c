@@ -23,9 +23,9 @@ void stepper_check(const stepper *m)
                  stepper_name(m));
 }
 
-void stepper_remark(const stepper *m, const spring_params *p, const run_length *run)
+void stepper_remark(const stepper *m, const spring_params *p, double dt)
 {
-    run_length_remark(run, spring_stable_step(p, (spring_method)m->method), (spring_method)m->method);
+    run_length_remark_step(dt, spring_stable_step(p, (spring_method)m->method), (spring_method)m->method);
 }
 
 void stepper_comment(const stepper *m, cli_table *table)

@@ -24,8 +24,8 @@ const char *stepper_name(const stepper *m);
 /** Exit with CLI_USAGE if the method does not come in that arithmetic. */
 void stepper_check(const stepper *m);
 
-/** run_length_remark() of the method. */
-void stepper_remark(const stepper *m, const spring_params *p, const run_length *run);
+/** run_length_remark_step() of the method. */
+void stepper_remark(const stepper *m, const spring_params *p, double dt);
 
 /** Stamp a table with the method. */
 void stepper_comment(const stepper *m, cli_table *table);

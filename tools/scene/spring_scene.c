@@ -395,7 +395,8 @@ static void choose_step(spring_scene *scene, bool disturbed)
 static void remark_on_step(spring_scene *scene, bool disturbed)
 {
     const spring_method m = (spring_method)method;
-    run_length_remark(&length, spring_scene_stable_step(scene, m), m);
+    run_length_remark_end(&length);
+    run_length_remark_step(length.dt, spring_scene_stable_step(scene, m), m);
     if (disturbed && !(length.dt < disturbance_time / 4))
         cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances lose or "
                  "gain by it",
