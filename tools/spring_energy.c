@@ -25,7 +25,7 @@ static const cli_option options[] = {
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
      .help = "a row for each power of ten from 1 s to H [s]"},
-    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps; two of this, --dt, --duration give the third"},
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
      .help = "leapfrog only: take the kinetic energy half a step ahead\n"
@@ -44,7 +44,8 @@ static const cli_program program = {
                "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
                "terminal.\n\n"
                "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
-               "With --jitter the time run is the duration only on average.",
+               "With --jitter the time run is the duration only on average.\n\n"
+               "Remarked on standard error is a step that is not below the stable step; with --jitter, the longest.",
     .columns = "method velocity duration_s steps energy_error_J",
     .meaning = "velocity is synchronised, or half_step_ahead with --half-step-velocity; duration_s is steps times\n"
                "DT, steps the whole number that comes nearest to the power of ten, at least 1; energy_error_J is\n"

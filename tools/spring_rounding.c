@@ -26,7 +26,7 @@ static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_steps, .required = true, .value = "M"},
     {"sum", CLI_CHOICE, .choice = &sum, .choices = sums, .required = true, .value = "S",
      .help = "plain, as the library, or, of leapfrog and rk4, compensated"},
-    {"steps", CLI_COUNT, .count = &length.steps, .least = first_row, .most = UINT64_C(1) << 53, .value = "N",
+    {"steps", CLI_COUNT, .count = &length.steps, .least = first_row, .most = CLI_MOST_STEPS, .value = "N",
      .help = "rows up to N steps"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
@@ -38,7 +38,8 @@ static const cli_program program = {
     .name = "spring-rounding",
     .summary = "How the rounding errors of an undamped spring grow with the number of steps.",
     .details = "The computed state is compared with the same method in 107-digit arithmetic, so all that differs is\n"
-               "rounding. 1e9 steps take about half a minute.",
+               "rounding. 1e9 steps take about half a minute.\n\n"
+               "Remarked on standard error is a step that is not below the stable step.",
     .columns = "method sum start steps dt_s state_error energy_error coefficient_error",
     .meaning = "start is 0 to 7: phases spread evenly over a period. There are two rows for each power of ten from\n"
                "1e4 steps to N. state_error is relative to the amplitude, in (x, v/omega), energy_error to the\n"

@@ -26,11 +26,11 @@ static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
      .help = "time to run [s]; two of this, --steps, --dt give the third"},
-    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
      .help = "step [s]\n"
-             "Of a duration the number of steps is the nearest whole number."},
+             "A duration is rounded to whole steps."},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
      .help = "a row for every K-th step, the start included; else the end alone"},
     {"from", CLI_REAL, .real = &from, .value = "T", .help = "no rows for times before T [s], but for the end"},
@@ -56,7 +56,8 @@ static const cli_program program = {
     .details = "Times are i DT from the start, or i H/N, and the exact solution is computed from the start in one\n"
                "evaluation.\n\n"
                "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
-               "is told, and the status is 1. A step that is not below the stable step is remarked on.",
+               "is told, and the status is 1. Remarked on standard error is a step that is not\n"
+               "below the stable step, and a duration that is no whole number of steps.",
     .columns = "method step t_s x_m v_m_per_s energy_J exact_x_m error_m",
     .meaning = "energy_J is m v^2/2 + k x^2/2 - load x, error_m the distance |x_m - exact_x_m|. The last row is\n"
                "the final state. With --method exact one evaluation covers the steps from row to row, 2^24 of\n"

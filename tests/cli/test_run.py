@@ -173,6 +173,11 @@ def test_rows_alone_say_where_a_run_ends(tool):
     assert (result.returncode, result.stderr) == (0, '')
 
 
+def test_rounding_to_a_default_step_is_not_remarked_on():
+    result = run(SCENE, '--scene', 'rope', '--method', 'leapfrog', '--duration', '0.02')
+    assert (result.returncode, result.stderr) == (0, '')
+
+
 def test_times_of_a_given_step_are_its_multiples():
     rows = table(RUN, '--method', 'exact', '--dt', '0.1', '--steps', '1000', '--every', '1')
     assert column(rows, 't_s') == [0.1 * i for i in range(1001)]

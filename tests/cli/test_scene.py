@@ -293,6 +293,13 @@ def test_hash(tmp_path):
     assert (result.stdout, result.stderr, result.returncode) == (fnv(last) + '\n', '', 0)
 
 
+def test_hash_in_a_file(tmp_path):
+    path = tmp_path / 'hash'
+    short = '--scene rope --method leapfrog --duration 0.1 --hash'.split()
+    written = run(SCENE, *short, '-o', path)
+    assert (written.returncode, written.stdout, path.read_text()) == (0, '', run(SCENE, *short).stdout)
+
+
 def test_hash_sees_the_last_state_alone():
     """Rows and frames in between change nothing, what moves the scene does."""
     water = '--scene water --steps-per-frame 21 --duration 0.25 --hash --method'.split()

@@ -16,6 +16,8 @@
 
 #include <springstep/spring.h>
 
+#define CLI_MOST_STEPS (UINT64_C(1) << 53) /* up to there times are exact; a constant for the rows of options */
+
 typedef enum cli_status {
     CLI_FAILED = 1, /* the computation failed, or a check did not hold */
     CLI_USAGE = 2,  /* bad usage */
@@ -115,6 +117,9 @@ const char *cli_stamped_command(void);
 
 /** Open the table for the rows: the file of --output, or standard output. */
 cli_table *cli_open_output(void);
+
+/** The same without the lines that start with "#". */
+cli_table *cli_open_bare_output(void);
 
 /**
  * Open a further table, in the file that an option names; NULL: standard output.

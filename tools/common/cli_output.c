@@ -41,8 +41,7 @@ static void erase_progress(void)
     progress_shown = false;
 }
 
-/* If the rest goes on as what is done: "12 s left", "3 min left". The clock ticks in seconds: the first says nothing. */
-static void describe_rest(char *text, size_t size, double fraction, double spent)
+void cli_describe_time_left(char *text, size_t size, double fraction, double spent)
 {
     const double left = spent * (1 - fraction) / fraction, minute = 60, hour = 3600; /* [s] */
     text[0] = '\0';
@@ -65,9 +64,9 @@ void cli_progress(double fraction)
     last = now;
     if (!isatty(STDERR_FILENO))
         return;
-    char line[PROGRESS_WIDTH + 1], rest[32];
-    describe_rest(rest, sizeof rest, fraction, difftime(now, cli_asked.started));
-    snprintf(line, sizeof line, "%s: %5.1f %%%s", cli_asked.program->name, 100 * fraction, rest);
+    char line[PROGRESS_WIDTH + 1], left[32];
+    cli_describe_time_left(left, sizeof left, fraction, difftime(now, cli_asked.started));
+    snprintf(line, sizeof line, "%s: %5.1f %%%s", cli_asked.program->name, 100 * fraction, left);
     fprintf(stderr, "\r%-*s", PROGRESS_WIDTH, line);
     progress_shown = true;
 }
@@ -226,6 +225,13 @@ const char *cli_stamped_command(void)
 cli_table *cli_open_output(void)
 {
     return cli_open_file("output", cli_asked.output);
+}
+
+cli_table *cli_open_bare_output(void)
+{
+    cli_table *table = cli_open_output();
+    table->stamped = true;
+    return table;
 }
 
 /* With the first line and not before: a tool may open several tables, and fail at the last. */

@@ -39,6 +39,10 @@ void cli_print_completion(void);
 
 /* cli_output.c */
 
+/** If all goes on as what is done: ", 12 s left", ", 3 min left". The clock ticks in seconds: the first says nothing.
+    @param spent  [s] */
+void cli_describe_time_left(char *text, size_t size, double fraction, double spent);
+
 /** From now on nothing but complete files is left, whatever ends the program. */
 void cli_guard_files(void);
 

@@ -6,14 +6,15 @@
 
 #include "common/cli.h"
 
-static const double most_steps = 9007199254740992; /* 2^53 */
-
 static void count_steps(run_length *run)
 {
-    const double steps = fmax(rint(run->duration / run->dt), 1);
-    if (!(steps <= most_steps))
+    const double most_steps = (double)CLI_MOST_STEPS, steps = fmax(rint(run->duration / run->dt), 1);
+    if (!(steps <= most_steps) && cli_given(&run->dt))
         cli_fail(CLI_USAGE, "--dt: \"%g\" makes more than 2^53 steps in %g s; it should be at least %g", run->dt,
                  run->duration, run->duration / most_steps);
+    if (!(steps <= most_steps))
+        cli_fail(CLI_USAGE, "a run of %g s takes more than 2^53 steps of %g s; it should be at most %g s",
+                 run->duration, run->dt, run->dt * most_steps);
     run->steps = (uint64_t)steps;
 }
 
@@ -35,9 +36,12 @@ void run_length_settle(run_length *run)
     if (!(run->dt > 0))
         cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger",
                  run->duration, run->steps);
-    if (!isfinite(run->duration))
+    if (!isfinite(run->duration) && dt)
         cli_fail(CLI_USAGE, "--dt: \"%g\" is too long for %" PRIu64 " steps; the duration should be finite", run->dt,
                  run->steps);
+    if (!isfinite(run->duration))
+        cli_fail(CLI_USAGE, "--steps: \"%" PRIu64 "\" is too many of %g s; the duration should be finite", run->steps,
+                 run->dt);
 }
 
 void run_length_remark_end(const run_length *run)

@@ -40,8 +40,8 @@ static const cli_option options[] = {
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
      .help = "step [s] (default: half the stable step of leapfrog, or less)\n"
              "By default a frame takes as many steps as make them at most half the stable step of leapfrog, and an\n"
-             "eighth of --push-duration. Of a duration the number of steps is the nearest whole number."},
-    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = UINT64_C(1) << 53, .value = "N",
+             "eighth of --push-duration. A duration is rounded to whole steps."},
+    {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps"},
     {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
      .help = "instead of --dt: the step is 1/(R N) s"},
@@ -74,9 +74,9 @@ static const cli_option options[] = {
     {"gravity", CLI_REAL, .real = &given.gravity, .value = "G",
      .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
     {"stretch", CLI_POSITIVE, .real = &given.stretch, .value = "S",
-     .help = "of the links at the start, over their rest length (default: 1)\n"
-             "By default 1.25 for water on three axes. Water on one axis has no rest lengths: S > 1 leaves it the\n"
-             "part 1 - 1/S of --stiffness, as much as a sheet stretched like that has across."},
+     .help = "of the links at the start, over their rest length (default: by scene)\n"
+             "That is: 1, for water on three axes 1.25. Water on one axis has no rest lengths, and by default all of\n"
+             "--stiffness: S > 1 leaves it the part 1 - 1/S, as much as a sheet stretched like that has across."},
     {"poke", CLI_REALS, .real = poke[0], .least = 5, .most = MOST_DISTURBANCES, .times = &pokes,
      .value = "T,X,Y,FORCE,AREA",
      .help = "push at time T [s] at (X, Y) [m] with FORCE [N] on AREA [m^2]; repeatable\n"
@@ -109,8 +109,9 @@ static const cli_program program = {
                "for the chain it is along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of\n"
                "(L/8)^2 m^2, and loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with\n"
                "the momentum of one particle at 10 m/s, anywhere and at any time within its 1/RATE seconds.\n\n"
-               "No step is refused. Remarked on standard error is one that is not below the stable step, and one\n"
-               "so long, D/4 or more, that a disturbance loses or gains by it. When the energy overflows the rows\n"
+               "No step is refused. Remarked on standard error is one that is not below the stable step, one so\n"
+               "long, D/4 or more, that a disturbance loses or gains by it, and a chosen one of which H is no whole\n"
+               "number. When the energy overflows the rows\n"
                "end, the time is told, and the status is 1.",
     .columns = "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m",
     .meaning = "energy_J is the sum of its parts kinetic_J, elastic_J and gravity_J (0 at the origin),\n"
@@ -296,7 +297,7 @@ typedef struct view { /* a scene, and what is shown of it */
     spring_scene *scene;
     void *saved;  /* a copy, to return to */
     size_t bytes; /* of both */
-    cli_table *rows, *positions;
+    cli_table *output, *positions;
     double *xyz;    /* [particles*3] */
     double lost_at; /* [s] when its energy overflowed */
 } view;
@@ -310,8 +311,8 @@ static void write_row(view *v)
         const double *p = &v->xyz[3 * i], *q = &v->preset->start[3 * i];
         most = fmax(most, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
     }
-    if (v->rows != NULL)
-        cli_row(v->rows, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
+    if (!hash_alone)
+        cli_row(v->output, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
                 e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most);
 }
 
@@ -380,6 +381,11 @@ static void choose_length(void)
                  steps_per_frame);
     if (steps_per_frame > 0)
         length.dt = scene_run_step(frame_rate, steps_per_frame);
+    if (cli_given(&length.steps) && length.dt == 0 && !cli_given(&length.duration))
+        cli_fail(CLI_USAGE,
+                 "--steps: \"%" PRIu64
+                 "\" leaves the time open; --dt, --steps-per-frame or --duration should be given, too",
+                 length.steps);
     if (length.dt > 0 || length.steps > 0)
         run_length_settle(&length);
 }
@@ -395,7 +401,8 @@ static void choose_step(spring_scene *scene, bool disturbed)
 static void remark_on_step(spring_scene *scene, bool disturbed)
 {
     const spring_method m = (spring_method)method;
-    run_length_remark_end(&length);
+    if (cli_given(&length.dt) || steps_per_frame > 0)
+        run_length_remark_end(&length);
     run_length_remark_step(length.dt, spring_scene_stable_step(scene, m), m);
     if (disturbed && !(length.dt < disturbance_time / 4))
         cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances lose or "
@@ -405,7 +412,8 @@ static void remark_on_step(spring_scene *scene, bool disturbed)
 
 static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64_t frame_count)
 {
-    view v = {.preset = r, .scene = scene, .bytes = bytes, .rows = hash_alone ? NULL : cli_open_output()};
+    view v = {
+        .preset = r, .scene = scene, .bytes = bytes, .output = hash_alone ? cli_open_bare_output() : cli_open_output()};
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
     if (frames != NULL)
         prepare_frames(frame_count);
@@ -417,16 +425,19 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
         cli_columns(v.positions, frame_columns);
     if (hash_alone)
         return v;
-    cli_comment(v.rows, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
-    cli_comment(v.rows, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
+    cli_comment(v.output, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
+    cli_comment(v.output, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
                 length.dt, spring_scene_stable_step(scene, (spring_method)method));
-    cli_columns(v.rows, program.columns);
+    cli_columns(v.output, program.columns);
     return v;
 }
 
 static void check_frames(void)
 {
     const double most_frames = 1e6; /* six digits */
+    if (!(length.duration * fps < most_frames) && !cli_given(&fps))
+        cli_fail(CLI_USAGE, "a run of %g s has more than %g frames, %g a second; it should be below %g s",
+                 length.duration, most_frames, fps, most_frames / fps);
     if (!(length.duration * fps < most_frames))
         cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps, most_frames,
                  length.duration, most_frames / length.duration);
@@ -452,7 +463,7 @@ int main(int argc, char **argv)
     view v = open_view(&r, scene, bytes, frame_count);
     const bool survived = run(&v, frame_count);
     if (hash_alone)
-        printf("%016" PRIx64 "\n", scene_run_hash(scene, r.def.particles, r.def.axes));
+        cli_row(v.output, "%016" PRIx64, scene_run_hash(scene, r.def.particles, r.def.axes));
     cli_finish();
     if (!survived)
         cli_warn("the scene blows up: its energy overflows at t = %.17g s", v.lost_at);
