@@ -4,6 +4,8 @@
 _springstep()
 {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} name kind words names=
+    local tool=${1/#'~/'/"$HOME/"} # as it is typed
+    type -P "$tool" >/dev/null || tool=${tool##*/} # $FOLDER/spring-run, say
     if [[ $word == '=' ]]; then # --method=leapfrog comes as three words
         word=
     elif [[ $previous == '=' ]]; then
@@ -24,7 +26,7 @@ _springstep()
                 ;;
         esac
         return
-    done < <("$1" --completion 2>/dev/null)
+    done < <("$tool" --completion 2>/dev/null)
     mapfile -t COMPREPLY < <(compgen -W "$names" -- "$word")
 }
 complete -F _springstep @names@

@@ -33,7 +33,8 @@ static const cli_option options[] = {
              "A duration is rounded to whole steps."},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
      .help = "a row for every K-th step, the start included; else the end alone"},
-    {"from", CLI_REAL, .real = &from, .value = "T", .help = "no rows for times before T [s], but for the end"},
+    {"from", CLI_REAL, .real = &from, .value = "T", .needs = &every,
+     .help = "no rows for times before T [s], but for the end"},
     {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]"},
     {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]"},
@@ -46,7 +47,7 @@ static const cli_option options[] = {
      .help = "write the envelope of the error to FILE, too\n"
              "That is its minimum and maximum over all steps, for each of --columns equal parts of the run."},
     {"columns", CLI_COUNT, .count = &envelope_columns, .least = 1, .most = 1000000, .value = "N",
-     .help = "number of these parts"},
+     .needs = &envelope_path, .help = "number of parts of the envelope"},
     {.name = NULL},
 };
 

@@ -99,7 +99,8 @@ def test_pandas_reads_a_table(tmp_path):
         assert list(frame.columns) == list(rows[0]) and len(frame) == len(rows)
 
 
-WITH_OTHERS = {'frame-rate', 'seed', 'push-duration', 'axes', 'links'}  # refused where they do not count
+WITH_OTHERS = {'frame-rate', 'seed', 'push-duration', 'axes', 'links', 'columns'}  # refused where they do not count
+LACKED = {'chain': ['gravity'], 'water': ['gravity'], PLAN: ['damping', 'damping-ratio']}  # by --presets, which SHORT asks for
 
 
 @pytest.mark.parametrize('tool, more', [*((tool, []) for tool in SHORT),
@@ -110,8 +111,8 @@ def test_defaults_are_what_is_taken(tool, more):
     for name, _, line in options_of(tool):
         assert len(re.findall('default', line)) == len(re.findall(r'\(default: [^()]+\)$', line)), line
         told = re.search(r'\(default: ([-+.\w]+)\)$', line)
-        lacks_it = name == 'gravity' and more[1:] in (['chain'], ['water'])
-        if told and f'--{name}' not in SHORT[tool] and name not in WITH_OTHERS and not lacks_it:
+        taken = name not in WITH_OTHERS and name not in LACKED.get((more or [tool])[-1], [])
+        if told and f'--{name}' not in SHORT[tool] and taken:
             given += [f'--{name}', told[1]]
     assert rows_of(tool, *given, *more) == rows_of(tool, *more)
 
@@ -190,6 +191,14 @@ def test_options_are_completed(tool):
 ], ids=' '.join)
 def test_words_are_completed(words, wanted):
     assert complete(*words) == wanted
+
+
+@pytest.mark.parametrize('folder', ['~', '$NO_FOLDER', FOLDER], ids=['at home', 'in a variable', 'full path'])
+def test_tools_are_asked_wherever_they_are(folder, monkeypatch):
+    monkeypatch.setenv('HOME', str(FOLDER))
+    if folder == '~':
+        monkeypatch.setenv('PATH', '/usr/bin:/bin')
+    assert complete(f'{folder}/{RUN}', '--method', 'lea') == ['leapfrog']
 
 
 def test_files_are_completed(tmp_path, monkeypatch):

@@ -124,6 +124,7 @@ def test_a_mesh(tmp_path, elements, links):
     args = f'--error 0.01 --duration 0.1 --mass 1.3 --stiffness 27 --drag 0.6 --mesh {path}'.split()
     printed = run(PLAN, *args).stdout
     assert f'# scene: a mesh, 4 particles, {links} links\n' in printed
+    assert f'# command: spring-plan {" ".join(args)}' in printed
     rows = parse(printed)
     is_a_plan(rows, SCENES, 0.1)
     assert all(float(row['measured_error']) <= 0.01 for row in rows)

@@ -30,7 +30,7 @@ COLUMNS = {  # the fixed ones, in their order; others may follow
     METHOD_TABLE: 'method label order forces_per_step symplectic springs scenes',
     MAP: 'scene method particles links substeps dt_s stable_step_s energy_error verdict',
 }
-NOT_AN_OPTION = ['foo', '', '-', '--', '-x', '-output', '-output=x', '--bogus', '--bogus=1', '--meth', '--outpu',
+NOT_AN_OPTION = ['foo', '', '-', '--', '-x', '-output', '-output=x', '-out', '-out=x', '-o=x', '--bogus', '--bogus=1', '--meth', '--outpu',
                  '--vers', '-help']
 
 REFUSED_VALUES = [  # of a tool, options, values; what each should be
@@ -104,6 +104,8 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--poke -1,1,0,1,1', ['--poke', '"-1"', 'at least 0 s']),
         (SCENE, '--poke 0,1,0,1,0', ['--poke', '"0"', 'greater than 0']),
         (SCENE, '--drop-box -1,1', ['--drop-box', '"-1"', 'at least 0 s']),
+        (SCENE, '--poke 0.1,1,0,1,1', ['--poke', '"0.1"', 'below 0.1 s']),
+        (SCENE, '--drop-box 7,1', ['--drop-box', '"7"', 'below 0.1 s']),
         (SCENE, '--drop-box 0,0', ['--drop-box', '"0"', 'greater than 0 kg']),
         (SCENE, '--rain 1e7', ['--rain', '"1e+07"', 'at most 1e+06']),
         (SCENE, '--steps-per-frame 2 --dt 0.1', ['--steps-per-frame', '"2"', '--dt']),
@@ -111,7 +113,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (SCENE, '--dt 0.1 --steps 1', ['--dt, --steps, --duration', 'not three']),
         (SCENE, '--links all', ['--links', '"all"', 'rope has structural links alone']),
         (SCENE, '--scene chain --links structural', ['--links', '"structural"', 'chain has structural links alone']),
-        (SCENE, '--seed 1', ['--seed', '"1"', '--rain']),
+        (SCENE, '--seed 1', ['--seed', 'without --rain']),
         (SCENE, '--rain 1 --seed 99999999999999999999', ['--seed', '"99999999999999999999"', 'at least 0']),
         (SCENE, '--push-duration 0.1', ['--push-duration', '"0.1"', '--poke', '--rain', '--drop-box']),
         (SCENE, '--poke 0,1,0,1,1 ' * 101, ['--poke', '"0,1,0,1,1"', 'one too many', '100 times']),
@@ -120,7 +122,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (RUN, '--dt 0.1', ['--dt, --steps, --duration', 'not three']),
         (ENERGY, '--dt 0.1 --steps 100', ['--dt, --steps, --duration', 'not three']),
         (ROUNDING, '--dt 0.1 --duration 2000', ['--dt, --steps, --duration', 'not three']),
-        (SCENE, '--frame-rate 50', ['--frame-rate', '"50"', '--steps-per-frame']),
+        (SCENE, '--frame-rate 50', ['--frame-rate', 'without --steps-per-frame']),
         (SCENE, '--axes 3', ['--axes', '"3"', 'for water', 'rope it should be 2']),
         (SCENE, '--scene water --axes 2', ['--axes', '"2"', '1 or 3']),
         (SCENE, '--scene water --stretch 1', ['--stretch', '"1"', 'greater than 1']),
@@ -162,6 +164,13 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{PLAN} --error 0.1 --duration 1 --mesh a.obj --stiffness 1 --size 9', ['--size', '"9"', '--scene']),
         (f'{PLAN} --error 0 --duration 1 --hertz 1', ['--error', '"0"', POSITIVE]),
         (f'{PLAN} --error 0.1 --duration 1 --stiffness 1e308 --mass 1e-3', ['stiffness', 'not finite']),
+        *[(f'{PLAN} --presets --{name} 3', [f'--{name}', '"3"', 'not for --presets'])
+          for name in ('size', 'mass', 'damping', 'damping-ratio', 'drag')],
+        (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --quick', ['--quick', 'without --presets']),
+        (f'{RUN} --method rk4 --dt 1 --steps 9 --columns 3', ['--columns', 'without --envelope']),
+        (f'{RUN} --method rk4 --dt 1 --steps 9 --from 3', ['--from', 'without --every']),
+        (f'{VALIDATE} --list --case fast-root', ['--case', 'no effect with --list']),
+        (f'{VALIDATE} --list --quick', ['--quick', 'no effect with --list']),
         (f'{PLAN} --presets --error 0.1', ['--error', '"0.1"', '--presets']),
         (f'{WORK} --problem ideal-2', ['--problem', '"ideal-2"', 'ideal-10000']),
         (f'{BENCH} --part spring --kernel leapfrog_batch_1', ['no row', '--part, --kernel']),

@@ -113,13 +113,12 @@ static const char *word_of(const cli_option *o, int i, int *value)
     return NULL;
 }
 
-bool cli_print_words(FILE *out, const cli_option *o, const char *separator)
+void cli_print_words(FILE *out, const cli_option *o, const char *separator)
 {
     const char *word;
     int i = 0;
     for (int value; (word = word_of(o, i, &value)) != NULL; i++)
         fprintf(out, "%s%s", i > 0 ? separator : "", word);
-    return i > 0;
 }
 
 static bool parse_word(const char *text, const cli_option *o)
@@ -241,8 +240,9 @@ void cli_print_expectation(FILE *out, const cli_option *o)
         fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
         break;
     case CLI_FILE:
+    case CLI_INPUT:
     case CLI_FOLDER:
-        fprintf(out, "the name of a %s", o->kind == CLI_FILE ? "file" : "folder");
+        fprintf(out, "the name of a %s", o->kind == CLI_FOLDER ? "folder" : "file");
         break;
     case CLI_WORDS:
         fputs(o->value, out);
@@ -343,6 +343,7 @@ static bool store(const cli_option *o, const char *value)
     case CLI_REALS:
         return parse_reals(value, o->real + (o->times != NULL ? *o->times * o->least : 0), o->least);
     case CLI_FILE:
+    case CLI_INPUT:
     case CLI_FOLDER:
         *o->file = value;
         return value[0] != '\0';
@@ -365,7 +366,8 @@ static const cli_option *option_of(const char *word, const char **value)
     *value = NULL;
     if (strcmp(word, "-h") == 0)
         return find_option(common_options, "help", strlen("help"));
-    if (word[0] == '-' && word[1] == 'o' && strncmp(word, "-output", 7) != 0) { /* one dash typed for two */
+    /* -out: one dash typed for two */
+    if (word[0] == '-' && word[1] == 'o' && word[2] != '=' && strncmp(word, "-out", 4) != 0) {
         if (word[2] != '\0')
             *value = word + 2;
         return &common_options[0];
@@ -382,7 +384,8 @@ static const cli_option *option_of(const char *word, const char **value)
     return found;
 }
 
-/* Where the output goes is no part of how it was made: it is not stamped, and of other files only that there are. */
+/* Where the output goes is no part of how it was made: it is not stamped, and of other files that are written only that
+   there are. */
 static void record(FILE *words, const cli_option *o, const char *value)
 {
     if (o == &common_options[0] || o->unstamped)
@@ -430,6 +433,14 @@ bool cli_given(const void *target)
     return false;
 }
 
+static void fail_for_lack(const cli_option *o)
+{
+    const cli_option *other;
+    for (size_t i = 0; (other = cli_option_at(i)) != NULL; i++)
+        if (other->flag == o->needs)
+            cli_fail(CLI_USAGE, "--%s: has no effect without --%s", o->name, other->name);
+}
+
 void cli_parse(const cli_program *p, int argc, char **argv)
 {
     cli_asked.program = p;
@@ -474,4 +485,9 @@ void cli_parse(const cli_program *p, int argc, char **argv)
     for (size_t k = 0; k < count; k++)
         if (cli_option_at(k)->required && (given >> k & 1) == 0)
             fail_at(cli_option_at(k), NULL, "is missing; it should be ");
+    for (size_t k = 0; k < count; k++) {
+        o = cli_option_at(k);
+        if (o->needs != NULL && (given >> k & 1) != 0 && !cli_given(o->needs))
+            fail_for_lack(o);
+    }
 }

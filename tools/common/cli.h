@@ -34,6 +34,7 @@ typedef enum cli_kind {
     CLI_CHOICE,       /* one of a list of words */
     CLI_METHOD,       /* the name of a method that the tool offers */
     CLI_FILE,         /* the name of a file to write */
+    CLI_INPUT,        /* the name of a file to read: it is stamped, the others are not */
     CLI_FOLDER,       /* the name of a folder to write to */
     CLI_WORDS         /* all words up to the next option; given several times, they add up */
 } cli_kind;
@@ -64,7 +65,8 @@ typedef struct cli_option {
     uint64_t least, most; /* CLI_COUNT: limits; most = 0 is no limit. CLI_REALS: least = how many */
     uint64_t *times;      /* CLI_REALS: how often it is given, at most `most` times, one set behind the other */
     bool required;
-    bool unstamped; /* says nothing of what the rows are */
+    const void *needs; /* the target of the option without which this one has no effect */
+    bool unstamped;    /* says nothing of what the rows are */
 } cli_option;
 
 typedef struct cli_program {

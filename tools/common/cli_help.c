@@ -93,7 +93,7 @@ void cli_print_help(void)
     size_t i = 0;
     for (; strcmp(cli_option_at(i)->name, "help") != 0; i++)
         print_option(i);
-    printf("  -h, --help, --version   print this, or the version, and exit; \"man %s\" says more\n", p->name);
+    printf("  -h, --help, --version   print this, or the version; more: %s --man | man -l -\n", p->name);
     if (p->columns != NULL) {
         putchar('\n');
         print_columns(p->columns);
@@ -312,6 +312,7 @@ static const char *kind_of_value(const cli_option *o)
     case CLI_METHOD:
         return "words";
     case CLI_FILE:
+    case CLI_INPUT:
         return "file";
     case CLI_FOLDER:
         return "folder";

@@ -28,8 +28,8 @@ const char *cli_default(size_t i);
 /** What the value of an option should be: "a finite number". */
 void cli_print_expectation(FILE *out, const cli_option *o);
 
-/** The words that the value of an option is one of; false: it is something else. */
-bool cli_print_words(FILE *out, const cli_option *o, const char *separator);
+/** The words that the value of an option is one of, if it is one of some. */
+void cli_print_words(FILE *out, const cli_option *o, const char *separator);
 
 /* cli_help.c: on standard output */
 

@@ -40,7 +40,7 @@ static const cli_option options[] = {
      .help = "a scene of spring-scene: rope, cloth, jelly, chain or water"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
-    {"mesh", CLI_FILE, .file = &mesh, .value = "FILE",
+    {"mesh", CLI_INPUT, .file = &mesh, .value = "FILE",
      .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness\n"
              "A particle a vertex, a link along each edge and across each face of four corners; the highest\n"
              "vertices are held, gravity pulls at the others, as in\n"
@@ -49,7 +49,7 @@ static const cli_option options[] = {
     {"presets", CLI_FLAG, .flag = &presets,
      .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
              "or in --scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "with --presets: no run that takes long"},
+    {"quick", CLI_FLAG, .flag = &quick, .needs = &presets, .help = "with --presets: no run that takes long"},
     {.name = NULL},
 };
 
@@ -93,14 +93,20 @@ static void check_usage(void)
         refuse("duration", duration, "is not for --presets, which takes a second");
         refuse("stiffness", stiffness, "is not for --presets");
         refuse("hertz", hertz, "is not for --presets");
+        refuse("damping-ratio", damping_ratio, "is not for --presets");
+        refuse("mass", mass, "is not for --presets");
+        refuse("damping", damping, "is not for --presets");
+        refuse("drag", drag, "is not for --presets");
+        if (size > 0)
+            cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is not for --presets", size);
         return;
     }
     if (isnan(error))
-        cli_fail(CLI_USAGE, "--error: missing; it should be an error such as 0.01");
+        cli_fail(CLI_USAGE, "--error: is missing; it should be an error such as 0.01");
     if (isnan(duration))
-        cli_fail(CLI_USAGE, "--duration: missing; it should be a time in seconds");
+        cli_fail(CLI_USAGE, "--duration: is missing; it should be a time in seconds");
     if (mesh != NULL && isnan(stiffness))
-        cli_fail(CLI_USAGE, "--stiffness: missing; it should be that of the links of --mesh");
+        cli_fail(CLI_USAGE, "--stiffness: is missing; it should be that of the links of --mesh");
     if (kind >= 0 || mesh != NULL) {
         refuse("hertz", hertz, "is of one spring, not of a scene");
         refuse("damping-ratio", damping_ratio, "is of one spring, not of a scene");

@@ -45,7 +45,7 @@ static const cli_option options[] = {
      .help = "number of steps"},
     {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
      .help = "instead of --dt: the step is 1/(R N) s"},
-    {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R",
+    {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R", .needs = &steps_per_frame,
      .help = "frames a second that --steps-per-frame divides"},
     {"size", CLI_COUNT, .count = &given.size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge; of a chain: those that move (default: by scene)\n"
@@ -80,12 +80,12 @@ static const cli_option options[] = {
     {"poke", CLI_REALS, .real = poke[0], .least = 5, .most = MOST_DISTURBANCES, .times = &pokes,
      .value = "T,X,Y,FORCE,AREA",
      .help = "push at time T [s] at (X, Y) [m] with FORCE [N] on AREA [m^2]; repeatable\n"
-             "It pushes down, with FORCE at most, spread over a round AREA."},
+             "It pushes down, with FORCE at most, spread over a round AREA > 0. 0 <= T < H; 100 pokes at most."},
     {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "a drop in every 1/RATE seconds"},
-    {"seed", CLI_COUNT, .count = &seed, .value = "N", .help = "another --rain for every N"},
+    {"seed", CLI_COUNT, .count = &seed, .value = "N", .needs = &rain, .help = "another --rain for every N"},
     {"drop-box", CLI_REALS, .real = box[0], .least = 2, .most = MOST_DISTURBANCES, .times = &boxes, .value = "T,MASS",
      .help = "a box of MASS [kg] hits the middle at time T [s]; repeatable\n"
-             "It falls from 1 m, at 9.81 m/s^2."},
+             "It falls from 1 m, at 9.81 m/s^2. MASS > 0, 0 <= T < H; 100 boxes at most."},
     {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D", .help = "of a poke, a drop, the box [s]"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
@@ -143,13 +143,9 @@ static void refuse_what_does_not_count(void)
     if (line && cli_given(&link_choice))
         cli_fail(CLI_USAGE, "--links: \"%s\" is for other scenes; %s has structural links alone", links[link_choice],
                  preset_names[kind]);
-    if (rain == 0 && cli_given(&seed))
-        cli_fail(CLI_USAGE, "--seed: \"%" PRIu64 "\" does not count without --rain", seed);
     if (!is_disturbed() && cli_given(&disturbance_time))
         cli_fail(CLI_USAGE, "--push-duration: \"%g\" does not count without --poke, --rain or --drop-box",
                  disturbance_time);
-    if (steps_per_frame == 0 && cli_given(&frame_rate))
-        cli_fail(CLI_USAGE, "--frame-rate: \"%g\" does not count without --steps-per-frame", frame_rate);
 }
 
 static preset_settings chosen_settings(void)
@@ -177,11 +173,18 @@ static preset_settings chosen_settings(void)
 
 /* -------------------------------------------------------------------------------------------------- disturbances */
 
+static void check_time(const char *option, double t)
+{
+    if (!(t >= 0))
+        cli_fail(CLI_USAGE, "--%s: \"%g\" is not a time T of at least 0 s", option, t);
+    if (!(t < length.duration))
+        cli_fail(CLI_USAGE, "--%s: \"%g\" is after the run; T should be below %g s", option, t, length.duration);
+}
+
 static void check_poke(const preset *r, const double at[5])
 {
     const double *far = &r->start[3 * (r->def.particles - 1)];
-    if (!(at[0] >= 0))
-        cli_fail(CLI_USAGE, "--poke: \"%g\" is not a time T of at least 0 s", at[0]);
+    check_time("poke", at[0]);
     if (!(at[4] > 0))
         cli_fail(CLI_USAGE, "--poke: \"%g\" is not an AREA greater than 0 m^2", at[4]);
     if (!(at[1] >= 0 && at[1] <= far[0] && at[2] >= 0 && at[2] <= far[1]))
@@ -192,8 +195,7 @@ static void check_poke(const preset *r, const double at[5])
 
 static void check_box(const double dropped[2])
 {
-    if (!(dropped[0] >= 0))
-        cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a time T of at least 0 s", dropped[0]);
+    check_time("drop-box", dropped[0]);
     if (!(dropped[1] > 0))
         cli_fail(CLI_USAGE, "--drop-box: \"%g\" is not a MASS greater than 0 kg", dropped[1]);
 }

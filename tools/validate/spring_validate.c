@@ -227,6 +227,8 @@ int main(int argc, char **argv)
 {
     name_cases();
     cli_parse(&program, argc, argv);
+    if (list_only && (only_case >= 0 || quick))
+        cli_fail(CLI_USAGE, "--%s: has no effect with --list", quick ? "quick" : "case");
     cli_table *table = cli_open_output();
     validate_into(table);
     cli_columns(table, list_only ? "case purpose" : program.columns);
