@@ -39,7 +39,10 @@ every_tool = pytest.mark.parametrize('tool', EVERY)
 each_tool = pytest.mark.parametrize('tool', SHORT)
 
 
-REMARKS = r'no step of \S+ is stable here$|the step of \S+ s is not below the stable step of \S+ here, \S+ s$|is not a whole number of steps'
+# What a run may be remarked on.
+NEVER_STABLE = r'no step of \S+ is stable here'
+NOT_STABLE = r'the step of \S+ s is not below the stable step of \S+ here, \S+ s'
+NOT_WHOLE = r'a duration of \S+ s is not a whole number of steps of \S+ s: the run takes \d+ and ends at \S+ s'
 
 
 def run(tool, *args, **how):
@@ -54,11 +57,12 @@ def parse(text):
     return [dict(zip(names, line.split('\t'), strict=True)) for line in lines[1:]]
 
 
-def table(tool, *args):
-    """The rows of a run that is done, without a word but on the length of its step."""
+def table(tool, *args, remarks=()):
+    """The rows of a run that is done, with these remarks and no other word."""
     result = run(tool, *args)
-    words = [line for line in result.stderr.splitlines() if not re.search(REMARKS, line)]
-    assert (result.returncode, words) == (0, []), result.args
+    said = result.stderr.splitlines()
+    assert (result.returncode, len(said)) == (0, len(remarks)), (result.args, said)
+    assert all(re.fullmatch(f'{tool}: {remark}', line) for remark, line in zip(remarks, said)), said
     return parse(result.stdout)
 
 
