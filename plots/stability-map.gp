@@ -23,16 +23,9 @@ do for [m = 1:methods] {
     lasts[m] = STATS_max
 }
 
-# Logarithms, for a picture made of pixels has to have linear axes.
-least = -8
-exploded = 0.5
-level(text) = text eq "inf" || text > 1 ? exploded : text > 10**least ? log10(text) : least
+call plots."cividis.gp" "-8" "0" # no pixel is of less than 10^-8
 edge(m) = strcol("method") eq names[m] && column("damping_ratio") > 0 ? log10(column("damping_ratio")) : NaN
 
-# Cividis: even steps to the eye, colour-blind or not. No colour here is one of style.gp, which the page changes in the dark.
-set palette maxcolors 0 defined (-8 "#00224E", -7.1 "#123570", -6.2 "#3B496C", -5.3 "#575D6D", -4.4 "#707173", \
-    -3.6 "#8A8678", -2.7 "#A59C74", -1.8 "#C3B369", -0.9 "#E1CC55", 0 "#FEE838", 0 "#D65E00", exploded "#D65E00")
-set cbrange [least:exploded]
 set cbtics ("≤10^{−8}" -8, "10^{−6}" -6, "10^{−4}" -4, "10^{−2}" -2, "≥1" 0.3) scale 0
 set cblabel "error after ten periods" offset 0,0.4
 set colorbox horizontal user origin 0.24,1 - 35.0/height size 0.66,14.0/height
