@@ -23,7 +23,7 @@ do for [m = 1:methods] {
     lasts[m] = STATS_max
 }
 
-call plots."cividis.gp" "-8" "0" # no pixel is of less than 10^-8
+call plots."cividis.gp" "-8" "0"
 edge(m) = strcol("method") eq names[m] && column("damping_ratio") > 0 ? log10(column("damping_ratio")) : NaN
 
 set cbtics ("≤10^{−8}" -8, "10^{−6}" -6, "10^{−4}" -4, "10^{−2}" -2, "≥1" 0.3) scale 0
