@@ -138,7 +138,8 @@ def test_jobs_are_killed_and_go_on(whole, tmp_path):
     while kill_after(delay, *command) != 0:  # those that were killed may not be gone yet: then it says so, and ends
         delay *= 1.2
         left = {path.name for path in tmp_path.iterdir() if path.suffix != '.part'}  # of the table that it joins to
-        assert left <= {'map.tsv.1-of-2', 'map.tsv.2-of-2'}
+        assert left <= {'map.tsv', 'map.tsv.1-of-2', 'map.tsv.2-of-2'}
+        assert 'map.tsv' not in left or (tmp_path / 'map.tsv').read_text() == whole, 'parts go when it is there'
     assert [path.name for path in tmp_path.iterdir() if path.suffix != '.part'] == ['map.tsv']
     assert (tmp_path / 'map.tsv').read_text() == whole
 
@@ -148,7 +149,8 @@ LONG = ['--over', 'omega_dt=0.1:3:log:3000', 'damping_ratio=0:2:3000']
 
 def test_jobs_end_with_the_process_that_started_them(tmp_path):
     with subprocess.Popen([SWEEP, *LONG, '--jobs', '2', '-o', tmp_path / 'map.tsv']) as process:
-        time.sleep(0.5)
+        while not all(size_of(tmp_path / f'map.tsv.{i}-of-2') > 0 for i in (1, 2)):
+            time.sleep(0.01)
         process.kill()
     sizes = []
     while len(sizes) < 2 or sizes[-1] != sizes[-2]:
@@ -208,7 +210,8 @@ def test_killed_while_it_repairs(parts, tmp_path):
 
 def test_one_writer(tmp_path):
     with subprocess.Popen([SWEEP, *LONG, '--part', '1/1', '-o', tmp_path / 'p']) as process:
-        time.sleep(0.3)
+        while size_of(tmp_path / 'p') == 0:  # it is locked before it is written
+            time.sleep(0.01)
         result = part(1, 1, tmp_path / 'p', LONG)
         process.kill()
     is_failure(result, 3, 'is being written by another process')
