@@ -57,6 +57,11 @@ def copies(parts, folder):
 
 # --- the same bytes -------------------------------------------------------------------------------------------------
 
+def same(data, expected):
+    """pytest would look for the differences of half a megabyte, for many minutes."""
+    return data == expected
+
+
 def test_header(whole):
     assert whole.splitlines()[1:3] == ['# command: spring-sweep ' + ' '.join(GRID),
                                        'omega_dt\tdamping_ratio\tmethod\terror\tenergy_error\tstatus']
@@ -68,7 +73,7 @@ def test_parts_in_any_order(count, whole, tmp_path):
     for i in numbers:
         is_done(part(i, count, tmp_path / f'{i}'))
     paths = random.Random(-count).sample([tmp_path / f'{i}' for i in numbers], count)
-    assert join(*paths).stdout == whole
+    assert same(join(*paths).stdout, whole)
 
 
 def test_more_parts_than_blocks_and_more_than_files_may_be_open(tmp_path):
@@ -84,7 +89,7 @@ def test_more_parts_than_blocks_and_more_than_files_may_be_open(tmp_path):
 @pytest.mark.parametrize('count', [1, 2, 3])
 def test_jobs(count, whole, tmp_path):
     is_done(run(SWEEP, *GRID, '--jobs', str(count), '-o', tmp_path / 'map.tsv'))
-    assert [path.name for path in tmp_path.iterdir()] == ['map.tsv'] and (tmp_path / 'map.tsv').read_text() == whole
+    assert [path.name for path in tmp_path.iterdir()] == ['map.tsv'] and same((tmp_path / 'map.tsv').read_text(), whole)
 
 
 SCENE_GRID = ['--scene', 'rope', '--over', 'stiffness=500:5000:log:6', 'steps_per_frame=1,4,16', 'duration=0.5',
@@ -127,8 +132,8 @@ def test_killed_twenty_times(whole, parts, tmp_path):
         killed += kill_when(lambda: size_of(path) > size, *GRID, '--part', '1/3', '-o', path) < 0
         assert size_of(path) > size
     is_done(part(1, 3, path))
-    assert path.read_bytes() == parts[0].read_bytes()
-    assert join(path, *parts[1:]).stdout == whole
+    assert same(path.read_bytes(), parts[0].read_bytes())
+    assert same(join(path, *parts[1:]).stdout, whole)
     assert killed >= 10
 
 
@@ -139,9 +144,9 @@ def test_jobs_are_killed_and_go_on(whole, tmp_path):
         delay *= 1.2
         left = {path.name for path in tmp_path.iterdir() if path.suffix != '.part'}  # of the table that it joins to
         assert left <= {'map.tsv', 'map.tsv.1-of-2', 'map.tsv.2-of-2'}
-        assert 'map.tsv' not in left or (tmp_path / 'map.tsv').read_text() == whole, 'parts go when it is there'
+        assert 'map.tsv' not in left or same((tmp_path / 'map.tsv').read_text(), whole), 'parts go when it is there'
     assert [path.name for path in tmp_path.iterdir() if path.suffix != '.part'] == ['map.tsv']
-    assert (tmp_path / 'map.tsv').read_text() == whole
+    assert same((tmp_path / 'map.tsv').read_text(), whole)
 
 
 LONG = ['--over', 'omega_dt=0.1:3:log:3000', 'damping_ratio=0:2:3000']
@@ -168,7 +173,7 @@ def test_torn(cut, whole, parts, tmp_path):
     os.truncate(path, cut if cut > 0 else size + cut)
     is_failure(join(path, *others), 3 if cut < 200 and cut > 0 else 1, '--join: ', str(path))
     is_done(part(1, 3, path))
-    assert path.read_bytes() == parts[0].read_bytes()
+    assert same(path.read_bytes(), parts[0].read_bytes())
 
 
 @pytest.mark.parametrize('seed', range(12))
@@ -191,7 +196,7 @@ def test_damaged(seed, whole, parts, tmp_path):
     result = part(1, 3, path)
     assert (result.returncode, result.stdout) == (0, '')
     assert result.stderr == f'{SWEEP}: "{path}" is damaged: what is not whole is done again\n'
-    assert path.read_bytes() == parts[0].read_bytes() and join(path, *others).stdout == whole
+    assert same(path.read_bytes(), parts[0].read_bytes()) and same(join(path, *others).stdout, whole)
     assert len(list(tmp_path.iterdir())) == 3
 
 
@@ -203,9 +208,10 @@ def test_killed_while_it_repairs(parts, tmp_path):
     path.write_bytes(data)
     for delay in (0.01, 0.02, 0.05, 0.1):
         if kill_after(delay, *GRID, '--part', '1/3', '-o', path) < 0:
-            assert path.read_bytes() == data, 'the damaged file stays until the other is whole'
+            assert same(path.read_bytes(), data) or same(path.read_bytes(), parts[0].read_bytes()), \
+                'the damaged file stays until the other is whole'
     part(1, 3, path)
-    assert path.read_bytes() == parts[0].read_bytes()
+    assert same(path.read_bytes(), parts[0].read_bytes())
 
 
 def test_one_writer(tmp_path):
@@ -234,10 +240,10 @@ def test_full_disk(whole, parts, small_disk):
     kept = path.read_bytes()
     assert len(kept) > 50000 and parts[0].read_bytes().startswith(kept) and kept.splitlines()[-1].startswith(b'# block ')
     is_failure(part(1, 3, path), 3, 'No space left on device')
-    assert path.read_bytes() == kept
+    assert same(path.read_bytes(), kept)
     subprocess.run(['mount', '-o', 'remount,size=4m', small_disk], check=True)
     is_done(part(1, 3, path))
-    assert path.read_bytes() == parts[0].read_bytes()
+    assert same(path.read_bytes(), parts[0].read_bytes())
 
 
 def test_full_disk_with_jobs(whole, small_disk):
@@ -247,7 +253,7 @@ def test_full_disk_with_jobs(whole, small_disk):
     assert 'the same command goes on with it' in result.stderr.splitlines()[-1]
     subprocess.run(['mount', '-o', 'remount,size=8m', small_disk], check=True)
     is_done(run(SWEEP, *command))
-    assert (small_disk / 'map.tsv').read_text() == whole
+    assert same((small_disk / 'map.tsv').read_text(), whole)
 
 
 # --- what is not joined ---------------------------------------------------------------------------------------------
@@ -288,7 +294,7 @@ def test_a_file_of_something_else_is_left_alone(parts, older):
     assert older.read_text() == 'older\n'
     before = parts[1].read_bytes()
     is_failure(part(1, 3, parts[1]), 3, '# part 2 of 3', '# part 1 of 3')
-    assert parts[1].read_bytes() == before
+    assert same(parts[1].read_bytes(), before)
 
 
 # --- the grid -------------------------------------------------------------------------------------------------------
