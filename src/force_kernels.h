@@ -22,7 +22,7 @@
 /* ---------------------------------------------------------------------------------------------------------- bands */
 
 /* Vectors of links that are computed at once: while some wait for a root, others are computed. On one axis there is none
-   to wait for, and a loop of few operations is worth more of them. */
+   to wait for, and a loop of few operations is worth more of them: measured for vectors of 16 and of 64 bytes. */
 enum { most_together = 4 };
 
 SPRING_INLINE size_t links_together(uint32_t axes)
