@@ -13,7 +13,9 @@ WIDTH = 520  # [px], as in style.gp
 SCALE = 4  # coordinates are quarters of a pixel
 
 STYLE = """
+@supports (animation-name: none) {{
 .{name} .frame {{ visibility: hidden; animation: {name} {seconds:g}s step-end infinite }}
+}}
 @keyframes {name} {{ 0% {{ visibility: visible }} {share:.4f}% {{ visibility: hidden }} }}
 @media (prefers-reduced-motion: reduce) {{
 .{name} .frame {{ animation: none }}
@@ -141,13 +143,17 @@ def walls(view, length, depth):
 def write(output, name, height, frames, seconds, still, below="", above=""):
     """The SVG of frames, each a text of its elements, shown for so many seconds each, between what does not move.
 
-    The frame numbered still, or the last, is shown where nothing may move.
+    The frame numbered still, or the last, is shown where nothing may move, and by programs that know no animations.
     """
     if pathlib.Path(output).suffix != ".svg":
         raise DataError(f'"{output}": an animation is written to a file that ends in .svg')
     style = STYLE.format(name=name, seconds=seconds * len(frames), share=100 / len(frames), size=18 * SCALE)
-    groups = "\n".join(f'<g class="frame{" still" * (k == min(still, len(frames) - 1))}" style="animation-delay:{k * seconds:.3f}s">{frame}</g>'
-                       for k, frame in enumerate(frames))
+
+    def group(k):
+        kind = 'frame still"' if k == min(still, len(frames) - 1) else 'frame" visibility="hidden"'
+        return f'<g class="{kind} style="animation-delay:{k * seconds:.3f}s">{frames[k]}</g>'
+
+    groups = "\n".join(map(group, range(len(frames))))
     pathlib.Path(output).write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" class="film {name}"\n width="{WIDTH}" height="{height}"\n'
         f' viewBox="0 0 {SCALE * WIDTH} {SCALE * height}">\n<style>{style}</style>\n{below}\n{groups}\n{above}\n</svg>\n',

@@ -160,15 +160,16 @@ static spring_matrix matrix_without_trace(spring_matrix m)
 }
 
 /* With F' and R' = F' + D' the parts without trace and s the eigenvalues,
-       J_R - J_F = D'/s_R + F' (1/s_R - 1/s_F),   s_R^2 - s_F^2 = det D' + the part of det(F' + D') of first order */
+       J_R - J_F = D'/s_R + F' (1/s_R - 1/s_F),   s_R^2 - s_F^2 = det D' + the part of det(F' + D') of first order
+   F'xx is left out: beside s it is the damping ratio, at most 0.07 where so many periods count that this is asked for,
+   and J changes by its square. */
 static phase_rotation phase_rotation_of(step_run step)
 {
     const spring_matrix F = matrix_without_trace(step.advance), D = matrix_without_trace(step.error);
-    const double square = -(F.xx * F.xx + F.xv * F.vx);
-    const double more = -(2 * F.xx * D.xx + F.xv * D.vx + D.xv * F.vx + D.xx * D.xx + D.xv * D.vx);
-    if (!(square > 0 && square + more > 0))
-        return (phase_rotation){0};
+    const double square = -F.xv * F.vx, more = -(F.xv * D.vx + D.xv * F.vx + D.xx * D.xx + D.xv * D.vx);
     const double exact = spring_sqrt(square), steps = spring_sqrt(square + more);
+    if (!(exact * steps > 0))
+        return (phase_rotation){0};
     const spring_matrix none = {0};
     const double change = -more / (exact * steps * (exact + steps));
     return (phase_rotation){true, matrix_sum(none, 1 / exact, F),
@@ -196,7 +197,7 @@ static double envelope_at(step_run i, const phase_rotation *j)
 
 /* --------------------------------------------------------------------------------------------------- the largest error */
 
-/* The largest value of a smooth function, from samples in order: of the parabola through three, where the middle one is
+/* The largest value of a smooth function between samples in order: of the parabola through three, where the middle one is
    largest. */
 typedef struct error_peak {
     double t[2], value[2]; /* the last two, newest first */
@@ -205,8 +206,7 @@ typedef struct error_peak {
 
 static void error_peak_add(error_peak *p, double t, double value)
 {
-    p->most = fmax(p->most, value);
-    if (p->value[0] > p->value[1] && p->value[0] > value) {
+    if (p->value[0] >= p->value[1] && p->value[0] > value) {
         const double before = p->t[0] - p->t[1], after = t - p->t[0];
         const double rise = (p->value[0] - p->value[1]) / before, fall = (p->value[0] - value) / after;
         const double curve = (rise + fall) / (before + after),

@@ -151,6 +151,39 @@ static void errors_of_any_step(void)
         }
 }
 
+/* Of many steps few are looked at: the largest error lies between them. A thousandth of 2 to 30 rad apart, parabolas know a
+   maximum to (2 omega t)^3/15.6, as norms oscillate twice a period, and steps come as near to it. */
+static void maxima_between_samples(void)
+{
+    const double n = 16000;
+    for (int i = 0; i < 30; i++) {
+        const double turns = random_uniform(2, 30);
+        const watched w = watched_of(random_log(1e-3, 1e3), i % 2 * random_log(1e-3, 0.3), turns);
+        for (const spring_method *m = steppers(); *m != no_method; m++) {
+            const double error = measured(&w, *m, n), bound = pow(2 * turns / 1000, 3) / 15.6;
+            CHECK_CLOSE(spring_step_error(&w.p, *m, w.duration, w.duration / n), error, bound * error, "a parabola");
+        }
+    }
+}
+
+/* Just below the stable step of a method without dissipation, by less than damping_ratio^2/2 of it, the roots of a step are
+   real, negative and all but equal: it does not turn with the spring, and errors of hundreds come before they decay. */
+static void steps_that_do_not_turn(void)
+{
+    for (int i = 0; i < 20; i++) {
+        const double zeta = random_log(1e-3, 3e-3);
+        const watched w = watched_of(random_log(1e-3, 1e3), zeta, 10000);
+        for (const spring_method *m = steppers(); *m != no_method; m++) {
+            if (!spring_method_describe(*m)->symplectic)
+                continue;
+            const double step = (1 - 0.1 * zeta * zeta) * spring_stable_step(&w.p, *m), n = floor(w.duration / step);
+            const double error = measured(&(watched){w.p, n * step}, *m, n),
+                         known = spring_step_error(&w.p, *m, n * step, step);
+            CHECK(known >= 0.999 * error && known <= 1.05 * error, "as large as it is");
+        }
+    }
+}
+
 /* The tolerance holds for every larger number of steps, and not for one less, or 1/4000 fewer of many. With heavy
    damping symplectic Euler is better at coarse steps than at finer ones: |1/(1 + G) - e^-G| is largest, 0.2036, at
    G = 2.51. */
@@ -193,6 +226,8 @@ static void known_errors(void)
     for (const spring_method *m = steppers(); *m != no_method; m++) {
         CHECK_BITS(spring_step_error(&free_mass, *m, 17, 0.3), 0, "every method is exact without a force");
         CHECK_BITS(spring_accurate_step(&free_mass, *m, 17, 1e-9), 17, "one step");
+        CHECK(spring_step_error(&undamped, *m, 1, 0x1p-52) < 1e-12, "2^52 steps");
+        CHECK_BITS(spring_step_error(&undamped, *m, 1, 0x1p-53 / 1.5), INFINITY, "more steps than are counted");
         spring_params loaded = undamped;
         loaded.load = -3;
         CHECK_BITS(spring_accurate_step(&undamped, *m, 17, 1e-4), spring_accurate_step(&loaded, *m, 17, 1e-4),
@@ -270,6 +305,8 @@ int main(void)
         {"bad input", bad_input},
         {"other units", units},
         {"the least number of steps", least_number_of_steps},
+        {"maxima between samples", maxima_between_samples},
+        {"steps that do not turn", steps_that_do_not_turn},
         {"extreme numbers", extreme_numbers},
         {"errors of any step", errors_of_any_step},
         {"against runs in multiple precision", against_runs},

@@ -248,8 +248,8 @@ SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, 
  *
  * @param[in] duration  > 0 [s]; of at least one step
  * @param[in] dt        > 0 [s]
- * @return E without rounding; 0 for the exact solution, INFINITY where it overflows, and for more than 2^53 steps. NaN for bad input, and a method that
- *         is not for one spring
+ * @return E without rounding; 0 for the exact solution, INFINITY where it overflows, and for more than 2^53 steps. NaN for
+ *         bad input, and a method that is not for one spring
  * @par Accuracy  E < 0.5 is within 0.999 ... 1.05 of that of a run (tests/test_accurate_step.c)
  */
 SPRING_API double spring_step_error(const spring_params *p, spring_method m, double duration, double dt);
