@@ -21,17 +21,21 @@ STYLE = """
 .{name} .frame {{ animation: none }}
 .{name} .still {{ visibility: visible }}
 }}
-.{name} {{ color: #1b1b1b; --thread: #0072b2; --water: #dcebf7; --quiet: #b4b4b4; --box: #b35a1f }}
-@media (prefers-color-scheme: dark) {{
-.{name} {{ color: #e8e8e8; --thread: #62b8f2; --water: #17293a; --quiet: #5a5e62; --box: #ff9a52 }}
-}}
-.{name} path {{ fill: none; stroke: var(--thread); stroke-width: 4; stroke-linejoin: round }}
-.{name} .water {{ fill: var(--water); stroke-width: 3 }}
-.{name} .wall {{ stroke: var(--quiet) }}
-.{name} .quiet {{ stroke: var(--quiet); stroke-width: 5 }}
-.{name} .box {{ fill: var(--box); stroke: var(--water); stroke-width: 6 }}
+.{name} {{ color: #1b1b1b }}
+.{name} path {{ fill: none; stroke: #0072b2; stroke-width: 4; stroke-linejoin: round }}
+.{name} .water {{ fill: #dcebf7; stroke-width: 3 }}
+.{name} .wall {{ stroke: #b4b4b4 }}
+.{name} .quiet {{ stroke: #b4b4b4; stroke-width: 5 }}
+.{name} .box {{ fill: #b35a1f; stroke: #dcebf7; stroke-width: 6 }}
 .{name} .pin {{ fill: currentColor }}
 .{name} text {{ fill: currentColor; font: {size}px sans-serif }}
+@media (prefers-color-scheme: dark) {{
+.{name} {{ color: #e8e8e8 }}
+.{name} path {{ stroke: #62b8f2 }}
+.{name} .water {{ fill: #17293a }}
+.{name} .wall, .{name} .quiet {{ stroke: #5a5e62 }}
+.{name} .box {{ fill: #ff9a52; stroke: #17293a }}
+}}
 """
 
 
