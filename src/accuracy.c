@@ -306,16 +306,10 @@ static double most_at_powers(const step_run *level, int levels, double from, dou
             s.before = level[j];
             s.i_before = i;
         }
-        power_sample(&s, i, level[j]);
-        if (j < 2)
-            continue;
-        const step_run half = runs_joined(level[j], level[j - 1]);
-        if (i * 5 / 4 < n)
-            power_sample(&s, i * 5 / 4, runs_joined(level[j], level[j - 2]));
-        if (i * 3 / 2 < n)
-            power_sample(&s, i * 3 / 2, half);
-        if (i * 7 / 4 < n)
-            power_sample(&s, i * 7 / 4, runs_joined(half, level[j - 2]));
+        const int finer = j > 2 ? j - 2 : 0;
+        step_run now = level[j];
+        for (double k = i; k < 2 * i && k < n; k += ldexp(1, finer), now = runs_joined(now, level[finer]))
+            power_sample(&s, k, now);
     }
     power_sample(&s, n, step_run_of(level, levels, n));
     const double dense = 32, stride = fmax(1, floor((s.to - s.from) / dense));
