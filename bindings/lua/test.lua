@@ -284,6 +284,15 @@ holds("what is not declared is missed", function()
   end)
 end)
 
+holds("it may be loaded again", function()
+  package.loaded.springstep = nil
+  local again = require "springstep"
+  assert(again ~= spring)
+  local s = ffi.new("spring_state", 1)
+  again.must(again.spring_advance(s, ffi.new("spring_params", 1, 40), again.SPRING_RK4, 0.01, 1), "advance")
+  assert(s.x < 1)
+end)
+
 holds("no library: it says where it was looked for", function()
   local said = output("SPRINGSTEP_LIBRARY=/nonexistent/library.so luajit -e 'require \"springstep\"' 2>&1")
   assert(said:find("The springstep library is missing", 1, true) and said:find("/nonexistent/library.so", 1, true), said)
