@@ -107,6 +107,22 @@ def test_water_with_tension(frames_of):
     assert math.dist(flat, deep) <= bound and size > 1e-6
 
 
+def defaults_in_the_manual():
+    """(option, scene, value) where the default is "by scene", and listed."""
+    listed = re.findall(r"\\-\\-([a-z]+) .*\n.*by scene\)\n\.br\nThat is: (.*)\.\n", run(SCENE, "--man").stdout)
+    assert listed
+    return [(option, *pair.split()) for option, pairs in listed for pair in pairs.split(", ")]
+
+
+def test_defaults_by_scene():
+    found = defaults_in_the_manual()
+    assert len(found) == 5 * 5
+    for option, name, value in found:
+        hashes = {run(SCENE, "--scene", name, "--method", "leapfrog", "--steps", "3", "--dt", "0.001", "--hash", *args).stdout
+                  for args in ((), (f"--{option}", value))}
+        assert len(hashes) == 1 and re.fullmatch("[0-9a-f]{16}\n", hashes.pop()), (option, name, value)
+
+
 def test_end_mass_of_the_rope():
     light, same, heavy = (scene('rope', '--duration', '0.5', *more)
                           for more in ([], ['--end-mass', '0.05'], ['--end-mass', '0.15']))
