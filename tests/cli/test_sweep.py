@@ -321,7 +321,9 @@ def test_logarithmic(first, last, count):
 
 def test_linear():
     values = column(sweep('--over damping_ratio=0:2:201 --method exact --over periods=0.1'), 'damping_ratio')
-    assert values == [2 * i / 200 for i in range(201)]
+    assert values == [i / 100 for i in range(201)], 'as one would write them'
+    near = column(sweep('--over damping_ratio=1:1.000000000001:101 --method exact --over periods=0.1'), 'damping_ratio')
+    assert len(set(near)) == 101, 'distinct'
 
 
 # --- what is measured -----------------------------------------------------------------------------------------------
@@ -418,6 +420,13 @@ def test_a_long_run_is_looked_at_often_enough():
             assert 0.95 < float(plan['dt_s']) / 0.003 < 1.06
 
 
+def test_what_has_died_out_is_no_less_for_a_longer_run():
+    for line in ('omega_dt=0.001 damping_ratio=0.1,0.3', 'omega_dt=0.1 damping_ratio=0.2'):
+        short, long = (sweep(f'--over {line} periods={periods} --method euler,symplectic-euler,leapfrog '
+                             '--measure settling_time_s') for periods in (30, 1500))
+        assert [{**row, 'periods': ''} for row in short] == [{**row, 'periods': ''} for row in long]
+
+
 def test_tolerance_is_the_plan():
     rows = sweep('--over tolerance=1e-2,1e-5 damping_ratio=0,0.3 periods=7 --measure steps,dt_s,force_evaluations')
     for (tolerance, ratio), some in itertools.groupby(rows, lambda row: (row['tolerance'], row['damping_ratio'])):
@@ -441,6 +450,8 @@ def test_what_cannot_be_done_has_a_word():
     assert status == ['no_step']
     status = [row['status'] for row in sweep('--scene cloth --over size=1000000 --method rk4')]
     assert status == ['too_long']
+    status = [row['status'] for row in sweep('--scene cloth --over size=8 gravity=0 duration=0.1 --method rk4')]
+    assert status == ['invalid'], 'nothing moves but by rounding'
     status = [row['status'] for row in sweep('--scene water --over stretch=0.5 duration=0.1 --method rk4')]
     assert status == ['invalid']
 
@@ -454,7 +465,7 @@ def test_a_scene(scene):
     rows = sweep(f'--scene {scene} --over steps_per_frame=4 duration=0.25 '
                  '--measure steps,force_evaluations,dt_s,stable_step_s')
     stable, = (float(row['stable_step_s']) for row in rows if row['method'] == 'leapfrog')
-    reference = energies('leapfrog', math.ceil(1 / 60 / (stable / 16)))
+    reference = energies('rk4', math.ceil(1 / 60 / (stable / 16)))
     kinetic = max(column(reference, 'kinetic_J'))
     for row in rows:
         assert (int(row['steps']), float(row['dt_s'])) == (60, 1 / 240)
@@ -489,6 +500,8 @@ def test_angle():
     ('--over omega_dt=0:1:3', ['"omega_dt=0:1:3" has the value 0', 'from 1e-06 to 1e+06']),
     ('--over damping_ratio=0:1:log:3', ['logarithmic', 'greater than 0']),
     ('--over damping_ratio=-1:1:log:3', ['logarithmic', 'greater than 0']),
+    ('--over damping_ratio=1e6:1e-320:log:3', ['too far apart']),
+    ('--over damping_ratio=1e-320:1e6:log:3', ['too far apart']),
     ('--scene rope --over size=2:3:3', ['"size=2:3:3" has the value 2.5', 'whole number']),
     ('--over omega_dt=1 omega_dt=2', ['"omega_dt=2"', 'already']),
     ('--over omega_dt=1 tolerance=0.1', ['"tolerance=0.1"', 'either', '"omega_dt"']),

@@ -53,12 +53,12 @@ bool grid_set_scene(grid *g, const char *name)
 
 /* ------------------------------------------------------------------------------------------------------------- axes */
 
-/* base^exponent for 0 <= exponent <= 1, from its binary digits: each is a square root more. Powers of the C library differ
+/* base^exponent for 0 <= exponent < 1, from its binary digits: each is a square root more. Powers of the C library differ
    in their last digits from one to the next; this is off by 53 roundings at most, and the same everywhere. */
 static double power(double base, double exponent)
 {
     double result = 1;
-    for (double root = base; exponent > 0 && exponent < 1;) {
+    for (double root = base; exponent > 0;) {
         root = sqrt(root);
         exponent *= 2;
         if (exponent >= 1) {
@@ -66,13 +66,15 @@ static double power(double base, double exponent)
             exponent -= 1;
         }
     }
-    return exponent >= 1 ? base : result;
+    return result;
 }
 
-/* To 12 digits, so that 0.1 is 0.1. */
-static double round_digits(double x)
+/* To 12 digits, so that 0.1 is 0.1; unless neighbours on the axis would become equal. */
+static double round_digits(const axis *a, double x)
 {
     char text[32];
+    if (!(fabs(a->last - a->first) > 1e-10 * (double)(a->count - 1) * fmax(fabs(a->first), fabs(a->last))))
+        return x;
     snprintf(text, sizeof text, "%.11e", x);
     return strtod(text, NULL);
 }
@@ -87,8 +89,8 @@ double axis_value(const axis *a, uint64_t i)
     if (i + 1 == a->count)
         return a->last;
     if (a->kind == AXIS_LOGARITHMIC)
-        return round_digits(a->first * power(a->last / a->first, (double)i / last));
-    return (a->first * (last - (double)i) + a->last * (double)i) / last;
+        return round_digits(a, a->first * power(a->last / a->first, (double)i / last));
+    return round_digits(a, (a->first * (last - (double)i) + a->last * (double)i) / last);
 }
 
 static const char *read_number(const char *text, double *value)
@@ -206,8 +208,10 @@ static bool read_axis(grid *g, axis *a, const char *text)
             "\"%s\" is not NAME=A:B:N, NAME=A:B:log:N or NAME=A,B,...; A and B should be finite numbers, and N a "
             "whole number of at least 2",
             text);
-    if (a->kind == AXIS_LOGARITHMIC && !(a->first > 0 && a->last > 0 && isfinite(a->last / a->first)))
+    if (a->kind == AXIS_LOGARITHMIC && !(a->first > 0 && a->last > 0))
         return refuse(g, "\"%s\": the ends of a logarithmic axis should be greater than 0", text);
+    if (a->kind == AXIS_LOGARITHMIC && !isnormal(a->last / a->first))
+        return refuse(g, "\"%s\": the ends are too far apart; their ratio should be a double", text);
     return check_values(g, a, text) && check_alone(g, a, text);
 }
 

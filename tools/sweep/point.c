@@ -161,10 +161,10 @@ static void look_at_spring(looks *l, const spring_params *p, const spring_state 
 
 static void run_spring(looks *l, const spring_params *p, spring_method m, double dt, uint64_t steps)
 {
-    const uint64_t each = 128, stride = steps > 2 * each ? (steps - 1) / each : 1;
+    const uint64_t each = 128;
     spring_state run[2] = {starts[0], starts[1]};
     for (uint64_t i = 0; i < steps;) {
-        const uint64_t wanted = i < each ? 1 : stride, some = wanted < steps - i ? wanted : steps - i;
+        const uint64_t wanted = i < each ? 1 : i / each, some = wanted < steps - i ? wanted : steps - i;
         i += some;
         for (int k = 0; k < 2; k++) {
             if (spring_advance(&run[k], p, m, dt, some) != SPRING_OK) {
@@ -223,7 +223,7 @@ typedef struct subject {
     uint64_t frames;
 } subject;
 
-/* Leapfrog in short steps. */
+/* RK4 in short steps. */
 struct sweep_memory {
     double key[SWEEP_PARAMETERS + 3]; /* what it was run for: scene, values, frame and frames */
     bool known, overflows;
@@ -231,6 +231,7 @@ struct sweep_memory {
     double *energy;   /* [frames + 1] */
     double kinetic;   /* [J] the largest */
     double motion;    /* [m] the largest distance from the start */
+    bool moves;       /* further than rounding does */
 };
 
 sweep_memory *sweep_memory_new(void)
@@ -338,7 +339,7 @@ static spring_scene *start(const subject *s, spring_method m)
     return scene;
 }
 
-/* Steps of leapfrog in a frame, at most a sixteenth of the stable step each. */
+/* Steps in a frame, at most a sixteenth of the stable step of leapfrog each. */
 static double reference_steps(const subject *s, spring_scene *scene)
 {
     return fmax(ceil(s->frame / (spring_scene_stable_step(scene, SPRING_LEAPFROG) / 16)), 1);
@@ -352,13 +353,17 @@ static void run_reference(sweep_memory *r, const subject *s, spring_scene *scene
     r->kinetic = r->motion = 0;
     for (uint64_t i = 1; i <= s->frames && !r->overflows; i++) {
         double *now = &r->position[i * s->numbers];
-        r->overflows = spring_scene_advance(scene, SPRING_LEAPFROG, dt, substeps) != SPRING_OK;
+        r->overflows = spring_scene_advance(scene, SPRING_RK4, dt, substeps) != SPRING_OK;
         positions_of(s, scene, now);
         const spring_scene_energies e = spring_scene_energy(scene);
         r->energy[i] = total(&e);
         r->kinetic = fmax(r->kinetic, e.kinetic);
         r->motion = fmax(r->motion, distance(now, r->position, s->numbers));
     }
+    double extent = 0;
+    for (size_t i = 0; i < s->numbers; i++)
+        extent = fmax(extent, fabs(r->position[i]));
+    r->moves = r->motion > 1e-9 * extent;
 }
 
 /* The reference for a point, unless it is the last one. Those of points that differ in their steps alone are equal. */
@@ -377,7 +382,7 @@ static sweep_status remember(sweep_memory *r, const subject *s, int scene_number
     free(r->energy);
     r->position = malloc((s->frames + 1) * s->numbers * sizeof *r->position);
     r->energy = malloc((s->frames + 1) * sizeof *r->energy);
-    spring_scene *scene = start(s, SPRING_LEAPFROG);
+    spring_scene *scene = start(s, SPRING_RK4);
     sweep_status status = SWEEP_FAILED;
     if (r->position != NULL && r->energy != NULL && scene != NULL) {
         const double substeps = reference_steps(s, scene);
@@ -451,7 +456,7 @@ static sweep_status measure_started(sweep_memory *memory, sweep_result *r, subje
     const sweep_status status = remember(memory, s, scene_number, value);
     if (status != SWEEP_STABLE)
         return status;
-    if (memory->overflows || !(memory->motion > 0))
+    if (memory->overflows || !memory->moves)
         return SWEEP_INVALID;
     looks l = no_looks;
     if (!run_scene(&l, memory, s, scene, m, (uint64_t)substeps))
@@ -472,7 +477,7 @@ static sweep_status measure_scene(sweep_memory *memory, sweep_result *r, int sce
     const spring_status begun = begin(&s, &settings, value);
     if (begun != SPRING_OK)
         return begun == SPRING_ENOMEM ? SWEEP_FAILED : SWEEP_INVALID;
-    sweep_status status = preset_takes(&s.preset, SPRING_LEAPFROG) ? SWEEP_UNSUPPORTED : SWEEP_INVALID;
+    sweep_status status = preset_takes(&s.preset, SPRING_RK4) ? SWEEP_UNSUPPORTED : SWEEP_INVALID;
     if (preset_takes(&s.preset, m)) {
         spring_scene *scene = start(&s, m);
         status = scene == NULL ? SWEEP_FAILED : measure_started(memory, r, &s, scene, scene_number, value, m);

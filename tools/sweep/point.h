@@ -73,13 +73,14 @@ typedef enum sweep_measure {
 extern const char *const sweep_measure_names[SWEEP_MEASURES + 1];
 
 typedef enum sweep_status {
-    SWEEP_STABLE,   /* a spring: below the stable step. A scene: it never has ten times the kinetic energy it should */
-    SWEEP_GROWING,  /* a spring: at the stable step or beyond, and not exploded in this time */
-    SWEEP_EXPLODED, /* a spring: has a hundredfold energy. A scene: not stable, or no finite numbers */
+    SWEEP_STABLE,  /* a spring: below the stable step. A scene: it never has ten times the kinetic energy it should */
+    SWEEP_GROWING, /* a spring: at the stable step or beyond, and not exploded in this time */
+    SWEEP_EXPLODED, /* a spring: as that, and has a hundredfold energy. A scene: not stable, or no finite numbers; what is
+                       measured is of the time until then */
     SWEEP_UNSUPPORTED, /* the method is not for this */
     SWEEP_NO_STEP,     /* no step is accurate enough; the stable step is 0 */
     SWEEP_TOO_LONG,    /* more steps than a point may take, or more to remember than it may keep */
-    SWEEP_INVALID,     /* numbers that the library refuses */
+    SWEEP_INVALID,     /* numbers that the library refuses, or nothing moves */
     SWEEP_FAILED       /* no memory */
 } sweep_status;
 
@@ -99,14 +100,14 @@ void sweep_memory_free(sweep_memory *memory);
  * Measure a point. The result depends on scene, value and method alone.
  *
  * One spring has mass 1 kg and stiffness 1 N/m, so omega is 1/s. It is run from (x, v) = (1, 0) and from (0, 1), and
- * looked at after each of the first 128 steps and at 128 times after, as equally apart as steps allow:
+ * looked at after each of the first 256 steps, and then whenever a 128th of the time so far has passed:
  *
  *     error         the largest norm of the matrix (run - exact) of both, which is the error from the worst start
  *     energy_error  the difference of the energy from that of the exact solution, over that of the start: the largest
  *
  * With a tolerance the step is spring_accurate_step(), there is no run, and the error is spring_step_error().
  *
- * A scene is run as it is, water with a poke, beside leapfrog in steps of at most a sixteenth of its stable step, and
+ * A scene is run as it is, water with a poke, beside RK4 in steps of at most a sixteenth of leapfrog's stable step, and
  * looked at after each frame:
  *
  *     error         the largest distance of all positions, root of the sum of squares, over the largest distance of the
