@@ -184,6 +184,19 @@ static void steps_that_do_not_turn(void)
     }
 }
 
+/* Euler's steps, a little longer than the stable step of 2 damping_ratio/omega, grow while the spring decays. */
+static void steps_that_grow(void)
+{
+    for (int i = 0; i < 20; i++) {
+        const double zeta = random_uniform(0.08, 0.12), z = zeta * random_uniform(2.04, 2.1);
+        const double n = floor(random_uniform(1, 4) / (z * z / 2 - zeta * z));
+        const watched w = watched_of(random_log(1e-3, 1e3), zeta, n * z);
+        const double error = measured(&w, SPRING_EULER, n),
+                     known = spring_step_error(&w.p, SPRING_EULER, w.duration, w.duration / n);
+        CHECK(known >= 0.999 * error && known <= 1.05 * error, "as large as it is");
+    }
+}
+
 /* The tolerance holds for every larger number of steps, and not for one less, or 1/4000 fewer of many. With heavy
    damping symplectic Euler is better at coarse steps than at finer ones: |1/(1 + G) - e^-G| is largest, 0.2036, at
    G = 2.51. */
@@ -307,6 +320,7 @@ int main(void)
         {"the least number of steps", least_number_of_steps},
         {"maxima between samples", maxima_between_samples},
         {"steps that do not turn", steps_that_do_not_turn},
+        {"steps that grow", steps_that_grow},
         {"extreme numbers", extreme_numbers},
         {"errors of any step", errors_of_any_step},
         {"against runs in multiple precision", against_runs},
