@@ -200,6 +200,19 @@ def test_damaged(seed, whole, parts, tmp_path):
     assert len(list(tmp_path.iterdir())) == 3
 
 
+def test_repaired_where_a_link_points_to(parts, tmp_path):
+    (tmp_path / 'there').mkdir()
+    path, *_ = copies(parts, tmp_path / 'there')
+    data = bytearray(path.read_bytes())
+    data[5000] ^= 1
+    path.write_bytes(data)
+    link = tmp_path / 'link'
+    link.symlink_to('there/1')
+    assert part(1, 3, link).returncode == 0
+    assert os.readlink(link) == 'there/1' and same(path.read_bytes(), parts[0].read_bytes())
+    assert len(list(tmp_path.iterdir())) == 2 and len(list(path.parent.iterdir())) == 3
+
+
 def test_killed_while_it_repairs(parts, tmp_path):
     path, *_ = copies(parts, tmp_path)
     data = bytearray(path.read_bytes())
@@ -254,6 +267,32 @@ def test_full_disk_with_jobs(whole, small_disk):
     subprocess.run(['mount', '-o', 'remount,size=8m', small_disk], check=True)
     is_done(run(SWEEP, *command))
     assert same((small_disk / 'map.tsv').read_text(), whole)
+
+
+@pytest.mark.parametrize('make', [os.mkdir, os.mkfifo, lambda path: os.symlink('nowhere', path)])
+def test_jobs_without_a_file_to_write(make, tmp_path):
+    """Refused before the work: no part is begun."""
+    make(tmp_path / 'map.tsv')
+    is_failure(run(SWEEP, *LONG, '--jobs', '2', '-o', tmp_path / 'map.tsv'), 3, '--output', f'"{tmp_path}/map.tsv"')
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_jobs_that_cannot_begin(tmp_path):
+    """No advice to go on, either: there is nothing to go on with."""
+    result = run(SWEEP, *LONG, '--jobs', '1', '-o', tmp_path / 'nowhere' / 'map.tsv')
+    assert (result.returncode, result.stderr.splitlines()) == (3, [
+        f'{SWEEP}: cannot write "{tmp_path}/nowhere/map.tsv.1-of-1": No such file or directory',
+        f'{SWEEP}: nothing is done'])
+
+
+def test_jobs_beside_parts_of_another_sweep(tmp_path):
+    """Refused before the work, and no advice to go on."""
+    other = tmp_path / 'map.tsv.2-of-2'
+    is_done(part(2, 2, other, ['--over', 'omega_dt=0.5:1.5:5']))
+    before = other.read_bytes()
+    result = run(SWEEP, *LONG, '--jobs', '2', '-o', tmp_path / 'map.tsv')
+    is_failure(result, 3, str(other), 'is not this part of this sweep')
+    assert list(tmp_path.iterdir()) == [other] and other.read_bytes() == before
 
 
 # --- what is not joined ---------------------------------------------------------------------------------------------
@@ -520,7 +559,9 @@ def test_angle():
     ('--jobs 2', ['--jobs', '--output']),
     ('--jobs 0 -o x', ['--jobs', '"0"', '1 to 1024']),
     ('--jobs 2 --part 1/3 -o x', ['--part', 'without --jobs']),
+    ('--part 1/2 2/2 -o x', ['--part', '"1/2" and "2/2"', 'one part']),
     ('--join a --over omega_dt=1', ['--join', 'should be alone']),
+    ('--join a --scene rope', ['--join', 'should be alone']),
 ])
 def test_refused(args, words, tmp_path):
     is_failure(run(SWEEP, *args.split(), cwd=tmp_path), 2, *words)

@@ -25,12 +25,14 @@ typedef struct record {
 
 struct journal {
     const char *path;
-    char other[PATH_MAX]; /* the file that is written in place of a damaged one, until it is whole again */
-    FILE *in;             /* what there was; kept open, as whoever closes a file loses its lock */
-    int fd;               /* that is written */
-    int damaged_fd;       /* that is replaced; -1: none is */
-    long long end;        /* of the last whole block that was written */
-    record *later;        /* [laters] of the damaged file, behind the damage */
+    char target[PATH_MAX]; /* of the path, if that is a link; only of a damaged file */
+    char other[PATH_MAX];  /* the file that is written in place of a damaged one, until it is whole again */
+    FILE *in;              /* what there was; kept open, as whoever closes a file loses its lock */
+    int fd;                /* that is written */
+    bool made;             /* was there no file of this name? */
+    int damaged_fd;        /* that is replaced; -1: none is */
+    long long end;         /* of the last whole block that was written */
+    record *later;         /* [laters] of the damaged file, behind the damage */
     size_t laters, taken;
     uint64_t next;         /* the first block that is not in the file yet, or not known to be */
     uint64_t first, every; /* blocks first, first + every, ... */
@@ -158,7 +160,10 @@ static bool lock(const journal *j, int fd)
         return true;
     if (errno == EACCES || errno == EAGAIN)
         return refuse("\"%s\" is being written by another process", j->path);
-    return refuse("cannot lock \"%s\": %s", j->path, strerror(errno));
+    refuse("cannot lock \"%s\": %s", j->path, strerror(errno));
+    if (j->made)
+        unlink(j->path);
+    return false;
 }
 
 /* ----------------------------------------------------------------------------------------------------- what is there */
@@ -206,7 +211,7 @@ static bool scan(journal *j)
 }
 
 /* Does the file start as it should? One that is shorter was torn there. */
-static bool has_header(const journal *j, FILE *in, const char *header, bool *torn)
+static bool has_header(const char *path, FILE *in, const char *header, bool *torn)
 {
     const size_t length = strlen(header);
     char *start = malloc(length + 1);
@@ -220,7 +225,7 @@ static bool has_header(const journal *j, FILE *in, const char *header, bool *tor
         if (header[same] == '\n')
             line = same + 1;
     if (same < read)
-        refuse("\"%s\" is there, and is not this part of this sweep: it has \"%.*s\" where \"%.*s\" should be", j->path,
+        refuse("\"%s\" is there, and is not this part of this sweep: it has \"%.*s\" where \"%.*s\" should be", path,
                (int)strcspn(start + line, "\n"), start + line, (int)strcspn(header + line, "\n"), header + line);
     free(start);
     return same == read;
@@ -228,7 +233,7 @@ static bool has_header(const journal *j, FILE *in, const char *header, bool *tor
 
 static bool take_over(journal *j, const char *header)
 {
-    bool torn = false, done = has_header(j, j->in, header, &torn);
+    bool torn = false, done = has_header(j->path, j->in, header, &torn);
     if (done && !torn) {
         j->end = (long long)strlen(header);
         done = scan(j);
@@ -255,11 +260,13 @@ static bool copy_range(journal *j, int from, long long begin, long long end)
 }
 
 /* A second file takes all that is whole, and what is done again, in order; it has the name once nothing of the first is
-   left to take. */
+   left to take. A link stays a link. */
 static bool begin_repair(journal *j)
 {
     const long long good = j->end;
-    if (snprintf(j->other, sizeof j->other, "%s.repair", j->path) >= (int)sizeof j->other)
+    if (realpath(j->path, j->target) == NULL)
+        return refuse("cannot write \"%s\": %s", j->path, strerror(errno));
+    if (snprintf(j->other, sizeof j->other, "%s.repair", j->target) >= (int)sizeof j->other)
         return refuse("cannot write \"%s\": its name is too long", j->path);
     const int fd = open(j->other, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (fd < 0)
@@ -274,7 +281,7 @@ static bool end_repair(journal *j)
 {
     if (!sync_now(j))
         return false;
-    if (rename(j->other, j->path) != 0)
+    if (rename(j->other, j->target) != 0)
         return refuse("cannot replace \"%s\": %s", j->path, strerror(errno));
     close(j->damaged_fd);
     j->damaged_fd = -1;
@@ -291,7 +298,10 @@ journal *journal_open(const char *path, const char *header, uint64_t first, uint
         return NULL;
     }
     *j = (journal){.path = path, .damaged_fd = -1, .next = first, .first = first, .every = every, .blocks = blocks};
-    j->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    j->fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    j->made = j->fd >= 0;
+    if (!j->made)
+        j->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     struct stat status;
     j->in = fopen(path, "r");
     if (j->fd < 0 || j->in == NULL || fstat(j->fd, &status) != 0)
@@ -308,6 +318,16 @@ journal *journal_open(const char *path, const char *header, uint64_t first, uint
     journal_close(j);
     strcpy(journal_message, message);
     return NULL;
+}
+
+bool journal_fits(const char *path, const char *header)
+{
+    FILE *in = fopen(path, "r");
+    bool torn;
+    const bool fits = in == NULL || has_header(path, in, header, &torn);
+    if (in != NULL)
+        fclose(in);
+    return fits;
 }
 
 bool journal_damaged(const journal *j)

@@ -25,11 +25,13 @@ extern char journal_message[1000];
 /**
  * Open the file of a part, or make it. It is locked until journal_close().
  *
- * @param header    lines that the file has to start with
- * @param[out] foreign  NULL, or whether the file is there and has another header
+ * @param header  lines that the file has to start with
  * @return NULL: it is in use, is not this part's, or cannot be read or written
  */
 journal *journal_open(const char *path, const char *header, uint64_t first, uint64_t every, uint64_t blocks);
+
+/** Is there no such file, or one that starts with the header, as far as it goes? Nothing is written or locked. */
+bool journal_fits(const char *path, const char *header);
 
 /** Was the file found damaged, before blocks that are whole? Then these are kept, and the others are done again. */
 bool journal_damaged(const journal *j);

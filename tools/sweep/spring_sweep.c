@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -210,7 +211,9 @@ static uint64_t read_number(const char *text, char **end)
 static void do_one_part(const grid *g)
 {
     char *end = NULL;
-    const char *text = part.word[part.count - 1];
+    const char *text = part.word[0];
+    if (part.count > 1)
+        cli_fail(CLI_USAGE, "--part: \"%s\" and \"%s\": one process does one part", text, part.word[1]);
     const uint64_t number = read_number(text, &end);
     const uint64_t parts = number > 0 && *end == '/' ? read_number(end + 1, &end) : 0;
     if (parts == 0 || *end != '\0' || number > parts || parts > most_parts)
@@ -224,7 +227,7 @@ static void do_one_part(const grid *g)
 
 typedef struct found {
     journal_reader reader;
-    const char *header; /* up to the columns, without the line of the part; NULL: this part has not been seen */
+    bool there;
 } found;
 
 /* Takes the line "# part I of N, K blocks" out of a header. */
@@ -284,9 +287,9 @@ static void look_at_part(const char *path, const char *first_path, found **all, 
                  " with %" PRIu64,
                  path, of, its_blocks, first_path, *parts, *blocks);
     found *place = &(*all)[number - 1];
-    if (place->header != NULL)
+    if (place->there)
         cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", path, number, place->reader.path);
-    *place = (found){reader, *header};
+    *place = (found){reader, true};
     if (own != *header)
         free(own);
 }
@@ -297,7 +300,7 @@ static void check_missing(const found *all, uint64_t parts)
     char names[100] = "";
     uint64_t missing = 0;
     for (uint64_t i = 0; i < parts; i++) {
-        if (all[i].header != NULL)
+        if (all[i].there)
             continue;
         if (missing < 5)
             snprintf(names + strlen(names), sizeof names - strlen(names), "%s%" PRIu64, missing > 0 ? ", " : "", i + 1);
@@ -421,32 +424,62 @@ static void show_progress(const grid *g, int done)
     }
 }
 
-static void wait_for_jobs(void)
+static void wait_for_jobs(const char *const *paths)
 {
     int status, worst = 0;
     while (wait(&status) > 0)
         if (worst == 0 && status != 0)
             worst = WIFEXITED(status) ? WEXITSTATUS(status) : CLI_FAILED;
+    bool begun = false;
+    for (uint64_t i = 0; i < jobs; i++)
+        begun = begun || access(paths[i], F_OK) == 0;
+    if (worst != 0 && !begun)
+        cli_fail((cli_status)worst, "nothing is done");
     if (worst != 0)
         cli_fail((cli_status)worst,
                  "not all is done; what is done lies in %s.*-of-%" PRIu64 ", and the same command goes on with it",
                  cli_output_path(), jobs);
 }
 
+/* What would be refused when all is done is refused before the work. */
+static void check_output(void)
+{
+    const char *path = cli_output_path();
+    struct stat status;
+    if (path == NULL)
+        cli_fail(CLI_USAGE, "--jobs: what is done lies in files beside that of --output, which should name it");
+    const bool good = stat(path, &status) == 0 ? S_ISREG(status.st_mode) && access(path, W_OK) == 0
+                                               : lstat(path, &status) != 0; /* no link to nowhere */
+    if (!good)
+        cli_fail(CLI_IO,
+                 "--output: cannot write \"%s\"; with --jobs it should be a file that can be created or replaced",
+                 path);
+}
+
+static void check_parts(const grid *g, const char *const *paths)
+{
+    char header[header_size];
+    for (uint64_t i = 0; i < jobs; i++) {
+        print_header(header, sizeof header, g, i + 1, jobs);
+        if (!journal_fits(paths[i], header))
+            cli_fail(CLI_IO, "%s", journal_message);
+    }
+}
+
 static void run_jobs(const grid *g)
 {
-    if (cli_output_path() == NULL)
-        cli_fail(CLI_USAGE, "--jobs: what is done lies in files beside that of --output, which should name it");
+    check_output();
     const char **paths = calloc(jobs, sizeof *paths);
     int ends[2];
     if (paths == NULL || pipe(ends) != 0)
         cli_fail(CLI_FAILED, "out of memory");
     for (uint64_t i = 0; i < jobs; i++)
         paths[i] = path_of_part(i + 1);
+    check_parts(g, paths);
     start_jobs(g, paths, ends);
     close(ends[1]);
     show_progress(g, ends[0]);
-    wait_for_jobs();
+    wait_for_jobs(paths);
     join(paths, jobs);
     for (uint64_t i = 0; i < jobs; i++) {
         unlink(paths[i]);
@@ -465,7 +498,7 @@ int main(int argc, char **argv)
         return 0;
     }
     if (joined.count > 0) {
-        if (over.count + methods.count + measures.count + part.count + jobs > 0)
+        if (over.count + methods.count + measures.count + part.count + jobs > 0 || cli_given(&scene))
             cli_fail(CLI_USAGE, "--join: the parts say which sweep they are of; it should be alone but for --output");
         join(joined.word, joined.count);
         return 0;

@@ -2,6 +2,7 @@
 """Sweeps: what becomes of a spring, or of a scene, at every point of a grid; here, or by the workers of a Dask client."""
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -34,6 +35,7 @@ class _Grid:
     """A grid from the words for it; InvalidError if they are not."""
 
     def __init__(self, scene: str, axes: Iterable[str], methods: str, measures: str):
+        self.piece = 16 if scene == "spring" else 1  # points of one call of C, which nothing interrupts
         self.c = ffi.gc(ffi.new("grid *"), lib.grid_clear)
         lib.grid_init(self.c)
         self._say("scene", lib.grid_set_scene(self.c, scene.encode()))
@@ -52,10 +54,12 @@ class _Grid:
         """The rows of some points."""
         c = self.c
         values, results = np.empty((count, c.axes)), np.empty(count * c.methods, _RESULT)
+        to_values, to_results = ffi.from_buffer("double[]", values), ffi.from_buffer("sweep_result[]", results)
         memory = ffi.gc(lib.sweep_memory_new(), lib.sweep_memory_free)
-        if not lib.grid_measure(c, memory, first, count, ffi.from_buffer("double[]", values),
-                                ffi.cast("sweep_result *", results.ctypes.data)):
-            raise MemoryError("no memory for the points of a sweep")
+        for done in range(0, count, self.piece):
+            if not lib.grid_measure(c, memory, first + done, min(self.piece, count - done), to_values + done * c.axes,
+                                    to_results + done * c.methods):
+                raise MemoryError("no memory for the points of a sweep")
         axes = [ffi.string(lib.sweep_parameters[c.axis[i].parameter].column).decode() for i in range(c.axes)]
         measures = [c.measure[i] for i in range(c.measures)]
         rows = np.empty(count * c.methods, [
@@ -78,7 +82,11 @@ def _task(words: _Words, first: int, count: int) -> np.ndarray:
 
 def _axis(name: str, values: Any) -> str:
     if not isinstance(values, str):
-        values = ",".join(repr(float(value)) for value in np.atleast_1d(values))
+        try:
+            numbers = np.atleast_1d(values if hasattr(values, "__float__") else list(values))
+            values = ",".join(repr(float(value)) for value in numbers)
+        except (TypeError, ValueError):
+            invalid("over", f"{name}={values!r}")
     return f"{name}={values}"
 
 
@@ -98,7 +106,11 @@ def sweep(over: Mapping[str, str | float | Iterable[float]], methods: str | Iter
     client: of dask.distributed: its workers measure, and it looks after those that die; None: this thread measures
     points_per_task: how many a worker is given at a time; if nothing is said, a hundredth of its share
     retries: of a task that fails, by Dask
+
+    Numbers have a decimal point: where the locale of the process (LC_NUMERIC) has a comma, they are refused.
     """
+    if points_per_task is not None and operator.index(points_per_task) < 1:
+        invalid("points_per_task", points_per_task)
     words = (scene, tuple(_axis(name, values) for name, values in over.items()), _list(methods), _list(measure))
     points = _Grid(*words).c.points
     if client is None:

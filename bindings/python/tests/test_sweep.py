@@ -39,6 +39,29 @@ def test_a_scene(scene):
                                                    "size=5", "--method", "leapfrog,rk4")
 
 
+@pytest.mark.parametrize("values", [{1.0, 3.0}, (x for x in (1, 3)), range(1, 4, 2), ("1", "3"), np.array([1, 3])],
+                         ids=lambda values: type(values).__name__)
+def test_values_of_any_iterable(values):
+    assert springstep.sweep({"omega_dt": values}, "exact")["omega_dt"].tolist() == [1, 3]
+
+
+@pytest.mark.parametrize("arguments", [
+    {"over": {"omega_dt": "0.01:3:log:300", "damping_ratio": "0:2:300", "periods": [100]}},
+    {"over": {"stiffness": "500:5000:log:3000"}, "scene": "rope"}], ids=["springs", "scenes"])
+def test_interrupted(arguments):
+    """Ctrl-C ends what would take minutes."""
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.5)
+    start = time.monotonic()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            springstep.sweep(**arguments)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - start < 5
+
+
 def test_the_plan():
     rows = springstep.sweep({"tolerance": "1e-6:0.1:log:6", "periods": [1, 50]}, measure="force_evaluations")
     assert as_the_tool_writes(rows) == of_the_tool("--over", "tolerance=1e-6:0.1:log:6", "periods=1,50", "--measure",
@@ -48,6 +71,9 @@ def test_the_plan():
 @pytest.mark.parametrize("field, arguments", [
     ("over", {"over": {"omega": 1}}), ("over", {"over": {"omega_dt": -1}}), ("over", {"over": {"omega_dt": "1:2"}}),
     ("over", {"over": {"omega_dt": float("nan")}}), ("over", {"over": {"omega_dt": []}}),
+    ("over", {"over": {"omega_dt": None}}), ("over", {"over": {"omega_dt": ["x"]}}),
+    ("over", {"over": {"omega_dt": [[1, 2], [3, 4]]}}),
+    ("points_per_task", {"over": {}, "points_per_task": 0}), ("points_per_task", {"over": {}, "points_per_task": -1}),
     ("methods", {"over": {}, "methods": "rkn8"}), ("scene", {"over": {}, "scene": "sea"}),
     ("measure", {"over": {}, "measure": "error"}),
     ("over", {"over": {"omega_dt": "1:2:9000000000", "damping_ratio": "0:1:9000000000"}}),
