@@ -18,13 +18,15 @@ def pytest_addoption(parser):
     parser.addoption('--gtest_output', dest='xmlpath', type=lambda words: words.removeprefix('xml:'))
 
 
-@pytest.fixture(scope='session')
-def screen(tmp_path_factory):
-    """An X server without a window manager, whose picture lies in a file."""
+@pytest.fixture
+def screen(tmp_path):
+    """An X server without a window manager, whose picture lies in a file. Each test has its own: a server starts anew when
+    its last window closes, and refuses whoever comes meanwhile."""
     for command in 'Xvfb', 'xdotool':
         if shutil.which(command) is None:
             pytest.skip(f'no {command}')
-    folder = tmp_path_factory.mktemp('screen')
+    folder = tmp_path / 'screen'
+    folder.mkdir()
     read, write = os.pipe()
     with subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1024x768x24', '-fbdir', folder,
                            '-nolisten', 'tcp'],
