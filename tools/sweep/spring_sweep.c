@@ -66,7 +66,7 @@ static const cli_program program = {
     .meaning = "The first columns are the parameters of the axes, here omega_dt.\n\n"
                "error: against the exact solution, from the worst start; of a scene against RK4 in steps of a\n"
                "sixteenth of leapfrog's stable step, over the motion; that is itself right to 1e-9 for slow motion,\n"
-               "a hanging cloth, and to 1e-4 for the fastest, waves as short as links.\n\n"
+               "a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
                "energy_error: the largest, with its sign, over the energy at the start; of a scene over its largest\n"
                "kinetic energy. settling_time_s: until it stays below 1 % of the start; a scene below 1 % of its\n"
                "largest speed.\n\n"
