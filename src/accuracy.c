@@ -366,21 +366,11 @@ static double order_root(double a, int order)
     return a;
 }
 
-/* The number of steps at which the errors of all that count would add up to the tolerance. */
-static double steps_guess(const accuracy *of, double tolerance, double shortest)
+/* The number of steps at which the errors of all would add up to the tolerance, by the power law. */
+static double steps_guess(const accuracy *of, double tolerance, double asymptotic)
 {
-    double n = shortest;
-    for (int tries = 0; tries < 8; tries++) {
-        const step_rates r = rates_of_step(of, n);
-        const step_run step = run_of_one_step(of, r);
-        const double count = steps_that_count(step, r.G, n) / decays_that_count * 3;
-        const double next = n * order_root(matrix_norm(step.error) * fmin(count, n) / tolerance, of->order);
-        const bool close = !(next > shortest) || fabs(next - n) <= n / 16;
-        n = fmax(next, shortest);
-        if (close)
-            break;
-    }
-    return n;
+    const step_run step = run_of_one_step(of, rates_of_step(of, asymptotic));
+    return asymptotic * fmax(1, order_root(matrix_norm(step.error) * asymptotic / tolerance, of->order));
 }
 
 double spring_accurate_steps(const accuracy *of, double tolerance)
@@ -388,9 +378,6 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
     const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS)));
     const double asymptotic = ceil(2 * rates_size(of->whole)); /* steps from which on the power law holds */
     const double resolution = 0x1p-13;                         /* of n */
-    const int few = 32;                                        /* steps: every number of them is tried */
-    if (!(asymptotic < most))
-        return INFINITY;
     double n = fmin(ceil(steps_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
     for (int tries = 0;; tries++) {
         const double error = spring_error_of(of, n, n);
@@ -403,18 +390,14 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
         const double finest = fmax(1, floor(good * resolution));
         if (good < INFINITY && good - bad <= finest)
             return good;
-        const double law = ceil(n * order_root(fmin(error, 0x1p60) / tolerance, of->order));
+        const double law = ceil(n * order_root(error / tolerance, of->order));
         if (good == INFINITY) {
             n = fmin(fmax(law, ceil(n * 1.01)), most);
         } else if (bad == 0) {
-            /* beyond the power law, slower the nearer it comes to the tolerance: a maximum must not be jumped over */
-            const double factor = 1 + fmax(tolerance < 0.5 ? 0.05 : 0.25, 0.5 * (1 - error / tolerance));
-            const double slowly = n <= few ? n - 1 : ceil(n / factor);
-            n = fmin(fmax(law, n > asymptotic ? asymptotic : slowly), n - finest);
+            /* beyond the power law slowly, up to 20 steps one by one: a maximum must not be jumped over */
+            n = fmin(fmax(law, n > asymptotic ? asymptotic : ceil(n / 1.05)), n - finest);
         } else {
-            const bool stuck = tries > 12;
-            const double near = error <= tolerance ? fmin(law, good - finest) : fmax(law, bad + finest);
-            n = stuck || !(near > bad && near < good) ? bad + floor((good - bad) / 2) : near;
+            n = tries > 12 ? bad + floor((good - bad) / 2) : fmin(fmax(law, bad + finest), good - finest);
         }
     }
 }
