@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes the report from its templates, its data and its figures: two pages that need no other file, nor each other.
 
-usage: page.py [--quick] --into FOLDER --cmark PROGRAM [--if-there FILE.tsv] FILE.tsv... FILE.svg...
+usage: page.py [--quick] --into FOLDER --cmark PROGRAM FILE.tsv... FILE.svg...
 
 index.md.in and evidence.md.in are Markdown with Jinja2 expressions. An expression takes its numbers from the data files, by
 the names of their columns, and a figure from its picture and the comment that opens its script, a template, too. Figures
@@ -281,11 +281,8 @@ def main():
     parser.add_argument("--quick", action="store_true", help="mark the pages as those of a quick study")
     parser.add_argument("--into", type=pathlib.Path, required=True, help="folder of the pages and data/")
     parser.add_argument("--cmark", required=True, help="the program cmark-gfm")
-    parser.add_argument("--if-there", type=pathlib.Path, help="a data file that the template can do without")
     parser.add_argument("files", type=pathlib.Path, nargs="+", help="data files (.tsv) and pictures (.svg)")
     arguments = parser.parse_args()
-    if arguments.if_there and arguments.if_there.exists():
-        arguments.files.append(arguments.if_there)
     try:
         make(arguments)
     except (DataError, jinja2.TemplateError, OSError, subprocess.CalledProcessError) as error:

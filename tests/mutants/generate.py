@@ -65,6 +65,7 @@ class Token(NamedTuple):
 class Definition(NamedTuple):
     name: str
     tokens: list
+    is_macro: bool = False
 
     def body(self):
         """Where the body of a function begins and ends, braces included; None if this is none."""
@@ -127,7 +128,7 @@ def definitions(text):
         if token.kind == "directive":
             macro = MACRO.match(token.text)
             if macro:
-                yield Definition(macro.group(1), scan(text, token.start + macro.end(), token.end))
+                yield Definition(macro.group(1), scan(text, token.start + macro.end(), token.end), is_macro=True)
             continue
         tokens.append(token)
         depth += (token.text == "{") - (token.text == "}")

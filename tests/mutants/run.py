@@ -22,6 +22,10 @@ without comments and layout). Verdicts:
 
 Status 1 if a mutant survives, if one of equivalent.tsv is killed or is not there any more, or if one of by_hand.toml
 cannot be applied or compiled. The last line on standard error is "N passed, N failed, N skipped".
+
+Most of the time went to the compiler. So the mutants of a function are compiled together, as cases of a switch over a
+number from the environment; and a program that never comes into the function, which is found out at the start, is not
+run. A mutant that is not within a function, or does not compile there, is compiled alone.
 """
 
 import argparse
@@ -56,7 +60,35 @@ BROKEN = "does not compile"
 # The library is linked into every program: one that does not contain what is changed stays as it is, and need not run.
 # Vectors of 16 bytes are compiled four times as fast as all of them, so these are tried first.
 OPTIONS = ["-Dtests=enabled", "-Dreport=disabled", "-Ddefault_library=static", "-Ddebug=false", "-Doptimization=1"]
-BUILDS = {"build-narrow": ["-Dc_args=-DSPRING_X86_64=0"], "build": []}
+BUILDS = {"build-narrow": "-DSPRING_X86_64=0", "build": ""}
+
+# What each file of the builds includes first: in a program that is to run mutant 3 of its function SPRING_MUTANT is 3.
+# Each process adds to the file SPRING_REACHED a byte a function: 1 if it came there. (Weak: there is one of each in a
+# program. Declared by hand: headers would come before the macros that say what a file needs of them.)
+FUNCTIONS = 1024
+SWITCH = f"""
+char *spring_getenv(const char *) __asm__("getenv");
+int spring_atoi(const char *) __asm__("atoi");
+int spring_open(const char *, int, ...) __asm__("open");
+long spring_write(int, const void *, unsigned long) __asm__("write");
+__attribute__((weak)) int spring_mutant;
+__attribute__((weak)) unsigned char spring_reached[{FUNCTIONS}];
+void spring_mutant_read(void);
+void spring_reached_write(void);
+__attribute__((weak, constructor)) void spring_mutant_read(void)
+{{
+    const char *number = spring_getenv("SPRING_MUTANT");
+    spring_mutant = number ? spring_atoi(number) : 0;
+}}
+__attribute__((weak, destructor)) void spring_reached_write(void)
+{{
+    const char *path = spring_getenv("SPRING_REACHED");
+    if (path)
+        spring_write(spring_open(path, {os.O_WRONLY | os.O_CREAT | os.O_APPEND}, 0666), spring_reached, {FUNCTIONS});
+}}
+"""
+QUICK = 7  # [s] the limit of programs that are run before it is asked whether the machine code differs
+TOGETHER = 8000  # words of mutants that are compiled together, at most
 
 
 class Mutant(NamedTuple):
@@ -68,6 +100,8 @@ class Mutant(NamedTuple):
     by: str
     reason: str
     only: str  # the one program that has to notice it, or ""
+    function: str  # file and offset of the function's body, or ""
+    body: str  # of the function
 
 
 class Program(NamedTuple):
@@ -77,6 +111,7 @@ class Program(NamedTuple):
     tap: bool
     limit: int  # [s]
     digest: str  # of the targets as they should be
+    reaches: frozenset  # the functions that it comes into
 
 
 class Build(NamedTuple):
@@ -85,12 +120,21 @@ class Build(NamedTuple):
     objects: dict  # path and digest, as they should be
 
 
+def function_at(file, start):
+    return f"{file}:{start}"
+
+
 def mutant_of(name, path, text, definition, change, by="generator", reason="", only=""):
     after = change.apply(text)
-    within = definition.tokens[0].start, definition.tokens[-1].end + len(after) - len(text)
+    longer = len(after) - len(text)
+    within = definition.tokens[0].start, definition.tokens[-1].end + longer
     code = generate.Definition("", generate.scan(after, *within)).code()
     line = text.count("\n", 0, change.start) + 1
-    return Mutant(name, path.relative_to(ROOT).as_posix(), line, after, code, by, reason, only)
+    file, function, body = path.relative_to(ROOT).as_posix(), "", ""
+    start, end = (not definition.is_macro and definition.body()) or (len(text), 0)
+    if start <= change.start:
+        function, body = function_at(file, start), after[start : end + longer]
+    return Mutant(name, file, line, after, code, by, reason, only, function, body)
 
 
 def generated():
@@ -137,12 +181,13 @@ def known_equivalents(mutants):
 # --------------------------------------------------------------------------------------------- programs and builds
 
 
-def execute(program, build):
+def execute(program, build, **environment):
     """What failed in a program, or "" if all is well. The limit is of processor time, which others do not use up."""
     points, plan = 0, None
     limited = ["sh", "-c", f'ulimit -t {program.limit} && exec "$@"', "sh", *program.command]
     with subprocess.Popen(limited, cwd=build, text=True, errors="replace", stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,
+                          env=os.environ | environment) as process:
         for line in process.stdout:
             if program.tap and line.startswith("not ok"):
                 os.killpg(process.pid, signal.SIGKILL)
@@ -171,8 +216,17 @@ def introspect(build, what):
                                      text=True).stdout)
 
 
-def programs_of(build):
-    """Every test whose program is built here, fastest first. All must pass on the tree as it is."""
+def with_notes(text, file, number):
+    """A file whose functions note that they are run: for the function at body() the number."""
+    for definition in reversed([d for d in generate.definitions(text) if d.body() and not d.is_macro]):
+        start = definition.body()[0]
+        index = number.setdefault(function_at(file, start), len(number))
+        text = f"{text[: start + 1]} spring_reached[{index}] = 1; {text[start + 1 :]}"
+    return text
+
+
+def programs_of(build, number):
+    """Every test whose program is built here, fastest first. All must pass on the tree as it is, with notes."""
     outputs = {output for target in introspect(build, "targets") for output in target["filename"]}
 
     def inside(word):
@@ -182,7 +236,7 @@ def programs_of(build):
     programs = [
         Program(test["name"], [inside(word) for word in test["cmd"]],
                 [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in outputs],
-                test["protocol"] == "tap", 600, "")
+                test["protocol"] == "tap", 600, "", frozenset())
         for test in introspect(build, "tests") if test["cmd"][0] in outputs
     ]
     built = ninja(build, *sorted({target for program in programs for target in program.targets}))
@@ -191,12 +245,14 @@ def programs_of(build):
 
     def timed(program):
         start = time.monotonic()
-        failure = execute(program, build)
+        notes = build / f"{program.name}.reached"
+        failure = execute(program, build, SPRING_REACHED=str(notes))
         if failure:
             sys.exit(f"{program.name} fails without any mutant: {failure}")
         duration = time.monotonic() - start
-        whole = digest([build / target for target in program.targets])
-        return round(4 * duration), program._replace(limit=5 + round(5 * duration), digest=whole)
+        seen = notes.read_bytes()  # of one process after the other
+        reaches = frozenset(name for name, i in number.items() if any(seen[i :: FUNCTIONS]))
+        return round(4 * duration), program._replace(limit=5 + round(2 * duration), reaches=reaches)
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         costs = list(pool.map(timed, programs))
@@ -205,52 +261,158 @@ def programs_of(build):
 
 def set_up(tree):
     """The builds of a tree, in the order in which they are tried."""
-    builds = []
-    for name, options in BUILDS.items():
-        path = tree / name
-        done = subprocess.run(["meson", "setup", str(path), str(tree), *OPTIONS, *options], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, check=False)
+    (tree / "switch.h").write_text(SWITCH, encoding="utf-8")
+    originals = {path: path.read_text(encoding="utf-8") for path in sorted((tree / "src").rglob("*.[ch]"))}
+    number = {}
+    for path, text in originals.items():
+        path.write_text(with_notes(text, path.relative_to(tree).as_posix(), number), encoding="utf-8")
+    if len(number) > FUNCTIONS:
+        sys.exit(f"{len(number)} functions: expected at most {FUNCTIONS}")
+    programs = {}
+    for name, macro in BUILDS.items():
+        arguments = f"-Dc_args=-include {tree}/switch.h {macro}"
+        done = subprocess.run(["meson", "setup", str(tree / name), str(tree), *OPTIONS, arguments],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             sys.exit(done.stdout + done.stderr)
-        programs = programs_of(path)
+        programs[name] = programs_of(tree / name, number)
+    for path, text in originals.items():
+        path.write_text(text, encoding="utf-8")
+
+    builds = []
+    for name in BUILDS:
+        path = tree / name
+        ninja(path, *sorted({target for program in programs[name] for target in program.targets}))
         objects = {str(file.relative_to(path)): digest([file]) for file in path.rglob("*.o")}
-        builds.append(Build(path, programs, objects))
+        builds.append(Build(path, [
+            program._replace(digest=digest([path / target for target in program.targets])) for program in programs[name]
+        ], objects))
     return builds
 
 
-# ----------------------------------------------------------------------------------------------------- one mutant
+# ------------------------------------------------------------------------------------------------------- the mutants
 
 
-def try_program(build, program):
-    """What failed, or "" if nothing did."""
-    if ninja(build.path, "-j1", *program.targets).returncode != 0:
-        return BROKEN
-    if digest([build.path / target for target in program.targets]) == program.digest:
-        return ""
-    return execute(program, build.path)
+class NotCompiled(Exception):
+    pass
 
 
-def try_mutant(mutant, builds, last_killer):
-    """(verdict, killed_by) of a mutant that is in the tree; not yet whether it is equivalent."""
-    compiled, same = set(), True
-    for build in builds:
-        # Once is enough, if what is compiled is the same in all builds.
-        if compiled and all(each.objects.get(name) == builds[0].objects[name] for name in compiled for each in builds):
-            break
-        programs = [program for program in build.programs if mutant.only in ("", program.name)]
-        targets = {target for program in programs for target in program.targets}
-        compiled |= set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+def make(build, targets):
+    if ninja(build.path, "-j1", *targets).returncode != 0:
+        raise NotCompiled
+
+
+def switched(mutants, text):
+    """The file of one mutant or, of several, one that is as it was unless the program is asked for one of them."""
+    if len(mutants) == 1:
+        return mutants[0].text
+    start = int(mutants[0].function.rpartition(":")[2])
+    end = len(text) - (len(mutants[0].text) - start - len(mutants[0].body))
+    cases = "".join(f"case {i}: {{\n{mutant.body}\nbreak; }}\n" for i, mutant in enumerate(mutants, 1))
+    return (f"{text[:start]}{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"
+            f"{text[end:]}")
+
+
+def compiled_in(build):
+    """The objects that are to be compiled now."""
+    targets = {target for program in build.programs for target in program.targets}
+    return set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+
+
+def same_objects(build, objects):
+    make(build, objects)
+    return all(digest([build.path / name]) == build.objects[name] for name in objects)
+
+
+def try_programs(programs, build, mutants, killers, last_killer):
+    """Adds to `killers` what killed the mutants that are compiled now."""
+    changed, passed = {}, set()
+
+    def concerned(program, mutant):
+        if mutant.only or not mutant.file.startswith("src/"):
+            return mutant.only in ("", program.name)
+        if mutant.function:
+            return mutant.function in program.reaches
+        return mutant.file.endswith(".h") or any(function.startswith(mutant.file) for function in program.reaches)
+
+    def failure_of(program, mutant):
+        if not concerned(program, mutant):
+            return ""
+        if program.name not in changed:
+            make(build, program.targets)
+            changed[program.name] = digest([build.path / target for target in program.targets]) != program.digest
+        if not changed[program.name]:
+            return ""
+        if len(mutants) == 1:
+            return execute(program, build.path)
+        failure = execute(program, build.path, SPRING_MUTANT=str(1 + mutants.index(mutant)))
+        if failure and program.name not in passed:
+            if execute(program, build.path):
+                raise NotCompiled  # as it was meant: without a number the program has to pass
+            passed.add(program.name)
+        return failure
+
+    for mutant in mutants:
         where = mutant.name.rsplit(":", 2)[0]
         for program in sorted(programs, key=lambda program: program.name != last_killer.get(where)):
-            failure = try_program(build, program)
+            failure = mutant not in killers and failure_of(program, mutant)
             if failure:
                 last_killer[where] = program.name
-                return "killed", f"{program.name}: {failure}"
-        same = same and all(digest([build.path / name]) == build.objects[name] for name in compiled)
-    return "same code" if compiled and same else "survived", "-"
+                killers[mutant] = f"{program.name}: {failure}"
 
 
-def run(mutants):
+def judge(mutants, path, switch, builds, last_killer):
+    path.write_text(switch, encoding="utf-8")
+    killers, same, objects = {}, set(), [compiled_in(build) for build in builds]
+    quick = [program for program in builds[0].programs if program.limit <= QUICK]
+    try_programs(quick, builds[0], mutants, killers, last_killer)
+    for mutant in mutants:  # where the machine code is the same, no program need be run
+        path.write_text(mutant.text, encoding="utf-8")
+        if mutant not in killers and all(same_objects(*each) for each in zip(builds, objects)):
+            same.add(mutant)
+    path.write_text(switch, encoding="utf-8")
+    judged = killers | dict.fromkeys(same, "-")
+    for build, compiled in zip(builds, objects):
+        # Once is enough, if what is compiled is the same in all builds.
+        if build is builds[0] or any(build.objects.get(name) != builds[0].objects[name] for name in compiled):
+            rest = [program for program in build.programs if build is not builds[0] or program not in quick]
+            try_programs(rest, build, mutants, judged, last_killer)
+    return [(mutant, "same code" if mutant in same else "killed" if mutant in judged else "survived",
+             judged.get(mutant, "-")) for mutant in mutants]
+
+
+def verdicts_of(mutants, path, builds, last_killer):
+    """Of the mutants of one function, or of a single one: each with its verdict, and what killed it."""
+    original = path.read_text(encoding="utf-8")
+    try:
+        return judge(mutants, path, switched(mutants, original), builds, last_killer)
+    except NotCompiled:
+        if len(mutants) == 1:
+            return [(mutants[0], "killed", BROKEN)]
+    finally:
+        path.write_text(original, encoding="utf-8")
+    half = len(mutants) // 2
+    return [*verdicts_of(mutants[:half], path, builds, last_killer),
+            *verdicts_of(mutants[half:], path, builds, last_killer)]
+
+
+def groups(mutants, equivalent):
+    """Those that can be compiled together. What is known to survive takes longest, and comes last."""
+    group, words = [], 0
+    for mutant in sorted(mutants, key=lambda mutant: (mutant.name in equivalent, mutant.file, mutant.function)):
+        cost = len(mutant.body.split())
+        known = group and group[0].name in equivalent
+        if group and (not mutant.function or mutant.function != group[0].function or words + cost > TOGETHER or
+                      known != (mutant.name in equivalent)):
+            yield group
+            group, words = [], 0
+        group.append(mutant)
+        words += cost
+    if group:
+        yield group
+
+
+def run(mutants, equivalent):
     """Yields each with its verdict and what killed it."""
     if not mutants:
         return
@@ -264,21 +426,18 @@ def run(mutants):
             trees.put(pathlib.Path(shutil.copytree(first, first.with_name(str(i)), symlinks=True)))
         last_killer = {}
 
-        def work(mutant):
+        def work(group):
             tree = trees.get()
-            path = tree / mutant.file
-            original = path.read_text(encoding="utf-8")
             try:
-                path.write_text(mutant.text, encoding="utf-8")
                 here = [build._replace(path=tree / build.path.name) for build in builds]
-                return mutant, *try_mutant(mutant, here, last_killer)
+                return verdicts_of(group, tree / group[0].file, here, last_killer)
             finally:
-                path.write_text(original, encoding="utf-8")
                 trees.put(tree)
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            by_file = sorted(mutants, key=lambda mutant: mutant.file)  # a file is restored, and compiled again, once
-            yield from pool.map(work, by_file)
+            jobs = [pool.submit(work, group) for group in groups(mutants, equivalent)]
+            for job in concurrent.futures.as_completed(jobs):
+                yield from job.result()
 
 
 # --------------------------------------------------------------------------------------------------------- the table
@@ -319,6 +478,14 @@ def head(present):
             f"# present: {present}\n" + "\t".join(COLUMNS))
 
 
+def write_table(path, mutants, rows):
+    """Never less than it held before, in the order of the files."""
+    table = [head(len(mutants)), *("\t".join(rows[name].values()) for name in mutants if name in rows)]
+    new = path.with_suffix(".new")
+    new.write_text("\n".join(table) + "\n", encoding="utf-8")
+    new.replace(path)
+
+
 def in_sample(mutant, equivalent):
     return mutant.name not in equivalent and zlib.crc32(mutant.name.encode()) % SAMPLED[mutant.by] == 0
 
@@ -347,20 +514,19 @@ def main():
         return 0
 
     rows = kept_rows(options.output, mutants, equivalent)
-    before = [head(len(mutants)), *("\t".join(row.values()) for row in rows.values())]
-    if options.output:  # never less than it held before
-        new = options.output.with_suffix(".new")
-        new.write_text("\n".join(before) + "\n", encoding="utf-8")
-        new.replace(options.output)
+    if options.output:
+        write_table(options.output, mutants, rows)
+    else:
+        print(head(len(mutants)), flush=True)
     with open(options.output, "a", encoding="utf-8") if options.output else sys.stdout as table:
-        if not options.output:
-            print(*before, sep="\n", flush=True)
-        for mutant, verdict, killed_by in run([mutant for mutant in wanted if mutant.name not in rows]):
+        for mutant, verdict, killed_by in run([mutant for mutant in wanted if mutant.name not in rows], equivalent):
             rows[mutant.name] = row = row_of(mutant, verdict, killed_by, equivalent)
             print("\t".join(row.values()), file=table, flush=True)
             failure = failure_in(row, mutant, equivalent)
             if failure:
                 print("FAILED:", failure, file=sys.stderr, flush=True)
+    if options.output:
+        write_table(options.output, mutants, rows)
 
     judged = [rows[mutant.name] for mutant in wanted]
     verdicts = [row["verdict"] for row in judged]
