@@ -18,7 +18,7 @@
  * Search    E grows with the step, and is searched for the tolerance by its power law. Where damping is solved for,
  *           coarse steps may jump over a fast decay and be better than fine ones (symplectic Euler with heavy damping).
  *           So the search begins at a step that is short beside every time scale, where the power law holds, and goes
- *           from there to coarser ones no faster than by half, until one is not accurate enough.
+ *           from there to coarser ones, a twentieth at a time at most, until one is not accurate enough.
  * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are not counted, and never enough.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
  *           (tests/test_accurate_step.c)
@@ -394,7 +394,7 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
         if (good == INFINITY) {
             n = fmin(fmax(law, ceil(n * 1.01)), most);
         } else if (bad == 0) {
-            /* beyond the power law slowly, up to 20 steps one by one: a maximum must not be jumped over */
+            /* slowly where the power law does not hold, and one by one in the end: a maximum must not be jumped over */
             n = fmin(fmax(law, n > asymptotic ? asymptotic : ceil(n / 1.05)), n - finest);
         } else {
             n = tries > 12 ? bad + floor((good - bad) / 2) : fmin(fmax(law, bad + finest), good - finest);
