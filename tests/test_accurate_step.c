@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The accurate step and the error of a step, against runs in multiple precision that know nothing of their formulas. */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -101,6 +102,13 @@ static double report(const char *what, const char *regime, const char *method, d
     return value[count / 2];
 }
 
+/* Is the largest number of steps whose rounding, sqrt(n) eps, is within the tolerance still not enough? */
+static bool rounding_forbids(const watched *w, spring_method m, double tolerance)
+{
+    const double most = floor(fmin(tolerance * tolerance / (DBL_EPSILON * DBL_EPSILON), 0x1p53));
+    return !(spring_step_error(&w->p, m, w->duration, w->duration / most) <= tolerance);
+}
+
 /* The tolerances of one regime and method. */
 static void against_runs_of(const struct regime *r, spring_method m)
 {
@@ -111,8 +119,10 @@ static void against_runs_of(const struct regime *r, spring_method m)
         const double tolerance = random_log(1e-12, 1e-1);
         const double step = spring_accurate_step(&w.p, m, w.duration, tolerance);
         CHECK(step >= 0 && step <= w.duration, "at least one step");
-        if (step == 0)
+        if (step == 0) {
+            CHECK(rounding_forbids(&w, m, tolerance), "no step is accurate enough");
             continue;
+        }
         const double n = rint(w.duration / step);
         CHECK_BITS(step, w.duration / n, "a whole number of steps");
         const double error = measured(&w, m, n), known = spring_step_error(&w.p, m, w.duration, step);
@@ -208,8 +218,10 @@ static void least_number_of_steps(void)
             const watched w = regimes[i % REGIMES].make();
             const double tolerance = random_bits() % 2 ? random_log(1e-6, 0.3) : hump * random_uniform(0.8, 1.01);
             const double step = spring_accurate_step(&w.p, *m, w.duration, tolerance), n = rint(w.duration / step);
-            if (step == 0)
+            if (step == 0) {
+                CHECK(rounding_forbids(&w, *m, tolerance), "no step is accurate enough");
                 continue;
+            }
             CHECK(spring_step_error(&w.p, *m, w.duration, step) <= tolerance, "enough");
             const double fewer = n - fmax(1, floor(n / 4000));
             CHECK(n == 1 || spring_step_error(&w.p, *m, w.duration, w.duration / fewer) > tolerance,

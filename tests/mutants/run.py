@@ -23,7 +23,7 @@ without comments and layout). Verdicts:
 Status 1 if a mutant survives, if one of equivalent.tsv is killed or is not there any more, or if one of by_hand.toml
 cannot be applied or compiled. The last line on standard error is "N passed, N failed, N skipped".
 
-Most of the time went to the compiler. So the mutants of a function are compiled together, as cases of a switch over a
+To compile takes longer than to run. So the mutants of a function are compiled together, as cases of a switch over a
 number from the environment; and a program that never comes into the function, which is found out at the start, is not
 run. A mutant that is not within a function, or does not compile there, is compiled alone.
 """
