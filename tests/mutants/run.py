@@ -314,14 +314,15 @@ def switched(mutants, text):
 
 
 def compiled_in(build):
-    """The objects that are to be compiled now."""
+    """The objects that are to be compiled now, the smallest first."""
     targets = {target for program in build.programs for target in program.targets}
-    return set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+    objects = set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+    return sorted(objects, key=lambda name: (build.path / name).stat().st_size)
 
 
-def same_objects(build, objects):
-    make(build, objects)
-    return all(digest([build.path / name]) == build.objects[name] for name in objects)
+def same_object(build, name):
+    make(build, [name])
+    return digest([build.path / name]) == build.objects[name]
 
 
 def try_programs(programs, build, mutants, killers, last_killer):
@@ -368,7 +369,8 @@ def judge(mutants, path, switch, builds, last_killer):
     try_programs(quick, builds[0], mutants, killers, last_killer)
     for mutant in mutants:  # where the machine code is the same, no program need be run
         path.write_text(mutant.text, encoding="utf-8")
-        if mutant not in killers and all(same_objects(*each) for each in zip(builds, objects)):
+        if mutant not in killers and all(same_object(build, name) for build, names in zip(builds, objects)
+                                         for name in names):
             same.add(mutant)
     path.write_text(switch, encoding="utf-8")
     judged = killers | dict.fromkeys(same, "-")
