@@ -387,17 +387,15 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
             bad = n;
         if (bad >= most)
             return INFINITY;
-        const double finest = fmax(1, floor(good * resolution));
-        if (good < INFINITY && good - bad <= finest)
+        const double finest = fmax(1, floor(n * resolution));
+        if (good - bad <= finest)
             return good;
         const double law = ceil(n * order_root(error / tolerance, of->order));
-        if (good == INFINITY) {
-            n = fmin(fmax(law, ceil(n * 1.01)), most);
-        } else if (bad == 0) {
-            /* slowly where the power law does not hold, and one by one in the end: a maximum must not be jumped over */
-            n = fmin(fmax(law, n > asymptotic ? asymptotic : ceil(n / 1.05)), n - finest);
-        } else {
+        if (good == INFINITY)
+            n = fmin(2 * n, most);
+        else if (bad == 0) /* where the power law does not hold, slowly: a maximum must not be jumped over */
+            n = floor(fmin(fmax(law, asymptotic), n / 1.05));
+        else
             n = tries > 12 ? bad + floor((good - bad) / 2) : fmin(fmax(law, bad + finest), good - finest);
-        }
     }
 }

@@ -66,10 +66,10 @@ SPRING_INLINE void exact_store(void *array, size_t i, real a, bool single)
         vec_store((double *)array + i, a);
 }
 
-/* NaN if it is negative, or infinite: so the spring keeps its state. */
+/* NaN if it is negative, or infinite: so the spring keeps its state. Of -0 it is 0. */
 SPRING_INLINE real exact_rate(exact_array p, size_t i, bool single)
 {
-    const real rate = exact_load(p.first, i * p.step, single) + 0;
+    const real rate = exact_load(p.first, i * p.step, single);
     return select_real(rate >= 0, rate + (rate - rate), splat(NAN));
 }
 
