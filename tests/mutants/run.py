@@ -17,7 +17,7 @@ without comments and layout). Verdicts:
 
   killed      a test fails
   same code   the compiler makes of it what it makes of the library as it is
-  equivalent  no test fails, and equivalent.tsv says why none can
+  equivalent  equivalent.tsv says why no test can fail; those that take a second or less do not
   survived    none of these
 
 Status 1 if a mutant survives, if one of equivalent.tsv is killed or is not there any more, or if one of by_hand.toml
@@ -362,11 +362,13 @@ def try_programs(programs, build, mutants, killers, last_killer):
                 killers[mutant] = f"{program.name}: {failure}"
 
 
-def judge(mutants, path, switch, builds, last_killer):
+def judge(mutants, path, switch, builds, last_killer, argued):
     path.write_text(switch, encoding="utf-8")
     killers, same, objects = {}, set(), [compiled_in(build) for build in builds]
     quick = [program for program in builds[0].programs if program.limit <= QUICK]
     try_programs(quick, builds[0], mutants, killers, last_killer)
+    if argued:
+        return [(mutant, "killed" if mutant in killers else "survived", killers.get(mutant, "-")) for mutant in mutants]
     for mutant in mutants:  # where the machine code is the same, no program need be run
         path.write_text(mutant.text, encoding="utf-8")
         if mutant not in killers and all(same_object(build, name) for build, names in zip(builds, objects)
@@ -383,23 +385,24 @@ def judge(mutants, path, switch, builds, last_killer):
              judged.get(mutant, "-")) for mutant in mutants]
 
 
-def verdicts_of(mutants, path, builds, last_killer):
-    """Of the mutants of one function, or of a single one: each with its verdict, and what killed it."""
+def verdicts_of(mutants, path, builds, last_killer, argued):
+    """Of the mutants of one function, or of a single one: each with its verdict, and what killed it. If there is a
+    reason why they should survive (argued), only programs that are quick are asked."""
     original = path.read_text(encoding="utf-8")
     try:
-        return judge(mutants, path, switched(mutants, original), builds, last_killer)
+        return judge(mutants, path, switched(mutants, original), builds, last_killer, argued)
     except NotCompiled:
         if len(mutants) == 1:
             return [(mutants[0], "killed", BROKEN)]
     finally:
         path.write_text(original, encoding="utf-8")
     half = len(mutants) // 2
-    return [*verdicts_of(mutants[:half], path, builds, last_killer),
-            *verdicts_of(mutants[half:], path, builds, last_killer)]
+    return [*verdicts_of(mutants[:half], path, builds, last_killer, argued),
+            *verdicts_of(mutants[half:], path, builds, last_killer, argued)]
 
 
 def groups(mutants, equivalent):
-    """Those that can be compiled together. What is known to survive takes longest, and comes last."""
+    """Those that can be compiled together. What is known to survive comes last."""
     group, words = [], 0
     for mutant in sorted(mutants, key=lambda mutant: (mutant.name in equivalent, mutant.file, mutant.function)):
         cost = len(mutant.body.split())
@@ -432,7 +435,7 @@ def run(mutants, equivalent):
             tree = trees.get()
             try:
                 here = [build._replace(path=tree / build.path.name) for build in builds]
-                return verdicts_of(group, tree / group[0].file, here, last_killer)
+                return verdicts_of(group, tree / group[0].file, here, last_killer, group[0].name in equivalent)
             finally:
                 trees.put(tree)
 
