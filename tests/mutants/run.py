@@ -117,7 +117,7 @@ class Program(NamedTuple):
 class Build(NamedTuple):
     path: pathlib.Path
     programs: list  # fastest first
-    objects: dict  # path and digest, as they should be
+    objects: dict  # path and digest, as they should be, the smallest first
 
 
 def function_at(file, start):
@@ -283,7 +283,8 @@ def set_up(tree):
     for name in BUILDS:
         path = tree / name
         ninja(path, *sorted({target for program in programs[name] for target in program.targets}))
-        objects = {str(file.relative_to(path)): digest([file]) for file in path.rglob("*.o")}
+        files = sorted(path.rglob("*.o"), key=lambda file: file.stat().st_size)
+        objects = {str(file.relative_to(path)): digest([file]) for file in files}
         builds.append(Build(path, [
             program._replace(digest=digest([path / target for target in program.targets])) for program in programs[name]
         ], objects))
@@ -316,8 +317,8 @@ def switched(mutants, text):
 def compiled_in(build):
     """The objects that are to be compiled now, the smallest first."""
     targets = {target for program in build.programs for target in program.targets}
-    objects = set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
-    return sorted(objects, key=lambda name: (build.path / name).stat().st_size)
+    found = set(re.findall(r"Compiling C object (\S+)", ninja(build.path, "-n", *targets).stdout))
+    return [name for name in build.objects if name in found]
 
 
 def same_object(build, name):
