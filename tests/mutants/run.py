@@ -61,6 +61,7 @@ BROKEN = "does not compile"
 # Vectors of 16 bytes are compiled four times as fast as all of them, so these are tried first.
 OPTIONS = ["-Dtests=enabled", "-Dreport=disabled", "-Ddefault_library=static", "-Ddebug=false", "-Doptimization=1"]
 BUILDS = {"build-narrow": "-DSPRING_X86_64=0", "build": ""}
+ENDLESS = ["-fno-finite-loops", "-fwrapv"]  # or compilers leave out loops that do not end, which are undefined
 
 # What each file of the builds includes first: in a program that is to run mutant 3 of its function SPRING_MUTANT is 3.
 # Each process adds to the file SPRING_REACHED a byte a function: 1 if it came there. (Weak: there is one of each in a
@@ -270,7 +271,7 @@ def set_up(tree):
         sys.exit(f"{len(number)} functions: expected at most {FUNCTIONS}")
     programs = {}
     for name, macro in BUILDS.items():
-        arguments = f"-Dc_args=-include {tree}/switch.h {macro}"
+        arguments = f"-Dc_args={' '.join(ENDLESS)} -include {tree}/switch.h {macro}"
         done = subprocess.run(["meson", "setup", str(tree / name), str(tree), *OPTIONS, arguments],
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
         if done.returncode != 0:
