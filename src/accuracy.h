@@ -15,8 +15,8 @@ typedef struct accuracy {
 /* E of n steps of T/steps. Infinite where it overflows, and of more than 2^53 steps. */
 SPRING_INTERNAL double spring_error_of(const accuracy *of, double steps, double n);
 
-/* The least number n of steps of T/n with E at most the tolerance, for it and for all that are larger; infinite where
-   rounding exceeds the tolerance before, and where it is more than 2^53. */
+/* The least number n of steps of T/n with E at most the tolerance, for it and for all that are larger; above 8192 up to one
+   part in 8192 more. Infinite where rounding exceeds the tolerance before, and where it is more than 2^53. */
 SPRING_INTERNAL double spring_accurate_steps(const accuracy *of, double tolerance);
 
 #endif
