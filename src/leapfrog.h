@@ -94,7 +94,7 @@ static step_terms leapfrog_terms(step_rates r)
     const double a = r.a, c = r.c, q = r.G / 2, W = a * c;
     return (step_terms){
         .share = 0.5,
-        .term = {{1, 0, 0, 1}, {q, a, -c, -q}, {-W / 2, 0, 0, -W / 2}, {-q * W / 2, -q * q * a, c * W / 4, q * W / 2}},
+        .term = {[1] = {q, a, -c, -q}, {-W / 2, 0, 0, -W / 2}, {-q * W / 2, -q * q * a, c * W / 4, q * W / 2}},
     };
 }
 

@@ -19,7 +19,7 @@ typedef struct step_rates {
 
 enum { STEP_TERMS = 5 }; /* more than the largest power of h in a step */
 
-/* One step is (1 + term[1] + term[2] + ...)/(1 + share G), where term[k] is proportional to h^k. */
+/* One step is (1 + term[1] + term[2] + ...)/(1 + share G), where term[k] is proportional to h^k; term[0] is not read. */
 typedef struct step_terms {
     double share; /* of a step, by which the damping is solved for */
     spring_matrix term[STEP_TERMS];

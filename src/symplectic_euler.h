@@ -64,7 +64,7 @@ static double symplectic_euler_stable_step(const spring_roots *r)
 
 static step_terms symplectic_euler_terms(step_rates r)
 {
-    return (step_terms){.share = 1, .term = {{1, 0, 0, 1}, {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
+    return (step_terms){.share = 1, .term = {[1] = {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
 }
 
 static const one_method symplectic_euler_one = {
