@@ -192,11 +192,15 @@ static void one_is_not_special(void)
             spring_params beside = at[i];
             beside.damping *= 1 + DBL_EPSILON;
             beside.load *= 1 + DBL_EPSILON;
-            spring_state a = start, b = start;
+            spring_state a = start, b = start, kernel = start;
             spring_advance(&a, &at[i], *m, 0.013, 100);
             spring_advance(&b, &beside, *m, 0.013, 100);
+            for (int j = 0; j < 100; j++)
+                spring_method_kernel (*m)(&kernel, &at[i], 0.013);
             CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
             CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
+            CHECK_CLOSE(kernel.x, b.x, 100 * 8 * DBL_EPSILON, "and by single steps");
+            CHECK_CLOSE(kernel.v, b.v, 100 * 8 * DBL_EPSILON, "and by single steps");
         }
     }
 }
