@@ -19,11 +19,9 @@ static double remainder_of(double n, double d, double q)
 }
 
 /* n/d - q, the rounding error of the quotient q, of numbers of any size. A denormal q is off by much more than eps of
-   it, and is the spring that the steppers move: there it counts as exact. */
+   it, and is the spring that the steppers move: at most half of the least number, its error is rounded to 0. */
 static double rest_of(double n, double d, double q)
 {
-    if (!(q >= DBL_MIN))
-        return 0;
     int by_n, by_d, by_q;
     n = frexp(n, &by_n);
     d = frexp(d, &by_d);

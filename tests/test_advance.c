@@ -205,6 +205,18 @@ static void one_is_not_special(void)
     }
 }
 
+/* Among denormal numbers stiffness/mass is rounded by much: every method moves the spring of the rounded quotient. */
+static void denormal_quotients(void)
+{
+    const spring_params given = {3, 10 * DBL_TRUE_MIN, 0, 0}, rounded = {1, 3 * DBL_TRUE_MIN, 0, 0};
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+        spring_state a = {0.8, -3e-162}, b = a;
+        spring_advance(&a, &given, *m, 1e161, 2); /* 0.4 rad */
+        spring_advance(&b, &rounded, *m, 1e161, 2);
+        CHECK_STATE(a, b, "the same quotient");
+    }
+}
+
 /* Every value of the enumeration stands once in the table, under a name of its own. */
 static void table_of_methods(void)
 {
@@ -268,6 +280,7 @@ int main(void)
         {"pinned bits", golden_bits},
         {"pinned bits, heavy damping", golden_bits_of_heavy_damping},
         {"rates of 1", one_is_not_special},
+        {"denormal quotients", denormal_quotients},
         {"the table of methods", table_of_methods},
         {"names", names},
     };
