@@ -4,10 +4,10 @@
  *
  * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
  *           oscillating spring, at most one for an overdamped one. The swings at these turning points shrink by a fixed
- *           factor; after the last one beyond x_tol y enters the band for good. The first turning point, the last swing
- *           and the crossing are each found by bisection on the exact solution, of time or of the number of swings:
- *           whoever walks through the same bits gets the same time.
- * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load.
+ *           factor; after the last one beyond x_tol y enters the band for good. The first turning point and the crossing
+ *           are found by bisection of time on the exact solution: whoever walks through the same bits gets the same time.
+ * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load. At an infinite time the exact
+ *           solution is NaN, which ends every search.
  * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance
  *           within its rounding error of the state gives a time that means nothing
  */
@@ -55,34 +55,25 @@ static double first_time(const motion *m, bool is_true(const motion *, double), 
     }
 }
 
-/* A time from which something is true: `from` plus a span, doubled as often as it takes; infinite if that does. */
-static double some_time(const motion *m, bool is_true(const motion *, double), double from, double span)
+/* A time at which something is true: `from` plus 1/b, doubled as often as it takes; infinite if that does. */
+static double some_time(const motion *m, bool is_true(const motion *, double), double from)
 {
-    span = fmax(span, DBL_MIN); /* 1/rate may have underflowed */
-    while (span < INFINITY && !is_true(m, from + span))
+    double span = 1 / m->roots.b;
+    while (!is_true(m, from + span))
         span *= 2;
     return from + span;
 }
 
-/* The time after the last swing beyond the tolerance: of the swings at first + n spacing swing 0 is. */
+/* The time after the last swing beyond the tolerance: of the swings at first + n spacing swing 0 is. Between n and 2n, and
+   n a power of two, bisection of time looks at swings alone as long as there are any. */
 static double after_last_swing(const motion *m, double first, double spacing)
 {
     double beyond = 0, within = 1;
-    while (first + within * spacing < INFINITY && !is_within(m, first + within * spacing)) {
+    while (!is_within(m, first + within * spacing)) {
         beyond = within;
         within *= 2;
     }
-    for (;;) {
-        const double middle = beyond + floor((within - beyond) / 2);
-        if (!(middle > beyond && middle < within))
-            break;
-        if (is_within(m, first + middle * spacing))
-            within = middle;
-        else
-            beyond = middle;
-    }
-    const double end = first + within * spacing;
-    return end < INFINITY ? first_time(m, is_within, first + beyond * spacing, end) : INFINITY;
+    return first_time(m, is_within, first + beyond * spacing, first + within * spacing);
 }
 
 static double settling_oscillating(const motion *m)
@@ -91,30 +82,16 @@ static double settling_oscillating(const motion *m)
     const double first = m->start.v != 0 ? first_time(m, has_turned, 0, spacing) : 0;
     if (is_within(m, first))
         return is_within(m, 0) ? 0 : first_time(m, is_within, 0, first);
-    return m->roots.b == 0 || m->tol == 0 ? INFINITY : after_last_swing(m, first, spacing);
+    return m->roots.b == 0 ? INFINITY : after_last_swing(m, first, spacing);
 }
 
-/* Does an overdamped spring turn at all? tanh(split t) = split T where it does. */
-static bool will_turn(const motion *m)
-{
-    /* a state in the same direction, of a size that squares of frequencies cannot make overflow */
-    int exponent;
-    frexp(fmax(fabs(m->start.x), fabs(m->start.v)), &exponent);
-    const double x = ldexp(m->start.x, -exponent), v = ldexp(m->start.v, -exponent);
-    const double T = v / (m->roots.w * x + m->roots.b * v);
-    return m->roots.w > 0 && T > 0 && m->roots.split * T < 1;
-}
-
+/* A spring that never turns does so here when its velocity underflows; then it is at rest. */
 static double settling_creeping(const motion *m)
 {
-    const double fast = spring_fast_root(&m->roots), slow = m->roots.w > 0 ? m->roots.w / fast : fast;
-    const double turn = will_turn(m) ? first_time(m, has_turned, 0, some_time(m, has_turned, 0, 1 / fast)) : 0;
+    const double turn = m->start.v != 0 ? first_time(m, has_turned, 0, some_time(m, has_turned, 0)) : 0;
     if (is_within(m, turn))
         return is_within(m, 0) ? 0 : first_time(m, is_within, 0, turn);
-    if (fast == 0 || m->tol == 0)
-        return INFINITY;
-    const double end = some_time(m, is_within, turn, 1 / slow);
-    return end < INFINITY ? first_time(m, is_within, turn, end) : INFINITY;
+    return first_time(m, is_within, turn, some_time(m, is_within, turn));
 }
 
 double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
@@ -127,10 +104,11 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
         .roots = spring_roots_of(p),
         .tol = x_tol,
     };
-    if (m.roots.w == 0)
-        return p->load == 0 ? settling_creeping(&m) : INFINITY;
-    m.start.x -= p->load / p->stiffness;
-    if (!spring_finite(m.start.x))
+    if (m.roots.w > 0)
+        m.start.x -= p->load / p->stiffness;
+    if (!spring_finite(m.start.x) || (m.roots.w == 0 && p->load != 0))
         return INFINITY;
+    if (m.tol == 0) /* what moves never comes so near for good */
+        return m.start.v == 0 && is_within(&m, 0) ? 0 : INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }
