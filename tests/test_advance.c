@@ -238,6 +238,7 @@ static void table_of_methods(void)
     }
     const spring_method none[] = {(spring_method)-1, no_method, spring_method_at(-1),
                                   spring_method_at(SPRING_METHOD_COUNT)};
+    CHECK(none[2] == no_method && none[3] == no_method, "no place");
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
         CHECK(spring_method_describe(none[i]) == NULL && spring_method_name(none[i]) == NULL &&
                   spring_method_kernel(none[i]) == NULL,

@@ -158,6 +158,15 @@ static void powers_of_two(void)
         CHECK_BITS(power_of_two(k), ldexp(1, k), "exact");
 }
 
+/* What is in range is tested with what uses it. */
+static void ends_of_hypot(void)
+{
+    CHECK_BITS(spring_hypot(0, 0), 0, "nothing to divide by");
+    CHECK_BITS(spring_hypot(3e300, 4e300), 5e300, "squares beyond the range");
+    CHECK_BITS(spring_hypot(3, INFINITY), INFINITY, "one is infinite");
+    CHECK_BITS(spring_hypot(INFINITY, INFINITY), INFINITY, "both are");
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -166,6 +175,7 @@ int main(void)
         {"sine and cosine", angles},
         {"errors of products", errors_of_products},
         {"powers of two", powers_of_two},
+        {"ends of hypot", ends_of_hypot},
     };
     mpfr_inits2(256, x, want, part, (mpfr_ptr)NULL);
     const int status = RUN_TESTS("elementary", tests);
