@@ -160,6 +160,12 @@ static void settling_time_special(void)
     const spring_params creeping = {1, 1e-300, 1, 0};
     CHECK(spring_settling_time(&s, &creeping, 0.01) > 1e299, "a root of 1e-300");
     CHECK_BITS(spring_settling_time(&s, &creeping, 0), INFINITY, "zero is never reached for good");
+    const spring_params quick = {1, 1e8, 2e4, 0}, creeper = {1, 0.2, 1, 0};
+    CHECK_BITS(spring_settling_time(&still, &quick, 0), INFINITY, "not even where it underflows in less than a second");
+    CHECK_BITS(spring_settling_time(&(spring_state){0, 1}, &quick, 0), INFINITY, "nor if it starts there");
+    const spring_state out = {1, 0.05}; /* turns after 0.23 s */
+    const double later = spring_settling_time(&out, &creeper, distance_at(&creeper, out, 0, 0.4));
+    CHECK_CLOSE(later, 0.4, 1e-13, "within at the start, and again in less than a second");
     const spring_params slower = {1, 1e-308, 1, 0}, weak = {1, 1e-300, 1, 1e300};
     CHECK_BITS(spring_settling_time(&s, &slower, 0.01), INFINITY, "4.4e308 s is more than a double holds");
     CHECK_BITS(spring_settling_time(&s, &weak, 0.01), INFINITY, "and so is a rest position of 1e600 m");
