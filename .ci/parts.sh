@@ -9,9 +9,11 @@ exec </dev/null
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 work=$(mktemp -d)
+declare -A jobs=() # those of start, by name
 chmod 755 "$work" # tests run as another user, too
 clean_up() {
     trap '' HUP INT PIPE TERM # one signal stops the script, the next does not stop rm
+    for job in "${jobs[@]}"; do kill -- "-$job" 2>/dev/null; done
     rm -rf --one-file-system "$work"
 }
 trap clean_up EXIT
@@ -29,13 +31,34 @@ row() {
     rows+=("$(printf '%-24s %5d.%d  %s' "$1" $((tenths / 10)) $((tenths % 10)) "$3")")
 }
 
-# run_part NAME COMMAND...: shows what it prints, and leaves it in $work/log and the time it took in $seconds
+# start NAME COMMAND...: beside the parts that follow, until the part of that name, which is given no command
+start() {
+    local name=$1
+    shift
+    set -m # a process group of its own, for clean_up
+    {
+        local status=0 begin=$SECONDS
+        "$@" >"$work/$name.log" 2>&1 || status=1
+        echo $((SECONDS - begin)) >"$work/$name.seconds"
+        exit $status
+    } &
+    set +m
+    jobs[$name]=$!
+}
+
+# run_part NAME [COMMAND...]: shows what it prints, and leaves it in $work/log and the time it took in $seconds
 run_part() {
-    local name=$1 status=0 start=$SECONDS
+    local name=$1 status=0 begin=$SECONDS
     shift
     printf '\n=== %s\n' "$name"
-    "$@" 2>&1 | tee "$work/log" || status=1
-    seconds=$((SECONDS - start))
+    if [ $# -gt 0 ]; then
+        "$@" 2>&1 | tee "$work/log" || status=1
+        seconds=$((SECONDS - begin))
+    else
+        wait "${jobs[$name]}" || status=1
+        tee "$work/log" <"$work/$name.log"
+        seconds=$(cat "$work/$name.seconds")
+    fi
     return $status
 }
 
