@@ -32,6 +32,7 @@ def test_cycles():
     """Every vector length, precision and vendor; a spring or link takes some cycles, and not hundreds."""
     result = run(SCRIPT, '--cycles', '^(leapfrog|all_bands|all_edges)', timeout=250)
     assert (result.returncode, result.stderr) == (0, '')
+    assert f"# command: tools/bench/instructions --cycles '^(leapfrog|all_bands|all_edges)'\n" in result.stdout
     rows = parse(result.stdout)
     assert list(rows[0]) == 'loop vector precision processor item cycles_per_item at_once'.split()
     for item in 'spring', 'link':
