@@ -244,12 +244,10 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
             return false;
         grows = grows || inverse > inverse_mass_at(s, i);
     }
-    for (size_t i = 0; grows && i < s->plan.links; i++) {
-        spring_link link;
-        spring_scene_get_link(s, i, &link);
+    spring_link link;
+    for (size_t i = 0; grows && spring_scene_get_link(s, i, &link) == SPRING_OK; i++)
         if (scene_link_overflows(&link, proposed_inverse_mass(s, p, link.a), proposed_inverse_mass(s, p, link.b)))
             return false;
-    }
     return true;
 }
 

@@ -182,6 +182,14 @@ static void refused_edits(void)
         else
             CHECK(spring_scene_set_mass(s, i, 1, &light) == SPRING_OK, "its links bear it");
     }
+    const double not_the_next[] = {0.009, 0.01};
+    CHECK(spring_scene_set_mass(s, 3, 1, not_the_next) == SPRING_OK, "of one, whatever comes next in the array");
+    free(s);
+    link[0] = (spring_link){2, 3, 0.5, huge, 0};
+    def.links = 1;
+    s = scene_of(&def);
+    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "valid");
+    REFUSES(SPRING_EINVAL, spring_scene_set_mass(s, 2, 1, &bad[5])); /* of the only link */
     free(s);
 
     def.flags = 0;
@@ -218,6 +226,41 @@ static void edits_of_nothing(void)
         free(s);
         free(twin);
     }
+}
+
+/* Edits that are taken back leave every byte as it was: they write to nothing else. (What is computed anew is asked for
+   before, by a link that is set to what it is.) */
+static void edits_taken_back(void)
+{
+    static model m;
+    const uint8_t pin = 1, free_again = 0;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (size_t k = 0; k < shape_count; k++) {
+            build(&m, shapes[k].count, axes, shapes[k].features | EDITABLE | PINNED | MASSES);
+            m.pinned[2] = 1, m.pinned[3] = 0;
+            size_t bytes;
+            CHECK(spring_scene_bytes(&m.def, &bytes) == SPRING_OK, "valid");
+            spring_scene *s = scene_of(&m.def);
+            for (uint64_t steps = 1; steps <= 2; steps++) { /* the state is in either buffer */
+                spring_link link;
+                CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, steps) == SPRING_OK &&
+                          spring_scene_get_link(s, 0, &link) == SPRING_OK &&
+                          spring_scene_set_link(s, 0, &link) == SPRING_OK,
+                      "stable");
+                void *before = copy_of(s, bytes);
+                const double target[] = {5, 6, 7};
+                double v[2 * 3];
+                CHECK(spring_scene_get(s, SPRING_VELOCITY, v, axes, 2, 2) == SPRING_OK, "two particles");
+                CHECK(spring_scene_drive(s, 2, target, 1) == SPRING_OK &&
+                          spring_scene_set_pinned(s, 3, 1, &pin) == SPRING_OK &&
+                          spring_scene_set_pinned(s, 3, 1, &free_again) == SPRING_OK &&
+                          spring_scene_set(s, SPRING_VELOCITY, v, axes, 2, 2) == SPRING_OK,
+                      "driven, pinned, and all taken back");
+                CHECK(memcmp(s, before, bytes) == 0, "as it was");
+                free(before);
+            }
+            free(s);
+        }
 }
 
 /* ------------------------------------------------------------------------------------------------- driven particles */
@@ -401,6 +444,7 @@ int main(void)
         {"the masses of freed particles", masses_of_the_freed},
         {"edits that are refused", refused_edits},
         {"edits that change nothing", edits_of_nothing},
+        {"edits that are taken back", edits_taken_back},
         {"driven particles", driven},
         {"drives that are refused", refused_drives},
         {"driving is free", driving_is_free},
