@@ -14,8 +14,9 @@ enum {
     padding = 16,       /* elements of the longest vector; so many stand before and behind a quantity */
     most_bands = 32,    /* a block with diagonals and bending links has 16 */
     nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
-    tile = 64 /* slots of a band whose forces are computed at once, in the first cache: a multiple of padding */
+    tile = 64           /* slots of a band whose forces are computed at once, in the first cache */
 };
+_Static_assert(tile % padding == 0, "a tile is whole vectors");
 
 /* Links whose upper end is `offset` particles after the lower one. Arrays are of whole tiles of slots. */
 typedef struct scene_band {

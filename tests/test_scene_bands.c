@@ -108,7 +108,7 @@ static void many_bands(void)
     CHECK(bands == most_bands && tiles > 100, "as many as there can be, and in later tiles");
 }
 
-/* One of all offsets is too many for the table of bands. */
+/* One of all offsets is too many for the table of bands. (Bits of such a scene depend on how many it may have.) */
 static void one_band_too_many(void)
 {
     enum { offsets_here = most_bands + 1, lowers = 70 };
@@ -120,7 +120,7 @@ static void one_band_too_many(void)
             for (uint32_t i = 0; i < lowers - (o == 3); i++)
                 m.link[m.def.links++] = (spring_link){i, i + 4 * o, 0.6, 2.7, 0};
         spring_scene *s = scene_of(&m.def);
-        CHECK(s->plan.bands == most_bands && s->plan.edges == lowers - 1, "the shortest has no band");
+        CHECK(s->plan.bands == 32 && s->plan.edges == lowers - 1, "the shortest has no band");
         free(s);
         check_bits_of_kernels(&m, 0.001);
         for (int k = 0; k < kernel_count; k++)

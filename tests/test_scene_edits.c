@@ -237,7 +237,8 @@ static void edits_taken_back(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t k = 0; k < shape_count; k++) {
             build(&m, shapes[k].count, axes, shapes[k].features | EDITABLE | PINNED | MASSES);
-            m.pinned[2] = 1, m.pinned[3] = 0;
+            const size_t n = m.def.particles, driven = n - 2, other = n - 1;
+            m.pinned[driven] = 1, m.pinned[other] = 0;
             size_t bytes;
             CHECK(spring_scene_bytes(&m.def, &bytes) == SPRING_OK, "valid");
             spring_scene *s = scene_of(&m.def);
@@ -250,11 +251,11 @@ static void edits_taken_back(void)
                 void *before = copy_of(s, bytes);
                 const double target[] = {5, 6, 7};
                 double v[2 * 3];
-                CHECK(spring_scene_get(s, SPRING_VELOCITY, v, axes, 2, 2) == SPRING_OK, "two particles");
-                CHECK(spring_scene_drive(s, 2, target, 1) == SPRING_OK &&
-                          spring_scene_set_pinned(s, 3, 1, &pin) == SPRING_OK &&
-                          spring_scene_set_pinned(s, 3, 1, &free_again) == SPRING_OK &&
-                          spring_scene_set(s, SPRING_VELOCITY, v, axes, 2, 2) == SPRING_OK,
+                CHECK(spring_scene_get(s, SPRING_VELOCITY, v, axes, driven, 2) == SPRING_OK, "two particles");
+                CHECK(spring_scene_drive(s, driven, target, 1) == SPRING_OK &&
+                          spring_scene_set_pinned(s, other, 1, &pin) == SPRING_OK &&
+                          spring_scene_set_pinned(s, other, 1, &free_again) == SPRING_OK &&
+                          spring_scene_set(s, SPRING_VELOCITY, v, axes, driven, 2) == SPRING_OK,
                       "driven, pinned, and all taken back");
                 CHECK(memcmp(s, before, bytes) == 0, "as it was");
                 free(before);

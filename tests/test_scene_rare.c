@@ -373,6 +373,38 @@ static void lost(void)
         }
 }
 
+static void bad_force(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                      scalar *const force[3])
+{
+    (void)t, (void)x, (void)v;
+    for (size_t i = 0; i < particles && *(bool *)user; i++)
+        force[0][i] = (scalar)NAN;
+}
+
+/* State that is set anew is finite, whatever the forces were that the scene still has. */
+static void found(void)
+{
+    enum { particles = 50 };
+    static const double zeros[3 * particles];
+    for (uint32_t axes = 1; axes <= 3; axes++) {
+        bool bad = true;
+        const spring_scene_def def = {.axes = axes,
+                                      .flags = SPRING_SCENE_NO_UNDO,
+                                      .particles = particles,
+                                      .position = zeros,
+                                      .force = bad_force,
+                                      .user = &bad};
+        spring_scene *s = scene_of(&def);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 1) == SPRING_ENONFINITE, "lost");
+        bad = false;
+        CHECK(spring_scene_set(s, SPRING_POSITION, zeros, 0, 0, particles) == SPRING_OK &&
+                  spring_scene_set(s, SPRING_VELOCITY, zeros, 0, 0, particles) == SPRING_OK &&
+                  spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 1) == SPRING_OK,
+              "and found");
+        free(s);
+    }
+}
+
 /* A scene that may use more methods has more memory, and the same steps. */
 static void methods_not_used(void)
 {
@@ -562,6 +594,7 @@ int main(void)
         {"nothing is computed from what is lost", callback_is_left_alone},
         {"finite numbers for callbacks", finite_for_callbacks},
         {"lost", lost},
+        {"found", found},
         {"light particles", light_particles},
         {"gravity beyond the axes", gravity_beyond_the_axes},
         {"methods that are not used", methods_not_used},
