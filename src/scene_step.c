@@ -102,7 +102,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         if (!outcome.finite) {
             if (!rollback)
                 invalidate(s);
-            if (!rollback || s->plan.force[0] == s->plan.force[1] || s->known != PREDICTED_FORCE)
+            if (s->plan.force[0] == s->plan.force[1]) /* overwritten */
                 s->known = NO_FORCE;
             return SPRING_ENONFINITE;
         }
