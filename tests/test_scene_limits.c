@@ -88,15 +88,61 @@ static void stiff_and_heavy(void)
     }
 }
 
+/* The same scene in a unit of mass that is 2^mass kg and one of time that is 2^time s. */
+static void change_units(model *m, int mass, int time)
+{
+    for (size_t i = 0; i < m->def.particles; i++)
+        m->mass[i] = ldexp(m->mass[i], mass);
+    m->def.mass_all = ldexp(mass_in(&(spring_scene_def){.mass_all = m->def.mass_all}, 0), mass);
+    for (size_t i = 0; i < m->def.links; i++) {
+        m->link[i].stiffness = ldexp(m->link[i].stiffness, mass - 2 * time);
+        m->link[i].damping = ldexp(m->link[i].damping, mass - time);
+    }
+    m->def.drag = ldexp(m->def.drag, mass - time);
+}
+
+/* Units change no bit, near the largest and the least numbers either, with stiffness and damping that become 1. */
+static void units(void)
+{
+    static model m;
+    const int far = sizeof(scalar) == 4 ? 50 : 440;
+    const struct {
+        int mass, time;
+    } unit[] = {{0, -1}, {2 * far, 0}, {2 * far, far}, {-2 * far, 0}, {-2 * far, -far}};
+    for (unsigned features = 0; features < feature_masks; features++)
+        for (size_t u = 0; u < sizeof unit / sizeof unit[0]; u++) {
+            build(&m, (uint32_t[]){4, 3, 1}, 2, features);
+            for (size_t i = 0; i < m.def.links && features % 3 == 0; i++) {
+                m.link[i].stiffness = 0.25;
+                m.link[i].damping = m.link[i].damping > 0 ? 0.5 : 0;
+            }
+            spring_scene *s = scene_of(&m.def);
+            change_units(&m, unit[u].mass, unit[u].time);
+            spring_scene *other = scene_of(&m.def);
+            const method_list all = methods_of(m.def);
+            for (const spring_method *method = all.at; *method != no_method; method++)
+                CHECK_BITS(spring_scene_stable_step(other, *method),
+                           ldexp(spring_scene_stable_step(s, *method), unit[u].time), "in this unit of time");
+            free(s);
+            free(other);
+        }
+}
+
 static void nothing_to_be_unstable_with(void)
 {
     const double x[] = {0, 1};
-    const spring_scene_def def = {.axes = 1, .particles = 2, .position = x};
-    spring_scene *s = scene_of(&def);
-    const method_list all = methods_of(def);
-    for (const spring_method *method = all.at; *method != no_method; method++)
-        CHECK(spring_scene_stable_step(s, *method) == INFINITY, "no force");
-    free(s);
+    const uint8_t pinned[] = {1, 1};
+    const spring_link link = {0, 1, 0.7, 3.1, 0.4};
+    const spring_scene_def defs[] = {
+        {.axes = 1, .particles = 2, .position = x},
+        {.axes = 1, .particles = 2, .position = x, .links = 1, .link = &link, .pinned = pinned, .drag = 0.3}};
+    for (size_t i = 0; i < 2; i++) {
+        spring_scene *s = scene_of(&defs[i]);
+        const method_list all = methods_of(defs[i]);
+        for (const spring_method *method = all.at; *method != no_method; method++)
+            CHECK(spring_scene_stable_step(s, *method) == INFINITY, "no force on what moves");
+        free(s);
+    }
 }
 
 /* Without stiffness damped links set the limit, however weak their damping. */
@@ -493,6 +539,7 @@ int main(void)
     static const test tests[] = {
         {"formulas of stable steps", formulas},
         {"stiffness and mass near the largest number", stiff_and_heavy},
+        {"units of mass and time", units},
         {"no force", nothing_to_be_unstable_with},
         {"dampers alone", dampers_alone},
         {"stable at 0.95 of the stable step", stable_below},
