@@ -128,6 +128,25 @@ static void units(void)
         }
 }
 
+/* A link between two pins does not count, however stiff, beside one that is weak and pulls at a large mass. */
+static void stiff_between_pins(void)
+{
+    const int far = sizeof(scalar) == 4 ? 100 : 900;
+    const double x[] = {0, 1, 2}, mass[] = {1, 1, ldexp(1.7, far / 2)};
+    const uint8_t pinned[] = {1, 1, 0};
+    const spring_link link[] = {{1, 2, 0.7, 3.1, 0.4}, {0, 1, 0.7, ldexp(1, far), ldexp(1, far)}};
+    spring_scene_def def = {
+        .axes = 1, .particles = 3, .links = 2, .position = x, .mass = mass, .pinned = pinned, .link = link};
+    spring_scene *s = scene_of(&def);
+    def.links = 1;
+    spring_scene *without = scene_of(&def);
+    const method_list all = methods_of(def);
+    for (const spring_method *method = all.at; *method != no_method; method++)
+        CHECK_BITS(spring_scene_stable_step(s, *method), spring_scene_stable_step(without, *method), "as without it");
+    free(s);
+    free(without);
+}
+
 static void nothing_to_be_unstable_with(void)
 {
     const double x[] = {0, 1};
@@ -540,6 +559,7 @@ int main(void)
         {"formulas of stable steps", formulas},
         {"stiffness and mass near the largest number", stiff_and_heavy},
         {"units of mass and time", units},
+        {"a stiff link between pins", stiff_between_pins},
         {"no force", nothing_to_be_unstable_with},
         {"dampers alone", dampers_alone},
         {"stable at 0.95 of the stable step", stable_below},
