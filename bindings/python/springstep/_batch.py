@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from springstep._common import SpringError, fail, finite, invalid, method_number, springs_method, step_count
+from springstep._common import Guard, SpringError, fail, finite, invalid, method_number, springs_method, step_count
 from springstep._native import ffi, lib
 
 # How the functions and the structure are called in C, and what an array is for C.
@@ -24,7 +24,10 @@ class Batch:
 
     x and v are arrays of float64 or of float32, which decides in what all are computed; a parameter is an array like
     them, or one number for all springs. Arrays are used where they are, not copied: advance() changes the arrays x and v
-    that were handed over. An array that would have to be copied is refused with TypeError.
+    that were handed over. An array that would have to be copied is refused with TypeError. A copy of a batch (module
+    copy, pickle) has copies of all its arrays.
+
+    While one thread advances a batch, its methods raise RuntimeError in other threads.
     """
 
     def __init__(self, x: np.ndarray, v: np.ndarray, omega2: np.ndarray | float, gamma: np.ndarray | float | None = None,
@@ -32,8 +35,9 @@ class Batch:
         if not isinstance(x, np.ndarray) or x.dtype not in _PRECISIONS:
             raise TypeError("x: not an array of float64 or float32")
         self._name, self._pointer = _PRECISIONS[x.dtype]
+        self._steps = getattr(lib, f"{self._name}_advance_marked")
+        self._guard = Guard("the batch is being advanced by another thread")
         self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
-        self._advance = getattr(lib, f"{self._name}_advance_marked")
         self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
         self._marks = ffi.from_buffer("uint8_t[]", self._failed)
         self._parameters: dict[str, np.ndarray | None] = {}
@@ -82,6 +86,15 @@ class Batch:
             if not np.isfinite(value) or (value < 0 and field in ("omega2", "gamma")):
                 invalid(field, value, index if values.ndim else None)
 
+    def _advance(self, number: int, dt: float, steps: int) -> tuple[int, np.ndarray | None]:
+        """The status and, after an error, the indices of springs that have kept their state."""
+        status = self._steps(self._batch, number, dt, steps, self._marks)
+        if status == lib.SPRING_OK:
+            return status, None
+        failed = np.flatnonzero(self._failed)
+        self._failed[:] = 0
+        return status, failed
+
     def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
         """Advance every spring by a number of steps of dt [s]; negative runs backwards.
 
@@ -89,11 +102,9 @@ class Batch:
         all others advance; the exception tells of the first, and its `failed` has the indices of all. After any other
         error nothing has changed, and `failed` is empty.
         """
-        status = self._advance(self._batch, method_number(method), dt, step_count(steps), self._marks)
-        if status == lib.SPRING_OK:
+        status, failed = self._guard.long(self._advance, method_number(method), dt, step_count(steps))
+        if failed is None:
             return
-        failed = np.flatnonzero(self._failed)
-        self._failed[:] = 0
         first = int(failed[0]) if len(failed) else None
         try:
             if status == lib.SPRING_EUNSUPPORTED:
@@ -111,7 +122,7 @@ class Batch:
 
     def stable_step(self, method: str = "leapfrog") -> float:
         """The least stable step of all springs [s]: 0 if there is none, infinity if all are."""
-        step = getattr(lib, f"{self._name}_stable_step")(self._batch, springs_method(method))
+        step = self._guard.short(getattr(lib, f"{self._name}_stable_step"), self._batch, springs_method(method))
         if np.isnan(step):
             for index in [None, *range(len(self))]:
                 self._first_invalid(index)
@@ -119,11 +130,19 @@ class Batch:
 
     def snapshot(self) -> tuple[np.ndarray, np.ndarray]:
         """Copies of x and v, for restore()."""
-        return self._x.copy(), self._v.copy()
+        return self._guard.short(lambda: (self._x.copy(), self._v.copy()))
 
     def restore(self, snapshot: tuple[np.ndarray, np.ndarray]) -> None:
         """Go back to a snapshot."""
-        self._x[:], self._v[:] = snapshot
+        def restore() -> None:
+            self._x[:], self._v[:] = snapshot
+
+        self._guard.short(restore)
+
+    def __reduce__(self) -> tuple:
+        """A copy is a batch of its own."""
+        parameters = (None if values is None else values.copy() for values in self._parameters.values())
+        return Batch, (*self.snapshot(), *parameters)
 
     def __repr__(self) -> str:
         return f"<Batch of {len(self)} springs, {self.dtype}>"

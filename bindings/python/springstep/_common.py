@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Sequence
-from typing import Any, NamedTuple, NoReturn
+import threading
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple, NoReturn, TypeVar
 
 from springstep._native import ffi, lib
 
@@ -22,13 +23,19 @@ class SpringError(Exception):
 
     failed: Sequence[int] = ()
 
-    def __init__(self, status: int, field: str | None = None, value: Any = None, index: int | None = None):
+    def __init__(self, status: int, field: str | None = None, value: Any = None, index: int | None = None,
+                 reason: str | None = None):
         self.status, self.field, self.value, self.index = status, field, value, index
-        message = ffi.string(lib.spring_status_string(status)).decode()
+        message = reason or ffi.string(lib.spring_status_string(status)).decode()
         if field is not None:
             place = "" if index is None else f"[{index}]"
             message = f"{field}{place} = {value!r}: {message}"
         super().__init__(message)
+        self._arguments = status, field, value, index, reason
+
+    def __reduce__(self) -> tuple:
+        """Pickled with all fields, so that errors of worker processes arrive."""
+        return type(self), self._arguments, {"failed": self.failed}
 
 
 class InvalidError(SpringError, ValueError):
@@ -61,9 +68,46 @@ def fail(status: int, field: str | None = None, value: Any = None, index: int | 
     raise _CLASSES.get(status, SpringError)(status, field, value, index)
 
 
-def invalid(field: str, value: Any, index: int | None = None) -> NoReturn:
-    """Raise InvalidError."""
-    fail(lib.SPRING_EINVAL, field, value, index)
+def invalid(field: str, value: Any, index: int | None = None, reason: str | None = None) -> NoReturn:
+    """Raise InvalidError. The reason says what was expected, where the name of the field does not."""
+    raise InvalidError(lib.SPRING_EINVAL, field, value, index, reason)
+
+
+Result = TypeVar("Result")
+
+
+class Guard:
+    """Keeps the calls on one object apart, which C does not do and which run without Python's global lock.
+
+    Short calls of several threads wait for each other. While a long call runs, every other call raises RuntimeError.
+    """
+
+    def __init__(self, refusal: str):
+        self._refusal = refusal
+        self._lock = threading.RLock()  # a signal handler may call again, between the instructions of a short call
+        self._busy = False
+
+    def _check(self) -> None:
+        if self._busy:
+            raise RuntimeError(self._refusal)
+
+    def short(self, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Call a function that takes little time."""
+        with self._lock:
+            self._check()
+            return function(*arguments)
+
+    def long(self, function: Callable[..., Result], *arguments: Any) -> Result:
+        """Call a function that may take long, or that calls Python."""
+        entered = False
+        try:
+            with self._lock:
+                self._check()
+                self._busy = entered = True
+            return function(*arguments)
+        finally:
+            if entered:
+                self._busy = False
 
 
 class Method(NamedTuple):
@@ -102,6 +146,13 @@ def method_number(name: str) -> int:
     if name not in _NUMBERS:
         invalid("method", name)
     return _NUMBERS[name]
+
+
+def names_of(field: str, names: Any) -> tuple[str, ...]:
+    """The names in a list of names: a string is not taken for the list of its letters."""
+    if isinstance(names, str):
+        invalid(field, names, reason=f"not a list of names, such as [{names!r}]")
+    return tuple(names)
 
 
 def springs_method(name: str) -> int:

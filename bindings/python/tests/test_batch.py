@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Many springs."""
+import copy
+import pickle
+import threading
+
 import numpy as np
 import pytest
 
@@ -122,6 +126,61 @@ def test_what_concerns_all_is_named_and_nothing_changes(call, field):
         call(batch)
     assert caught.value.field == field and caught.value.index is None and len(caught.value.failed) == 0
     assert (batch.x == before[0]).all() and (batch.v == before[1]).all()
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+def test_a_copy_is_a_batch_of_its_own(copied, dtype):
+    one = example(dtype)
+    for batch in (one, Batch(one.x.copy(), one.v.copy(), 1.7), Batch(one.x.copy(), one.v.copy(), one.omega2, 0.2)):
+        before = batch.snapshot()
+        twin = copied(batch)
+        assert twin.dtype == dtype and not any(np.shares_memory(a, b) for a in (twin.x, twin.v, twin.omega2)
+                                               for b in (batch.x, batch.v, batch.omega2))
+        twin.advance(1 / 60, 7)
+        assert (batch.x == before[0]).all() and (batch.v == before[1]).all() and (twin.x != before[0]).any()
+        batch.advance(1 / 60, 7)
+        assert (batch.x == twin.x).all() and (batch.v == twin.v).all()
+
+
+def test_an_exception_can_be_pickled():
+    batch = example()
+    batch.x[17] = np.nan
+    with pytest.raises(springstep.InvalidError) as caught:
+        batch.advance(0.01)
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert type(error) is springstep.InvalidError and str(error) == str(caught.value)
+    assert (error.field, error.index, error.status, error.failed.tolist()) == ("x", 17, lib.SPRING_EINVAL, [17])
+
+
+def test_many_steps_are_the_bits_of_single_steps():
+    whole, parts = example(), example()
+    whole.advance(1 / 60, 10)
+    for _ in range(10):
+        parts.advance(1 / 60)
+    assert (whole.x == parts.x).all() and (whole.v == parts.v).all()
+
+
+def test_calls_of_other_threads_are_refused_during_an_advance():
+    batch, inside, leave = example(), threading.Event(), threading.Event()
+    before, steps = batch.snapshot(), batch._steps
+
+    def slow(*arguments):
+        inside.set()
+        leave.wait(60)
+        return steps(*arguments)
+
+    batch._steps = slow
+    thread = threading.Thread(target=batch.advance, args=(0.01,))
+    thread.start()
+    assert inside.wait(60)
+    for call in (lambda: batch.advance(0.01), batch.stable_step, batch.snapshot, lambda: batch.restore(before),
+                 lambda: copy.copy(batch)):
+        with pytest.raises(RuntimeError, match="being advanced"):
+            call()
+    leave.set()
+    thread.join()
+    assert (batch.v != before[1]).all()
 
 
 def test_none():
