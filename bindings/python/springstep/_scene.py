@@ -2,13 +2,15 @@
 """Particles joined by springs: rope, cloth, jelly, water."""
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Sequence
+from types import TracebackType
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from springstep._common import fail, finite, invalid, method_number, step_count
+from springstep._common import Guard, fail, finite, invalid, method_number, names_of, step_count
 from springstep._native import ffi, lib
 
 #: A link, as in C: a and b [indices of particles], rest [m], stiffness [N/m], damping [N s/m].
@@ -21,7 +23,8 @@ LINK = np.dtype({
 })
 
 #: force(t, position, velocity, force) adds forces [N] to the arrays of `force`. There is one array for each axis: of
-#: `position` [m] and `velocity` [m/s] at the time t [s], not to be written to; none may be kept.
+#: `position` [m] and `velocity` [m/s] at the time t [s], not to be written to. They are valid during the call only: they
+#: show memory of the scene, whose content changes later. With force_ignores_velocity the velocities are zeros.
 Force = Callable[[float, tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]], None]
 
 _PREFIXES = {np.dtype(np.float64): "spring_scene", np.dtype(np.float32): "spring_scenef"}
@@ -48,43 +51,55 @@ class Grid(NamedTuple):
 class _Called:
     """A force, and what C is given to find it."""
 
-    def __init__(self, function: Force, axes: int, dtype: np.dtype):
-        self.function, self.axes, self.dtype = function, axes, dtype
+    def __init__(self, function: Force, scene: Scene):
+        self.function, self.axes, self.particles = function, scene.axes, len(scene)
+        self.unseen = scene._unseen_velocity
+        self.memory = scene._memory.view(scene.dtype)
+        self.constant = self.memory.view()
+        self.constant.flags.writeable = False
+        self.start = ffi.cast("double *" if scene.dtype == np.float64 else "float *", scene._pointer)
         self.error: BaseException | None = None
         self.handle = ffi.new_handle(self)
 
-    def call(self, t: float, particles: int, position: Any, velocity: Any, force: Any) -> None:
-        """Call it. An exception is kept for whoever called C, and NaN makes C give up."""
-        def arrays(pointers: Any, write: bool) -> tuple[np.ndarray, ...]:
-            views = tuple(np.frombuffer(ffi.buffer(pointers[axis], particles * self.dtype.itemsize), self.dtype)
-                          for axis in range(self.axes))
-            for view in views:
-                view.flags.writeable = write
-            return views
+    def arrays(self, memory: np.ndarray, pointers: Any) -> tuple[np.ndarray, ...]:
+        """The arrays of all axes. C points into the memory of the scene, and parts of an array keep its memory alive."""
+        offsets = [pointers[axis] - self.start for axis in range(self.axes)]
+        return tuple([memory[offset:offset + self.particles] for offset in offsets])
 
-        forces = arrays(force, True)
-        if self.error is None:
-            try:
-                self.function(t, arrays(position, False), arrays(velocity, False), forces)
-            except BaseException as error:  # noqa: B902: an interrupt, too, is for the caller
-                self.error = error
-        if self.error is not None:
-            for array in forces:
-                array[:] = np.nan
+    def call(self, t: float, position: Any, velocity: Any, force: Any) -> None:
+        velocities = self.arrays(self.constant, velocity) if self.unseen is None else self.unseen
+        self.function(t, self.arrays(self.constant, position), velocities, self.arrays(self.memory, force))
+
+    def stop(self, force: Any) -> None:
+        """Forces that make C give up where it uses them."""
+        for array in self.arrays(self.memory, force):
+            array[:] = np.nan
 
 
 def _callback(user: Any, t: float, particles: int, position: Any, velocity: Any, force: Any) -> None:
-    ffi.from_handle(user).call(t, particles, position, velocity, force)
+    called = ffi.from_handle(user)
+    if called.error is None:
+        called.call(t, position, velocity, force)
+    else:
+        called.stop(force)
 
 
-ffi.def_extern("springstep_force")(_callback)
-ffi.def_extern("springstep_forcef")(_callback)
+def _callback_raised(kind: type, error: BaseException, traceback: TracebackType) -> None:
+    """Keep an exception for the caller of C. cffi finds any, even an interrupt before the first line of _callback."""
+    arguments = traceback.tb_frame.f_locals
+    called = ffi.from_handle(arguments["user"])
+    called.error = error
+    called.stop(arguments["force"])
+
+
+ffi.def_extern("springstep_force", onerror=_callback_raised)(_callback)
+ffi.def_extern("springstep_forcef", onerror=_callback_raised)(_callback)
 
 
 def _bits(field: str, names: Iterable[str], known: Sequence[str]) -> int:
     """Names as bits, in their order in C."""
     bits = 0
-    for name in names:
+    for name in names_of(field, names):
         if name not in known:
             invalid(field, name)
         bits |= 1 << known.index(name)
@@ -96,7 +111,7 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
          height: bool = False) -> Grid:
     """The particles at the corners of a grid, and its links: a row is a rope, a layer a sheet, more a block.
 
-    count: particles along x, y, z. Particle (i, j, k) has index i + count[0] (j + count[1] k)
+    count: one to three numbers, the particles along x, y, z. Particle (i, j, k) has index i + count[0] (j + count[1] k)
     spacing: [m] > 0 from one particle to the next
     stiffness, damping: [N/m], [N s/m] of every link
     families: "structural" to the next particle, "shear" across faces, "bend" to the one after the next
@@ -104,8 +119,15 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
     stretch: length over rest length of every link; above 1 is tension
     axes: of the positions; height: a height field, of one axis across the grid
     """
+    shape = tuple(operator.index(number) for number in count)
+    if not 1 <= len(shape) <= 3:
+        invalid("count", shape, reason="not one to three numbers")
+    if not all(0 <= number < 2**32 for number in shape):
+        fail(lib.SPRING_ERANGE, "count", shape)
+    if axes not in (1, 2, 3):
+        invalid("axes", axes, reason="not 1, 2 or 3")
     c = ffi.new("spring_grid *", {
-        "count": [*count, 1, 1][:3], "axes": 1 if height else axes, "height": height, "spacing": spacing, "stretch": stretch,
+        "count": [*shape, 1, 1][:3], "axes": 1 if height else axes, "height": height, "spacing": spacing, "stretch": stretch,
         "families": _bits("families", families, _FAMILIES), "stiffness": stiffness, "damping": damping,
         "pinned": _bits("pinned", pinned, _FACES),
     })
@@ -117,7 +139,11 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
         for field in ("stiffness", "damping"):
             if not 0 <= getattr(c, field) < np.inf:
                 invalid(field, getattr(c, field))
-        fail(status, "count", tuple(count))
+        if status == lib.SPRING_ERANGE:
+            fail(status, "count", shape)
+        if not height and len(shape) > axes and max(shape[axes:]) > 1:
+            invalid("axes", axes, reason=f"fewer than the directions of count = {shape}")
+        invalid("spacing", spacing)
     result = Grid(np.empty((particles[0], c.axes)), np.empty(particles[0], bool), np.empty(links[0], LINK))
     if status := lib.spring_grid_fill(c, ffi.from_buffer("double[]", result.position),
                                       ffi.from_buffer("uint8_t[]", result.pinned),
@@ -129,8 +155,8 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
 class Snapshot:
     """The state of a scene at a time, its force included. Scene.restore() goes back to it."""
 
-    def __init__(self, scene: Scene, memory: bytes, called: _Called | None):
-        self._scene, self._memory, self._called = scene, memory, called
+    def __init__(self, scene: Scene, memory: bytes, called: _Called | None, pinned: np.ndarray):
+        self._scene, self._memory, self._called, self._pinned = scene, memory, called, pinned
 
     def __len__(self) -> int:
         """[bytes]"""
@@ -141,21 +167,22 @@ class Scene:
     """Particles joined by springs: mass x'' = link forces + mass gravity - drag x' + force(t, x, x').
 
     position: [m], (particles, axes); (particles,) for one axis
-    links: an array of LINK, or what NumPy makes one of: tuples (a, b, rest [m], stiffness [N/m], damping [N s/m])
+    links: tuples (a, b, rest [m], stiffness [N/m], damping [N s/m]), or an array of LINK. Any structured array with exactly
+        these fields will do, in any order: they are found by their names
     velocity: [m/s], like position; None: at rest
     mass: [kg] > 0, of all or for each particle
     pinned: for each particle, True: it feels no force and keeps its velocity; None: none is
     gravity: [m/s^2], a number for each axis; None: none
     drag: [N s/m] >= 0, on every particle
     force: adds forces, see Force
-    force_ignores_velocity: force uses no velocities: leapfrog is twice as fast
+    force_ignores_velocity: force uses no velocities, and is shown zeros: leapfrog is twice as fast
     methods: names of those that will be used; None: all but "rk4" and "rkn8", which take more memory
     editable: links, pins and masses may change
     undo: False: an advance that fails loses the state, and memory is saved
     dtype: float64 or float32: what the scene computes in
 
     Everything is copied into a block of memory, as C does; position(), velocity() and their like copy it out. While one
-    thread advances a scene others get RuntimeError, and so does its own force.
+    thread advances a scene, its methods raise RuntimeError in other threads, and in its own force.
     """
 
     def __init__(self, position: ArrayLike, links: ArrayLike = (), *, velocity: ArrayLike | None = None,
@@ -173,12 +200,18 @@ class Scene:
         if positions.ndim != 2 or not 1 <= positions.shape[1] <= 3:
             raise ValueError(f"position: its shape is {np.shape(position)}, not (particles, axes)")
         self._particles, self._axes = positions.shape
-        joined = np.ascontiguousarray(links if isinstance(links, np.ndarray) else [tuple(link) for link in links], LINK)
-        if joined.ndim != 1:
-            raise ValueError(f"links: its shape is {joined.shape}, not (links,)")
+        joined = _joined(links)
         self._links = len(joined)
+        methods = names_of("methods", methods or ())
         self._called: _Called | None = None
-        self._busy = False
+        self._unseen_velocity: tuple[np.ndarray, ...] | None = None
+        if force_ignores_velocity:
+            zeros = np.zeros(self._particles, self._dtype)
+            zeros.flags.writeable = False
+            self._unseen_velocity = (zeros,) * self._axes
+        self._pinned = np.zeros(self._particles, bool)
+        self._undo = undo
+        self._guard = Guard("the scene is being advanced, or asked by its own force")
 
         given = {"position": positions, "link": joined}
         definition = ffi.new(f"{self._prefix}_def *", {
@@ -189,7 +222,7 @@ class Scene:
                              ("FORCE_IGNORES_VELOCITY", force_ignores_velocity)):
             if wanted:
                 definition.flags |= getattr(lib, f"SPRING_SCENE_{flag}")
-        for method in methods or ():
+        for method in methods:
             definition.methods |= 1 << method_number(method)
         if np.ndim(mass) == 0:
             if not 0 < float(mass) < np.inf:  # 0 would mean 1
@@ -201,12 +234,12 @@ class Scene:
             given["velocity"] = self._numbers("velocity", velocity, positions.shape)
         if pinned is not None:
             given["pinned"] = self._flags(pinned, self._particles)
+            self._pinned[:] = given["pinned"]
         lent = {field: ffi.from_buffer(array) for field, array in given.items()}
         for field, buffer in lent.items():
             setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
         if force is not None:
-            self._called = _Called(force, self._axes, self._dtype)
-            definition.force, definition.user = self._function(), self._called.handle
+            definition.force = self._function()
 
         field, index = ffi.new("const char **"), ffi.new("size_t *")
         if status := self._c("check")(definition, field, index):
@@ -214,8 +247,11 @@ class Scene:
         size = ffi.new("size_t *")
         self._c("bytes")(definition, size)
         self._take(size[0])
+        if force is not None:
+            self._called = _Called(force, self)
+            definition.user = self._called.handle
         scene = ffi.new(f"{self._prefix} **")
-        if status := self._c("init")(self._scene, size[0], definition, scene):
+        if status := self._c("init")(self._pointer, size[0], definition, scene):
             fail(status)
 
     # --- between Python and C
@@ -234,11 +270,9 @@ class Scene:
         self._lent = ffi.from_buffer(self._memory)
         self._pointer = ffi.cast(f"{self._prefix} *", self._lent)
 
-    @property
-    def _scene(self) -> Any:
-        if self._busy:
-            raise RuntimeError("the scene is being advanced, or asked by its own force")
-        return self._pointer
+    def _ask(self, name: str, *arguments: Any) -> Any:
+        """Call a function of C that takes little time."""
+        return self._guard.short(self._c(name), self._pointer, *arguments)
 
     def _vector(self, field: str, values: ArrayLike) -> list[float]:
         array = np.asarray(values, np.float64)
@@ -263,28 +297,36 @@ class Scene:
         return flags
 
     def _refuse(self, status: int, field: str | None, index: int, definition: Any, given: dict[str, np.ndarray],
-                methods: Iterable[str] | None) -> None:
+                methods: tuple[str, ...]) -> None:
         """The exception for a definition that is not valid."""
         name, _, part = (field or "").partition(".")
         if name in given and index < len(given[name]):
             value = given[name][index]
             fail(status, field, (value[part] if part else value).tolist(), index)
         if name == "methods":
-            fail(status, field, tuple(methods or ()))
+            fail(status, field, methods)
         value = getattr(definition, name, None)
         fail(status, field, value if isinstance(value, (int, float)) else None)
 
     def _run(self, name: str, *arguments: Any) -> Any:
-        """Call what may call the force: its exception is the caller's."""
-        scene, self._busy = self._scene, True
-        try:
-            result = self._c(name)(scene, *arguments)
-        finally:
-            self._busy = False
+        """Call a function of C that may call the force: its exception is the caller's."""
+        result = self._c(name)(self._pointer, *arguments)
         if self._called is not None and self._called.error is not None:
             error, self._called.error = self._called.error, None
             raise error
         return result
+
+    def _advance(self, number: int, dt: float, steps: int) -> int:
+        # C gives up at forces that are NaN, but does not use all forces: not those of pinned particles, nor, with a method
+        # that uses positions only, the last ones of a call, which are kept for the next call.
+        unused = self._pinned.all() or lib.spring_method_describe(number).positions_only
+        before = self._save() if self._called is not None and self._undo and unused else None
+        try:
+            return self._run("advance", number, dt, steps)
+        except BaseException:
+            if before is not None:
+                self._load(before)
+            raise
 
     # --- what it is
 
@@ -304,25 +346,26 @@ class Scene:
     @property
     def time(self) -> float:
         """[s] since it was made"""
-        return self._c("time")(self._scene)
+        return self._ask("time")
 
     def energy(self) -> Energies:
         """The energies [J]."""
-        energies = self._c("energy")(self._scene)
+        energies = self._ask("energy")
         return Energies(energies.kinetic, energies.elastic, energies.gravity)
 
     def at_rest(self, v_tol: float, a_tol: float) -> bool:
         """Is every speed at most v_tol [m/s], and every acceleration of what is not pinned at most a_tol [m/s^2]?"""
-        return self._run("at_rest", v_tol, a_tol)
+        return self._guard.long(self._run, "at_rest", v_tol, a_tol)
 
     # --- steps
 
     def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
         """Advance by a number of steps of dt [s]; negative runs backwards.
 
-        After an error, one of force() included, the scene is as it was, but see undo.
+        After an error, one of force() included, the scene is as it was, but see undo. Ctrl-C is noticed in force(), or
+        after the call: split a long run into several calls, which have the same bits.
         """
-        status = self._run("advance", method_number(method), dt, step_count(steps))
+        status = self._guard.long(self._advance, method_number(method), dt, step_count(steps))
         if status == lib.SPRING_EINVAL:
             invalid("dt", dt)
         if status in (lib.SPRING_EUNSUPPORTED, lib.SPRING_EDISABLED):
@@ -332,7 +375,7 @@ class Scene:
 
     def stable_step(self, method: str = "leapfrog") -> float:
         """A stable step [s], from the stiffness of the links; 0: none is known, infinity: all are. Better take half."""
-        step = self._c("stable_step")(self._scene, method_number(method))
+        step = self._ask("stable_step", method_number(method))
         if np.isnan(step):
             fail(lib.SPRING_EUNSUPPORTED, "method", method)
         return step
@@ -342,20 +385,20 @@ class Scene:
     def _get(self, quantity: int, first: int, count: int | None, out: np.ndarray | None) -> np.ndarray:
         if out is None:
             out = np.empty((max(0, self._particles - first) if count is None else count, self._axes), self._dtype)
-        elif count is not None and count != len(out):
-            raise ValueError("count: not that of out")
         elif not self._fits(out):
             raise TypeError(f"out: not a writeable array of float64 or float32, (count, {self._axes}), with rows in one piece")
+        elif count is not None and count != len(out):
+            raise ValueError("count: not that of out")
         get, pointer = ("get", "double *") if out.dtype == np.float64 else ("getf", "float *")
         stride = out.strides[0] // out.itemsize if len(out) > 1 else 0
         start = ffi.cast(pointer, out.ctypes.data)
-        if status := self._c(get)(self._scene, quantity, start, stride, _natural("first", first), len(out)):
+        if status := self._ask(get, quantity, start, stride, _natural("first", first), len(out)):
             fail(status, "first, count", (first, len(out)))
         return out
 
-    def _fits(self, out: np.ndarray) -> bool:
+    def _fits(self, out: Any) -> bool:
         """Can C write rows to it, at a stride?"""
-        if out.ndim != 2 or out.shape[1] != self._axes or out.dtype not in _PREFIXES:
+        if not isinstance(out, np.ndarray) or out.ndim != 2 or out.shape[1] != self._axes or out.dtype not in _PREFIXES:
             return False
         if not (out.flags.writeable and out.flags.aligned):
             return False
@@ -366,7 +409,7 @@ class Scene:
         array = np.asarray(values, np.float64)
         array = self._numbers(field, array, (len(array) if array.ndim else 0, self._axes))
         pointer = ffi.cast("double *", ffi.from_buffer(array))
-        status = self._c("set")(self._scene, quantity, pointer, 0, _natural("first", first), len(array))
+        status = self._ask("set", quantity, pointer, 0, _natural("first", first), len(array))
         if status == lib.SPRING_EINVAL:
             with np.errstate(over="ignore"):
                 row = int(np.flatnonzero(~np.isfinite(array.astype(self._dtype)).all(axis=1))[0])
@@ -393,18 +436,23 @@ class Scene:
         """Set velocities [m/s], as set_position()."""
         self._set(lib.SPRING_VELOCITY, "velocity", values, first)
 
+    def _save(self) -> Snapshot:
+        return Snapshot(self, self._memory.tobytes(), self._called, self._pinned.copy())
+
+    def _load(self, snapshot: Snapshot) -> None:
+        self._memory[:] = np.frombuffer(snapshot._memory, np.uint8)
+        self._called = snapshot._called
+        self._pinned[:] = snapshot._pinned
+
     def snapshot(self) -> Snapshot:
         """All of it, to go back to."""
-        self._scene  # not while it moves
-        return Snapshot(self, self._memory.tobytes(), self._called)
+        return self._guard.short(self._save)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of this scene, to the bit."""
-        self._scene  # not while it moves
         if snapshot._scene is not self:
             raise ValueError("snapshot: of another scene")
-        self._memory[:] = np.frombuffer(snapshot._memory, np.uint8)
-        self._called = snapshot._called
+        self._guard.short(self._load, snapshot)
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("a scene is not copied: see snapshot()")
@@ -413,20 +461,23 @@ class Scene:
 
     def set_gravity(self, gravity: ArrayLike) -> None:
         """Change gravity [m/s^2], a number for each axis."""
-        self._c("set_gravity")(self._scene, [*self._vector("gravity", gravity), 0, 0][:3])
+        self._ask("set_gravity", [*self._vector("gravity", gravity), 0, 0][:3])
 
     def set_force(self, force: Force | None) -> None:
         """Change the force; None: none. Call it, too, after a change of what the force depends on."""
-        called = None if force is None else _Called(force, self._axes, self._dtype)
-        function, user = (self._function(), called.handle) if called else (ffi.NULL, ffi.NULL)
-        if status := self._c("set_force")(self._scene, function, user):
-            fail(status)
-        self._called = called
+        called = None if force is None else _Called(force, self)
+
+        def change() -> None:
+            function, user = (self._function(), called.handle) if called else (ffi.NULL, ffi.NULL)
+            self._c("set_force")(self._pointer, function, user)
+            self._called = called
+
+        self._guard.short(change)
 
     def link(self, index: int) -> tuple[int, int, float, float, float]:
         """A link as it is now: a, b, rest [m], stiffness [N/m], damping [N s/m]; a and b may be swapped."""
         link = ffi.new("spring_link *")
-        if status := self._c("get_link")(self._scene, _natural("link", index), link):
+        if status := self._ask("get_link", _natural("link", index), link):
             fail(status, "link", index)
         return link.a, link.b, link.rest, link.stiffness, link.damping
 
@@ -437,7 +488,7 @@ class Scene:
         for field, value in (("rest", rest), ("stiffness", stiffness), ("damping", damping)):
             if value is not None:
                 setattr(link, field, value)
-        if status := self._c("set_link")(self._scene, index, link):
+        if status := self._ask("set_link", index, link):
             if status == lib.SPRING_EINVAL:
                 for field in ("rest", "stiffness", "damping"):
                     if not 0 <= getattr(link, field) < np.inf:
@@ -446,39 +497,70 @@ class Scene:
 
     def find_link(self, a: int, b: int) -> int | None:
         """The first link between two particles, in either order, or None. Looks at all links."""
-        index = self._c("find_link")(self._scene, _natural("a", a), _natural("b", b))
+        index = self._ask("find_link", _natural("a", a), _natural("b", b))
         return index if index < self._links else None
 
     def set_pinned(self, pinned: ArrayLike, first: int = 0) -> None:
         """Pin and free particles from `first` on of an editable scene. What was free stops where it is; freed, it flies on."""
         flags = self._flags(pinned)
-        status = self._c("set_pinned")(self._scene, _natural("first", first), len(flags), ffi.from_buffer("uint8_t[]", flags))
-        if status:
+
+        def change() -> int:
+            status = self._ask("set_pinned", _natural("first", first), len(flags), ffi.from_buffer("uint8_t[]", flags))
+            if not status:
+                self._pinned[first:first + len(flags)] = flags
+            return status
+
+        if status := self._guard.short(change):
             fail(status, "pinned", flags.astype(bool).tolist(), first)
 
     def set_mass(self, mass: ArrayLike, first: int = 0) -> None:
         """Change the masses [kg] of particles from `first` on of an editable scene."""
         array = self._numbers("mass", mass, (np.size(mass),))
-        status = self._c("set_mass")(self._scene, _natural("first", first), len(array), ffi.from_buffer("double[]", array))
-        if status:
+        if status := self._ask("set_mass", _natural("first", first), len(array), ffi.from_buffer("double[]", array)):
             fail(status, "mass", array.tolist(), first)
 
     def drive(self, particle: int, target: ArrayLike | None, duration: float = 0.0) -> None:
         """Give a pinned particle the velocity that brings it to a target [m] within duration > 0 [s]; None: it stops."""
-        place = ffi.NULL if target is None else ffi.new("double[3]", self._vector("target", target))
-        if status := self._c("drive")(self._scene, _natural("particle", particle), place, duration):
-            if target is not None and not 0 < duration < np.inf:
-                fail(status, "duration", duration)
-            fail(status, "particle", particle)
+        to = None if target is None else self._vector("target", target)
+        place = ffi.NULL if to is None else ffi.new("double[3]", to)
+        if status := self._ask("drive", _natural("particle", particle), place, duration):
+            if status == lib.SPRING_ERANGE:
+                fail(status, "particle", particle)
+            if not self._pinned[particle]:
+                invalid("particle", particle, reason="not pinned")
+            with np.errstate(over="ignore"):
+                if 0 < duration < np.inf and not np.isfinite(to - self.position(particle, 1)).all():
+                    invalid("target", to, reason="too far away")
+            invalid("duration", duration, reason="not a finite time > 0 in which a finite velocity reaches the target")
 
     def tension(self, index: int) -> float:
         """The force along a link [N], > 0 pulls; its damping included."""
         if not 0 <= index < self._links:
             fail(lib.SPRING_ERANGE, "link", index)
-        return self._c("tension")(self._scene, index)
+        return self._ask("tension", index)
 
     def __repr__(self) -> str:
         return f"<Scene of {self._particles} particles and {self._links} links on {self._axes} axes, {self._dtype}>"
+
+
+def _joined(links: ArrayLike) -> np.ndarray:
+    """Links as an array of LINK."""
+    if not isinstance(links, np.ndarray):
+        links = list(links)
+        records = len(links) > 0 and isinstance(links[0], np.void)  # elements of a structured array, with names
+        links = np.array(links) if records else np.array([tuple(link) for link in links], LINK)
+    if links.ndim != 1:
+        raise ValueError(f"links: its shape is {links.shape}, not (links,)")
+    if links.dtype.names is None:
+        return np.ascontiguousarray(links, LINK)
+    missing = [name for name in LINK.names if name not in links.dtype.names]
+    unknown = [name for name in links.dtype.names if name not in LINK.names]
+    if missing or unknown:
+        raise ValueError(f"links: missing fields {missing}, unknown fields {unknown}")
+    joined = np.empty(len(links), LINK)
+    for name in LINK.names:  # NumPy assigns structures by position
+        joined[name] = links[name]
+    return joined
 
 
 def _natural(field: str, index: int) -> int:

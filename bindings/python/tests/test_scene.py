@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Particles joined by springs."""
 import copy
+import gc
 import math
 import re
 import subprocess
+import sys
 import threading
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -152,6 +155,7 @@ LINKS = [(0, 1, 0.3, 2.7, 0.0), (1, 2, 0.3, 2.7, 0.1)]
     ({"links": [LINKS[0], (1, 1, 0.3, 2.7, 0)]}, springstep.InvalidError, "link.b", 1),
     ({"links": [LINKS[0], (1, 2, 0.3, -2.7, 0)]}, springstep.InvalidError, "link.stiffness", 1),
     ({"methods": ["verlet"]}, springstep.InvalidError, "method", None),
+    ({"methods": "rk4"}, springstep.InvalidError, "methods", None),
     ({"methods": ["exact"]}, springstep.UnsupportedError, "methods", None),
     ({"methods": ["rkn8"]}, springstep.UnsupportedError, "methods", None),
 ])
@@ -162,6 +166,33 @@ def test_what_is_wrong_is_named(change, kind, field, index):
         Scene(**{**whole, **change})
     error = caught.value
     assert (error.field, error.index) == (field, index) and str(error).startswith(field) and error.value is not None
+
+
+def structured(names, links=LINKS):
+    """Links as a structured array, its fields in this order; of fields that a link does not have numbers of their own."""
+    array = np.full(len(links), 9, [(name, np.float32 if name in "ab" else np.float64) for name in names])
+    for name, values in zip(springstep.LINK.names, zip(*links)):
+        if name in names:
+            array[name] = values
+    return array
+
+
+def test_fields_of_links_are_found_by_name():
+    array = structured(["damping", "stiffness", "b", "rest", "a"])
+    for links in (array, list(array), np.rec.array(array), array.astype(springstep.LINK[list(array.dtype.names)])):
+        scene = Scene([[0, 0], [1, 0], [2, 0]], links)
+        assert [scene.link(0), scene.link(1)] == LINKS
+
+
+@pytest.mark.parametrize("names, named", [
+    (["a", "b", "rest", "stiffness"], r"missing fields \['damping'\], unknown fields \[\]"),
+    (["a", "b", "rest", "k", "damping"], r"missing fields \['stiffness'\], unknown fields \['k'\]"),
+    (["a", "b", "rest", "stiffness", "damping", "name"], r"missing fields \[\], unknown fields \['name'\]"),
+])
+def test_wrong_fields_of_links_are_named(names, named):
+    for links in (structured(names), structured(names, [])):
+        with pytest.raises(ValueError, match=f"^links: {named}"):
+            Scene([[0, 0], [1, 0], [2, 0]], links)
 
 
 @pytest.mark.parametrize("change", [{"position": np.zeros((3, 4))}, {"mass": [1, 2]}, {"pinned": [True]},
@@ -188,6 +219,10 @@ def test_a_shape_that_is_wrong_is_named(change):
     (lambda s: s.drive(0, [0, 0, 0], 0), springstep.InvalidError, "duration"),
     (lambda s: s.drive(0, [0, math.inf, 0], 1), springstep.InvalidError, "target"),
     (lambda s: s.drive(6, None), springstep.RangeError, "particle"),
+    (lambda s: s.drive(6, [0, 0, 0], 0), springstep.RangeError, "particle"),
+    (lambda s: s.drive(1, [0, 0, 0], 0), springstep.InvalidError, "particle"),
+    (lambda s: s.drive(0, [0, 1e300, 0], 1e-300), springstep.InvalidError, "duration"),
+    (lambda s: s.drive(0, [0, 1, 0], math.nan), springstep.InvalidError, "duration"),
     (lambda s: s.tension(5), springstep.RangeError, "link"),
 ])
 def test_what_a_scene_refuses(call, kind, field):
@@ -198,14 +233,36 @@ def test_what_a_scene_refuses(call, kind, field):
     assert (scene.position() == rope().position()).all() and (scene.velocity() == 0).all()
 
 
+def test_what_is_too_far_to_drive_to():
+    scene = rope(pinned=[True] * 6)
+    scene.set_position([[-1e308, 0, 0]])
+    with pytest.raises(springstep.InvalidError) as caught:
+        scene.drive(0, [1e308, 0, 0], 1)
+    assert caught.value.field == "target"
+
+
+def test_a_list_is_no_array_to_copy_to():
+    for count in (None, 2):
+        with pytest.raises(TypeError, match="^out: "):
+            rope().position(0, count, out=[1])
+
+
 @pytest.mark.parametrize("change, field", [
     ({"spacing": 0}, "spacing"), ({"stiffness": -1}, "stiffness"), ({"damping": math.nan}, "damping"),
     ({"count": [0x10000, 0x10000]}, "count"), ({"families": ["bent"]}, "families"), ({"pinned": ["top"]}, "pinned"),
+    ({"count": []}, "count"), ({"count": [-1]}, "count"), ({"count": [2**32]}, "count"), ({"axes": 0}, "axes"),
+    ({"axes": 7}, "axes"), ({"axes": 1}, "axes"), ({"spacing": 1e308}, "spacing"), ({"families": "shear"}, "families"),
+    ({"pinned": "first_x"}, "pinned"),
 ])
 def test_a_wrong_grid(change, field):
     with pytest.raises(springstep.SpringError) as caught:
         grid(**{"count": [3, 2], "spacing": 0.3, "stiffness": 2.7, **change})
     assert caught.value.field == field
+
+
+def test_a_fourth_count_is_refused():
+    with pytest.raises(springstep.InvalidError, match=r"^count = \(1, 2, 3, 4\): not one to three numbers$"):
+        grid([1, 2, 3, 4], 0.3, 2.7)
 
 
 # --- forces in Python
@@ -251,6 +308,149 @@ def test_an_exception_in_a_force_comes_back_and_nothing_changed(dtype):
     scene.advance(1e-3, 10)
 
 
+@pytest.mark.parametrize("pinned", [[], [0], range(6)], ids=["free", "hung", "all_pinned"])
+@pytest.mark.parametrize("method", OF_SCENES)
+def test_an_exception_at_any_evaluation_undoes_the_call(method, pinned):
+    fails_at = math.inf
+    evaluations = 0
+
+    def pull(t, position, velocity, force):
+        nonlocal evaluations
+        evaluations += 1
+        if evaluations == fails_at:
+            raise KeyError("mine")
+        force[1][:] += 0.3 * position[0]
+
+    g = grid([6], 0.3, 170.0)
+    scene = Scene(g.position, g.links, velocity=np.full((6, 3), 0.1), mass=0.13, pinned=np.isin(range(6), pinned), force=pull,
+                  force_ignores_velocity=True, methods=[method])
+    start = scene.snapshot()
+    scene.advance(1e-3, 2, method)
+    before, state = scene.snapshot(), (scene.position().tobytes(), scene.velocity().tobytes(), scene.time)
+    evaluations = 0
+    scene.advance(1e-3, 3, method)
+    after, count = (scene.position().tobytes(), scene.velocity().tobytes()), evaluations
+    assert count >= 3 and state[0] != after[0]
+    for fails_at in range(1, count + 1):
+        scene.restore(start)
+        scene.restore(before)
+        evaluations = 0
+        with pytest.raises(KeyError):
+            scene.advance(1e-3, 3, method)
+        assert evaluations == fails_at or len(pinned) == 6
+        assert (scene.position().tobytes(), scene.velocity().tobytes(), scene.time) == state
+        evaluations = -math.inf
+        scene.advance(1e-3, 3, method)
+        assert (scene.position().tobytes(), scene.velocity().tobytes()) == after
+
+
+@pytest.mark.parametrize("method", OF_SCENES)
+def test_a_force_that_is_not_finite(method):
+    """As scene.h says."""
+    particle, evaluations, fails_at = 0, 0, 1
+
+    def pull(t, position, velocity, force):
+        nonlocal evaluations
+        evaluations += 1
+        if evaluations >= fails_at:
+            force[1][particle] = math.nan
+
+    g = grid([6], 0.3, 170.0, pinned=["first_x"])
+    scene = Scene(g.position, g.links, pinned=g.pinned, force=pull, force_ignores_velocity=True, methods=[method])
+    scene.advance(1e-3, 3, method)  # a pinned particle feels none
+    assert np.isfinite(scene.position()).all()
+    evaluations, fails_at = 0, math.inf
+    scene.set_force(pull)
+    scene.advance(1e-3, 3, method)
+    particle, fails_at, evaluations = 5, evaluations, 0
+    scene.set_force(pull)
+    if method == "rkn8":
+        scene.advance(1e-3, 3, method)  # the last force is for the next call
+    before = scene.position(), scene.time
+    with pytest.raises(springstep.NonFiniteError):
+        scene.advance(1e-3, 3, method)
+    assert (scene.position() == before[0]).all() and scene.time == before[1]
+
+
+def test_a_force_of_pinned_particles_alone_may_raise():
+    """Also after set_pinned() and restore()."""
+    g = grid([3], 0.3, 170.0)
+    scene = Scene(g.position, g.links, velocity=np.ones((3, 3)), pinned=[True, False, True], editable=True)
+    scene.set_pinned([True], 1)
+    all_pinned = scene.snapshot()
+    for prepare in (lambda: scene.restore(all_pinned), lambda: scene.set_pinned([True], 1)):
+        scene.set_pinned([False], 1)
+        prepare()
+        scene.set_force(lambda *_: 1 / 0)
+        before = scene.position(), scene.velocity()
+        with pytest.raises(ZeroDivisionError):
+            scene.advance(0.5, 2)
+        assert scene.time == 0 and (scene.position() == before[0]).all() and (scene.velocity() == before[1]).all()
+
+
+def test_an_interrupt_at_any_line_of_a_callback_undoes_the_call():
+    """Ctrl-C raises KeyboardInterrupt in whatever line of Python runs, lines of the package included."""
+    scene = rope(force=lambda t, position, velocity, force: force[1].fill(0.1))
+    before, lines, line = scene.position(), 0, 0
+
+    def trace(frame, event, argument):
+        nonlocal lines
+        if event in ("call", "line"):
+            lines += 1
+            if lines == line:
+                raise KeyboardInterrupt
+        return trace
+
+    def trace_callbacks(frame, event, argument):
+        return trace(frame, event, argument) if frame.f_code.co_name == "_callback" or lines > 0 else None
+
+    while True:
+        line, lines = line + 1, 0
+        old = sys.gettrace()
+        sys.settrace(trace_callbacks)
+        try:
+            scene._run("advance", lib.SPRING_LEAPFROG, 1e-3, 1)
+        except KeyboardInterrupt:
+            pass
+        else:
+            break  # there is no such line
+        finally:
+            sys.settrace(old)
+        assert (scene.position() == before).all() and scene.time == 0
+    assert line > 20 and scene.time == 1e-3
+
+
+def test_an_array_kept_by_a_force_outlives_its_scene():
+    kept = []
+    scene = rope(force=lambda t, position, velocity, force: kept.extend([*position, *velocity, *force]))
+    scene.advance(1e-3)
+    values, gone = [array.copy() for array in kept], [weakref.ref(scene), weakref.ref(kept[0].base)]
+    del scene
+    gc.collect()
+    assert gone[0]() is None and gone[1]() is not None and all(array.base is gone[1]() for array in kept)
+    assert all((array == value).all() for array, value in zip(kept, values))
+    kept.clear()
+    gc.collect()
+    assert gone[1]() is None  # and nothing else keeps it
+
+
+def test_velocities_that_a_force_ignores_are_zeros():
+    seen = []
+    scene = rope(velocity=np.full((6, 3), 0.7), force=lambda t, position, velocity, force: seen.extend(velocity),
+                 force_ignores_velocity=True)
+    scene.advance(1e-3, 10)
+    assert len(seen) == 33 and all(len(v) == 6 and not v.any() and not v.flags.writeable for v in seen)
+
+
+def test_many_steps_are_the_bits_of_single_steps():
+    """So a long call may be cut in parts, between which Ctrl-C is noticed."""
+    whole, parts = cloth(), cloth()
+    whole.advance(4e-4, 10)
+    for _ in range(10):
+        parts.advance(4e-4)
+    assert fnv(whole) == fnv(parts) and whole.time == parts.time
+
+
 def test_a_snapshot_has_its_force():
     broken = []
 
@@ -293,6 +493,87 @@ def test_a_force_may_not_ask_its_scene():
     with pytest.raises(RuntimeError, match="own force"):
         scene.advance(1e-3)
     assert scene.time == 0
+
+
+CALLS = [
+    lambda s: s.advance(1e-3), lambda s: s.at_rest(1, 1), lambda s: s.time, lambda s: s.energy(), lambda s: s.stable_step(),
+    lambda s: s.position(), lambda s: s.velocity(), lambda s: s.set_position([[0, 0, 0]]),
+    lambda s: s.set_velocity([[0, 0, 0]]), lambda s: s.snapshot(), lambda s: s.set_gravity([0, 0, 0]),
+    lambda s: s.set_force(None), lambda s: s.link(0),
+    lambda s: s.set_link(0, rest=1), lambda s: s.find_link(0, 1), lambda s: s.set_pinned([True]), lambda s: s.set_mass([1.0]),
+    lambda s: s.drive(0, None), lambda s: s.tension(0),
+]
+
+
+def test_calls_of_other_threads_are_refused_during_an_advance():
+    inside, leave = threading.Event(), threading.Event()
+
+    def wait(*_):
+        inside.set()
+        leave.wait(60)
+
+    scene, seen = rope(editable=True, force=wait), []
+    before = scene.snapshot()
+    thread = threading.Thread(target=scene.advance, args=(1e-3,))
+    thread.start()
+    assert inside.wait(60)
+    for call in (*CALLS, lambda s: s.restore(before)):
+        with pytest.raises(RuntimeError, match="being advanced"):
+            seen.append(call(scene))
+    leave.set()
+    thread.join()
+    assert not seen and scene.time == 1e-3
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_an_advance_waits_for_calls_of_other_threads(call, monkeypatch):
+    scene, inside, leave, order = rope(editable=True), threading.Event(), threading.Event(), []
+    to_c = scene._c
+
+    def slow(name):
+        def function(*arguments):
+            result = to_c(name)(*arguments)
+            inside.set()
+            leave.wait(60)
+            order.append("call")
+            return result
+        return function
+
+    def slow_bytes(*_):
+        return slow("time")(scene._pointer) and b""
+
+    monkeypatch.setattr(scene, "_c", slow)
+    monkeypatch.setattr(scene, "_save", slow_bytes)
+    first = threading.Thread(target=call, args=(scene,))
+    first.start()
+    assert inside.wait(60)
+    monkeypatch.undo()
+
+    def advance():
+        try:
+            scene.advance(1e-3)
+        except RuntimeError:  # the call is an advance itself
+            pass
+        order.append("advance")
+
+    second = threading.Thread(target=advance)
+    second.start()
+    second.join(0.1)  # without a guard it would end now
+    refused = bool(order)
+    leave.set()
+    first.join()
+    second.join()
+    assert order == ["call", "advance"] or (refused and call in CALLS[:2])
+
+
+def test_questions_of_several_threads_are_all_answered():
+    scene, answers = cloth(), []
+    threads = [threading.Thread(target=lambda: answers.extend(scene.energy() for _ in range(200))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(answers) == 800 and len(set(answers)) == 1
 
 
 def test_scenes_in_threads():
