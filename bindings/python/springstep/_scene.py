@@ -484,11 +484,16 @@ class Scene:
     def set_link(self, index: int, *, rest: float | None = None, stiffness: float | None = None,
                  damping: float | None = None) -> None:
         """Change what is given of a link of an editable scene: [m], [N/m], [N s/m]; stiffness 0 and damping 0 cut it."""
-        link = ffi.new("spring_link *", self.link(index))
-        for field, value in (("rest", rest), ("stiffness", stiffness), ("damping", damping)):
-            if value is not None:
-                setattr(link, field, value)
-        if status := self._ask("set_link", index, link):
+        link = ffi.new("spring_link *")
+
+        def change() -> int:
+            link[0] = self.link(index)
+            for field, value in (("rest", rest), ("stiffness", stiffness), ("damping", damping)):
+                if value is not None:
+                    setattr(link, field, value)
+            return self._ask("set_link", index, link)
+
+        if status := self._guard.short(change):
             if status == lib.SPRING_EINVAL:
                 for field in ("rest", "stiffness", "damping"):
                     if not 0 <= getattr(link, field) < np.inf:
