@@ -202,6 +202,33 @@ static void mixed_methods_and_questions(void)
     }
 }
 
+/* Forces at predicted velocities belong to leapfrog: another method must not use them. */
+static void change_of_method(void)
+{
+    static model m;
+    static state y;
+    for (size_t run = 0; run < run_count; run++) {
+        wind w;
+        const method_list all = windy_model(&m, &w, 2, runs[run]);
+        for (const spring_method *first = all.at; *first != no_method; first++)
+            for (const spring_method *second = all.at; *second != no_method; second++) {
+                if (*first == *second)
+                    continue;
+                spring_scene *s = scene_of(&m.def), *set = scene_of(&m.def);
+                CHECK(spring_scene_advance(s, *first, 0.0137, 3) == SPRING_OK, "stable");
+                spring_scene_advance(set, *first, 0.0137, 3);
+                get_state(set, m.def.particles, &y);
+                set_state(set, m.def.particles, &y);
+                spring_scene_advance(s, *second, 0.0137, 3);
+                spring_scene_advance(set, *second, 0.0137, 3);
+                CHECK(same_bits(s, set, m.def.particles, 2),
+                      "another method starts from positions and velocities alone");
+                free(s);
+                free(set);
+            }
+    }
+}
+
 static void two_scenes(void)
 {
     static model m, n;
@@ -850,6 +877,7 @@ int main(void)
         {"a callback without velocities", still_force},
         {"n steps are n times one step", one_by_one},
         {"questions change nothing", mixed_methods_and_questions},
+        {"a change of method", change_of_method},
         {"two scenes", two_scenes},
         {"snapshots", snapshot},
         {"time is not accumulated", time_is_not_accumulated},
