@@ -102,7 +102,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         if (!outcome.finite) {
             if (!rollback)
                 invalidate(s);
-            if (s->plan.force[0] == s->plan.force[1]) /* overwritten */
+            if (s->known != PREDICTED_FORCE) /* it may be overwritten, or the number that is not finite */
                 s->known = NO_FORCE;
             return SPRING_ENONFINITE;
         }

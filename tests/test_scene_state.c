@@ -363,6 +363,42 @@ static void failures(void)
 }
 
 /* The last kick of leapfrog overflows where all before it was finite: stiffness times the distance of a step. */
+typedef struct bad_call {
+    unsigned calls, bad; /* the number of the call that gives NaN, from 1 on; 0: none */
+} bad_call;
+
+static void sometimes_nan(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                          scalar *const force[3])
+{
+    bad_call *b = user;
+    (void)t, (void)v;
+    b->calls++;
+    for (size_t i = 0; i < particles; i++)
+        force[0][i] += b->calls == b->bad ? (scalar)NAN : (scalar)0.1 * x[1][i];
+}
+
+/* RKN8 evaluates the last force of a call for the next call alone. */
+static void recovers_from_a_bad_force(void)
+{
+    static model m;
+    build(&m, sheet, 3, EDITABLE | MASSES);
+    bad_call never = {0}, once = {0, 1 + 8};
+    m.def.force = sometimes_nan;
+    m.def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    m.def.methods = 1u << SPRING_RKN8 | 1u << SPRING_LEAPFROG;
+    m.def.user = &never;
+    spring_scene *good = scene_of(&m.def);
+    m.def.user = &once;
+    spring_scene *bad = scene_of(&m.def);
+    CHECK(spring_scene_advance(bad, SPRING_RKN8, 0.0137, 1) == SPRING_OK, "the state is finite");
+    CHECK(spring_scene_advance(bad, SPRING_RKN8, 0.0137, 1) == SPRING_ENONFINITE, "the force at its start is not");
+    CHECK(spring_scene_advance(bad, SPRING_RKN8, 0.0137, 1) == SPRING_OK, "the callback is asked again");
+    spring_scene_advance(good, SPRING_RKN8, 0.0137, 2);
+    CHECK(same_bits(bad, good, m.def.particles, 3), "as if nothing had happened");
+    free(good);
+    free(bad);
+}
+
 static void velocity_alone_overflows(void)
 {
     const double large = sizeof(scalar) == 4 ? 1e20 : 1e160; /* its square is infinite */
@@ -883,6 +919,7 @@ int main(void)
         {"time is not accumulated", time_is_not_accumulated},
         {"nothing to do", nothing_to_do},
         {"a failed call leaves everything as it was", failures},
+        {"a force that is not finite once", recovers_from_a_bad_force},
         {"velocity alone overflows", velocity_alone_overflows},
         {"a steady fall", steady_fall},
         {"without rollback", without_rollback},
