@@ -9,12 +9,13 @@ import random
 import resource
 import signal
 import subprocess
+import tempfile
 import time
 
 import pytest
 from test_methods import SPRINGS, TABLE
 from test_scene import SCENES
-from tools import PLAN, RUN, SCENE, SWEEP, column, is_failure, parse, run, table
+from tools import PLAN, RUN, SCENE, SWEEP, column, in_little_memory, is_failure, parse, run, table
 
 FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
 GRID = ['--over', 'omega_dt=0.02:3:log:60', '--over', 'damping_ratio=0:2:50', '--method', 'all']
@@ -236,6 +237,67 @@ def test_one_writer(tmp_path):
     is_failure(result, 3, 'is being written by another process')
 
 
+def stopped_at_work(path):
+    """A process that does GRID as one part, stopped when it has begun."""
+    process = subprocess.Popen([SWEEP, *GRID, '--part', '1/1', '-o', path], stderr=subprocess.PIPE, text=True)
+    while size_of(path) == 0:
+        time.sleep(0.0005)
+    process.send_signal(signal.SIGSTOP)
+    return process
+
+
+def outcome(process):
+    process.send_signal(signal.SIGCONT)
+    message, = process.communicate(timeout=60)[1].splitlines()
+    return process.returncode, message
+
+
+def test_removed_while_it_is_written(whole, tmp_path):
+    """Noticed, and nothing is lost."""
+    path = tmp_path / 'p'
+    process = stopped_at_work(path)
+    path.unlink()
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was removed while it was written; it is there again, and the same '
+                                   'command goes on with it')
+    written = path.read_bytes()
+    assert written.splitlines()[-1].startswith(b'# block ')
+    is_done(part(1, 1, path))
+    assert path.read_bytes().startswith(written) and same(join(path).stdout, whole)
+
+
+@pytest.mark.parametrize('replace', [lambda path: path.rename(path.with_name('q')),
+                                     lambda path: path.with_name('q').rename(path)])
+def test_moved_or_replaced_while_it_is_written(replace, tmp_path):
+    path = tmp_path / 'p'
+    (tmp_path / 'q').write_text('other\n')
+    process = stopped_at_work(path)
+    replace(path)
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was moved or replaced while it was written; it should stay until '
+                                   'all is done')
+    assert not path.exists() or path.read_text() == 'other\n'
+
+
+def test_removed_folder(tmp_path):
+    folder = tmp_path / 'folder'
+    folder.mkdir()
+    process = stopped_at_work(folder / 'p')
+    (folder / 'p').unlink()
+    folder.rmdir()
+    assert outcome(process) == (3, f'{SWEEP}: "{folder}/p" was removed while it was written, and cannot be written again: '
+                                   'No such file or directory')
+
+
+def test_folder_that_cannot_be_written():
+    """Root may write anywhere, so root tries as somebody else."""
+    somebody = {'user': 65534, 'group': 65534, 'extra_groups': []} if os.geteuid() == 0 else {}
+    with tempfile.TemporaryDirectory() as folder:  # open to others, as the folder of tmp_path is not
+        os.chmod(folder, 0o555)
+        try:
+            is_failure(part(1, 1, f'{folder}/p', **somebody), 3, f'cannot write "{folder}/p": Permission denied')
+        except PermissionError:
+            pytest.skip('the tools are in a folder that is closed to others')
+
+
 @pytest.fixture
 def small_disk(tmp_path):
     """100 KB."""
@@ -318,6 +380,31 @@ def test_foreign_parts(parts, tmp_path):
     whole = tmp_path / 'whole'
     is_done(run(SWEEP, *GRID, '-o', whole))
     is_failure(join(whole), 1, 'no part of a sweep')
+
+
+def test_a_file_without_lines(parts, tmp_path):
+    """Is not read to its end, which there may be none."""
+    is_failure(in_little_memory(SWEEP, '--join', '/dev/zero'), 3,
+               '--join: "/dev/zero" is no part of a sweep: line 1 should be a whole line of at most 65536 bytes')
+    comments = tmp_path / 'comments'
+    comments.write_text('# a line\n' * 8000)
+    is_failure(join(comments), 3, f'"{comments}" is no part of a sweep: line 7282 should be')
+    path, *others = copies(parts, tmp_path)
+    os.truncate(path, path.stat().st_size - 1000)
+    os.truncate(path, 600000000)  # zeros
+    is_failure(in_little_memory(SWEEP, '--join', path, *others), 1, str(path), 'missing or torn')
+    is_done(in_little_memory(SWEEP, *GRID, '--part', '1/3', '-o', path))
+    assert same(path.read_bytes(), parts[0].read_bytes())
+
+
+def test_the_output_is_none_of_the_parts(parts, tmp_path):
+    paths = copies(parts, tmp_path)
+    before = paths[1].read_bytes()
+    link = tmp_path / 'link'
+    link.symlink_to(paths[1])
+    for output in paths[1], link:
+        is_failure(run(SWEEP, '--join', *paths, '-o', output), 2, f'--output: "{output}" is one of the parts to join')
+    assert same(paths[1].read_bytes(), before)
 
 
 def test_a_block_in_the_place_of_another(parts, tmp_path):
