@@ -338,7 +338,7 @@ double spring_error_of(const accuracy *of, double steps, double n)
     const step_run step = run_of_one_step(of, r);
     if (!spring_finite(matrix_norm(step.error)))
         return INFINITY;
-    n = fmin(n, most);
+    n = fmin(n, most); /* beyond, numbers of steps that differ by one are equal */
     step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};
     const phase_rotation no_phase = {0};
