@@ -19,7 +19,8 @@
  *           coarse steps may jump over a fast decay and be better than fine ones (symplectic Euler with heavy damping).
  *           So the search begins at a step that is short beside every time scale, where the power law holds, and goes
  *           from there to coarser ones, a twentieth at a time at most, until one is not accurate enough.
- * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are not counted, and never enough.
+ * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are not counted, and never enough. The quotient of a
+ *           duration and a step may round up from that number, by one ulp.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
  *           (tests/test_accurate_step.c)
  * Source    Golub, Van Loan, Matrix Computations (2013), section 9.3 (the exponential by scaling and squaring);
@@ -330,12 +331,14 @@ static double steps_that_count(step_run step, double G, double n)
 
 double spring_error_of(const accuracy *of, double steps, double n)
 {
+    const double most = ldexp(1, MOST_DOUBLINGS);
     const step_rates r = rates_of_step(of, steps);
-    if (!spring_finite(rates_size(r)))
+    if (!spring_finite(rates_size(r)) || steps > most * (1 + DBL_EPSILON))
         return INFINITY;
     const step_run step = run_of_one_step(of, r);
-    if (!spring_finite(matrix_norm(step.error)) || !(n <= ldexp(1, MOST_DOUBLINGS)))
+    if (!spring_finite(matrix_norm(step.error)))
         return INFINITY;
+    n = fmin(n, most); /* beyond, numbers of steps that differ by one are equal */
     step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};
     const phase_rotation no_phase = {0};

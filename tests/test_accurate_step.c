@@ -284,6 +284,14 @@ static void known_errors(void)
         CHECK_BITS(spring_accurate_step(&free_mass, *m, 17, 1e-9), 17, "one step");
         CHECK(spring_step_error(&undamped, *m, 1, 0x1p-52) < 1e-12, "2^52 steps");
         CHECK_BITS(spring_step_error(&undamped, *m, 1, 0x1p-53 / 1.5), INFINITY, "more steps than are counted");
+        double longest = 1; /* of which 2^53 steps are not limited by rounding */
+        while (spring_step_error(&undamped, *m, longest, 0x1p-53 * longest) < 1e-6)
+            longest *= 2;
+        const double limit = spring_step_error(&undamped, *m, longest, 0x1p-53 * longest);
+        CHECK_BITS(spring_accurate_step(&undamped, *m, longest, limit), 0x1p-53 * longest, "2^53 steps are enough");
+        CHECK_BITS(spring_accurate_step(&undamped, *m, longest, 0.999 * limit), 0, "more than 2^53 are not counted");
+        CHECK_BITS(spring_step_error(&undamped, *m, longest, 0x1p-53 * longest * (1 - 1e-15)), INFINITY,
+                   "more than 2^53 steps");
         spring_params loaded = undamped;
         loaded.load = -3;
         CHECK_BITS(spring_accurate_step(&undamped, *m, 17, 1e-4), spring_accurate_step(&loaded, *m, 17, 1e-4),

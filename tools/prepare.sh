@@ -74,8 +74,27 @@ return_to_owner() {
     fi
 }
 
+# Is build/ what Meson made of this tree, or is it up to us what it will be?
+own_build() {
+    [[ -e $build || -L $build ]] || return 0
+    [[ -d $build && -w $build && -x $build ]] || return
+    [[ -e $build/build.ninja || -e $build/CMakeCache.txt ]] || return 0
+    python3 - "$build" "$root" <<'END' 2>/dev/null
+import json, os, sys
+with open(sys.argv[1] + '/meson-info/meson-info.json', encoding='utf-8') as info:
+    sys.exit(not os.path.samefile(json.load(info)['directories']['source'], sys.argv[2]))
+END
+}
+
+check_build() {
+    own_build && return
+    say "$build is not a Meson build of this tree, or cannot be written; rename or remove it"
+    exit 3
+}
+
 # prepare ARGUMENTS...: what the script itself was called with
 prepare() {
+    check_build
     install_missing
     return_to_owner "$@"
     local -a how=()

@@ -105,17 +105,44 @@ def test_all_files_or_none(older):
     assert files(older.parent) == {'old.tsv': 'older\n'}
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_signal(number, older):
-    with subprocess.Popen([ENERGY, '--method', 'rk4', '--duration', '1e9', '-o', older],
-                          preexec_fn=lambda: signal.signal(number, signal.SIG_DFL)) as process:
+def ended_by(older, *numbers, times=1):
+    """The status of a run that gets these signals while it writes."""
+    def prepare():
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
+    with subprocess.Popen([ENERGY, '--method', 'rk4', '--duration', '1e9', '-o', older], preexec_fn=prepare) as process:
         patience = time.monotonic() + 20
         while len(os.listdir(older.parent)) < 2 and time.monotonic() < patience:
-            time.sleep(0.01)
+            time.sleep(0.001)
         begun = len(os.listdir(older.parent))
-        process.send_signal(number)
-        assert (begun, process.wait(20)) == (2, -number)
-    assert files(older.parent) == {'old.tsv': 'older\n'}
+        for number in numbers * times:
+            os.kill(process.pid, number)  # not send_signal(), which looks first whether the process has ended
+        status = process.wait(20)
+    assert (begun, files(older.parent)) == (2, {'old.tsv': 'older\n'})
+    return status
+
+
+@pytest.mark.parametrize('name', 'HUP INT QUIT ALRM TERM USR1 USR2 XCPU'.split())
+def test_signal(name, older):
+    number = signal.Signals['SIG' + name]
+    assert ended_by(older, number) == -number
+
+
+def test_more_signals_while_the_first_is_handled(older):
+    """As timeout sends them. The run ends by the first that it gets, which of different ones is not known."""
+    for _ in range(20):
+        assert ended_by(older, signal.SIGTERM, times=50) == -signal.SIGTERM
+        assert -ended_by(older, signal.SIGINT, signal.SIGTERM, times=5) in (signal.SIGINT, signal.SIGTERM)
+
+
+def test_ignored_signal_stays_ignored(tmp_path):
+    """As nohup asks for it."""
+    with subprocess.Popen([RUN, *SHORT[RUN], '--steps', '3e6', '--every', '1000', '-o', tmp_path / 'new.tsv'],
+                          preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)) as process:
+        process.send_signal(signal.SIGHUP)
+        assert process.wait(20) == 0
+    assert list(files(tmp_path)) == ['new.tsv']
 
 
 # --- the same bytes -------------------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ import math
 
 import pytest
 from test_methods import SCENES, SPRINGS, TABLE
-from tools import PLAN, SCENE, column, is_failure, parse, run, table
+from tools import PLAN, SCENE, column, in_little_memory, is_failure, parse, run, table
 
 FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
 COLUMNS = 'method dt_s steps force_evaluations predicted_error measured_error time_s'.split()
@@ -15,10 +15,22 @@ def plan(*args):
     return table(PLAN, *' '.join(args).split())
 
 
+def is_sorted(rows):
+    """Each row is the most accurate of those that take less than a tenth longer than the fastest from there on."""
+    for i, row in enumerate(rows):
+        fastest = min(column(rows[i:], 'time_s'))
+        if fastest == math.inf:
+            break
+        rounding = 1e-3  # of printed times: on the limit either is right
+        surely, perhaps = ([r for r in rows[i:] if float(r['time_s']) < 1.1 * fastest * (1 + sign * rounding)]
+                           for sign in (-1, 1))
+        assert row in perhaps and float(row['measured_error']) <= min(column(surely, 'measured_error'))
+
+
 def is_a_plan(rows, methods, duration):
     assert list(rows[0])[:len(COLUMNS)] == COLUMNS
     assert sorted(row['method'] for row in rows) == sorted(methods)
-    assert column(rows, 'time_s') == sorted(column(rows, 'time_s')), 'the cheapest first'
+    is_sorted(rows)
     for row in rows:
         steps = int(row['steps'])
         assert int(row['force_evaluations']) == steps * FORCES[row['method']]
@@ -54,6 +66,23 @@ def test_rounding_is_in_the_way():
     is_a_plan(rows, SPRINGS, 100)
     assert rows[0]['method'] == 'exact'
     assert all(row['steps'] == '0' for row in rows[1:])
+
+
+def test_the_more_accurate_of_two_methods_that_are_as_fast():
+    """Leapfrog and symplectic Euler need the same steps here, for stability, and take the same time but for a few parts in a
+    hundred; leapfrog is far more accurate."""
+    args = '--scene cloth --size 40 --error 0.05 --duration 0.2'
+    for _ in range(20):  # times on a busy machine
+        rows = plan(args)
+        is_a_plan(rows, SCENES, 0.2)
+        two = {row['method']: row for row in rows if row['method'] in ('leapfrog', 'symplectic-euler')}
+        assert two['leapfrog']['steps'] == two['symplectic-euler']['steps']
+        times = {method: float(row['time_s']) for method, row in two.items()}
+        if times['symplectic-euler'] < times['leapfrog'] < 1.09 * times['symplectic-euler']:
+            assert rows[0]['method'] == 'leapfrog'
+            break
+    else:
+        pytest.skip('this machine is too busy to measure times')
 
 
 def test_in_words():
@@ -124,7 +153,7 @@ def test_a_mesh(tmp_path, elements, links):
     args = f'--error 0.01 --duration 0.1 --mass 1.3 --stiffness 27 --drag 0.6 --mesh {path}'.split()
     printed = run(PLAN, *args).stdout
     assert f'# scene: a mesh, 4 particles, {links} links\n' in printed
-    assert f'# command: spring-plan {" ".join(args)}' in printed
+    assert f'# command: spring-plan {" ".join(args)}\n' in printed
     rows = parse(printed)
     is_a_plan(rows, SCENES, 0.1)
     assert all(float(row['measured_error']) <= 0.01 for row in rows)
@@ -172,6 +201,42 @@ def test_measured_error_of_a_mesh(tmp_path):
     assert abs(error / float(row['measured_error']) - 1) <= 0.01, 'what extrapolation leaves: (substeps/512)^2'
 
 
+@pytest.mark.parametrize('corners', [3, 4, 5, 64, 65, 1000])
+def test_faces_and_lines_of_any_length(tmp_path, corners):
+    """A line of N vertices has N - 1 links, a face N; of four corners it has two more across."""
+    vertices = [f'v {math.cos(i)} {math.sin(i)} 0' for i in range(corners)]
+    numbers = ' '.join(str(i + 1) for i in range(corners))
+    for element, links in ('l', corners - 1), ('f', corners if corners != 4 else 6):
+        path = mesh_file(tmp_path, *vertices, f'{element} {numbers}')
+        printed = run(PLAN, *f'--error 0.3 --duration 0.02 --stiffness 27 --mesh {path}'.split()).stdout
+        assert f'# scene: a mesh, {corners} particles, {links} links\n' in printed
+
+
+@pytest.mark.parametrize('name, word', [
+    ('a flag.obj', "'a flag.obj'"), ("it's $HOME.obj", r"'it'\''s $HOME.obj'"), ('~a', "'~a'"), ('a*;b', "'a*;b'"),
+    ('a\nb\t\'\\.obj', r"$'a\012b\011\'\\.obj'"), ('Fl\u00e4che', "'Fl\u00e4che'"), ('a-b_C.1,2%+=:@', 'a-b_C.1,2%+=:@'),
+])
+def test_the_command_can_be_pasted(tmp_path, name, word):
+    (tmp_path / name).write_text('v 0 0 0\nv 0 -2 0\nl 1 2\n')
+    args = '--error 0.1 --duration 0.1 --stiffness 3 --mesh'.split()
+    printed = run(PLAN, *args, name, cwd=tmp_path).stdout
+    command = printed.splitlines()[1]
+    assert command == '# command: ' + ' '.join([PLAN, *args, word])
+    again = run('bash', '-c', command.removeprefix('# command: '), cwd=tmp_path).stdout
+    assert (again.splitlines()[1], parse(again)[0].keys()) == (command, parse(printed)[0].keys())
+
+
+@pytest.mark.parametrize('start, endless, message', [
+    ('', 'cat /dev/zero', 'line 1: the file should be text without NUL bytes'),
+    ('v 0 0 0\\n', 'yes | tr -d "\\n"', 'line 2: a line should not be longer than 16 MiB'),
+])
+def test_a_mesh_without_lines(start, endless, message):
+    """Is not read to its end, which there may be none."""
+    mesh = f'<(printf "{start}"; {endless} | head -c 600000000)'
+    result = in_little_memory('bash', '-c', f'exec {PLAN} --error 0.1 --duration 1 --stiffness 3 --mesh {mesh}')
+    assert (result.returncode, result.stdout) == (2, '') and message in result.stderr and '--mesh: "/' in result.stderr
+
+
 @pytest.mark.parametrize('line, message', [
     ('v 1 2', 'line 2: a vertex should have three finite numbers'),
     ('v 1 2 nan', 'line 2: a vertex should have three finite numbers'),
@@ -181,9 +246,9 @@ def test_measured_error_of_a_mesh(tmp_path):
     ('l 1', 'line 2: a line should have two ends'),
     ('l 1 x', 'line 2: a corner should be the number of a vertex above'),
     ('l 1 0', 'line 2: a corner should be the number of a vertex above'),
-    ('l ' + '1 ' * 65, 'line 2: a face should not have more than 64 corners'),
+    ('v 1 1e308 0\nv 1 -1e308 0\nl 2 3', 'the length of the edge between vertices 2 and 3 should be finite'),
     ('v 1 2 3a', 'line 2: a vertex should have three finite numbers'),
-    ('\0', 'line 2: a text should have no bytes of 0'),
+    ('\0', 'line 2: the file should be text without NUL bytes'),
     ('# l 1 1', 'should have faces or lines'),
     ('v 1 0 1\nl 1 2', 'is level'),
 ])
@@ -197,6 +262,12 @@ def test_a_mesh_of_another_system(tmp_path):
     path = tmp_path / 'mesh.obj'
     path.write_bytes(b'\xef\xbb\xbfv 0 0 0\r\nv 0 -2 0\r\nl 1 2')
     is_a_plan(plan(f'--error 0.1 --duration 0.1 --stiffness 3 --mesh {path}'), SCENES, 0.1)
+
+
+def test_heights_whose_difference_overflows(tmp_path):
+    path = mesh_file(tmp_path, 'v 0 1e308 0', 'v 0 0 0', 'v 0 -1e308 0', 'l 1 2 3')
+    done = run(PLAN, *f'--error 0.1 --duration 1 --stiffness 3 --mesh {path}'.split(), stdout=None)
+    is_failure(done, 1, 'the reference of this scene overflows')
 
 
 @pytest.mark.parametrize('options, status, message', [

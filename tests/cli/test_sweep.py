@@ -9,15 +9,21 @@ import random
 import resource
 import signal
 import subprocess
+import tempfile
 import time
 
 import pytest
 from test_methods import SPRINGS, TABLE
 from test_scene import SCENES
-from tools import PLAN, RUN, SCENE, SWEEP, column, is_failure, parse, run, table
+from tools import PLAN, RUN, SCENE, SWEEP, column, in_little_memory, is_failure, parse, run, table
 
 FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
-GRID = ['--over', 'omega_dt=0.02:3:log:60', '--over', 'damping_ratio=0:2:50', '--method', 'all']
+def springs(periods):
+    return ['--over', 'omega_dt=0.02:3:log:60', '--over', 'damping_ratio=0:2:50', f'periods={periods}', '--method', 'all']
+
+
+GRID = springs(0.5)  # as many rows in a tenth of the time of SLOW, for tests where nothing interrupts the work
+SLOW = springs(5)
 
 
 def part(number, parts, path, grid=GRID, **how):
@@ -63,8 +69,9 @@ def same(data, expected):
 
 
 def test_header(whole):
-    assert whole.splitlines()[1:3] == ['# command: spring-sweep ' + ' '.join(GRID),
-                                       'omega_dt\tdamping_ratio\tmethod\terror\tenergy_error\tstatus']
+    quoted = [*GRID[:4], '--over', *GRID[4:]]
+    assert whole.splitlines()[1:3] == ['# command: spring-sweep ' + ' '.join(quoted),
+                                       'omega_dt\tdamping_ratio\tperiods\tmethod\terror\tenergy_error\tstatus']
 
 
 @pytest.mark.parametrize('count', [1, 2, 7, 40])
@@ -124,21 +131,22 @@ def size_of(path):
     return path.stat().st_size if path.exists() else 0
 
 
-def test_killed_twenty_times(whole, parts, tmp_path):
+def test_killed_twenty_times(tmp_path):
     """At random moments of the work, which does not begin anew."""
     path, chance = tmp_path / '1', random.Random(24)
+    is_done(part(1, 3, tmp_path / 'whole', SLOW))
     killed = 0
-    for size in sorted(chance.uniform(0, size_of(parts[0])) for _ in range(20)):
-        killed += kill_when(lambda: size_of(path) > size, *GRID, '--part', '1/3', '-o', path) < 0
+    for size in sorted(chance.uniform(0, size_of(tmp_path / 'whole')) for _ in range(20)):
+        killed += kill_when(lambda: size_of(path) > size, *SLOW, '--part', '1/3', '-o', path) < 0
         assert size_of(path) > size
-    is_done(part(1, 3, path))
-    assert same(path.read_bytes(), parts[0].read_bytes())
-    assert same(join(path, *parts[1:]).stdout, whole)
+    is_done(part(1, 3, path, SLOW))
+    assert same(path.read_bytes(), (tmp_path / 'whole').read_bytes())
     assert killed >= 10
 
 
-def test_jobs_are_killed_and_go_on(whole, tmp_path):
-    command = [*GRID, '--jobs', '2', '-o', tmp_path / 'map.tsv']
+def test_jobs_are_killed_and_go_on(tmp_path):
+    whole = run(SWEEP, *SLOW).stdout
+    command = [*SLOW, '--jobs', '2', '-o', tmp_path / 'map.tsv']
     delay = 0.05
     while kill_after(delay, *command) != 0:  # those that were killed may not be gone yet: then it says so, and ends
         delay *= 1.2
@@ -159,7 +167,7 @@ def test_jobs_end_with_the_process_that_started_them(tmp_path):
         process.kill()
     sizes = []
     while len(sizes) < 2 or sizes[-1] != sizes[-2]:
-        time.sleep(1)
+        time.sleep(0.5)
         sizes.append(sorted(path.stat().st_size for path in tmp_path.iterdir()))
         assert len(sizes) < 20, 'a block takes a tenth of a second'
     assert len(sizes[0]) == 2
@@ -234,6 +242,72 @@ def test_one_writer(tmp_path):
         result = part(1, 1, tmp_path / 'p', LONG)
         process.kill()
     is_failure(result, 3, 'is being written by another process')
+
+
+def stopped_at_work(path):
+    """A process that does SLOW as one part, stopped when it has begun."""
+    for _ in range(20):  # it may be done before it is stopped
+        process = subprocess.Popen([SWEEP, *SLOW, '--part', '1/1', '-o', path], stderr=subprocess.PIPE, text=True)
+        while size_of(path) == 0:
+            time.sleep(0.0005)
+        process.send_signal(signal.SIGSTOP)
+        if os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT).si_code == os.CLD_STOPPED:
+            break
+        process.communicate()
+        path.unlink()
+    return process
+
+
+def outcome(process):
+    process.send_signal(signal.SIGCONT)
+    message, = process.communicate(timeout=60)[1].splitlines()
+    return process.returncode, message
+
+
+def test_removed_while_it_is_written(tmp_path):
+    """Noticed, and nothing is lost."""
+    path = tmp_path / 'p'
+    process = stopped_at_work(path)
+    path.unlink()
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was removed while it was written; it is there again, and the same '
+                                   'command goes on with it')
+    written = path.read_bytes()
+    assert written.splitlines()[-1].startswith(b'# block ')
+    is_done(part(1, 1, path, SLOW))
+    assert path.read_bytes().startswith(written) and same(join(path).stdout, run(SWEEP, *SLOW).stdout)
+
+
+@pytest.mark.parametrize('replace', [lambda path: path.rename(path.with_name('q')),
+                                     lambda path: path.with_name('q').rename(path)])
+def test_moved_or_replaced_while_it_is_written(replace, tmp_path):
+    path = tmp_path / 'p'
+    (tmp_path / 'q').write_text('other\n')
+    process = stopped_at_work(path)
+    replace(path)
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was moved or replaced while it was written; it should stay until '
+                                   'all is done')
+    assert not path.exists() or path.read_text() == 'other\n'
+
+
+def test_removed_folder(tmp_path):
+    folder = tmp_path / 'folder'
+    folder.mkdir()
+    process = stopped_at_work(folder / 'p')
+    (folder / 'p').unlink()
+    folder.rmdir()
+    assert outcome(process) == (3, f'{SWEEP}: "{folder}/p" was removed while it was written, and cannot be written again: '
+                                   'No such file or directory')
+
+
+def test_folder_that_cannot_be_written():
+    """Root may write anywhere, so root tries as somebody else."""
+    somebody = {'user': 65534, 'group': 65534, 'extra_groups': []} if os.geteuid() == 0 else {}
+    with tempfile.TemporaryDirectory() as folder:  # open to others, as the folder of tmp_path is not
+        os.chmod(folder, 0o555)
+        try:
+            is_failure(part(1, 1, f'{folder}/p', **somebody), 3, f'cannot write "{folder}/p": Permission denied')
+        except PermissionError:
+            pytest.skip('the tools are in a folder that is closed to others')
 
 
 @pytest.fixture
@@ -318,6 +392,31 @@ def test_foreign_parts(parts, tmp_path):
     whole = tmp_path / 'whole'
     is_done(run(SWEEP, *GRID, '-o', whole))
     is_failure(join(whole), 1, 'no part of a sweep')
+
+
+def test_a_file_without_lines(parts, tmp_path):
+    """Is not read to its end, which there may be none."""
+    is_failure(in_little_memory(SWEEP, '--join', '/dev/zero'), 3,
+               '--join: "/dev/zero" is no part of a sweep: line 1 should be a whole line of at most 65536 bytes')
+    comments = tmp_path / 'comments'
+    comments.write_text('# a line\n' * 8000)
+    is_failure(join(comments), 3, f'"{comments}" is no part of a sweep: line 7282 should be')
+    path, *others = copies(parts, tmp_path)
+    os.truncate(path, path.stat().st_size - 1000)
+    os.truncate(path, 600000000)  # zeros
+    is_failure(in_little_memory(SWEEP, '--join', path, *others), 1, str(path), 'missing or torn')
+    is_done(in_little_memory(SWEEP, *GRID, '--part', '1/3', '-o', path))
+    assert same(path.read_bytes(), parts[0].read_bytes())
+
+
+def test_the_output_is_none_of_the_parts(parts, tmp_path):
+    paths = copies(parts, tmp_path)
+    before = paths[1].read_bytes()
+    link = tmp_path / 'link'
+    link.symlink_to(paths[1])
+    for output in paths[1], link:
+        is_failure(run(SWEEP, '--join', *paths, '-o', output), 2, f'--output: "{output}" is one of the parts to join')
+    assert same(paths[1].read_bytes(), before)
 
 
 def test_a_block_in_the_place_of_another(parts, tmp_path):
@@ -462,12 +561,12 @@ def test_a_long_run_is_looked_at_often_enough():
 def test_what_has_died_out_is_no_less_for_a_longer_run():
     for line in ('omega_dt=0.001 damping_ratio=0.1,0.3', 'omega_dt=0.1 damping_ratio=0.2'):
         short, long = (sweep(f'--over {line} periods={periods} --method euler,symplectic-euler,leapfrog '
-                             '--measure settling_time_s') for periods in (30, 1500))
+                             '--measure settling_time_s') for periods in (30, 300))
         assert [{**row, 'periods': ''} for row in short] == [{**row, 'periods': ''} for row in long]
 
 
 def test_tolerance_is_the_plan():
-    rows = sweep('--over tolerance=1e-2,1e-5 damping_ratio=0,0.3 periods=7 --measure steps,dt_s,force_evaluations')
+    rows = sweep('--over tolerance=1e-2,1e-4 damping_ratio=0,0.3 periods=7 --measure steps,dt_s,force_evaluations')
     for (tolerance, ratio), some in itertools.groupby(rows, lambda row: (row['tolerance'], row['damping_ratio'])):
         plan = {row['method']: row for row in table(
             PLAN, '--duration', repr(2 * math.pi * 7), '--error', tolerance, '--stiffness', '1', '--damping',

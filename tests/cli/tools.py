@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the tests of command-line tools share: the tools by name, running them, reading their tables."""
 import functools
+import os
 import re
 import shutil
 import subprocess
@@ -48,6 +49,16 @@ NOT_WHOLE = r'a duration of \S+ s is not a whole number of steps of \S+ s: the r
 def run(tool, *args, **how):
     how = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': 60, **how}
     return subprocess.run([tool, *args], stdin=subprocess.DEVNULL, text=True, check=False, **how)
+
+
+def in_little_memory(*args):
+    """A run that must not keep what it reads: 300 MB are far more than programs and sanitizers need."""
+    with subprocess.Popen(args, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        out, err = process.stdout.read(), process.stderr.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    assert usage.ru_maxrss < 300e3
+    return subprocess.CompletedProcess(args, process.returncode, out, err)
 
 
 def parse(text):

@@ -4,7 +4,7 @@
 #
 # A region is called FUNCTION,THING,COUNT; the compiler may have unrolled the loop: then it has several marks, whose
 # counts add up. A mark in no loop any more, where the compiler knows that it runs once, is left out, and so is one whose
-# loop is not the innermost.
+# loop is not the innermost. With -v pattern=REGEX only those of functions with such names are printed.
 
 # Does a loop hold another, or a part of it?
 function around_another(start, end, loops, from,   i) {
@@ -37,7 +37,7 @@ function flush_function(   m, l, b, best, from, to, i, loops, start, thing, coun
     }
     for (i = 1; i <= loops; i++) {
         from = start[i]
-        if (around_another(start, end, loops, from))
+        if (name !~ pattern || around_another(start, end, loops, from))
             continue
         print "# LLVM-MCA-BEGIN " name "," thing[from] "," count[from]
         for (l = from; l <= end[from]; l++)

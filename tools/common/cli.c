@@ -384,6 +384,33 @@ static const cli_option *option_of(const char *word, const char **value)
     return found;
 }
 
+/* Prints a word as a shell would read it back, on one line. Only words with special characters are quoted. */
+static void print_quoted(FILE *out, const char *word)
+{
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+    const size_t length = strlen(word);
+    bool control = false;
+    for (size_t i = 0; i < length; i++)
+        control = control || iscntrl((unsigned char)word[i]);
+    if (length > 0 && strspn(word, plain) == length) {
+        fputs(word, out);
+        return;
+    }
+    fputs(control ? "$'" : "'", out);
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)word[i];
+        if (iscntrl(c))
+            fprintf(out, "\\%03o", c);
+        else if (control && (c == '\'' || c == '\\'))
+            fprintf(out, "\\%c", c);
+        else if (c == '\'')
+            fputs("'\\''", out);
+        else
+            fputc(c, out);
+    }
+    fputc('\'', out);
+}
+
 /* Where the output goes is no part of how it was made: it is not stamped, and of other files that are written only that
    there are. */
 static void record(FILE *words, const cli_option *o, const char *value)
@@ -391,8 +418,10 @@ static void record(FILE *words, const cli_option *o, const char *value)
     if (o == &common_options[0] || o->unstamped)
         return;
     fprintf(words, " --%s", o->name);
-    if (o->kind != CLI_FLAG)
-        fprintf(words, " %s", o->kind == CLI_FILE || o->kind == CLI_FOLDER ? o->value : value);
+    if (o->kind == CLI_FLAG)
+        return;
+    fputc(' ', words);
+    print_quoted(words, o->kind == CLI_FILE || o->kind == CLI_FOLDER ? o->value : value);
 }
 
 static void print_and_exit_if_wanted(void)

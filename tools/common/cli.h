@@ -114,7 +114,7 @@ typedef struct cli_table cli_table;
 /** The file of --output, as it was given; NULL: standard output. */
 const char *cli_output_path(void);
 
-/** The options as they were understood, as they stand in the stamp. */
+/** The options as they were understood, as they stand in the stamp: on one line, quoted for a shell. */
 const char *cli_stamped_command(void);
 
 /** Open the table for the rows: the file of --output, or standard output. */

@@ -105,19 +105,27 @@ static void remove_temporaries(void)
             unlink(tables[i].temporary);
 }
 
+/* All signals are blocked while this runs. The process dies by `number`, the only one that is unblocked at the end. */
 static void on_signal(int number)
 {
     remove_temporaries();
+    sigset_t own;
+    sigemptyset(&own);
+    sigaddset(&own, number);
     signal(number, SIG_DFL);
     raise(number);
+    sigprocmask(SIG_UNBLOCK, &own, NULL);
 }
 
 static void handle_signals(void)
 {
-    static const int ending[] = {SIGHUP, SIGINT, SIGPIPE, SIGTERM};
+    static const int ending[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU};
+    struct sigaction handled = {.sa_handler = on_signal}, before;
+    sigfillset(&handled.sa_mask);
+    /* an ignored signal stays ignored: the program was started in the background, or by nohup */
     for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++)
-        if (signal(ending[i], on_signal) == SIG_IGN) /* started in the background, or by nohup */
-            signal(ending[i], SIG_IGN);
+        if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(ending[i], &handled, NULL);
     signal(SIGXFSZ, SIG_IGN); /* a file size limit is a failed write, with its message */
 }
 
@@ -163,14 +171,22 @@ static void close_stream(const cli_table *table)
 static void open_temporary(cli_table *table)
 {
     char name[PATH_MAX];
-    errno = ENAMETOOLONG;
-    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)cli_asked.started, (long)getpid()) <
-        PATH_MAX)
-        table->stream = fopen(name, "wx");
+    if (snprintf(name, PATH_MAX, "%s.%lld-%ld.part", table->path, (long long)cli_asked.started, (long)getpid()) >=
+        PATH_MAX) {
+        errno = ENAMETOOLONG;
+        return;
+    }
+    sigset_t all, before; /* no signal may come between the file and its entry in the table */
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
+    table->stream = fopen(name, "wx");
     if (table->stream != NULL)
         strcpy(table->temporary, name);
-    else if (errno == EEXIST)
+    const int reason = errno;
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    if (table->stream == NULL && reason == EEXIST)
         fail_as_taken(table);
+    errno = reason;
 }
 
 static void open_stream(cli_table *table)

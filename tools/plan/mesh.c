@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Scenes from mesh files; see mesh.h. */
-#define _POSIX_C_SOURCE 200809L /* getline() */
+#define _POSIX_C_SOURCE 200809L /* getc_unlocked() */
 #include "mesh.h"
 
 #include <errno.h>
@@ -8,11 +8,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
 
 #include "common/cli.h"
 
-enum { most_corners = 64 };
+enum { longest_line = 1 << 24 }; /* [bytes] an element of two million vertices */
 
 static const char blank[] = " \t\r\n";
 
@@ -20,9 +19,10 @@ static const char blank[] = " \t\r\n";
 typedef struct mesh {
     const char *path;
     size_t line;
-    size_t vertices, links, vertex_capacity, link_capacity;
+    size_t vertices, links, vertex_capacity, link_capacity, corner_capacity;
     double (*position)[3]; /* [vertex_capacity] */
     spring_link *link;     /* [link_capacity] */
+    uint32_t *corner;      /* [corner_capacity] of the element that is read */
 } mesh;
 
 static _Noreturn void refuse(const mesh *m, const char *what)
@@ -88,22 +88,20 @@ static uint32_t read_corner(const mesh *m, const char **at)
 
 static void add_edges(mesh *m, const char *at, bool face)
 {
-    uint32_t corner[most_corners];
     size_t corners = 0;
     for (; at += strspn(at, blank), *at != '\0'; corners++) {
-        if (corners == most_corners)
-            refuse(m, "a face should not have more than 64 corners");
-        corner[corners] = read_corner(m, &at);
+        m->corner = grown(m->corner, &m->corner_capacity, corners, sizeof *m->corner);
+        m->corner[corners] = read_corner(m, &at);
     }
     if (corners < (face ? 3 : 2))
         refuse(m, face ? "a face should have three corners" : "a line should have two ends");
     for (size_t i = 1; i < corners; i++)
-        add_link(m, corner[i - 1], corner[i]);
+        add_link(m, m->corner[i - 1], m->corner[i]);
     if (face)
-        add_link(m, corner[corners - 1], corner[0]);
+        add_link(m, m->corner[corners - 1], m->corner[0]);
     if (face && corners == 4) {
-        add_link(m, corner[0], corner[2]);
-        add_link(m, corner[1], corner[3]);
+        add_link(m, m->corner[0], m->corner[2]);
+        add_link(m, m->corner[1], m->corner[3]);
     }
 }
 
@@ -118,6 +116,27 @@ static void read_line(mesh *m, char *line)
         add_edges(m, word + 1, word[0] == 'f');
 }
 
+/* The next line without its end; false: there is none. */
+static bool next_line(mesh *m, FILE *file, char **line, size_t *capacity)
+{
+    int c = getc_unlocked(file);
+    if (c == EOF)
+        return false;
+    m->line++;
+    size_t length = 0;
+    for (; c != EOF && c != '\n'; c = getc_unlocked(file)) {
+        if (c == '\0')
+            refuse(m, "the file should be text without NUL bytes");
+        if (length == longest_line)
+            refuse(m, "a line should not be longer than 16 MiB");
+        *line = grown(*line, capacity, length, 1);
+        (*line)[length++] = (char)c;
+    }
+    *line = grown(*line, capacity, length, 1);
+    (*line)[length] = '\0';
+    return true;
+}
+
 static void read_file(mesh *m)
 {
     static const char byte_order_mark[] = "\xef\xbb\xbf";
@@ -126,16 +145,14 @@ static void read_file(mesh *m)
         cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
     char *line = NULL;
     size_t capacity = 0;
-    for (ssize_t length; (length = getline(&line, &capacity, file)) >= 0;) {
-        m->line++;
-        if (strlen(line) != (size_t)length)
-            refuse(m, "a text should have no bytes of 0");
+    while (next_line(m, file, &line, &capacity)) {
         const bool marked = m->line == 1 && strncmp(line, byte_order_mark, 3) == 0;
         read_line(m, marked ? line + 3 : line);
     }
     if (!feof(file))
         cli_fail(CLI_IO, "--mesh: cannot read \"%s\": %s", m->path, strerror(errno));
     free(line);
+    free(m->corner);
     fclose(file);
     if (m->links == 0)
         cli_fail(CLI_USAGE, "--mesh: \"%s\" should have faces or lines", m->path);
@@ -158,6 +175,9 @@ static void join_once(mesh *m, const mesh_settings *settings)
         const double *a = m->position[m->link[i].a], *b = m->position[m->link[i].b];
         m->link[kept] = m->link[i];
         m->link[kept].rest = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
+        if (!isfinite(m->link[kept].rest))
+            cli_fail(CLI_USAGE, "--mesh: \"%s\": the length of the edge between vertices %zu and %zu should be finite",
+                     m->path, (size_t)m->link[i].a + 1, (size_t)m->link[i].b + 1);
         m->link[kept].stiffness = settings->stiffness;
         m->link[kept].damping = settings->damping;
         kept++;
@@ -198,7 +218,7 @@ static uint8_t *pin_highest(const mesh *m, const double *position)
     const double rounding = 1e-6; /* of the numbers in a file */
     bool moves = false;
     for (size_t i = 0; i < m->vertices; i++) {
-        if (position[3 * i + 1] >= high - rounding * (high - low))
+        if (position[3 * i + 1] >= high - (rounding * high - rounding * low)) /* high - low may overflow */
             pinned[i] = held;
         moves = moves || pinned[i] == free_to_move;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-plan: an error and a duration in, methods and their steps out, the cheapest first; for one spring, a preset
- * scene, or a mesh.
+ * spring-plan: an error and a duration in, methods and their steps out, the best first; for one spring, a preset scene, or
+ * a mesh.
  */
 #include <float.h>
 #include <math.h>
@@ -67,9 +67,9 @@ static const cli_program program = {
         "and the order lead to. Steps are whole numbers a frame.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
     .meaning = "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
-               "cheapest method comes first; a comment says it in words. A method of which no number of steps is\n"
-               "known to be enough comes last, with 0 steps: rounding would be too large, or the runs take too\n"
-               "long.\n\n"
+               "fastest method comes first, but of methods whose times differ by less than a tenth the most\n"
+               "accurate; a comment says it in words. A method of which no number of steps is known to be enough\n"
+               "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n\n"
                "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
                "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).",
     .shown = {"dt_s", "measured_error"},
@@ -137,10 +137,29 @@ static double or_else(double value, double otherwise)
 static plan_row rows[SPRING_METHOD_COUNT];
 static int row_count;
 
-static int cheaper(const void *a, const void *b)
+static double error_of(const plan_row *r)
 {
-    const double x = ((const plan_row *)a)->time, y = ((const plan_row *)b)->time;
-    return (x > y) - (x < y);
+    return isnan(r->measured) ? r->predicted : r->measured;
+}
+
+/* The best row first: the most accurate of those that take less than a tenth longer than the fastest. Then the best of the
+   others, and so on. */
+static void sort_rows(void)
+{
+    const double as_fast = 1.1;
+    for (int place = 0; place < row_count; place++) {
+        int best = place;
+        for (int i = place + 1; i < row_count; i++)
+            if (rows[i].time < rows[best].time)
+                best = i;
+        const double fastest = rows[best].time;
+        for (int i = place; i < row_count; i++)
+            if (rows[i].time < as_fast * fastest && error_of(&rows[i]) < error_of(&rows[best]))
+                best = i;
+        const plan_row row = rows[best];
+        rows[best] = rows[place];
+        rows[place] = row;
+    }
 }
 
 static spring_params chosen_spring(void)
@@ -222,8 +241,7 @@ static void say(cli_table *table)
     if (first->steps > 0 && first != stepper)
         cli_comment(
             table,
-            "plan: for an error of %g after %g s the exact solution is the cheapest, %.3g s on this machine; of the "
-            "steppers, %s.",
+            "plan: for an error of %g after %g s take the exact solution, %.3g s on this machine; of the steppers, %s.",
             error, duration, first->time, steps);
     else
         cli_comment(table, "plan: for an error of %g after %g s %s%s.", error, duration, stepper != NULL ? "take " : "",
@@ -232,7 +250,7 @@ static void say(cli_table *table)
 
 static void write_plan(cli_table *table)
 {
-    qsort(rows, (size_t)row_count, sizeof *rows, cheaper);
+    sort_rows();
     say(table);
     cli_columns(table, program.columns);
     for (int i = 0; i < row_count; i++) {

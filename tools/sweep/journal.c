@@ -84,10 +84,13 @@ static size_t print_ending(char *line, uint64_t block, const char *rows, size_t 
     return (size_t)snprintf(line, longest_ending, "%s%" PRIu64 " %08" PRIx32 "\n", ending, block, crc);
 }
 
-/* A line of any length, "\n" included, behind what is in *text; false: there is none, or no end of it. */
+enum { longest_line = 65536 }; /* [bytes] as long as a whole header may be */
+
+/* A line, "\n" included, behind what is in *text; false: there is none, or no end of it. */
 static bool append_line(FILE *in, char **text, size_t *length, size_t *size)
 {
     int c;
+    const size_t most = *length + longest_line;
     while ((c = getc_unlocked(in)) != EOF) {
         if (*length + 1 >= *size) {
             *size = 2 * *size + 4096;
@@ -100,6 +103,8 @@ static bool append_line(FILE *in, char **text, size_t *length, size_t *size)
         (*text)[*length] = '\0';
         if (c == '\n')
             return true;
+        if (*length == most)
+            return false;
     }
     return false;
 }
@@ -288,6 +293,41 @@ static bool end_repair(journal *j)
     return true;
 }
 
+/* ------------------------------------------------------------------------------------------------- is it still there? */
+
+/* Copies a file that was removed, and is still open, to a new file of its name. */
+static bool write_again(journal *j)
+{
+    const int removed = j->fd;
+    const long long end = j->end;
+    const int fd = open(j->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd < 0)
+        return refuse("\"%s\" was removed while it was written, and cannot be written again: %s", j->path,
+                      strerror(errno));
+    j->fd = fd;
+    j->end = 0;
+    const bool done = lock(j, fd) && copy_range(j, removed, 0, end) && sync_now(j);
+    close(removed);
+    return done && refuse("\"%s\" was removed while it was written; it is there again, and the same command goes on "
+                          "with it",
+                          j->path);
+}
+
+/* Does the path still lead to the open file? Otherwise its rows would be lost when it is closed. */
+static bool check_name(journal *j)
+{
+    struct stat own, named;
+    const char *path = j->damaged_fd >= 0 ? j->other : j->path;
+    if (fstat(j->fd, &own) != 0)
+        return refuse("cannot write \"%s\": %s", path, strerror(errno));
+    const bool there = stat(path, &named) == 0;
+    if (there && named.st_dev == own.st_dev && named.st_ino == own.st_ino)
+        return true;
+    if (!there && own.st_nlink == 0 && j->damaged_fd < 0)
+        return write_again(j);
+    return refuse("\"%s\" was moved or replaced while it was written; it should stay until all is done", path);
+}
+
 /* ------------------------------------------------------------------------------------------------------- what is seen */
 
 journal *journal_open(const char *path, const char *header, uint64_t first, uint64_t every, uint64_t blocks)
@@ -303,7 +343,8 @@ journal *journal_open(const char *path, const char *header, uint64_t first, uint
     if (!j->made)
         j->fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     struct stat status;
-    j->in = fopen(path, "r");
+    if (j->fd >= 0)
+        j->in = fopen(path, "r");
     if (j->fd < 0 || j->in == NULL || fstat(j->fd, &status) != 0)
         refuse("cannot write \"%s\": %s", path, strerror(errno));
     else if (!S_ISREG(status.st_mode))
@@ -358,7 +399,7 @@ bool journal_add(journal *j, uint64_t block, const char *rows, size_t length)
     if (!written)
         return false;
     j->next = block + j->every;
-    return time(NULL) == j->synced || sync_now(j);
+    return time(NULL) == j->synced || (sync_now(j) && check_name(j));
 }
 
 bool journal_close(journal *j)
@@ -367,7 +408,7 @@ bool journal_close(journal *j)
         return true;
     bool done = true;
     if (j->fd >= 0) {
-        done = sync_now(j);
+        done = sync_now(j) && (j->end == 0 || check_name(j));
         if (close(j->fd) != 0 && done)
             done = refuse("cannot write \"%s\": %s", j->path, strerror(errno));
     }
@@ -405,10 +446,12 @@ char *journal_header(const char *path, journal_reader *reader)
         return NULL;
     char *text = NULL;
     size_t length = 0, size = 0, line = 0;
+    int number = 0;
     bool more = true;
     while (more) {
+        number++;
         line = length;
-        more = append_line(in, &text, &length, &size);
+        more = append_line(in, &text, &length, &size) && length <= longest_line;
         if (more && text[line] != '#')
             break;
     }
@@ -417,7 +460,8 @@ char *journal_header(const char *path, journal_reader *reader)
     if (more)
         return text;
     free(text);
-    refuse("\"%s\" is no part of a sweep", path);
+    refuse("\"%s\" is no part of a sweep: line %d should be a whole line of at most %d bytes", path, number,
+           longest_line);
     return NULL;
 }
 

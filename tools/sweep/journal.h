@@ -40,7 +40,8 @@ bool journal_damaged(const journal *j);
 bool journal_has(journal *j, uint64_t block, bool *there);
 bool journal_add(journal *j, uint64_t block, const char *rows, size_t length);
 
-/** All are there. Also of NULL; after a failure, too. */
+/** All are there. Fails if the file was moved, replaced or removed; a file that was removed is written again first. May be
+    called with NULL, and after a failure. */
 bool journal_close(journal *j);
 
 /* --------------------------------------------------------------------------------------------------------- reading */

@@ -346,6 +346,18 @@ static void check_blocks(const found *all, uint64_t parts, uint64_t blocks)
     free(copy);
 }
 
+/* The output must not be written over a part, by whatever name. */
+static void check_no_part_is_replaced(const char *const *paths, size_t count)
+{
+    struct stat output, read;
+    if (cli_output_path() == NULL || stat(cli_output_path(), &output) != 0)
+        return;
+    for (size_t i = 0; i < count; i++)
+        if (stat(paths[i], &read) == 0 && read.st_dev == output.st_dev && read.st_ino == output.st_ino)
+            cli_fail(CLI_USAGE, "--output: \"%s\" is one of the parts to join; it should be another file",
+                     cli_output_path());
+}
+
 static void join(const char *const *paths, size_t count)
 {
     found *all = NULL;
@@ -500,6 +512,7 @@ int main(int argc, char **argv)
     if (joined.count > 0) {
         if (over.count + methods.count + measures.count + part.count + jobs > 0 || cli_given(&scene))
             cli_fail(CLI_USAGE, "--join: the parts say which sweep they are of; it should be alone but for --output");
+        check_no_part_is_replaced(joined.word, joined.count);
         join(joined.word, joined.count);
         return 0;
     }
