@@ -73,7 +73,7 @@ static const struct regime {
                {"slow", slow},
                {"no stiffness", without_stiffness}};
 
-enum { REGIMES = sizeof regimes / sizeof regimes[0], SPRINGS = 300 };
+enum { REGIMES = sizeof regimes / sizeof regimes[0], SPRINGS = 100 };
 
 /* The measured error of n steps. More than 2^14 of them are sampled, a hundred times in the shortest time scale: what is
    missed of a maximum is at most 5e-4 of it. */
