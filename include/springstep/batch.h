@@ -6,8 +6,7 @@
  *
  *     double x[1000], v[1000], omega2[1000];                         // yours; aligned as any array of double is
  *     const double gamma = 0.3;
- *     spring_batch b = {.count = 1000, .x = x, .v = v, .omega2 = omega2, .gamma = &gamma,
- *                       .shared = SPRING_SHARED_GAMMA};
+ *     spring_batch b = {1000, x, v, omega2, &gamma, NULL, SPRING_SHARED_GAMMA};
  *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
  * What holds for every function here, beside what spring.h says:

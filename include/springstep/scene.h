@@ -4,8 +4,9 @@
  *
  *     mass x'' = link forces + mass gravity - drag x' + F(t, x, x')
  *
- *     spring_scene_def def = {.particles = 3, .links = 2, .position = p, .pinned = pinned, .link = links,
- *                             .gravity = {0, -9.81, 0}};
+ *     static spring_scene_def def;                                      // all zero: everything is off
+ *     def.particles = 3, def.links = 2, def.position = p, def.pinned = pinned, def.link = links;
+ *     def.gravity[1] = -9.81;
  *     size_t bytes;
  *     spring_scene *scene;
  *     spring_scene_bytes(&def, &bytes);

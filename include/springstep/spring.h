@@ -61,8 +61,8 @@ typedef enum spring_method {
     SPRING_RKN8              /**< order 8; for scenes without damped links: many digits of a smooth motion */
 } spring_method;
 
-/** How many methods there are; of its own, so that a switch over methods needs no case for it. */
-enum { SPRING_METHOD_COUNT = 6 };
+/** The number of methods, for array bounds and `#if`. A macro, so that C++ compares it with a spring_method silently. */
+#define SPRING_METHOD_COUNT 6
 
 /** Steps after which a state that is not finite any more is noticed, at the latest. */
 enum { SPRING_CHECK_INTERVAL = 4096 };

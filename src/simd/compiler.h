@@ -15,8 +15,10 @@
 #define SPRING_PREFETCH(address)   (void)(address)
 #endif
 
-/* Before a loop whose arrays are to live in registers. */
-#if defined(__clang__)
+/* Before a loop whose arrays are to live in registers. For RISC-V without vectors clang unrolls no such loop, and warns. */
+#if defined(__clang__) && defined(__riscv)
+#define SPRING_UNROLL
+#elif defined(__clang__)
 #define SPRING_UNROLL _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
 #define SPRING_UNROLL _Pragma("GCC unroll 8")
@@ -31,6 +33,13 @@
 #define SPRING_ROLLED _Pragma("GCC unroll 1")
 #else
 #define SPRING_ROLLED
+#endif
+
+/* clang for POWER warns that comparisons of AltiVec's vectors will change. Vectors of GNU C are none of those. */
+#if defined(__clang__) && defined(__ALTIVEC__)
+#if __has_warning("-Wdeprecated-altivec-src-compat")
+#pragma clang diagnostic ignored "-Wdeprecated-altivec-src-compat"
+#endif
 #endif
 
 /* For tools/bench/instructions, which looks for it in the assembly: the innermost loop around this is a hot one, and a

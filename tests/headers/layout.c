@@ -135,6 +135,9 @@ VALUE(SPRING_RK4, 2);
 VALUE(SPRING_EXACT, 3);
 VALUE(SPRING_SYMPLECTIC_EULER, 4);
 VALUE(SPRING_RKN8, 5);
+#if SPRING_METHOD_COUNT < 6
+#error "the number of methods only grows, and the preprocessor can compare it"
+#endif
 
 VALUE(SPRING_OK, 0);
 VALUE(SPRING_EINVAL, 1);
