@@ -22,7 +22,7 @@ do for [half_periods = 316:318] {
     set arrow from half_periods*pi,graph 0 to half_periods*pi,graph 1 nohead linetype theory
 }
 set output ARG1
-set multiplot layout methods + 1,1 margins 0.17,0.94,75.0/height,1 - 30.0/height spacing 0,40.0/height
+set multiplot layout methods + 1,1 margins 0.17,0.94,82.0/height,1 - 30.0/height spacing 0,40.0/height
 set ylabel "position / m"
 set yrange [-1.5:1.5]
 set ytics 1

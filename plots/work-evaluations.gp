@@ -50,7 +50,7 @@ set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 2
 call plots."key.gp" entries
 set output output
-set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
+set multiplot layout 2,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 do for [k = 1:2] {
     periods = lengths[k]
     panel = "ideal-".periods

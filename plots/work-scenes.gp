@@ -7,7 +7,7 @@ work = ARG3
 entries = methods + 5
 call plots."work-panel.gp" work
 set output output
-set multiplot layout 3,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
+set multiplot layout 3,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 call plots."work-panel.gp" work "elastic-pendulum" "elastic pendulum" 0
 unset key
 call plots."work-panel.gp" work "cloth" "cloth" 0

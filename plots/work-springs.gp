@@ -8,7 +8,7 @@ work = ARG3
 entries = methods + 6
 call plots."work-panel.gp" work
 set output output
-set multiplot layout 2,1 margins 0.2,0.94,75.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
+set multiplot layout 2,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 call plots."work-panel.gp" work "ideal-10" "ideal, ten periods" 1
 unset key
 set xlabel "run time / s"

@@ -5,7 +5,7 @@
 
 const LEAST_CONTRAST = 4.5; // what WCAG 2.2 asks of text, 1.4.3
 const OVERLAP = 2; // [px] both ways: what the eye does not take for a collision
-const MARGIN = 0.5; // [px] of rounding at the edge of a picture
+const ROUNDING = 0.01; // [px] of coordinates on the screen
 
 const faults = [];
 const fault = (kind, picture, what) => faults.push([kind, picture, what.replace(/\s+/g, " ").trim()].join("\t"));
@@ -162,9 +162,10 @@ function measureDrawing(drawing, name) {
     const areas = [...drawing.querySelectorAll("rect, path, polygon, image")].filter((shape) => !shape.closest("defs, clipPath"))
         .map((shape) => ({ shape, bounds: shape.getBoundingClientRect() }));
     texts.forEach((text, i) => {
-        if (text.boxes.some((b) => b.left < frame.left - MARGIN || b.right > frame.right + MARGIN
-            || b.top < frame.top - MARGIN || b.bottom > frame.bottom + MARGIN)) {
-            fault("outside", name, `"${text.words}"`);
+        const beyond = Math.max(...[text.element.getBoundingClientRect(), ...text.boxes].flatMap((b) =>
+            [frame.left - b.left, b.right - frame.right, frame.top - b.top, b.bottom - frame.bottom]));
+        if (beyond > ROUNDING) {
+            fault("outside", name, `"${text.words}", by ${beyond.toFixed(2)} px`);
         }
         for (const other of texts.slice(i + 1)) {
             const most = Math.max(...text.boxes.flatMap((a) => other.boxes.map((b) => overlap(a, b))));

@@ -7,7 +7,7 @@
 #define SPRINGSTEP_VERSION_H
 
 /** What spring_version() says of the library that is linked. */
-#define SPRING_VERSION "0.2.0"
+#define SPRING_VERSION "0.3.0"
 
 /** Of the shared library: changes when programs that were compiled for the last release would not run any more. */
 #define SPRING_SOVERSION "0"

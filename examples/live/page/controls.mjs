@@ -36,6 +36,7 @@ export class Controls {
         this.info = null;
         this.drawn = 0;
         this.trouble = "";
+        this.remark = ""; // on the last choice
         this.energy = new Plot($("energy-plot"), false);
         this.error = new Plot($("error-plot"), true);
         $("scene").append(...Object.keys(presets).map((scene) => option(scene, names[scene])));
@@ -44,32 +45,64 @@ export class Controls {
 
     connect() {
         const { state, actions } = this;
-        $("scene").onchange = (event) => actions.scene(event.target.value);
-        $("method").onchange = (event) => actions.method(0, event.target.value);
-        $("other").onchange = (event) => actions.method(1, event.target.value);
+        const offered = (what, value, values, usual) =>
+            this.checked(what, value, values.includes(value), usual);
+        const speeds = Array.from($("speed").options, ({ value }) => Number(value));
+        const limiter = (id, what) => {
+            const [least, most] = [Number($(id).min), Number($(id).max)]; // as the page was written
+            return (value, usual) => {
+                const nearest = Math.max(least, Math.min(most, value));
+                return this.checked(what, value, value === nearest, Number.isNaN(nearest) ? usual : nearest);
+            };
+        };
+        const limitedSteps = limiter("steps", "number of steps");
+        const limitedDamping = limiter("damping", "damping");
+        const limitedWind = limiter("wind", "wind");
+        $("scene").onchange = ({ target }) =>
+            actions.scene(offered("scene", target.value, Object.keys(presets), "water"));
+        $("method").onchange = ({ target }) =>
+            actions.method(0, offered("method", target.value, this.taken(), "leapfrog"));
+        $("other").onchange = ({ target }) =>
+            actions.method(1, offered("method", target.value, ["", ...this.taken()], ""));
         $("pause").onclick = () => actions.pause();
         $("once").onclick = () => actions.once();
-        $("reset").onclick = () => actions.reset();
-        const steps = (n) => actions.steps(Math.max(1, Math.min(1000, Math.round(n) || 1)));
-        $("steps").onchange = (event) => steps(event.target.valueAsNumber);
+        $("reset").onclick = () => {
+            this.remark = "";
+            actions.reset();
+        };
+        const steps = (n) => actions.steps(limitedSteps(Math.round(n), presets[state.scene].steps));
+        $("steps").onchange = ({ target }) => steps(target.valueAsNumber);
         $("steps").oninput = ({ target }) =>
             target.validity.valid && target.value && steps(target.valueAsNumber);
         $("fewer").onclick = () => steps(state.steps - 1);
         $("more").onclick = () => steps(state.steps + 1);
-        $("speed").onchange = (event) => actions.set("speed", Number(event.target.value));
-        $("size").onchange = (event) => actions.remakeWith("size", Number(event.target.value));
-        $("damping").onchange = (event) =>
-            actions.remakeWith(
-                "damping",
-                Number((event.target.value * dampingUnit[state.scene]).toPrecision(3)),
-            );
-        $("wind").oninput = (event) => actions.wind(event.target.valueAsNumber);
+        $("speed").onchange = ({ target }) =>
+            actions.set("speed", offered("speed", Number(target.value), speeds, presets[state.scene].speed));
+        $("size").onchange = ({ target }) =>
+            actions.remakeWith("size", offered("size", Number(target.value), presets[state.scene].sizes, 0));
+        $("damping").onchange = ({ target }) => {
+            const notch = limitedDamping(Number(target.value), 0);
+            actions.remakeWith("damping", Number((notch * dampingUnit[state.scene]).toPrecision(3)));
+        };
+        $("wind").oninput = ({ target }) => actions.wind(limitedWind(Number(target.value), 0));
         $("reference").onchange = (event) => actions.remakeWith("reference", event.target.checked);
         $("hash").onclick = async () => {
             actions.pause(true);
             $("hash-out").textContent = await actions.hash();
             this.command();
         };
+    }
+
+    /** Returns the value if it is good; otherwise says so and returns the usual one. Scripts can set any value. */
+    checked(what, value, good, usual) {
+        this.remark = good
+            ? ""
+            : `The ${what} ${value} is not offered. The page uses ${usual || "its default"}.`;
+        return good ? value : usual;
+    }
+
+    taken() {
+        return this.info.methods.filter((method) => method.taken).map((method) => method.name);
     }
 
     // --- a new scene ------------------------------------------------------------------------------------------------
@@ -83,7 +116,7 @@ export class Controls {
         const options = () => info.methods.map(({ name, taken }) => option(name, this.label(name), !taken));
         $("method").replaceChildren(...options());
         $("other").replaceChildren(option("", "nothing"), ...options());
-        const taken = info.methods.filter((method) => method.taken).map((method) => method.name);
+        const taken = this.taken();
         if (!taken.includes(state.method)) state.method = "leapfrog";
         if (state.other && !taken.includes(state.other)) state.other = "leapfrog";
         const sizes = presets[state.scene].sizes;
@@ -220,7 +253,7 @@ export class Controls {
     }
 
     notice() {
-        $("notice").textContent = this.trouble || (this.state.paused ? "paused" : "");
+        $("notice").textContent = this.trouble || this.remark || (this.state.paused ? "paused" : "");
     }
 
     // --- what is measured -------------------------------------------------------------------------------------------

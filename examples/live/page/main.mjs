@@ -130,6 +130,7 @@ const actions = {
     wind(speed) {
         state.wind = speed;
         touch("wind", { speed });
+        controls.show();
     },
     rain(rate) {
         state.rain = rate;

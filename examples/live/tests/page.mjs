@@ -272,6 +272,64 @@ async function testHands(cases, page) {
     });
 }
 
+/** Gives a control a value that it does not offer, as only a page that was changed can. */
+const force = (page, id, value) =>
+    page.$eval(
+        `#${id}`,
+        (control, given) => {
+            if (control.localName === "select") control.append(new Option(given, given));
+            else control.type = "text";
+            control.value = given;
+            for (const kind of ["input", "change"]) control.dispatchEvent(new Event(kind));
+        },
+        value,
+    );
+
+async function testForced(cases, browser, url) {
+    for (const [id, value, used] of [
+        ["scene", "nonsense", "water"],
+        ["method", "nonsense", "leapfrog"],
+        ["other", "nonsense", ""],
+        ["size", "100000", "25"],
+        ["size", "-1", "25"],
+        ["size", "nonsense", "25"],
+        ["speed", "-1", "1"],
+        ["speed", "1e9", "1"],
+        ["steps", "nonsense", "19"],
+        ["damping", "1e9", "10"],
+        ["damping", "-1", "0"],
+        ["wind", "1e9", "12"],
+        ["wind", "nonsense", "0"],
+    ])
+        await cases.case(`${id} ${value} becomes "${used}", is said, and stops nothing`, async () => {
+            const page = await open(browser, url);
+            await page.selectOption("#scene", "cloth");
+            await until("the cloth", async () => (await page.inputValue("#steps")) === "19");
+            await force(page, id, value);
+            await until("it says so", async () => /not offered/.test(await page.textContent("#notice")));
+            await until("the value", async () => (await page.inputValue(`#${id}`)) === used);
+            const time = await ask(page, "time");
+            await until("it runs", async () => (await ask(page, "time")) > time + 0.05);
+            await page.click("#reset");
+            await until("reset clears it", async () => (await page.textContent("#notice")) === "");
+            assert.deepEqual(page.complaints, []);
+            await page.context().close();
+        });
+    await cases.case("too many steps are limited, and too few", async () => {
+        const page = await open(browser, url);
+        for (const [value, used] of [
+            ["100000", "1000"],
+            ["-1", "1"],
+        ]) {
+            await page.fill("#steps", value);
+            await page.press("#steps", "Enter");
+            assert.equal(await page.inputValue("#steps"), used);
+            assert.match(await page.textContent("#notice"), /not offered/);
+        }
+        await page.context().close();
+    });
+}
+
 async function testExplosions(cases, page) {
     await cases.case("an explosion is said with its time, and one click starts again", async () => {
         await choose(page, "water", "euler", 2);
@@ -448,6 +506,7 @@ export async function testPage(folder, tool) {
         await testMethods(cases, page);
         await testCommand(cases, page);
         await testHands(cases, page);
+        await testForced(cases, browser, url);
         await testExplosions(cases, page);
         await testWindows(cases, page, browser, url, tool);
         await testBits(cases, page, tool);
