@@ -25,7 +25,7 @@ set xtics longest < 2*unit ? 0.5*unit : longest < 4*unit ? unit : 2*unit # three
 set yrange [-bars - 0.6:-0.4]
 set ytics scale 0 ("" 0)
 do for [r = 1:bars] {
-    set ytics add (titles[r] -r)
+    if (titles[r] ne " ") { set ytics add (titles[r] -r) }
 }
 unset key
 set style fill solid noborder

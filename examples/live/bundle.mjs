@@ -2,32 +2,32 @@
 // Puts the live page into one file: scripts bundled by esbuild, styles, and both WebAssembly modules.
 //
 // usage: node bundle.mjs FOLDER     with lab.wasm and lab-nosimd.wasm; writes FOLDER/index.html
+import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
-import { build } from "esbuild";
-
 const [folder] = process.argv.slice(2);
 const page = join(dirname(fileURLToPath(import.meta.url)), "page");
 
-async function bundled(entry, define = {}) {
-    const result = await build({
-        entryPoints: [join(page, entry)],
-        bundle: true,
-        minify: true,
-        write: false,
-        format: entry === "worker.mjs" ? "iife" : "esm",
-        target: "es2022",
-        legalComments: "none",
-        define,
+// `values`: for each global name of the script, its value as an expression. They are too long for a command line, so the
+// bundle has placeholders for them first.
+function bundled(entry, format, values = {}) {
+    const options = ["--bundle", "--minify", `--format=${format}`, "--target=es2022", "--legal-comments=none"];
+    const placeholders = Object.keys(values).map((name) => `--define:${name}="@${name}@"`);
+    const script = execFileSync("esbuild", [join(page, entry), ...options, ...placeholders], {
+        encoding: "utf8",
+        maxBuffer: 2 ** 26,
     });
-    return result.outputFiles[0].text;
+    return Object.entries(values).reduce(
+        (text, [name, value]) => text.replaceAll(`"@${name}@"`, () => value),
+        script,
+    );
 }
 
 const base64 = (name) => JSON.stringify(readFileSync(join(folder, name)).toString("base64"));
-const script = await bundled("main.mjs", {
-    WORKER: JSON.stringify(await bundled("worker.mjs")),
+const script = bundled("main.mjs", "esm", {
+    WORKER: JSON.stringify(bundled("worker.mjs", "iife")),
     MODULE: base64("lab.wasm"),
     MODULE_WITHOUT_SIMD: base64("lab-nosimd.wasm"),
 });
