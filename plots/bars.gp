@@ -9,11 +9,14 @@
 set xrange [*:*]
 set yrange [*:*]
 longest = 0
+array size_of[bars]
 do for [r = 1:bars] {
-    stats ARG1 using (is(r) ? (longest = size(r) > longest ? size(r) : longest, 1) : 0) nooutput
+    stats ARG1 using (is(r) ? (found = size(r), 1) : 0) nooutput
     if (STATS_sum != 1) {
         exit error sprintf("%s: %d rows for the bar %d, \"%s\"", ARG1, STATS_sum, r, titles[r])
     }
+    size_of[r] = found
+    longest = found > longest ? found : longest
 }
 set border 1
 set lmargin at screen ARG2
@@ -29,7 +32,6 @@ do for [r = 1:bars] {
 }
 unset key
 set style fill solid noborder
-length_of(r) = is(r) ? size(r) : NaN
-plot for [r = 1:bars] ARG1 using (length_of(r)):(-r):(0):(length_of(r)):(-r - 0.38):(-r + 0.38) \
-         with boxxyerror linetype colours[r], \
-     for [r = 1:bars] ARG1 using (length_of(r)):(-r):(sprintf("%.2g", size(r))) with labels left offset 0.3,0
+x(r) = size_of[int(r)]
+plot size_of using (x($1)):(-$1):(0):(x($1)):(-$1 - 0.38):(-$1 + 0.38):(colours[int($1)]) with boxxyerror linecolor variable, \
+     size_of using (x($1)):(-$1):(sprintf("%.2g", x($1))) with labels left offset 0.3,0

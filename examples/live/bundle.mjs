@@ -13,7 +13,13 @@ const page = join(dirname(fileURLToPath(import.meta.url)), "page");
 // `values`: for each global name of the script, its value as an expression. They are too long for a command line, so the
 // bundle has placeholders for them first.
 function bundled(entry, format, values = {}) {
-    const options = ["--bundle", "--minify", `--format=${format}`, "--target=es2022", "--legal-comments=none"];
+    const options = [
+        "--bundle",
+        "--minify",
+        `--format=${format}`,
+        "--target=es2022",
+        "--legal-comments=none",
+    ];
     const placeholders = Object.keys(values).map((name) => `--define:${name}="@${name}@"`);
     const script = execFileSync("esbuild", [join(page, entry), ...options, ...placeholders], {
         encoding: "utf8",
