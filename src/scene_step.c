@@ -102,7 +102,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         if (!outcome.finite) {
             if (!rollback)
                 invalidate(s);
-            if (s->known != PREDICTED_FORCE) /* it may be overwritten, or the number that is not finite */
+            if (s->known != PREDICTED_FORCE) /* the kept force may have been overwritten, or may itself not be finite */
                 s->known = NO_FORCE;
             return SPRING_ENONFINITE;
         }

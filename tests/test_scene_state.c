@@ -362,7 +362,6 @@ static void failures(void)
     }
 }
 
-/* The last kick of leapfrog overflows where all before it was finite: stiffness times the distance of a step. */
 typedef struct bad_call {
     unsigned calls, bad; /* the number of the call that gives NaN, from 1 on; 0: none */
 } bad_call;
@@ -399,6 +398,7 @@ static void recovers_from_a_bad_force(void)
     free(bad);
 }
 
+/* The last kick of leapfrog overflows where all before it was finite: stiffness times the distance of a step. */
 static void velocity_alone_overflows(void)
 {
     const double large = sizeof(scalar) == 4 ? 1e20 : 1e160; /* its square is infinite */

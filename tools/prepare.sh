@@ -74,11 +74,15 @@ return_to_owner() {
     fi
 }
 
-# Is build/ what Meson made of this tree, or is it up to us what it will be?
+# Is build/ absent, empty, begun by these commands, or what Meson made of this tree?
 own_build() {
     [[ -e $build || -L $build ]] || return 0
     [[ -d $build && -w $build && -x $build ]] || return
-    [[ -e $build/build.ninja || -e $build/CMakeCache.txt ]] || return 0
+    if [[ ! -e $build/meson-info/meson-info.json ]]; then
+        [[ -z $(find "$build" -mindepth 1 -maxdepth 1 ! -name 'meson-*' ! -name live ! -name docs ! -name '.*') ]]
+        return
+    fi
+    command -v python3 >/dev/null || return 0 # Meson cannot run either, and says so
     python3 - "$build" "$root" <<'END' 2>/dev/null
 import json, os, sys
 with open(sys.argv[1] + '/meson-info/meson-info.json', encoding='utf-8') as info:

@@ -25,6 +25,8 @@ function bundled(entry, format, values = {}) {
         encoding: "utf8",
         maxBuffer: 2 ** 26,
     });
+    for (const name of Object.keys(values))
+        if (!script.includes(`"@${name}@"`)) throw new Error(`${entry}: esbuild left no "@${name}@"`);
     return Object.entries(values).reduce(
         (text, [name, value]) => text.replaceAll(`"@${name}@"`, () => value),
         script,

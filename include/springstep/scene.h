@@ -61,8 +61,8 @@ typedef struct spring_link {
 
 /** Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
    [m] and velocities [m/s]. Arrays of axes that the scene does not have are NULL. All positions and velocities are
-   finite. With SPRING_SCENE_FORCE_IGNORES_VELOCITY, however, the array of velocities may hold any other numbers, such as
-   the forces themselves: do not use it. The callback must depend on nothing but its arguments and *user, or advance(10)
+   finite. With SPRING_SCENE_FORCE_IGNORES_VELOCITY the contents of the velocity arrays are unspecified: do not read them.
+   The callback must depend on nothing but its arguments and *user, or advance(10)
    is not 10 times advance(1). It must not call a function on its own scene. After a change of what *user holds, call
    spring_scene_set_force() again, because a force may have been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY). If the force
    on a free particle is not finite, the call fails with SPRING_ENONFINITE. RKN8 keeps the last force of a call, so there

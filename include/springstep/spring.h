@@ -61,7 +61,8 @@ typedef enum spring_method {
     SPRING_RKN8              /**< order 8; for scenes without damped links: many digits of a smooth motion */
 } spring_method;
 
-/** The number of methods, for array bounds and `#if`. A macro, so that C++ compares it with a spring_method silently. */
+/** The number of methods, for array bounds and `#if`. A macro, so that C++ compilers do not warn
+   when it is compared with a spring_method. */
 #define SPRING_METHOD_COUNT 6
 
 /** Steps after which a state that is not finite any more is noticed, at the latest. */

@@ -16,7 +16,7 @@
 #endif
 
 /* Before a loop whose arrays are to live in registers. For RISC-V without vectors clang unrolls no such loop, and warns. */
-#if defined(__clang__) && defined(__riscv)
+#if defined(__clang__) && defined(__riscv) && !defined(__riscv_vector)
 #define SPRING_UNROLL
 #elif defined(__clang__)
 #define SPRING_UNROLL _Pragma("clang loop unroll(full)")

@@ -105,8 +105,10 @@ def written_by_hand(patterns):
 
 def generated(place):
     file, _, function = place.partition(":")
-    if not (ROOT / file).is_file():
-        sys.exit(f"run.py: {file}: expected a source file, as its path in the tree")
+    path = (ROOT / file).resolve()
+    if not path.is_file() or not path.is_relative_to(ROOT):
+        sys.exit(f"run.py: {file}: expected a source file of the tree")
+    file = path.relative_to(ROOT).as_posix()
     for definition, change in generate.generate((ROOT / file).read_text(encoding="utf-8")):
         if function in ("", definition.name):
             yield Mutant(change.name, file, "", change,
@@ -138,8 +140,9 @@ def failure_of(program, build, number=0):
 
 
 def compile_targets(build, programs):
-    done = subprocess.run(["ninja", *{target for program in programs for target in program.targets}], cwd=build, stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, check=False)
+    targets = {target for program in programs for target in program.targets}
+    done = subprocess.run(["ninja", *targets], cwd=build, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          check=False)
     if done.returncode != 0:
         raise BuildFailed(done.stdout)
 
@@ -157,9 +160,12 @@ def configured(tree):
         return json.loads(subprocess.check_output(["meson", "introspect", f"--{what}", str(build)], text=True))
 
     built = {output for target in introspect("targets") for output in target["filename"]}
-    return build, [Program(test["name"], test["cmd"], [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in built],
-                           test["protocol"] == "tap", 600)
-                   for test in introspect("tests") if test["cmd"][0] in built]
+    programs = []
+    for test in introspect("tests"):
+        if test["cmd"][0] in built:
+            targets = [os.path.relpath(build / word, build) for word in test["cmd"] if str(build / word) in built]
+            programs.append(Program(test["name"], test["cmd"], targets, test["protocol"] == "tap", 600))
+    return build, programs
 
 
 def passing(programs, build):
@@ -240,11 +246,16 @@ def check_all(mutants, tree):
     named = {mutant.test for mutant in mutants}
     failed = 0
     wanted = programs if "" in named else [program for program in programs if program.name in named]
-    for mutant, by in zip(mutants, killers(mutants, tree, build, wanted)):
+    try:
+        found = killers(mutants, tree, build, wanted)
+    except BuildFailed as error:
+        print(f"{error}\nmutants.tsv: a mistake does not compile")
+        found = [""] * len(mutants)
+    for mutant, by in zip(mutants, found):
         print(f"{mutant.name}\t{by or 'SURVIVES ' + mutant.test}", flush=True)
         failed += not by
     print(f"{len(mutants) - failed} passed, {failed} failed, 0 skipped")
-    return 1 if failed or not mutants else 0
+    return 1 if failed else 0
 
 
 def print_survivors(mutants, tree):
@@ -270,6 +281,8 @@ def main():
         print(__doc__)
         return 0 if words == ["--help"] else 2
     mutants = list(generated(words[1]) if survivors else written_by_hand(words))
+    if not mutants:
+        sys.exit(f"run.py: {' '.join(words[survivors:])}: no such mistake or function")
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         tree = pathlib.Path(scratch).resolve() / "tree"
         shutil.copytree(ROOT, tree, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))

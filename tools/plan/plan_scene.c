@@ -191,7 +191,7 @@ uint64_t plan_scene_frames(const plan_scene *s)
 
 /* --------------------------------------------------------------------------------------------------------- the search */
 
-/* [s] The shortest of ten runs, or of fewer, but two, where they are long; without what sets them up. */
+/* [s] The shortest of two to ten runs, without setup: two if they are long. */
 static double time_of(const plan_scene *s, spring_method m, uint64_t substeps)
 {
     const double long_enough = 1e7; /* [ns] */

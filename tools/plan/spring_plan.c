@@ -67,8 +67,8 @@ static const cli_program program = {
         "and the order lead to. Steps are whole numbers a frame.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
     .meaning = "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
-               "fastest method comes first, but of methods whose times differ by less than a tenth the most\n"
-               "accurate; a comment says it in words. A method of which no number of steps is known to be enough\n"
+               "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
+               "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
                "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n\n"
                "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
                "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).",

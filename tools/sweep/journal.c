@@ -460,8 +460,8 @@ char *journal_header(const char *path, journal_reader *reader)
     if (more)
         return text;
     free(text);
-    refuse("\"%s\" is no part of a sweep: line %d should be a whole line of at most %d bytes", path, number,
-           longest_line);
+    refuse("\"%s\" is no part of a sweep: its header should be whole lines of at most %d bytes in all (line %d)", path,
+           longest_line, number);
     return NULL;
 }
 

@@ -103,7 +103,7 @@ class Guard:
         try:
             with self._lock:
                 self._check()
-                self._busy = entered = True
+                entered = self._busy = True
             return function(*arguments)
         finally:
             if entered:

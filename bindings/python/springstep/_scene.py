@@ -211,7 +211,7 @@ class Scene:
             self._unseen_velocity = (zeros,) * self._axes
         self._pinned = np.zeros(self._particles, bool)
         self._undo = undo
-        self._guard = Guard("the scene is being advanced, or asked by its own force")
+        self._guard = Guard("the scene is being advanced, or was called from its own force")
 
         given = {"position": positions, "link": joined}
         definition = ffi.new(f"{self._prefix}_def *", {
@@ -557,6 +557,8 @@ def _joined(links: ArrayLike) -> np.ndarray:
     if links.ndim != 1:
         raise ValueError(f"links: its shape is {links.shape}, not (links,)")
     if links.dtype.names is None:
+        if len(links) > 0 and links.dtype != object:
+            raise ValueError(f"links: an array of {links.dtype}, not of tuples or structures")
         return np.ascontiguousarray(links, LINK)
     missing = [name for name in LINK.names if name not in links.dtype.names]
     unknown = [name for name in links.dtype.names if name not in LINK.names]
