@@ -195,6 +195,11 @@ def test_wrong_fields_of_links_are_named(names, named):
             Scene([[0, 0], [1, 0], [2, 0]], links)
 
 
+def test_numbers_are_no_links():
+    with pytest.raises(ValueError, match="^links: an array of float64"):
+        Scene([[0, 0], [1, 0]], np.array([0., 1, 1, 10, 0]))
+
+
 @pytest.mark.parametrize("change", [{"position": np.zeros((3, 4))}, {"mass": [1, 2]}, {"pinned": [True]},
                                     {"gravity": [0, 0, 1]}, {"velocity": [1, 2, 3]}])
 def test_a_shape_that_is_wrong_is_named(change):
