@@ -15,7 +15,7 @@ static void against_a_plain_loop(void)
     size_t with_bands = 0, with_edges = 0, with_both = 0;
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t g = 0; g < grid_count; g++)
-            for (unsigned features = (g + axes) % 3; features < MASSES; features += 3) {
+            for (unsigned features = (unsigned)(g + axes) % 3; features < MASSES; features += 3) {
                 build(&m, grids[g], axes, features);
                 spring_scene *s = scene_of(&m.def);
                 with_bands += s->plan.bands > 0 && s->plan.edges == 0;
