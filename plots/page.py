@@ -285,6 +285,8 @@ def main():
     arguments = parser.parse_args()
     try:
         make(arguments)
+    except jinja2.TemplateSyntaxError as error:
+        sys.exit(f"page.py: {error.name or 'a caption'}, line {error.lineno}: {error}")
     except (DataError, jinja2.TemplateError, OSError, subprocess.CalledProcessError) as error:
         sys.exit(f"page.py: {error}")
 
