@@ -20,10 +20,10 @@
 #endif
 #undef __clang__
 #undef __GNUC__
-#include "propagator.h"
+#include "spring/propagator.h"
 #define SPRING_VECTOR       16
 #define SPRING_BATCH_TABLE  plain_batch
 #define SPRING_SCENE_TABLE  plain_scene
 #define SPRING_EXACT_KERNEL plain_exact /* one, in double, for both precisions */
 extern exact_kernel plain_exact;
-#include "kernels.h"
+#include "kernels/kernels.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "accuracy.h"
+#include "spring/accuracy.h"
 #include "check.h"
 #include "harness/reference.h"
 #include "test_methods.h"

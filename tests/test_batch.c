@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "batch_kernels.h"
-#include "propagator.h"
+#include "kernels/batch_kernels.h"
+#include "spring/propagator.h"
 #include "simd/targets.h"
 #include "check.h"
 #include "test_methods.h"

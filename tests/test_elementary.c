@@ -6,7 +6,7 @@
 
 #include <mpfr.h>
 
-#include "exact_formula.h"
+#include "spring/exact_formula.h"
 
 #include "check.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels compiled without vectors, for compilers that have none, against those of vectors: the same bits. Of scenes
    they are tried in test_scene_*.c, too, see kernels_of(). */
-#include "batch_kernels.h"
+#include "kernels/batch_kernels.h"
 #include "test_methods.h"
 #include "test_scene.h"
 

@@ -10,7 +10,7 @@
 
 #include "check.h"
 #include "test_methods.h"
-#include "scene_block.h"
+#include "scene/block.h"
 #include "simd/targets.h"
 
 typedef spring_scene scene;

@@ -9,7 +9,7 @@
 #endif
 
 #include "check.h"
-#include "self_test.h"
+#include "spring/self_test.h"
 #include "test_methods.h"
 
 static void holds(void)

@@ -4,7 +4,7 @@
  * spring_advance() always picks the shortest loop.
  */
 #define SPRING_SHAPE_ONE
-#include "methods.h"
+#include "methods/methods.h"
 
 #include "check.h"
 

@@ -23,7 +23,7 @@ typedef float scalar;
 #else
 typedef double scalar;
 #endif
-#include "../../src/twins.h"
+#include "../../src/kernels/single_precision.h"
 
 typedef spring_scene scene;
 

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Many springs: checks, choice of the kernel, and what does not fill a group of vectors.
+ */
+#include "../kernels/batch_kernels.h"
+#include "../simd/targets.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { largest_vector = 16, largest_group = 8 * largest_vector }; /* springs: 64 bytes, in float */
+
+static const uint32_t known_bits = SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
+
+static bool is_shared(const spring_batch *b, uint32_t bit)
+{
+    return (b->shared & bit) != 0;
+}
+
+static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_count)
+{
+    const uintptr_t p = (uintptr_t)a, q = (uintptr_t)b;
+    return p < q ? q - p < a_count * sizeof(scalar) : p - q < b_count * sizeof(scalar);
+}
+
+/* Does an array of parameters, if there is one, leave the state alone? */
+static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, uint32_t bit)
+{
+    const size_t count = is_shared(b, bit) ? 1 : b->count;
+    return parameter == NULL ||
+           (!overlap(b->x, b->count, parameter, count) && !overlap(b->v, b->count, parameter, count));
+}
+
+/* A parameter of all springs has to be valid before anything happens; one spring's is that spring's business. */
+static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
+{
+    return parameter == NULL || !is_shared(b, bit) || (spring_finite(*parameter) && *parameter >= least);
+}
+
+static bool batch_valid(const spring_batch *b)
+{
+    if ((b->shared & ~known_bits) != 0)
+        return false;
+    if (b->count == 0)
+        return true;
+    return b->x != NULL && b->v != NULL && b->omega2 != NULL && b->count <= SIZE_MAX / sizeof(scalar) &&
+           !overlap(b->x, b->count, b->v, b->count) && leaves_state_alone(b, b->omega2, SPRING_SHARED_OMEGA2) &&
+           leaves_state_alone(b, b->gamma, SPRING_SHARED_GAMMA) &&
+           leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
+           shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) && shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
+           shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -INFINITY);
+}
+
+static scalar element(const scalar *p, size_t i, bool shared)
+{
+    return p == NULL ? 0 : p[shared ? 0 : i];
+}
+
+/* The single spring that spring i is. */
+static spring_params spring_at(const spring_batch *b, size_t i)
+{
+    return (spring_params){
+        .mass = 1,
+        .stiffness = (double)element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)),
+        .damping = (double)element(b->gamma, i, is_shared(b, SPRING_SHARED_GAMMA)),
+        .load = (double)element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL)),
+    };
+}
+
+/* Why some springs have kept their state: it, or their parameters, was not valid, or would not have stayed finite. */
+static spring_status reason(const spring_batch *b)
+{
+    for (size_t i = 0; i < b->count; i++) {
+        const spring_params p = spring_at(b, i);
+        if (!spring_finite(b->x[i]) || !spring_finite(b->v[i]) || !spring_params_valid(&p))
+            return SPRING_EINVAL;
+    }
+    return SPRING_ENONFINITE;
+}
+
+static const batch_kernels *best_batch_kernels(void)
+{
+    return SPRING_BEST_KERNELS(&spring_batch_v128, &spring_batch_v256, &spring_batch_v512);
+}
+
+/* The first `size` elements of `to`: `count` elements, and copies of the first of them. */
+static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t size)
+{
+    memcpy(to, from, count * sizeof *to);
+    for (size_t i = count; i < size; i++)
+        to[i] = from[0];
+    return to;
+}
+
+/* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
+   group is given up when all of them are lost. */
+static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
+{
+    scalar x[largest_group], v[largest_group];
+    scalar omega2[largest_group], gamma[largest_group], accel[largest_group];
+    const size_t size = kernels->group_size, count = b->count - first;
+    batch_run tail = *all;
+    tail.count = size;
+    tail.x = filled_up(x, b->x + first, count, size);
+    tail.v = filled_up(v, b->v + first, count, size);
+    if (tail.omega2.stride > 0)
+        tail.omega2.first = filled_up(omega2, b->omega2 + first, count, size);
+    if (tail.gamma.stride > 0)
+        tail.gamma.first = filled_up(gamma, b->gamma + first, count, size);
+    if (tail.accel.stride > 0)
+        tail.accel.first = filled_up(accel, b->accel + first, count, size);
+    const bool done = kernels->advance(&tail);
+    memcpy(b->x + first, x, count * sizeof *x);
+    memcpy(b->v + first, v, count * sizeof *v);
+    return done;
+}
+
+/* A parameter as kernels read it: a shared one from `same`. */
+static batch_array array_of(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar *same)
+{
+    if (parameter == NULL)
+        return (batch_array){NULL, 0};
+    if (!is_shared(b, bit))
+        return (batch_array){parameter, 1};
+    for (size_t i = 0; i < largest_vector; i++)
+        same[i] = *parameter;
+    return (batch_array){same, 0};
+}
+
+static bool advance_all(const batch_kernels *kernels, const spring_batch *b, batch_run run)
+{
+    scalar omega2[largest_vector], gamma[largest_vector], accel[largest_vector];
+    run.count = b->count - b->count % kernels->group_size;
+    run.x = b->x;
+    run.v = b->v;
+    run.omega2 = array_of(b, b->omega2, SPRING_SHARED_OMEGA2, omega2);
+    run.gamma = array_of(b, b->gamma, SPRING_SHARED_GAMMA, gamma);
+    run.accel = array_of(b, b->accel, SPRING_SHARED_ACCEL, accel);
+    bool done = kernels->advance(&run);
+    if (run.count < b->count)
+        done &= advance_tail(kernels, b, &run, run.count);
+    return done;
+}
+
+/* What concerns the whole batch. */
+static spring_status check_batch(const spring_batch *b, spring_method m, scalar dt)
+{
+    const spring_method_info *info = spring_method_describe(m);
+    if (b == NULL || !batch_valid(b) || info == NULL || !spring_finite(dt))
+        return SPRING_EINVAL;
+    return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
+}
+
+spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
+                                        uint64_t n)
+{
+    const spring_status status = check_batch(b, m, dt);
+    if (status != SPRING_OK || b->count == 0 || n == 0 || dt == 0)
+        return status;
+    const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
+    batch_run run = {.method = m, .dt = dt, .n = n};
+    spring_propagator propagator;
+    if (m == SPRING_EXACT && is_shared(b, SPRING_SHARED_OMEGA2) && (!damped || is_shared(b, SPRING_SHARED_GAMMA))) {
+        const spring_params p = spring_at(b, 0);
+        propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
+        run.propagator = &propagator;
+    }
+    return advance_all(kernels, b, run) ? SPRING_OK : reason(b);
+}
+
+spring_status spring_batch_advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
+{
+    return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
+}
+
+static const scalar *from_spring(const spring_batch *b, const scalar *parameter, uint32_t bit, size_t first)
+{
+    return parameter == NULL || is_shared(b, bit) ? parameter : parameter + first;
+}
+
+/* Some of its springs, with their states at x and v. */
+static spring_batch part_of(const spring_batch *b, size_t first, size_t count, scalar *x, scalar *v)
+{
+    return (spring_batch){
+        .count = count,
+        .x = x,
+        .v = v,
+        .omega2 = from_spring(b, b->omega2, SPRING_SHARED_OMEGA2, first),
+        .gamma = from_spring(b, b->gamma, SPRING_SHARED_GAMMA, first),
+        .accel = from_spring(b, b->accel, SPRING_SHARED_ACCEL, first),
+        .shared = b->shared,
+    };
+}
+
+spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, scalar dt, uint64_t n,
+                                          uint8_t *failed)
+{
+    enum { part = 4 * largest_group };
+    spring_status worst = failed != NULL ? check_batch(b, m, dt) : SPRING_EINVAL;
+    if (worst != SPRING_OK)
+        return worst;
+    for (size_t first = 0; first < b->count; first += part) {
+        const size_t count = b->count - first < part ? b->count - first : part;
+        const spring_batch some = part_of(b, first, count, b->x + first, b->v + first);
+        scalar x[part], v[part]; /* from which each is advanced once more, by itself, to see which do not */
+        memcpy(x, some.x, count * sizeof *x);
+        memcpy(v, some.v, count * sizeof *v);
+        memset(failed + first, 0, count);
+        const spring_status status = spring_batch_advance(&some, m, dt, n);
+        if (status == SPRING_OK)
+            continue;
+        for (size_t i = 0; i < count; i++) {
+            const spring_batch one = part_of(b, first + i, 1, x + i, v + i);
+            failed[first + i] = spring_batch_advance(&one, m, dt, n) != SPRING_OK;
+        }
+        worst = worst == SPRING_EINVAL ? worst : status;
+    }
+    return worst;
+}
+
+scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
+{
+    if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
+        return NAN;
+    const bool all_shared = is_shared(b, SPRING_SHARED_OMEGA2) &&
+                            (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA)) &&
+                            (b->accel == NULL || is_shared(b, SPRING_SHARED_ACCEL));
+    const size_t count = all_shared && b->count > 0 ? 1 : b->count;
+    double least = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const spring_params p = spring_at(b, i);
+        const double limit = spring_stable_step(&p, m);
+        if (!(limit >= least))
+            least = limit;
+        if (limit != limit)
+            return NAN;
+    }
+    return (scalar)least;
+}

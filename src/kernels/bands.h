@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The forces of bands: links with a constant index offset between their ends, as in a rope, a sheet or a block.
+ *
+ * Method    For each tile of slots, the forces of every band on the lower ends are computed and kept. Then each particle
+ *           of the tile adds the forces of the links of which it is the lower end, and subtracts those of the links of
+ *           which it is the upper end, `offset` slots before. So a band keeps a ring of its last offset + tile forces.
+ *           Each link is computed once and nothing is scattered; both ends get the same bits, so that momentum is
+ *           conserved to rounding error; and the order of additions does not depend on the vector width. A tile reads
+ *           no position and no velocity of the tiles before it.
+ * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2); no force where both ends are at one
+ *           point. On one axis k (delta - rest) + c (relative velocity).
+ * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
+ */
+#ifndef SPRINGSTEP_BANDS_H
+#define SPRINGSTEP_BANDS_H
+
+#include "../simd/quad.h"
+#include "scene_kernels.h"
+
+/* function(..., axes, damped) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
+                   : function(__VA_ARGS__, 3, false))
+
+/* Vectors of links that are computed together: while one waits for a square root, another is computed. A link on one axis
+   has no root and few operations, so that more vectors amortise the loop (measured for vectors of 16 and 64 bytes). */
+enum { most_together = 4 };
+
+SPRING_INLINE size_t links_together(uint32_t axes)
+{
+    return axes == 1 && SPRING_VECTOR != 32 ? 4 : 2;
+}
+
+/* Replaces the vectors from the lower to the upper ends of links by the forces on the lower ends. Slots without a link get
+   0 by selection, not by multiplication: their particles may be infinitely far apart. */
+SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                             const real *rest, const real *c, bool damped)
+{
+    const size_t together = links_together(axes);
+    real scale[most_together], rate[most_together];
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        real square = delta[m][0] * delta[m][0];
+        rate[m] = damped ? delta[m][0] * relative[m][0] : splat(0);
+        SPRING_UNROLL
+        for (uint32_t a = 1; a < axes; a++) {
+            square += delta[m][a] * delta[m][a];
+            if (damped)
+                rate[m] += delta[m][a] * relative[m][a];
+        }
+        scale[m] = square;
+    }
+    vec_inverse_sqrt(scale, joined, (int)together);
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        const real inverse = scale[m];
+        scale[m] = k[m] * (1 - rest[m] * inverse);
+        if (damped)
+            scale[m] += c[m] * (rate[m] * inverse * inverse);
+    }
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+    }
+}
+
+/* On one axis a link is a linear spring. */
+SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                                    const real *rest, const real *c, bool damped)
+{
+    SPRING_UNROLL
+    for (size_t m = 0; m < links_together(1); m++) {
+        const real pull = k[m] * (delta[m][0] - rest[m]);
+        delta[m][0] = select_real(joined[m], damped ? pull + c[m] * relative[m][0] : pull, splat(0));
+    }
+}
+
+SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < slots; j += lanes)
+            vec_store(force + a * axis + j, splat(0));
+}
+
+/* Computes the forces of a band in `slots` slots from t on; those along axis a are stored at force + a * axis. shared: all
+   slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
+SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared)
+{
+    const ptrdiff_t offset = band->offset, slot = t - band->start;
+    const int8_t *const occupied = band->occupied + slot;
+    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
+    const scalar *const stiffness = band->stiffness + slot * stride_c, *const length = band->rest + slot * stride_c,
+                        *const damping = damped ? band->damping + slot * stride_c : NULL;
+    SPRING_PREFETCH(occupied + tile); /* so few cache lines that the hardware prefetcher does not see a stream */
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        SPRING_HOT_LOOP("link", together * lanes);
+        real delta[most_together][3], relative[most_together][3];
+        real k[most_together], rest[most_together], c[most_together];
+        mask joined[most_together];
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            const ptrdiff_t number = (ptrdiff_t)i * stride_c;
+            k[m] = vec_load(stiffness + number);
+            rest[m] = vec_load(length + number);
+            c[m] = damped ? vec_load(damping + number) : splat(0);
+            joined[m] = vec_load_mask(occupied + i);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
+                delta[m][a] = vec_load(at + offset) - vec_load(at);
+                if (damped)
+                    relative[m][a] = vec_load(with + offset) - vec_load(with);
+            }
+        }
+        if (axes == 1)
+            to_linear_forces(delta, relative, joined, k, rest, c, damped);
+        else
+            to_forces(axes, delta, relative, joined, k, rest, c, damped);
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+        }
+    }
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
+}
+
+SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                                   size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
+{
+    if (axes == 1 &&
+        band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
+    else
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);
+}
+
+/* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
+typedef struct kept_forces {
+    const scalar *force;
+    size_t axis;
+} kept_forces;
+
+/* Adds up the forces of all bands on `count` particles from t on. */
+SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                          const kept_forces *minus, size_t minuses, uint32_t axes)
+{
+    enum { most = 4 };
+    const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors at once */
+    for (size_t j = 0; j < count; j += some * lanes) {
+        real force[most][3];
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] = splat(0);
+        }
+        for (const kept_forces *k = plus; k < plus + pluses; k++) {
+            SPRING_HOT_LOOP("link-end", some * lanes);
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+            }
+        }
+        for (const kept_forces *k = minus; k < minus + minuses; k++) {
+            SPRING_HOT_LOOP("link-end", some * lanes);
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+            }
+        }
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(to + a * stride + j + m * lanes, force[m][a]);
+        }
+    }
+}
+
+/* Repeats the first tile of a ring behind its last one, so that any `tile` consecutive slots are contiguous. */
+SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < slots; j += lanes)
+            vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
+}
+
+/* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. */
+SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                             size_t to, uint32_t axes, bool damped)
+{
+    ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
+    for (size_t r = 0; r < s->bands; r++) {
+        const scene_band *band = &s->band[r];
+        slot[r] = (ptrdiff_t)from % band->ring;
+        if (from == 0) { /* no link has a lower end before the first particle */
+            const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
+            clear_slots(out->rings + band->ring_start + band->ring - before, (size_t)(band->ring + tile), before, axes);
+        }
+    }
+    for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
+        kept_forces plus[most_bands], minus[most_bands];
+        size_t pluses = 0, minuses = 0;
+        const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
+        for (size_t r = 0; r < s->bands; r++) {
+            const scene_band *band = &s->band[r];
+            const ptrdiff_t ring = band->ring, other = slot[r] - band->back;
+            const size_t axis = (size_t)(ring + tile);
+            scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
+            if (t >= band->start && t < band->end) {
+                one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
+                plus[pluses++] = (kept_forces){force, axis};
+            } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
+                clear_slots(force, axis, count, axes);
+            }
+            if (slot[r] == 0)
+                repeat_tile(force, ring, count, axis, axes);
+            if (t < band->end + band->offset && t + tile > band->start + band->offset)
+                minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
+            slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
+        }
+        gather(out->force + t, s->stride, count, plus, pluses, minus, minuses, axes);
+    }
+}
+
+static void band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                        size_t to)
+{
+    SPRING_BY_AXES(s->axes, s->damped, all_bands, s, x, v, out, from, to);
+}
+
+#endif

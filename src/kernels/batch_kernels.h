@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/* The kernels of batches: their arguments and their table. */
+#ifndef SPRINGSTEP_BATCH_KERNELS_H
+#define SPRINGSTEP_BATCH_KERNELS_H
+
+#include "../simd/scalar.h"
+#include "../simd/targets.h"
+#include "../spring/propagator.h"
+#include "single_precision.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Values of a parameter: one for each spring, or a SIMD vector of equal values for all springs. */
+typedef struct batch_array {
+    const scalar *first; /* NULL: all values are 0 */
+    size_t stride;       /* from spring to spring: 1, or 0 */
+} batch_array;
+
+/* n steps of `count` springs, a multiple of the group size. */
+typedef struct batch_run {
+    spring_method method;
+    size_t count;
+    scalar *x, *v; /* read and written */
+    batch_array omega2, gamma, accel;
+    scalar dt;
+    uint64_t n;
+    const spring_propagator *propagator; /* exact solution of springs with equal parameters; NULL: they differ */
+} batch_run;
+
+typedef struct batch_kernels {
+    size_t group_size;                   /* springs that are advanced together */
+    bool (*advance)(const batch_run *b); /* false: at least one spring kept its state */
+} batch_kernels;
+
+SPRING_INTERNAL const batch_kernels spring_batch_v128; /* by bits of a SIMD vector */
+#if SPRING_LONG_VECTORS
+SPRING_INTERNAL const batch_kernels spring_batch_v256, spring_batch_v512;
+#endif
+
+/* spring_batch_advance() with a given instruction set, for tests. */
+SPRING_INTERNAL spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b,
+                                                        spring_method m, scalar dt, uint64_t n);
+
+#endif

@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT */
+/* The exact solution of the springs of a batch. Springs with equal parameters share coefficients; others have their own
+   (exact_formula.h), computed in double in both precisions, since in float the phase would have an error of 6e-8 omega t. */
+#ifndef SPRINGSTEP_EXACT_SPRINGS_H
+#define SPRINGSTEP_EXACT_SPRINGS_H
+
+/* Coefficients that are equal for all springs, computed once in double. */
+SPRING_INLINE exact_coefficients exact_prepare(const spring_propagator *y)
+{
+    return (exact_coefficients){
+        splat((scalar)y->half), splat((scalar)y->F),  splat((scalar)y->G),
+        splat((scalar)y->H),    splat((scalar)y->wH), splat((scalar)y->P),
+    };
+}
+
+SPRING_INLINE bool advance_alike(const batch_run *b, bool loaded)
+{
+    const exact_coefficients c = exact_prepare(b->propagator);
+    bool all = true;
+    for (size_t i = 0; i < b->count; i += group) {
+        real x[vectors], v[vectors];
+        SPRING_UNROLL
+        for (size_t k = 0; k < vectors; k++) {
+            const size_t j = i + k * lanes;
+            x[k] = vec_load(b->x + j);
+            v[k] = vec_load(b->v + j);
+            exact_step(&x[k], &v[k], loaded ? rate(b->accel, j) : splat(0), &c, loaded);
+        }
+        all &= store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
+    }
+    return all;
+}
+
+#ifndef SPRING_FLOAT
+SPRING_INLINE real exact_load(const void *array, size_t i, bool single)
+{
+    return single ? vec_load_float((const float *)array + i) : vec_load((const double *)array + i);
+}
+
+SPRING_INLINE void exact_store(void *array, size_t i, real a, bool single)
+{
+    if (single)
+        vec_store_float((float *)array + i, a);
+    else
+        vec_store((double *)array + i, a);
+}
+
+/* A negative or infinite rate becomes NaN, so that the spring keeps its state; -0 becomes 0. */
+SPRING_INLINE real exact_rate(exact_array p, size_t i, bool single)
+{
+    const real rate = exact_load(p.first, i * p.stride, single);
+    return select_real(rate >= 0, rate + (rate - rate), splat(NAN));
+}
+
+/* Stores the springs of a vector that stay finite. Returns false, since one does not. */
+SPRING_NOINLINE bool exact_store_valid(const exact_run *b, size_t i, const double *x, const double *v, double beyond)
+{
+    for (size_t k = 0; k < lanes; k++) {
+        if (!(fabs(x[k]) < beyond && fabs(v[k]) < beyond))
+            continue;
+        if (b->single) {
+            ((float *)b->x)[i + k] = (float)x[k];
+            ((float *)b->v)[i + k] = (float)v[k];
+        } else {
+            ((double *)b->x)[i + k] = x[k];
+            ((double *)b->v)[i + k] = v[k];
+        }
+    }
+    return false;
+}
+
+bool SPRING_EXACT_KERNEL(const exact_run *run)
+{
+    const exact_run b = *run; /* a local copy, so that stores cannot alias its fields */
+    const bool damped = b.gamma.first != NULL, loaded = b.accel.first != NULL;
+    const double beyond = b.single ? 0x1.ffffffp127 : INFINITY; /* becomes infinite when it is stored */
+    bool all = true;
+    for (size_t i = 0; i < b.count; i += lanes) {
+        const real w = exact_rate(b.omega2, i, b.single), g = damped ? exact_rate(b.gamma, i, b.single) : splat(0);
+        const real a = loaded ? exact_load(b.accel.first, i * b.accel.stride, b.single) : splat(0);
+        const exact_coefficients c = exact_coefficients_of(w, g / 2, splat(0), splat(b.t), loaded);
+        real x = exact_load(b.x, i, b.single), v = exact_load(b.v, i, b.single);
+        exact_step(&x, &v, a, &c, loaded);
+        if (SPRING_UNLIKELY(any(not_mask((vec_abs(x) < beyond) & (vec_abs(v) < beyond))))) {
+            double x1[lanes], v1[lanes];
+            memcpy(x1, &x, sizeof x);
+            memcpy(v1, &v, sizeof v);
+            all = exact_store_valid(&b, i, x1, v1, beyond);
+        } else {
+            exact_store(b.x, i, x, b.single);
+            exact_store(b.v, i, v, b.single);
+        }
+    }
+    return all;
+}
+#endif
+
+static bool advance_exactly(const batch_run *b)
+{
+    if (b->propagator != NULL)
+        return b->accel.first != NULL ? advance_alike(b, true) : advance_alike(b, false);
+    const exact_run each = {
+        .count = b->count,
+        .single = sizeof(scalar) == sizeof(float),
+        .x = b->x,
+        .v = b->v,
+        .omega2 = {b->omega2.first, b->omega2.stride},
+        .gamma = {b->gamma.first, b->gamma.stride},
+        .accel = {b->accel.first, b->accel.stride},
+        .t = (double)b->dt * (double)b->n,
+    };
+    return SPRING_EXACT_KERNEL(&each);
+}
+
+#endif

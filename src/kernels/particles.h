@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The motion of the particles of a scene, with the SIMD vectors that real.h is set to: kick, implicit kick, drift and the
+ * stages of Runge-Kutta methods. scene_kernels.h gives the formula of each. A pinned particle has inverse mass 0.
+ */
+#ifndef SPRINGSTEP_PARTICLES_H
+#define SPRINGSTEP_PARTICLES_H
+
+#include "../methods/implicit_kick.h"
+#include "../simd/quad.h"
+#include "scene_kernels.h"
+
+/* A vector of coordinates along one axis. */
+typedef struct coordinates {
+    size_t at;         /* index in the arrays of a quantity */
+    size_t mass;       /* index in the arrays of masses */
+    real inverse_mass; /* 0: pinned */
+    real gravity;
+    real drag;                /* [1/s] */
+    bool dragged;             /* the scene has drag */
+    implicit_factors damping; /* of an implicit kick; unset without drag */
+} coordinates;
+
+static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+/* By force and gravity. No force moves a pinned particle, not even an infinite one. */
+SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
+{
+    const real free = c->inverse_mass * vec_load(m->force + c->at) + c->gravity;
+    return select_real(c->inverse_mass > 0, free, splat(0));
+}
+
+SPRING_INLINE real acceleration(const scene_motion *m, const coordinates *c, real v)
+{
+    const real free = free_acceleration(m, c);
+    return c->dragged ? free - c->drag * v : free;
+}
+
+SPRING_INLINE mask store_state(const scene_motion *m, const coordinates *c, real x, real v)
+{
+    vec_store(m->x + c->at, x);
+    vec_store(m->v + c->at, v);
+    return not_finite(x) | not_finite(v);
+}
+
+/* Moves one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
+typedef mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
+
+/* The loop of all kernels. */
+SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
+                                   particle_update *update, unsigned variant)
+{
+    const scene_particles p = *particles; /* local copies, so that stores cannot alias their fields */
+    const scene_motion m = *motion;
+    mask wrong = {0};
+    for (uint32_t a = 0; a < p.axes; a++) {
+        const scalar *const quad_gravity = p.gravity + a * padding;
+        const real gravity = vec_load(quad_gravity);
+        for (size_t i = from; i < to; i += lanes) {
+            SPRING_HOT_LOOP("coordinate", lanes);
+            real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
+            if (SPRING_UNLIKELY(i + lanes > p.count)) /* padding lanes of the last vector keep their finite values */
+                inverse_mass =
+                    select_real(vec_load(lane_number) < splat((scalar)(p.count - i)), inverse_mass, splat(0));
+            coordinates c = {
+                .at = a * p.stride + i,
+                .mass = i * p.mass_stride,
+                .inverse_mass = inverse_mass,
+                .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
+                .drag = p.drag * inverse_mass,
+                .dragged = p.drag != 0,
+            };
+            if (c.dragged)
+                c.damping = implicit_factors_of(m.kick * c.drag);
+            wrong |= update(&m, &c, variant);
+        }
+    }
+    return !any(wrong);
+}
+
+/* The velocity after an implicit kick by the acceleration `free`. */
+SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c, real v0, real free)
+{
+    const real u = v0 + m->kick * free;
+    return c->dragged ? implicit_velocity(u, &c->damping) : u;
+}
+
+enum { ENDS_STEP = 1, PREDICTS = 2 };
+
+SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
+    const real v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly(m, c, start, free) : start;
+    const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free);
+    const mask wrong = store_state(m, c, vec_load(m->x0 + c->at) + m->drift * v, v);
+    if ((variant & PREDICTS) == 0)
+        return wrong;
+    const real predicted = kicked_implicitly(m, c, v, free);
+    vec_store(m->predicted + c->at, predicted);
+    return wrong | not_finite(predicted);
+}
+
+static bool kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    if (m->predicted == NULL)
+        return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP)
+                            : for_each_vector(p, m, from, to, update_kick_drift, 0);
+    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP | PREDICTS)
+                        : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS);
+}
+
+SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));
+    vec_store(m->v + c->at, v);
+    return not_finite(v);
+}
+
+static bool implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_implicit_kick, 0);
+}
+
+SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));
+    const mask hidden = not_finite(m->kick * c->drag); /* 1/(1 + q) is 0 for infinite q */
+    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * v, v) | hidden;
+}
+
+static bool implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0);
+}
+
+/* --------------------------------------------------------------------------------------- stages of Runge-Kutta methods */
+
+enum { NO_SUM, FIRST_SUM, NEXT_SUM };
+
+SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    const real dx = vec_load(m->stage_v + c->at), dv = acceleration(m, c, dx);
+    if (variant == FIRST_SUM) {
+        vec_store(m->sum_x + c->at, dx);
+        vec_store(m->sum_v + c->at, dv);
+    } else if (variant == NEXT_SUM) {
+        vec_store(m->sum_x + c->at, vec_load(m->sum_x + c->at) + m->weight * dx);
+        vec_store(m->sum_v + c->at, vec_load(m->sum_v + c->at) + m->weight * dv);
+    }
+    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * dx, vec_load(m->v0 + c->at) + m->kick * dv);
+}
+
+static bool stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_stage, NO_SUM);
+}
+
+static bool first_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_stage, FIRST_SUM);
+}
+
+static bool next_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_stage, NEXT_SUM);
+}
+
+SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const real dx = vec_load(m->stage_v + c->at), dv = acceleration(m, c, dx);
+    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(m->sum_x + c->at) + dx),
+                       vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + dv));
+}
+
+static bool last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_last_stage, 0);
+}
+
+/* The acceleration of stage `number` by the force found there: of x, or with drag of y = e^(drag t/2) (x - x0), where t
+   is the time since the start of the step. */
+SPRING_INLINE real nystrom_acceleration(const scene_motion *m, const coordinates *c, size_t number)
+{
+    const real free = free_acceleration(m, c);
+    if (!c->dragged || number == 1)
+        return free;
+    const real half = c->drag / 2, moved = vec_load(m->nystrom->stage_x + c->at) - vec_load(m->x0 + c->at);
+    return vec_load(m->nystrom->growth + c->mass) * (free + half * half * moved);
+}
+
+/* The weighted sum of the stored accelerations of the first `count` stages. */
+SPRING_INLINE real nystrom_sum(const scene_motion *m, const coordinates *c, const scalar *weight, size_t count)
+{
+    real sum = weight[0] * vec_load(m->nystrom->accel + c->at);
+    SPRING_UNROLL
+    for (size_t i = 1; i < count; i++)
+        sum += weight[i] * vec_load(m->nystrom->accel + i * m->nystrom->accel_stride + c->at);
+    return sum;
+}
+
+SPRING_INLINE mask update_nystrom_stage(const scene_motion *m, const coordinates *c, unsigned number)
+{
+    const real accel = nystrom_acceleration(m, c, number), last = m->nystrom->weight_x[number - 1] * accel;
+    const real sum = number > 1 ? nystrom_sum(m, c, m->nystrom->weight_x, number - 1) + last : last;
+    const real moved = m->drift * vec_load(m->v0 + c->at) + m->nystrom->square * sum;
+    const real x = vec_load(m->x0 + c->at) + (c->dragged ? vec_load(m->nystrom->decay + c->mass) * moved : moved);
+    vec_store(m->nystrom->accel + (number - 1) * m->nystrom->accel_stride + c->at, accel);
+    vec_store(m->x + c->at, x);
+    return not_finite(x);
+}
+
+static bool nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    switch (m->nystrom->number) {
+    case 1:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 1);
+    case 2:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 2);
+    case 3:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 3);
+    case 4:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 4);
+    case 5:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 5);
+    case 6:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 6);
+    default:
+        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages);
+    }
+}
+
+SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const size_t stored = nystrom_stages;
+    const real accel = nystrom_acceleration(m, c, stored + 1), x0 = vec_load(m->x0 + c->at),
+               v0 = vec_load(m->v0 + c->at);
+    const real moved = m->drift * v0 + m->nystrom->square * nystrom_sum(m, c, m->nystrom->weight_x, stored);
+    const real kick =
+        m->kick * (nystrom_sum(m, c, m->nystrom->weight_v, stored) + m->nystrom->weight_v[stored] * accel);
+    if (!c->dragged)
+        return store_state(m, c, x0 + moved, v0 + kick);
+    const real decay = vec_load(m->nystrom->decay + c->mass), loss = vec_load(m->nystrom->loss + c->mass);
+    return store_state(m, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
+}
+
+static bool nystrom_end(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_nystrom_end, 0);
+}
+
+#endif

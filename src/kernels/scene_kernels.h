@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/* The kernels of scenes, loops over links and over particles: their arguments and their table. */
+#ifndef SPRINGSTEP_SCENE_KERNELS_H
+#define SPRINGSTEP_SCENE_KERNELS_H
+
+#include "../simd/scalar.h"
+#include "../simd/targets.h"
+#include "single_precision.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    padding = 16,       /* elements of the longest SIMD vector; every quantity has so many before and behind it */
+    most_bands = 32,    /* a block with shear and bend springs has 16 */
+    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
+    tile = 64           /* slots of a band whose forces are computed together, in the first-level cache */
+};
+_Static_assert(tile % padding == 0, "a tile consists of whole vectors");
+
+/* A band: links whose upper end is `offset` particles after the lower one. A band has a slot for each particle of the
+   tiles that hold lower ends. */
+typedef struct scene_band {
+    ptrdiff_t offset;
+    ptrdiff_t start, end;         /* slots: from the tile of the first lower end to behind the last one */
+    const int8_t *occupied;       /* -1 where a link acts, else 0 */
+    ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
+    const scalar *stiffness;      /* [N/m] */
+    const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
+    const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
+    size_t ring_start;            /* of its ring of forces among the rings of all bands */
+    ptrdiff_t ring;               /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
+    ptrdiff_t back;               /* offset modulo ring */
+} scene_band;
+
+/* Links that lie in no band. */
+typedef struct unbanded_links {
+    size_t count;
+    const uint32_t *a, *b;
+    const scalar *stiffness, *rest, *damping; /* as in scene_band */
+} unbanded_links;
+
+typedef struct scene_links {
+    size_t particles;
+    uint32_t axes;
+    bool damped;
+    size_t stride; /* elements from one axis to the next */
+    size_t bands;
+    const scene_band *band;
+    unbanded_links unbanded;
+} scene_links;
+
+/* What the kernels of links write. */
+typedef struct scene_forces {
+    scalar *force;   /* [N] on all particles */
+    scalar *rings;   /* [N] of each band, the forces on the lower ends of its last slots; the first tile is repeated */
+    scalar *records; /* see unbanded.h; NULL: the scene has none */
+} scene_forces;
+
+/* Computes forces from positions, and from velocities if links are damped. band_forces: the forces of all bands on particles
+   from ... to - 1, both multiples of tile or the end; v may be the array of forces. The others: of all unbanded links. */
+typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
+typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
+
+/* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
+typedef struct scene_particles {
+    size_t count;
+    uint32_t axes;
+    size_t stride;              /* elements from one axis to the next */
+    const scalar *inverse_mass; /* [1/kg]; 0: pinned */
+    size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
+    const scalar *gravity;      /* a vector for each axis; for quads one vector */
+    scalar drag;                /* [N s/m] */
+} scene_particles;
+
+/* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
+typedef struct scene_nystrom {
+    size_t number;                       /* 1 to nystrom_stages */
+    scalar square;                       /* [s^2] of the step */
+    scalar *accel;                       /* [m/s^2] the accelerations of all stages ... */
+    size_t accel_stride;                 /* ... elements from one stage to the next */
+    const scalar *weight_x, *weight_v;   /* of the stages */
+    const scalar *stage_x;               /* [m] positions of the stage that the force belongs to */
+    const scalar *growth, *decay, *loss; /* by mass: e^(drag t/2) at that stage, its inverse at the next stage, and
+                                            e^(-drag kick/2) - 1 */
+} scene_nystrom;
+
+/* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
+typedef struct scene_motion {
+    scalar kick, drift;    /* [s] how long forces act on v, and v on x */
+    const scalar *force;   /* [N] */
+    const scalar *x0, *v0; /* read */
+    scalar *x, *v;         /* written */
+    bool ends_step;        /* begin with the implicit kick that ends the step before */
+    scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
+    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to */
+    scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
+    scalar weight;         /* of this stage */
+    const scene_nystrom *nystrom;
+} scene_motion;
+
+/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
+typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
+
+/* a(u): the acceleration by force, gravity and the drag at velocity u */
+typedef struct scene_kernels {
+    const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
+                                          needs the results of two stores has to wait for both */
+    band_kernel *band_forces;          /* the forces of all bands */
+    unbanded_kernel *unbanded_forces;  /* adds the forces of unbanded links */
+    unbanded_kernel *record_forces;    /* the same for many unbanded links, on two or three axes */
+    unbanded_kernel *quad_forces;      /* the forces of the links of a small scene */
+    particle_kernel *kick_drift;       /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted) */
+    particle_kernel *implicit_kick;    /* v = v0 + kick a(v) */
+    particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
+    particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
+    particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
+    particle_kernel *next_stage;          /* the same, and these times weight are added to the sums */
+    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + a(stage_v));  x = x0 + drift (sum_x + stage_v) */
+    particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
+    particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
+} scene_kernels;
+
+SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */
+#if SPRING_LONG_VECTORS
+SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;
+#endif
+
+#endif

@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The loops over the springs of a batch, with the SIMD vectors that real.h is set to.
+ *
+ * Method    A group of a few vectors is loaded into registers, takes all its steps there, and is stored. The independent
+ *           chains of operations keep the processor busy, and memory is read once for any number of steps. A spring that
+ *           must keep its state is not stored.
+ * Requires  of a method: an infinite or NaN rate leaves x or v infinite or NaN, since only x and v are checked
+ *           afterwards; a rate of 0 gives the bits of a step without it.
+ */
+#ifndef SPRINGSTEP_SPRINGS_H
+#define SPRINGSTEP_SPRINGS_H
+
+#include "../methods/methods.h"
+#include "../spring/exact_formula.h"
+#include "batch_kernels.h"
+
+/* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, else 16). */
+enum { vectors = SPRING_VECTOR == 64 ? 8 : 4, group = vectors * lanes };
+
+/* Reads the values of a parameter for a vector of springs, from spring i on. */
+SPRING_INLINE real rate(batch_array p, size_t i)
+{
+    return vec_load(p.first + i * p.stride) + 0;
+}
+
+SPRING_INLINE spring_rates rates_at(const batch_run *b, size_t i, bool damped, bool loaded)
+{
+    return (spring_rates){
+        .omega2 = rate(b->omega2, i),
+        .gamma = damped ? rate(b->gamma, i) : splat(0),
+        .accel = loaded ? rate(b->accel, i) : splat(0),
+    };
+}
+
+SPRING_INLINE bool negative(batch_array p, size_t i)
+{
+    return p.first != NULL && p.first[i * p.stride] < 0;
+}
+
+/* Stores the springs of a group that are finite and have no negative rate. Returns false if there are others. */
+SPRING_NOINLINE bool store_valid(const batch_run *b, size_t i, const real *x, const real *v, size_t many)
+{
+    scalar x1[group], v1[group];
+    memcpy(x1, x, many * sizeof *x);
+    memcpy(v1, v, many * sizeof *v);
+    bool all = true;
+    for (size_t j = 0; j < many * lanes; j++) {
+        if (spring_finite(x1[j]) && spring_finite(v1[j]) && !negative(b->omega2, i + j) && !negative(b->gamma, i + j)) {
+            b->x[i + j] = x1[j];
+            b->v[i + j] = v1[j];
+        } else {
+            all = false;
+        }
+    }
+    return all;
+}
+
+/* Checks whether a spring of a group may have to keep its state. A sum is not finite if one of its terms is not, nor if
+   it overflows. signs: not 0 where a rate is negative. */
+SPRING_INLINE bool doubtful(const real *x, const real *v, size_t many, mask signs)
+{
+    real sum = x[0] + v[0];
+    SPRING_UNROLL
+    for (size_t k = 1; k < many; k++)
+        sum += x[k] + v[k];
+    return any(not_finite(sum) | signs);
+}
+
+/* Stores the group from spring i on, at x_to and v_to. Returns false if a spring keeps its state. */
+SPRING_INLINE bool store_group(const batch_run *b, size_t i, scalar *x_to, scalar *v_to, const real *x, const real *v,
+                               size_t many, mask signs)
+{
+    if (SPRING_UNLIKELY(doubtful(x, v, many, signs))) {
+        real x1[vectors], v1[vectors]; /* copies, so that x and v stay in registers */
+        memcpy(x1, x, many * sizeof *x);
+        memcpy(v1, v, many * sizeof *v);
+        return store_valid(b, i, x1, v1, many);
+    }
+    SPRING_UNROLL
+    for (size_t k = 0; k < many; k++) {
+        vec_store(x_to + k * lanes, x[k]);
+        vec_store(v_to + k * lanes, v[k]);
+    }
+    return true;
+}
+
+SPRING_INLINE bool none_finite(const real *x, const real *v)
+{
+    mask finite = {0};
+    SPRING_UNROLL
+    for (size_t k = 0; k < vectors; k++)
+        finite |= (x[k] - x[k]) + (v[k] - v[k]) == 0;
+    return !any(finite);
+}
+
+/* Computes the coefficients of the group from spring i on. Returns sign bits where a rate is negative. */
+SPRING_INLINE mask prepare_group(step_coefficients c[vectors], const batch_run *b, size_t i, real h,
+                                 method_prepare *prepare, bool damped, bool loaded)
+{
+    mask signs = {0};
+    SPRING_ROLLED
+    for (size_t k = 0; k < vectors; k++) {
+        const spring_rates r = rates_at(b, i + k * lanes, damped, loaded);
+        prepare(&c[k], r, h, damped, loaded);
+        signs |= sign_bit(r.omega2) | sign_bit(r.gamma);
+    }
+    return signs;
+}
+
+SPRING_INLINE void step_group(real *x, real *v, real h, const step_coefficients c[vectors], uint64_t n,
+                              method_start *start, method_step *step, bool damped, bool loaded)
+{
+    real kept[vectors];
+    SPRING_UNROLL
+    for (size_t k = 0; k < vectors; k++)
+        kept[k] = start(x[k], &c[k], loaded);
+    for (; n > 0; n--) {
+        SPRING_HOT_LOOP("spring", group);
+        vec_read_again(c);
+        SPRING_UNROLL
+        for (size_t k = 0; k < vectors; k++)
+            step(&x[k], &v[k], &kept[k], h, &c[k], damped, loaded);
+    }
+}
+
+/* Advances the group from spring i on. Returns false if a spring keeps its state. b: a copy of *run. */
+SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_t i, real h,
+                                 const step_coefficients c[vectors], mask signs, method_start *start, method_step *step,
+                                 bool damped, bool loaded)
+{
+    real x[vectors], v[vectors];
+    SPRING_UNROLL
+    for (size_t k = 0; k < vectors; k++) {
+        x[k] = vec_load(b->x + i + k * lanes);
+        v[k] = vec_load(b->v + i + k * lanes);
+    }
+    uint64_t left = b->n;
+    do {
+        const uint64_t some = left < SPRING_CHECK_INTERVAL ? left : SPRING_CHECK_INTERVAL;
+        left -= some;
+        SPRING_BY_FEATURES(damped, loaded, step_group, x, v, h, c, some, start, step);
+    } while (left > 0 && !none_finite(x, v));
+    return store_group(run, i, b->x + i, b->v + i, x, v, vectors, signs);
+}
+
+/* Several steps, group by group. The loops over steps exist for each set of features, all other code once. */
+SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
+                                  bool damped, bool loaded)
+{
+    const batch_run b = *run; /* a local copy, so that stores cannot alias its fields */
+    const bool alike = b.omega2.stride + b.gamma.stride + b.accel.stride == 0;
+    const real h = splat(b.dt);
+    step_coefficients c[vectors];
+    mask signs = {0};
+    bool all = true;
+    for (size_t i = 0; i < b.count; i += group) {
+        if (i == 0 || !alike)
+            signs = SPRING_BY_FEATURES(damped, loaded, prepare_group, c, &b, i, h, prepare);
+        all &= advance_group(run, &b, i, h, c, signs, start, step, damped, loaded);
+    }
+    return all;
+}
+
+/* A single step, vector by vector: the processor overlaps independent vectors by itself, and springs in memory are slower
+   in groups. */
+SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
+                                bool damped, bool loaded)
+{
+    const batch_run b = *run;
+    const real h = splat(b.dt);
+    bool all = true;
+    for (size_t i = 0; i < b.count; i += lanes) {
+        SPRING_HOT_LOOP("spring", lanes);
+        const spring_rates r = rates_at(&b, i, damped, loaded);
+        step_coefficients c;
+        prepare(&c, r, h, damped, loaded);
+        real x = vec_load(b.x + i), v = vec_load(b.v + i), kept = start(x, &c, loaded);
+        step(&x, &v, &kept, h, &c, damped, loaded);
+        all &= store_group(run, i, b.x + i, b.v + i, &x, &v, 1, sign_bit(r.omega2) | sign_bit(r.gamma));
+    }
+    return all;
+}
+
+SPRING_INLINE bool advance_by(const batch_run *b, method_prepare *prepare, method_start *start, method_step *step)
+{
+    const bool damped = b->gamma.first != NULL, loaded = b->accel.first != NULL;
+    if (b->n > 1)
+        return advance_groups(b, prepare, start, step, damped, loaded);
+    return SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step);
+}
+
+#include "exact_springs.h"
+
+static bool advance_springs(const batch_run *b)
+{
+#define STEP_METHOD(value, prepare, start, step) \
+    case value:                                  \
+        return advance_by(b, prepare, start, step);
+    switch ((int)b->method) {
+        STEP_METHODS(STEP_METHOD)
+    }
+#undef STEP_METHOD
+    return advance_exactly(b);
+}
+
+#endif

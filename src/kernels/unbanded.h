@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The forces of unbanded links, one by one in their order, with the axes of a particle side by side in a quad.
+ *
+ * Law       see bands.h
+ * Accuracy  the square root and the quotient rest/length are correctly rounded
+ */
+#ifndef SPRINGSTEP_UNBANDED_H
+#define SPRINGSTEP_UNBANDED_H
+
+#include "../simd/quad.h"
+#include "bands.h"
+
+/* The force of a link divided by the vector between its ends. rate: relative velocity . delta */
+SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped)
+{
+    const scalar scale = l->stiffness[j] * (1 - l->rest[j] / scalar_sqrt(square));
+    return damped ? scale + l->damping[j] * (rate / square) : scale;
+}
+
+/* A link that is cut has no force, however far apart its ends are. */
+SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
+{
+    return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
+}
+
+/* From arrays of each axis. */
+SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                uint32_t axes, bool damped)
+{
+    const unbanded_links *const l = &s->unbanded;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        scalar delta[3], scale = 1, square = 0, rate = 0;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
+            square += delta[a] * delta[a];
+            if (damped)
+                rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
+        }
+        if (!link_acts(l, j, damped) || (axes > 1 && !(square > 0)))
+            continue;
+        SPRING_HOT_LOOP("link", 1);
+        if (axes == 1) {
+            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
+            if (damped)
+                delta[0] += l->damping[j] * (v[to] - v[from]);
+        } else {
+            scale = link_scale(l, j, square, rate, damped);
+        }
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            out->force[a * s->stride + from] += scale * delta[a];
+            out->force[a * s->stride + to] -= scale * delta[a];
+        }
+    }
+}
+
+SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                 size_t stride, bool damped)
+{
+    const size_t a = stride * l->a[j], b = stride * l->b[j];
+    const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+    const scalar square = quad_dot(delta, delta);
+    if (!link_acts(l, j, damped) || !(square > 0))
+        return;
+    const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
+    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped)), delta);
+    quad_store(force + a, quad_plus(quad_load(force + a), pull));
+    quad_store(force + b, quad_minus(quad_load(force + b), pull));
+}
+
+/* From quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
+SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
+                              size_t stride, bool damped)
+{
+    const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
+    const size_t ahead = 32; /* links, whose ends are prefetched: for scenes larger than the cache */
+    const size_t some = quad_size, fours = l->count / some * some;
+    for (size_t j = 0; j < fours; j += some) {
+        if (j + ahead < fours) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_PREFETCH(x + stride * l->a[j + ahead + m]);
+                SPRING_PREFETCH(x + stride * l->b[j + ahead + m]);
+            }
+        }
+        quad delta[4];
+        scalar squares[4], rates[4] = {0};
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
+            delta[m] = quad_minus(quad_load(x + b), quad_load(x + a));
+            squares[m] = quad_dot(delta[m], delta[m]);
+            if (damped)
+                rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
+        }
+        const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
+        quad scale = quad_times(quad_load(l->stiffness + j),
+                                quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square))));
+        if (damped)
+            scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
+                                                quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
+        if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
+            for (size_t m = 0; m < some; m++)
+                one_quad_link(l, j + m, x, v, force, stride, damped);
+            continue;
+        }
+        SPRING_HOT_LOOP("link", quad_size);
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
+            const quad pull = quad_times(quad_all(quad_at(scale, (int)m)), delta[m]);
+            quad_store(force + a, quad_plus(quad_load(force + a), pull));
+            quad_store(force + b, quad_minus(quad_load(force + b), pull));
+        }
+    }
+    for (size_t j = fours; j < l->count; j++)
+        one_quad_link(l, j, x, v, force, stride, damped);
+}
+
+/* Records: position, velocity if links are damped, and force of a particle in one piece of memory, for scenes with many
+   unbanded links. */
+SPRING_INLINE size_t force_in_record(bool damped)
+{
+    return (damped ? 2 : 1) * quad_size;
+}
+
+SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    for (size_t i = 0; i < s->particles; i++) {
+        scalar *record = out->records + stride * i;
+        for (size_t k = 0; k < stride; k += quad_size) /* numbers of no axis are 0 */
+            quad_store(record + k, quad_all(0));
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            record[a] = x[a * s->stride + i];
+            if (damped)
+                record[quad_size + a] = v[a * s->stride + i];
+            record[at_force + a] = s->bands > 0 ? out->force[a * s->stride + i] : 0;
+        }
+    }
+}
+
+SPRING_INLINE void forces_of_records(const scene_links *s, scene_forces *out, uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    for (size_t i = 0; i < s->particles; i++) {
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            out->force[a * s->stride + i] = out->records[stride * i + at_force + a];
+    }
+}
+
+SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    if (s->axes == 3)
+        fill_records(s, x, v, out, 3, damped);
+    else
+        fill_records(s, x, v, out, 2, damped);
+    quad_links(&s->unbanded, out->records, out->records + quad_size, out->records + at_force, stride, damped);
+    if (s->axes == 3)
+        forces_of_records(s, out, 3, damped);
+    else
+        forces_of_records(s, out, 2, damped);
+}
+
+static void unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    SPRING_BY_AXES(s->axes, s->damped, all_unbanded, s, x, v, out);
+}
+
+static void record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    if (s->damped)
+        all_records(s, x, v, out, true);
+    else
+        all_records(s, x, v, out, false);
+}
+
+/* The forces of a small scene, whose quantities are arrays of quads. */
+static void quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    for (size_t i = 0; i < s->particles; i++)
+        quad_store(out->force + quad_size * i, quad_all(0));
+    if (s->damped)
+        quad_links(&s->unbanded, x, v, out->force, quad_size, true);
+    else
+        quad_links(&s->unbanded, x, v, out->force, quad_size, false);
+}
+
+#endif

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+/* The exact (closed-form) solution as a method. Its formula is in spring/exact_formula.h. */
+#ifndef SPRINGSTEP_EXACT_H
+#define SPRINGSTEP_EXACT_H
+
+#include "method.h"
+
+static double exact_stable_step(const spring_roots *r)
+{
+    (void)r;
+    return INFINITY;
+}
+
+static const method_row exact_method = {
+    .info = {.name = "exact", .order = 0, .forces_per_step = 0, .symplectic = true, .springs = true, .label = "exact"},
+    .kernel = spring_step_exact,
+    .stable_step = exact_stable_step,
+    .digest = UINT64_C(0x00349312ac922285),
+};
+
+#endif

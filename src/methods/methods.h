@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* The list of methods. Tables, help texts and figures show the methods in the order of METHODS. */
+#ifndef SPRINGSTEP_METHODS_H
+#define SPRINGSTEP_METHODS_H
+
+#include "euler.h"
+#include "leapfrog.h"
+#include "rk4.h"
+#include "symplectic_euler.h"
+#ifndef SPRING_VECTOR
+#include "exact.h"
+#include "rkn8.h"
+#endif
+
+/* ROW(value, its entry in the table) */
+#define METHODS(ROW)                                      \
+    ROW(SPRING_EULER, euler_method)                       \
+    ROW(SPRING_SYMPLECTIC_EULER, symplectic_euler_method) \
+    ROW(SPRING_LEAPFROG, leapfrog_method)                 \
+    ROW(SPRING_RK4, rk4_method)                           \
+    ROW(SPRING_RKN8, rkn8_method)                         \
+    ROW(SPRING_EXACT, exact_method)
+
+/* ROW(value, prepare, start, step): the methods that advance springs step by step */
+#define STEP_METHODS(ROW)                                                                        \
+    ROW(SPRING_EULER, euler_prepare, keeps_nothing, euler_step)                                  \
+    ROW(SPRING_SYMPLECTIC_EULER, symplectic_euler_prepare, keeps_nothing, symplectic_euler_step) \
+    ROW(SPRING_LEAPFROG, leapfrog_prepare, leapfrog_force, leapfrog_step)                        \
+    ROW(SPRING_RK4, rk4_prepare, keeps_nothing, rk4_step)
+
+#endif

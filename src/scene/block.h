@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The memory block of a scene: struct spring_scene, followed by arrays. Arrays are found by their offsets from the start
+ * of the block and never by pointers, so that the block may be copied to any other address.
+ */
+#ifndef SPRINGSTEP_BLOCK_H
+#define SPRINGSTEP_BLOCK_H
+
+#include "../kernels/scene_kernels.h"
+#include "../simd/quad.h"
+
+/* The arrays, in the order of their offsets. layout.c says which scenes have them, and how many elements. */
+typedef enum scene_array {
+    X_0, /* [m] positions of all particles on all axes, in two buffers: see step.c */
+    V_0, /* [m/s] velocities */
+    X_1,
+    V_1,
+    FORCE_0,        /* [N] forces at the state in buffer 0 */
+    FORCE_1,        /* [N] at the state in buffer 1; FORCE_0 if no forces depend on a predicted velocity */
+    PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
+    STAGES,         /* quantities that Runge-Kutta methods store */
+    INVERSE_MASS,   /* [1/kg] 0: pinned */
+    FREE_MASS,      /* [1/kg] the inverse mass of a particle once it is freed; 0: its mass is not valid */
+    MASS_FACTORS,   /* numbers that RKN8 stores for each mass, with drag */
+    OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
+    RINGS,          /* [N] bands: forces that are kept; see kernels/bands.h */
+    BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
+    BAND_REST,      /* [m] */
+    BAND_DAMPING,   /* [N s/m] */
+    LINK_A,         /* unbanded links: particles at the ends */
+    LINK_B,
+    LINK_STIFFNESS, /* [N/m] */
+    LINK_REST,      /* [m] */
+    LINK_DAMPING,   /* [N s/m] */
+    SLOTS,          /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
+    RECORDS,        /* see kernels/unbanded.h */
+    CALLBACK,       /* a small scene: positions, velocities and forces as a callback sees them, by axis */
+    SUMS,           /* work space of the stable step, by particle */
+    SCENE_ARRAYS
+} scene_array;
+
+/* A band: its links, and the position of its slots, coefficients and ring among those of all bands. */
+typedef struct band_layout {
+    uint32_t offset;     /* index of the upper end of a link minus that of the lower end */
+    uint32_t first, end; /* range of the lower ends */
+    bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
+    size_t slots, coefficients, ring_start;
+    size_t ring, back; /* see scene_band */
+} band_layout;
+
+typedef struct scene_layout {
+    uint32_t axes, flags, methods;
+    size_t particles, links;
+    bool small;             /* quantities are arrays of quads, and no link lies in a band */
+    size_t stride;          /* elements from one axis of a quantity to the next */
+    size_t particle_stride; /* elements from one particle to the next */
+    size_t quantity;        /* elements of a quantity */
+    size_t masses;          /* elements of a quantity that depends on the mass */
+    uint32_t bands;
+    band_layout band[most_bands];                    /* by ascending offset */
+    size_t band_slots, band_coefficients, band_ring; /* of all bands */
+    size_t unbanded;                                 /* links in no band */
+    size_t offset[SCENE_ARRAYS];                     /* [bytes] from the start of the block; SIZE_MAX: absent */
+    uint64_t bytes;                                  /* of the block; may exceed the address space */
+} scene_layout;
+
+/* Bounds from which the stable steps follow; see stable_step.c. */
+typedef struct scene_bounds {
+    double stiffness;    /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle; 1/mass with a pin */
+    double link_damping; /* [1/s]   the same of damping */
+    double damping;      /* [1/s]   the same of damping, plus drag/mass */
+    double stiffness_sum; /* [N/m]   as stiffness, without the mass */
+    double drag;          /* [N s/m] */
+    double least_drag;    /* [1/s]   drag divided by the largest mass */
+} scene_bounds;
+
+/* The forces that are stored for the state. */
+typedef enum known_force {
+    NO_FORCE,
+    FORCE,          /* at its positions and velocities */
+    PREDICTED_FORCE /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+} known_force;
+
+struct spring_scene {
+    scene_layout layout;
+    spring_scene_force_fn *force;
+    void *user;
+    double mass_all, drag, gravity[3];
+    scalar gravity_vectors[3][padding];  /* by axis; in a small scene the first holds quads */
+    scalar inverse_mass_vector[padding]; /* for scenes without INVERSE_MASS */
+    double t0, dt;                       /* time is t0 + steps dt */
+    uint64_t steps;
+    uint64_t damped_links;
+    uint32_t buffer;   /* 0 or 1: holds the state */
+    known_force known; /* in the force array of that buffer */
+    bool lost;         /* an advance without rollback failed */
+    bool bounds_known;
+    scene_bounds bounds;
+};
+
+/* spring_scene_advance() with a given instruction set, for tests. */
+SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m,
+                                                        double dt, uint64_t n);
+
+/* -------------------------------------------------------------------------------------------------- access to arrays */
+
+static inline bool scene_has(const spring_scene *s, scene_array a)
+{
+    return s->layout.offset[a] != SIZE_MAX;
+}
+
+/* NULL: the scene does not have the array. */
+static inline void *scene_memory(spring_scene *s, scene_array a)
+{
+    return scene_has(s, a) ? (char *)s + s->layout.offset[a] : NULL;
+}
+
+static inline const void *scene_read(const spring_scene *s, scene_array a)
+{
+    return scene_has(s, a) ? (const char *)s + s->layout.offset[a] : NULL;
+}
+
+/* The element of particle 0 on an axis, of a quantity that every scene has. Particle i is particle_stride * i elements
+   further. */
+static inline scalar *scene_axis(spring_scene *s, scene_array a, uint32_t axis)
+{
+    void *start = (char *)s + s->layout.offset[a];
+    return (scalar *)start + axis * s->layout.stride + padding;
+}
+
+static inline const scalar *scene_read_axis(const spring_scene *s, scene_array a, uint32_t axis)
+{
+    const void *start = (const char *)s + s->layout.offset[a];
+    return (const scalar *)start + axis * s->layout.stride + padding;
+}
+
+/* The arrays of a buffer. */
+static inline scene_array positions_in(uint32_t buffer)
+{
+    return buffer == 0 ? X_0 : X_1;
+}
+
+static inline scene_array velocities_in(uint32_t buffer)
+{
+    return buffer == 0 ? V_0 : V_1;
+}
+
+static inline scene_array forces_in(uint32_t buffer)
+{
+    return buffer == 0 ? FORCE_0 : FORCE_1;
+}
+
+/* The array that holds a quantity of the state. */
+static inline scene_array state_array(const spring_scene *s, spring_quantity q)
+{
+    return q == SPRING_POSITION ? positions_in(s->buffer) : velocities_in(s->buffer);
+}
+
+/* A quantity of the state on an axis, as scene_axis(). */
+static inline const scalar *scene_state(const spring_scene *s, spring_quantity q, uint32_t axis)
+{
+    return scene_read_axis(s, state_array(s, q), axis);
+}
+
+static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32_t axis)
+{
+    return scene_axis(s, state_array(s, q), axis);
+}
+
+static inline double inverse_mass_at(const spring_scene *s, size_t i)
+{
+    const scalar *each = scene_read(s, INVERSE_MASS);
+    return each != NULL ? (double)each[s->layout.particle_stride * i] : 1 / s->mass_all;
+}
+
+static inline bool scene_callback_uses_velocity(const spring_scene *s)
+{
+    return s->force != NULL && (s->layout.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+}
+
+/* Whether forces other than drag depend on velocities. */
+static inline bool scene_forces_use_velocity(const spring_scene *s)
+{
+    return s->damped_links > 0 || scene_callback_uses_velocity(s);
+}
+
+#endif

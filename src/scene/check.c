@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+/* Checks of a scene definition, in the order of its fields: the first field that is not valid is reported. */
+#include "definition.h"
+#include "steppers.h"
+
+typedef struct def_error {
+    spring_status status;
+    const char *field;
+    size_t index;
+} def_error;
+
+static const def_error no_error = {SPRING_OK, NULL, 0};
+
+static def_error invalid(const char *field, size_t index)
+{
+    return (def_error){SPRING_EINVAL, field, index};
+}
+
+static def_error check_methods(uint32_t methods)
+{
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((methods & 1u << m) != 0 && spring_scene_steppers[m].step == NULL)
+            return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
+    return methods >> SPRING_METHOD_COUNT == 0 ? no_error : invalid("methods", 0);
+}
+
+static def_error check_head(const spring_scene_def *def)
+{
+    const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    if (def->axes > 3)
+        return invalid("axes", 0);
+    if ((def->flags & ~flags) != 0)
+        return invalid("flags", 0);
+    if (check_methods(def->methods).status != SPRING_OK)
+        return check_methods(def->methods);
+    if (def->particles == 0)
+        return invalid("particles", 0);
+    if (def->particles > UINT32_MAX - padding || def->particles > SIZE_MAX / 64 / sizeof(double))
+        return (def_error){SPRING_ERANGE, "particles", 0};
+    if (def->links > UINT32_MAX / 8 || def->links > SIZE_MAX / 64 / sizeof(double))
+        return (def_error){SPRING_ERANGE, "links", 0};
+    if (def->position == NULL)
+        return invalid("position", 0);
+    if (def->link == NULL && def->links > 0)
+        return invalid("link", 0);
+    if (def->mass == NULL && def->mass_all != 0 && !scene_mass_valid(def->mass_all))
+        return invalid("mass_all", 0);
+    for (uint32_t a = 0; a < axes_of(def); a++)
+        if (!scene_fits(def->gravity[a]))
+            return invalid("gravity", a);
+    return scene_not_negative(def->drag) ? no_error : invalid("drag", 0);
+}
+
+static def_error check_particles(const spring_scene_def *def)
+{
+    const uint32_t axes = axes_of(def);
+    for (size_t i = 0; i < def->particles; i++) {
+        for (uint32_t a = 0; a < axes; a++) {
+            if (!scene_fits(def->position[i * axes + a]))
+                return invalid("position", i);
+            if (def->velocity != NULL && !scene_fits(def->velocity[i * axes + a]))
+                return invalid("velocity", i);
+        }
+        if (!is_pinned(def, i) && !scene_mass_valid(mass_of(def, i)))
+            return invalid("mass", i);
+        if (!scene_fits(def->drag * (double)inverse_mass_of(def, i)))
+            return invalid("drag", i);
+    }
+    return no_error;
+}
+
+static def_error check_links(const spring_scene_def *def)
+{
+    for (size_t i = 0; i < def->links; i++) {
+        const spring_link *link = &def->link[i];
+        if (link->a >= def->particles)
+            return (def_error){SPRING_ERANGE, "link.a", i};
+        if (link->b >= def->particles)
+            return (def_error){SPRING_ERANGE, "link.b", i};
+        if (link->a == link->b)
+            return invalid("link.b", i);
+        const char *field = scene_link_invalid_field(link);
+        if (field == NULL)
+            field = scene_link_overflows(link, (double)inverse_mass_of(def, link->a),
+                                         (double)inverse_mass_of(def, link->b));
+        if (field != NULL)
+            return invalid(field, i);
+    }
+    return no_error;
+}
+
+/* Methods that evaluate forces at positions alone, in a scene whose forces depend on velocities. */
+static def_error check_velocities(const spring_scene_def *def)
+{
+    const bool called = def->force != NULL && (def->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if ((def->methods & 1u << m) != 0 && spring_method_describe((spring_method)m)->positions_only &&
+            (called || has_damped_links(def)))
+            return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
+    return no_error;
+}
+
+static def_error check(const spring_scene_def *def)
+{
+    if (def == NULL)
+        return invalid("def", 0);
+    def_error found = check_head(def);
+    if (found.status == SPRING_OK)
+        found = check_particles(def);
+    if (found.status == SPRING_OK)
+        found = check_links(def);
+    if (found.status == SPRING_OK)
+        found = check_velocities(def);
+    return found;
+}
+
+spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index)
+{
+    const def_error found = check(def);
+    if (field != NULL)
+        *field = found.field;
+    if (index != NULL)
+        *index = found.index;
+    return found.status;
+}

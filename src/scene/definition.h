@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/* The values of a scene definition, with its defaults. */
+#ifndef SPRINGSTEP_DEFINITION_H
+#define SPRINGSTEP_DEFINITION_H
+
+#include "stored_links.h"
+
+static inline uint32_t axes_of(const spring_scene_def *def)
+{
+    return def->axes == 0 ? 3 : def->axes;
+}
+
+static inline bool is_pinned(const spring_scene_def *def, size_t i)
+{
+    return def->pinned != NULL && def->pinned[i] != 0;
+}
+
+static inline double mass_of(const spring_scene_def *def, size_t i)
+{
+    return def->mass != NULL ? def->mass[i] : def->mass_all == 0 ? 1 : def->mass_all;
+}
+
+/* 0: pinned */
+static inline scalar inverse_mass_of(const spring_scene_def *def, size_t i)
+{
+    return is_pinned(def, i) ? 0 : (scalar)(1 / mass_of(def, i));
+}
+
+static inline bool has_damped_links(const spring_scene_def *def)
+{
+    for (size_t i = 0; i < def->links; i++)
+        if (def->link[i].damping > 0)
+            return true;
+    return false;
+}
+
+#endif

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * From a definition to a scene: which links form bands, which arrays there are, and filling them.
+ *
+ * Bands     Links with the same index offset, upper minus lower end, form a band as long as their lower ends ascend in the
+ *           order of the links, so that no slot is used twice, and if at least a quarter of the slots from the first to
+ *           the last is in use: then the band is faster than single links. Of more than most_bands the longest are kept.
+ *           Offsets are counted in a small hash table. Links for which there is no room there or in their band are
+ *           unbanded, as are the links of particles in no regular order.
+ */
+#include "definition.h"
+#include "steppers.h"
+
+/* ------------------------------------------------------------------------------------------------------------- bands */
+
+static uint32_t lower_end(const spring_link *link)
+{
+    return link->a < link->b ? link->a : link->b;
+}
+
+static uint32_t offset_of(const spring_link *link)
+{
+    return link->a < link->b ? link->b - link->a : link->a - link->b;
+}
+
+/* A candidate for a band. */
+typedef struct candidate {
+    uint32_t offset; /* 0: this entry is free */
+    uint32_t first, last, count;
+    bool equal;
+    const spring_link *sample;
+} candidate;
+
+enum { candidates = 256, probes = 8 };
+
+static bool equal_links(const spring_link *a, const spring_link *b)
+{
+    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest &&
+           (a->a > a->b) == (b->a > b->b);
+}
+
+static void count_link(candidate table[candidates], const spring_link *link)
+{
+    const uint32_t offset = offset_of(link), lower = lower_end(link);
+    const uint32_t hash = offset * 2654435761u >> 24; /* Knuth's multiplicative hash: the high bits */
+    for (uint32_t probe = 0; probe < probes; probe++) {
+        candidate *c = &table[(hash + probe) % candidates];
+        if (c->offset == 0)
+            *c = (candidate){offset, lower, lower, 1, true, link};
+        else if (c->offset == offset && lower > c->last) {
+            c->equal = c->equal && equal_links(link, c->sample);
+            c->last = lower;
+            c->count++;
+        }
+        if (c->offset == offset)
+            return;
+    }
+}
+
+static bool makes_a_band(const candidate *c)
+{
+    const uint32_t least = 8, sparsest = 4;
+    return c->count >= least && c->count >= (c->last - c->first + 1) / sparsest;
+}
+
+static uint32_t count_longer(const candidate table[candidates], const candidate *than)
+{
+    uint32_t longer = 0;
+    for (const candidate *c = table; c < table + candidates; c++)
+        longer += makes_a_band(c) && (c->count > than->count || (c->count == than->count && c < than));
+    return longer;
+}
+
+static void find_bands(const spring_scene_def *def, scene_layout *l)
+{
+    const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
+    candidate table[candidates] = {{0}};
+    for (size_t i = 0; i < def->links; i++)
+        count_link(table, &def->link[i]);
+    for (const candidate *c = table; c < table + candidates; c++) {
+        if (!makes_a_band(c) || count_longer(table, c) >= most_bands)
+            continue;
+        size_t at = l->bands++;
+        for (; at > 0 && l->band[at - 1].offset > c->offset; at--)
+            l->band[at] = l->band[at - 1];
+        l->band[at] =
+            (band_layout){.offset = c->offset, .first = c->first, .end = c->last + 1, .equal = c->equal && !editable};
+        l->unbanded -= c->count;
+    }
+    for (uint32_t r = 0; r < l->bands; r++) {
+        band_layout *band = &l->band[r];
+        const size_t slots = (band->end + tile - 1) / tile * tile - band->first / tile * tile;
+        band->slots = l->band_slots;
+        band->coefficients = l->band_coefficients;
+        band->ring_start = l->band_ring;
+        /* the empty tiles before and behind the slots share a tile */
+        const size_t until_read = ((size_t)band->offset + 2 * tile - 1) / tile * tile, all = slots + tile;
+        band->ring = until_read < all ? until_read : all;
+        band->back = band->offset % band->ring;
+        l->band_slots += slots;
+        l->band_coefficients += band->equal ? padding : slots;
+        l->band_ring += l->axes * (band->ring + tile);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ arrays */
+
+/* The methods that store no stages. */
+static uint32_t default_methods(void)
+{
+    uint32_t methods = 0;
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++)
+        if (spring_scene_steppers[m].step != NULL && spring_scene_steppers[m].stages == 0)
+            methods |= 1u << m;
+    return methods;
+}
+
+static uint32_t methods_of(const spring_scene_def *def)
+{
+    return def->methods == 0 ? default_methods() : def->methods;
+}
+
+/* What methods store in a scene: the most that one of them needs. */
+typedef struct storage_needs {
+    bool predicts;
+    unsigned stages, mass_factors;
+} storage_needs;
+
+static storage_needs needs_of(uint32_t methods)
+{
+    storage_needs most = {0};
+    for (int m = 0; m < SPRING_METHOD_COUNT; m++) {
+        const scene_stepper *stepper = &spring_scene_steppers[m];
+        if ((methods & 1u << m) == 0)
+            continue;
+        most.predicts = most.predicts || stepper->predicts;
+        most.stages = stepper->stages > most.stages ? stepper->stages : most.stages;
+        most.mass_factors = stepper->mass_factors > most.mass_factors ? stepper->mass_factors : most.mass_factors;
+    }
+    return most;
+}
+
+/* A row of the table of arrays. */
+typedef struct array_row {
+    size_t element; /* [bytes] */
+    size_t count;
+    bool present;
+} array_row;
+
+/* The arrays of a scene. This table is the one place that decides sizes and conditions; docs/scenes.md describes it. */
+static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[SCENE_ARRAYS])
+{
+    const bool rollback = (l->flags & SPRING_SCENE_NO_UNDO) == 0, editable = (l->flags & SPRING_SCENE_EDITABLE) != 0;
+    const bool damped = editable || has_damped_links(def);
+    const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+    const storage_needs needs = needs_of(l->methods);
+    const bool predicts = needs.predicts && velocity_used;
+    const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
+    const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
+    const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
+    const array_row rows[SCENE_ARRAYS] = {
+        [X_0] = {number, quantity, true},
+        [V_0] = {number, quantity, true},
+        [X_1] = {number, quantity, rollback},
+        [V_1] = {number, quantity, rollback},
+        [FORCE_0] = {number, quantity, true},
+        [FORCE_1] = {number, quantity, predicts},
+        [PREDICTED] = {number, quantity, predicts && damped && l->unbanded > 0 && (l->bands > 0 || !records)},
+        [STAGES] = {number, needs.stages * quantity, needs.stages > 0},
+        [INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
+        [FREE_MASS] = {number, l->particles, editable},
+        [MASS_FACTORS] = {number, needs.mass_factors * l->masses, def->drag > 0 && needs.mass_factors > 0},
+        [OCCUPIED] = {1, l->band_slots, l->bands > 0},
+        [RINGS] = {number, l->band_ring, l->bands > 0},
+        [BAND_STIFFNESS] = {number, coefficients, l->bands > 0},
+        [BAND_REST] = {number, coefficients, l->bands > 0},
+        [BAND_DAMPING] = {number, coefficients, l->bands > 0 && damped},
+        [LINK_A] = {index, l->unbanded, l->unbanded > 0},
+        [LINK_B] = {index, l->unbanded, l->unbanded > 0},
+        [LINK_STIFFNESS] = {number, unbanded, l->unbanded > 0},
+        [LINK_REST] = {number, unbanded, l->unbanded > 0},
+        [LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
+        [SLOTS] = {index, l->links, l->bands > 0},
+        [RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
+        [CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
+        [SUMS] = {number, l->particles, true},
+    };
+    memcpy(row, rows, sizeof rows);
+}
+
+static uint64_t aligned(uint64_t bytes)
+{
+    return (bytes + SPRING_SCENE_ALIGN - 1) / SPRING_SCENE_ALIGN * SPRING_SCENE_ALIGN;
+}
+
+static void place_arrays(const spring_scene_def *def, scene_layout *l)
+{
+    array_row row[SCENE_ARRAYS];
+    list_arrays(def, l, row);
+    l->bytes = aligned(sizeof(spring_scene));
+    for (int a = 0; a < SCENE_ARRAYS; a++) {
+        l->offset[a] = row[a].present ? (size_t)l->bytes : SIZE_MAX;
+        l->bytes += row[a].present ? aligned((uint64_t)row[a].count * row[a].element) : 0;
+    }
+    if (!row[FORCE_1].present)
+        l->offset[FORCE_1] = l->offset[FORCE_0];
+}
+
+/* Most particles and most links of a small scene: fewer do not fill SIMD vectors over particles. */
+enum { most_small = 12 };
+
+static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
+{
+    const spring_status status = spring_scene_check(def, NULL, NULL);
+    if (status != SPRING_OK)
+        return status;
+    *l = (scene_layout){
+        .axes = axes_of(def),
+        .flags = def->flags,
+        .methods = methods_of(def),
+        .particles = def->particles,
+        .links = def->links,
+        .unbanded = def->links,
+    };
+    const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
+    l->small = l->axes > 1 && def->particles <= most_small && def->links <= most_small;
+    if (l->small) {
+        l->particle_stride = quad_size;
+        l->stride = 1;
+        l->quantity = quad_size * (l->particles + quad_size) + 2 * padding;
+        l->masses = each_mass ? l->quantity : padding;
+    } else {
+        find_bands(def, l);
+        l->particle_stride = 1;
+        l->stride = (def->particles + tile - 1) / tile * tile + padding;
+        l->quantity = l->axes * l->stride + 2 * padding;
+        l->masses = each_mass ? l->stride : padding;
+    }
+    place_arrays(def, l);
+    return l->bytes <= SIZE_MAX ? SPRING_OK : SPRING_ERANGE;
+}
+
+spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
+{
+    if (bytes == NULL)
+        return SPRING_EINVAL;
+    scene_layout layout;
+    const spring_status status = make_layout(def, &layout);
+    if (status == SPRING_OK)
+        *bytes = (size_t)layout.bytes;
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- filling */
+
+/* The inverse mass once the particle is freed; 0: its mass is not valid. */
+static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
+{
+    const double all = def->mass_all == 0 ? 1 : def->mass_all;
+    const double mass = def->mass != NULL && def->mass[i] > 0 ? def->mass[i] : all;
+    return scene_mass_valid(mass) ? (scalar)(1 / mass) : 0;
+}
+
+static void fill_particles(spring_scene *s, const spring_scene_def *def)
+{
+    const uint32_t axes = s->layout.axes;
+    const size_t stride = s->layout.particle_stride;
+    for (uint32_t a = 0; a < axes; a++) {
+        scalar *x = scene_axis(s, X_0, a), *v = scene_axis(s, V_0, a);
+        for (size_t i = 0; i < def->particles; i++) {
+            x[stride * i] = (scalar)def->position[i * axes + a];
+            v[stride * i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
+        }
+    }
+    for (size_t i = 0; i < def->particles && scene_has(s, INVERSE_MASS); i++)
+        scene_set_inverse_mass(s, i, inverse_mass_of(def, i));
+    scalar *freed = scene_memory(s, FREE_MASS);
+    for (size_t i = 0; i < def->particles && freed != NULL; i++)
+        freed[i] = free_inverse_mass_of(def, i);
+}
+
+static const band_layout *band_of(const scene_layout *l, uint32_t offset)
+{
+    for (const band_layout *band = l->band; band < l->band + l->bands && band->offset <= offset; band++)
+        if (band->offset == offset)
+            return band;
+    return NULL;
+}
+
+/* Copies the first element of a vector to the others. */
+static void spread(scalar *vector)
+{
+    for (size_t i = 1; i < padding; i++)
+        vector[i] = vector[0];
+}
+
+static void fill_links(spring_scene *s, const spring_scene_def *def)
+{
+    const scene_layout *l = &s->layout;
+    uint32_t *slots = scene_memory(s, SLOTS), *link_a = scene_memory(s, LINK_A), *link_b = scene_memory(s, LINK_B);
+    uint32_t next[most_bands] = {0}; /* least lower end that each band still accepts */
+    uint32_t unbanded = 0;
+    for (size_t i = 0; i < def->links; i++) {
+        const spring_link *link = &def->link[i];
+        const uint32_t lower = lower_end(link);
+        const band_layout *band = band_of(l, offset_of(link));
+        size_t slot;
+        if (band != NULL && lower >= next[band - l->band]) {
+            next[band - l->band] = lower + 1;
+            slot = band->slots + lower - band->first / tile * tile;
+        } else {
+            slot = l->band_slots + unbanded;
+            link_a[unbanded] = link->a;
+            link_b[unbanded] = link->b;
+            unbanded++;
+        }
+        if (slots != NULL)
+            slots[i] = (uint32_t)slot;
+        scene_write_link(s, i, link);
+        s->damped_links += (scalar)link->damping > 0;
+    }
+    const scene_array coefficients[] = {BAND_STIFFNESS, BAND_REST, BAND_DAMPING};
+    for (int k = 0; k < 3; k++) {
+        scalar *all = scene_memory(s, coefficients[k]);
+        for (uint32_t r = 0; r < l->bands && all != NULL; r++)
+            if (l->band[r].equal)
+                spread(all + l->band[r].coefficients);
+    }
+}
+
+spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def, spring_scene **result)
+{
+    if (result == NULL)
+        return SPRING_EINVAL;
+    *result = NULL;
+    scene_layout layout;
+    const spring_status status = make_layout(def, &layout);
+    if (status != SPRING_OK)
+        return status;
+    if (memory == NULL)
+        return SPRING_EINVAL;
+    if ((uintptr_t)memory % SPRING_SCENE_ALIGN != 0)
+        return SPRING_EALIGN;
+    if (bytes < layout.bytes)
+        return SPRING_ENOMEM;
+    memset(memory, 0, (size_t)layout.bytes);
+    spring_scene *s = memory;
+    *s = (spring_scene){
+        .layout = layout,
+        .force = def->force,
+        .user = def->user,
+        .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
+        .drag = def->drag,
+    };
+    s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
+    spread(s->inverse_mass_vector);
+    scene_store_gravity(s, def->gravity);
+    fill_particles(s, def);
+    fill_links(s, def);
+    *result = s;
+    return SPRING_OK;
+}

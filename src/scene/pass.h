@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/* Moving the particles of a scene and evaluating its forces: what the steppers are written with. */
+#ifndef SPRINGSTEP_PASS_H
+#define SPRINGSTEP_PASS_H
+
+#include "steppers.h"
+
+#include <string.h>
+
+/* One step, from the state in one buffer to the state in another, or the same, buffer. */
+struct scene_step {
+    const scene_kernels *kernels;
+    spring_scene *scene;
+    const scene_links *links;
+    scene_forces forces; /* .force is set by each evaluation */
+    scene_particles particles;
+    uint32_t from, to;
+    bool first, last;    /* of a call */
+    const scalar *force; /* [N] at the start */
+    scalar h;            /* [s] dt in the precision of the scene */
+    double t0, dt, done; /* the step starts at the time t0 + done dt */
+};
+
+static inline scalar *x_at(const scene_step *s, uint32_t buffer)
+{
+    return scene_axis(s->scene, positions_in(buffer), 0);
+}
+
+static inline scalar *v_at(const scene_step *s, uint32_t buffer)
+{
+    return scene_axis(s->scene, velocities_in(buffer), 0);
+}
+
+static inline scalar *force_at(const scene_step *s, uint32_t buffer)
+{
+    return scene_axis(s->scene, forces_in(buffer), 0);
+}
+
+/* Storage of stage i, for all particles and axes. */
+static inline scalar *stage_storage(const scene_step *s, unsigned i)
+{
+    return scene_axis(s->scene, STAGES, 0) + i * s->scene->layout.quantity;
+}
+
+/* Storage of factor i of each mass, indexed like scene_particles.inverse_mass. */
+static inline scalar *mass_factor(const scene_step *s, unsigned i)
+{
+    return (scalar *)scene_memory(s->scene, MASS_FACTORS) + i * s->scene->layout.masses;
+}
+
+/* Where leapfrog stores predicted velocities. Forces that depend on velocities in a callback are not kept, so the array
+   for the forces of the other buffer is free. Else it is the array where the forces will be, if kernels may overwrite
+   velocities by forces as they compute them, or an array of its own. */
+static inline scalar *predicted_velocities(const scene_step *s)
+{
+    if (scene_callback_uses_velocity(s->scene))
+        return force_at(s, 1 - s->to);
+    return scene_has(s->scene, PREDICTED) ? scene_axis(s->scene, PREDICTED, 0) : force_at(s, s->to);
+}
+
+/* A motion over the whole step, from the state at its start to the state at its end. */
+static inline scene_motion whole_step(const scene_step *s)
+{
+    return (scene_motion){
+        .kick = s->h,
+        .drift = s->h,
+        .force = s->force,
+        .x0 = x_at(s, s->from),
+        .v0 = v_at(s, s->from),
+        .x = x_at(s, s->to),
+        .v = v_at(s, s->to),
+        .stage_v = v_at(s, s->from),
+    };
+}
+
+/* ----------------------------------------------------------------------------------------------------- preparation */
+
+static inline scene_particles scene_prepare_particles(const spring_scene *s)
+{
+    const scene_layout *l = &s->layout;
+    const bool each = scene_has(s, INVERSE_MASS);
+    return (scene_particles){
+        .count = l->small ? quad_size * l->particles : l->particles,
+        .axes = l->small ? 1 : l->axes,
+        .stride = l->stride,
+        .inverse_mass = each ? scene_read(s, INVERSE_MASS) : s->inverse_mass_vector,
+        .mass_stride = each,
+        .gravity = s->gravity_vectors[0],
+        .drag = (scalar)s->drag,
+    };
+}
+
+/* band: memory for the bands. */
+static inline scene_links scene_prepare_links(const spring_scene *s, scene_band band[most_bands])
+{
+    const scene_layout *l = &s->layout;
+    const bool damped = s->damped_links > 0;
+    const int8_t *occupied = scene_read(s, OCCUPIED);
+    const scalar *stiffness = scene_read(s, BAND_STIFFNESS), *rest = scene_read(s, BAND_REST);
+    const scalar *damping = scene_read(s, BAND_DAMPING);
+    for (uint32_t i = 0; i < l->bands; i++) {
+        const band_layout *b = &l->band[i];
+        band[i] = (scene_band){
+            .offset = b->offset,
+            .start = b->first / tile * tile,
+            .end = b->end,
+            .occupied = occupied + b->slots,
+            .coefficient_stride = !b->equal,
+            .stiffness = stiffness + b->coefficients,
+            .rest = rest + b->coefficients,
+            .damping = damped ? damping + b->coefficients : NULL,
+            .ring_start = b->ring_start,
+            .ring = (ptrdiff_t)b->ring,
+            .back = (ptrdiff_t)b->back,
+        };
+    }
+    return (scene_links){
+        .particles = l->particles,
+        .axes = l->axes,
+        .damped = damped,
+        .stride = l->stride,
+        .bands = l->bands,
+        .band = band,
+        .unbanded =
+            {
+                .count = l->unbanded,
+                .a = scene_read(s, LINK_A),
+                .b = scene_read(s, LINK_B),
+                .stiffness = scene_read(s, LINK_STIFFNESS),
+                .rest = scene_read(s, LINK_REST),
+                .damping = damped ? scene_read(s, LINK_DAMPING) : NULL,
+            },
+    };
+}
+
+/* force: where the forces will be stored. */
+static inline scene_forces scene_prepare_forces(spring_scene *s, scalar *force)
+{
+    return (scene_forces){force, scene_memory(s, RINGS), scene_memory(s, RECORDS)};
+}
+
+/* ------------------------------------------------------------------------------------------------------- evaluation */
+
+/* Calls the callback in a small scene, whose quantities it receives by axis. */
+SPRING_NOINLINE void call_back_small(spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+{
+    const size_t n = s->layout.particles;
+    const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
+    scalar *force[3] = {NULL};
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        scalar *const shown = (scalar *)scene_memory(s, CALLBACK) + 3 * a * n;
+        position[a] = shown;
+        velocity[a] = shown + n;
+        force[a] = shown + 2 * n;
+        for (size_t i = 0; i < n; i++) {
+            shown[i] = x[quad_size * i + a];
+            shown[n + i] = v[quad_size * i + a];
+            shown[2 * n + i] = sum[quad_size * i + a];
+        }
+    }
+    s->force(s->user, t, n, position, velocity, force);
+    for (uint32_t a = 0; a < s->layout.axes; a++)
+        for (size_t i = 0; i < n; i++)
+            sum[quad_size * i + a] = force[a][i];
+}
+
+static inline void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+{
+    const size_t stride = s->layout.stride;
+    const bool second = s->layout.axes > 1, third = s->layout.axes > 2;
+    const scalar *const position[3] = {x, second ? x + stride : NULL, third ? x + 2 * stride : NULL};
+    const scalar *const velocity[3] = {v, second ? v + stride : NULL, third ? v + 2 * stride : NULL};
+    scalar *const force[3] = {sum, second ? sum + stride : NULL, third ? sum + 2 * stride : NULL};
+    s->force(s->user, t, s->layout.particles, position, velocity, force);
+}
+
+/* Computes out->force, the forces of links and callback at time t, at positions x and velocities v. */
+static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s, const scene_links *links,
+                                  const scalar *x, const scalar *v, double t, scene_forces *out)
+{
+    const scene_layout *l = &s->layout;
+    if (l->small)
+        kernels->quad_forces(links, x, v, out);
+    else if (l->bands > 0)
+        kernels->band_forces(links, x, v, out, 0, l->particles);
+    else if (out->records == NULL)
+        for (uint32_t a = 0; a < l->axes; a++)
+            memset(out->force + a * l->stride, 0, l->particles * sizeof *out->force);
+    if (!l->small && l->unbanded > 0)
+        (out->records != NULL ? kernels->record_forces : kernels->unbanded_forces)(links, x, v, out);
+    if (s->force != NULL && l->small)
+        call_back_small(s, x, v, t, out->force);
+    else if (s->force != NULL)
+        call_back(s, x, v, t, out->force);
+}
+
+/* Evaluates the forces at x and v into the force array of the end of the step, at a fraction of the step. The end of a
+   step has the same time as the start of the next one, to the bit. */
+static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
+{
+    s->forces.force = force_at(s, s->to);
+    scene_evaluate(s->kernels, s->scene, s->links, x, v, s->t0 + (s->done + fraction) * s->dt, &s->forces);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ motion */
+
+/* Particles that are moved on all axes before the next ones. Their masses, 8 KB, stay in the first-level cache; in a
+   fused pass all that is read and written for them, 150 KB, stays in the second-level cache. */
+enum { chunk = 16 * tile };
+
+/* Moves all particles. Returns false if a result is not finite. */
+static inline bool move(const scene_step *s, particle_kernel *kernel, const scene_motion *m)
+{
+    const size_t count = s->particles.count;
+    for (size_t i = 0; i < count; i += chunk)
+        if (!kernel(&s->particles, m, i, count - i > chunk ? i + chunk : count))
+            return false;
+    return true;
+}
+
+/*
+ * Moves all particles by `first`; evaluates the forces at the positions first->x and the velocities v, at a fraction of
+ * the step; and, unless then is NULL, moves all particles by `second`, which uses these forces and leaves positions
+ * alone. Returns false if a result is not finite.
+ *
+ * The results are those of move(), evaluate() and move(). Where all links lie in bands and there is no callback, it is one
+ * pass over memory: the forces on a chunk of particles are computed as soon as `first` has moved the particles that their
+ * links reach, and `second` moves the chunk while it is in the cache.
+ */
+static inline bool move_evaluate_move(scene_step *s, particle_kernel *kernel, const scene_motion *first,
+                                      const scalar *v, double fraction, particle_kernel *then,
+                                      const scene_motion *second)
+{
+    const scene_layout *l = &s->scene->layout;
+    if (l->small || l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
+        if (!move(s, kernel, first))
+            return false;
+        evaluate(s, first->x, v, fraction);
+        return then == NULL || move(s, then, second);
+    }
+    const size_t ahead = (l->band[l->bands - 1].offset + chunk - 1) / chunk * chunk;
+    band_kernel *const forces = s->kernels->band_forces;
+    s->forces.force = force_at(s, s->to);
+    for (size_t i = 0; i < l->particles + ahead; i += chunk) {
+        if (i < l->particles && !kernel(&s->particles, first, i, i + chunk < l->particles ? i + chunk : l->particles))
+            return false;
+        if (i < ahead)
+            continue;
+        const size_t from = i - ahead, to = from + chunk < l->particles ? from + chunk : l->particles;
+        forces(s->links, first->x, v, &s->forces, from, to);
+        if (then != NULL && !then(&s->particles, second, from, to))
+            return false;
+    }
+    return true;
+}
+
+static inline bool move_and_evaluate(scene_step *s, particle_kernel *kernel, const scene_motion *m, const scalar *v,
+                                     double fraction)
+{
+    return move_evaluate_move(s, kernel, m, v, fraction, NULL, NULL);
+}
+
+#endif

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* Scenes in single precision; see kernels/single_precision.h. */
+#define SPRING_FLOAT
+#include "check.c"
+#include "edit.c"
+#include "layout.c"
+#include "stable_step.c"
+#include "state.c"
+#include "step.c"
+#include "steppers.c"

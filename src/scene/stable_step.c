@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Bounds on the forces of links, from which the stable step of each method follows (steppers.c).
+ *
+ * Method    Gershgorin's circles: no eigenvalue of M^-1 K exceeds the largest absolute row sum of that matrix. A link adds
+ *           at most 2 stiffness/mass to the row of each of its particles, or stiffness/mass if its other end is pinned.
+ */
+#include "steppers.h"
+#include "stored_links.h"
+
+#include <limits.h>
+#include <string.h>
+
+typedef enum link_coefficient { STIFFNESS, DAMPING } link_coefficient;
+
+static double coefficient_of(const stored_link *link, link_coefficient which)
+{
+    return (double)(which == STIFFNESS ? link->stiffness : link->damping);
+}
+
+static int exponent_of(double value)
+{
+    int exponent;
+    frexp(value, &exponent);
+    return exponent;
+}
+
+/* Sums are scaled by powers of two, which changes no bit: by the exponent of the inverse mass of each particle, and by one
+   exponent for all that keeps the largest term below 1. So no sum overflows, and terms that underflow do not matter. */
+static int mass_exponent(const spring_scene *s, size_t i, bool by_mass)
+{
+    const double inverse = inverse_mass_at(s, i);
+    const int pinned = INT_MIN / 4; /* no term */
+    return !by_mass ? 0 : inverse > 0 ? exponent_of(inverse) : pinned;
+}
+
+/* The exponent of the largest term of all sums; 0 if there is none. */
+static int largest_exponent(const spring_scene *s, link_coefficient which, double own, bool by_mass)
+{
+    const int none = INT_MIN / 2;
+    int largest = none;
+    for (size_t i = 0; i < s->layout.particles && own > 0; i++) {
+        const int exponent = exponent_of(own) + mass_exponent(s, i, by_mass);
+        largest = exponent > largest ? exponent : largest;
+    }
+    for (size_t i = 0; i < s->layout.links; i++) {
+        const stored_link link = scene_link(s, i);
+        const double value = coefficient_of(&link, which);
+        if (value == 0)
+            continue;
+        const int a = mass_exponent(s, link.a, by_mass), b = mass_exponent(s, link.b, by_mass);
+        const int exponent = exponent_of(value) + (a > b ? a : b);
+        largest = exponent > largest ? exponent : largest;
+    }
+    return largest > none ? largest : 0;
+}
+
+/* The largest sum over the links of a free particle: twice the coefficient of each link, or once if its other end is
+   pinned, plus `own`; by_mass: multiplied by the inverse mass. */
+static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
+{
+    const int exponent = largest_exponent(s, which, own, by_mass);
+    scalar *sum = scene_memory(s, SUMS);
+    memset(sum, 0, s->layout.particles * sizeof *sum);
+    for (size_t i = 0; i < s->layout.links; i++) {
+        const stored_link link = scene_link(s, i);
+        const double value = coefficient_of(&link, which);
+        if (value == 0)
+            continue;
+        const int twice_a = inverse_mass_at(s, link.b) > 0, twice_b = inverse_mass_at(s, link.a) > 0;
+        sum[link.a] += (scalar)ldexp(value, twice_a + mass_exponent(s, link.a, by_mass) - exponent);
+        sum[link.b] += (scalar)ldexp(value, twice_b + mass_exponent(s, link.b, by_mass) - exponent);
+    }
+    double largest = 0;
+    for (size_t i = 0; i < s->layout.particles; i++) {
+        const double inverse = inverse_mass_at(s, i);
+        const int unit = mass_exponent(s, i, by_mass);
+        if (inverse > 0)
+            largest =
+                fmax(largest, ((double)sum[i] + ldexp(own, unit - exponent)) * (by_mass ? ldexp(inverse, -unit) : 1));
+    }
+    return ldexp(largest, exponent);
+}
+
+static double least_inverse_mass(const spring_scene *s) /* of the free particles; 0: there are none */
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < s->layout.particles; i++)
+        if (inverse_mass_at(s, i) > 0)
+            least = fmin(least, inverse_mass_at(s, i));
+    return least < INFINITY ? least : 0;
+}
+
+static scene_bounds bounds_of(spring_scene *s)
+{
+    return (scene_bounds){
+        .stiffness = largest_sum(s, STIFFNESS, 0, true),
+        .link_damping = largest_sum(s, DAMPING, 0, true),
+        .damping = largest_sum(s, DAMPING, s->drag, true),
+        .stiffness_sum = largest_sum(s, STIFFNESS, 0, false),
+        .drag = s->drag,
+        .least_drag = s->drag * least_inverse_mass(s),
+    };
+}
+
+double spring_scene_stable_step(spring_scene *s, spring_method m)
+{
+    if (s == NULL || spring_method_describe(m) == NULL || spring_scene_steppers[m].stable_step == NULL)
+        return NAN;
+    if (!s->bounds_known) {
+        s->bounds = bounds_of(s);
+        s->bounds_known = true;
+    }
+    return spring_scene_steppers[m].stable_step(&s->bounds);
+}

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Advancing a scene: the loop over the steps of a call.
+ *
+ * Rollback  A state is in one of two buffers. The first step of a call reads it there and writes to the other buffer, and
+ *           further steps stay in that one. It becomes the state when the call succeeds, so rolling back copies nothing.
+ *           Without rollback there is one buffer.
+ */
+#include "pass.h"
+#include "../spring/roots.h"
+
+static const scene_kernels *best_scene_kernels(void)
+{
+    return SPRING_BEST_KERNELS(&spring_scene_v128, &spring_scene_v256, &spring_scene_v512);
+}
+
+static double time_of(const spring_scene *s)
+{
+    return s->t0 + (double)s->steps * s->dt;
+}
+
+double spring_scene_time(const spring_scene *s)
+{
+    return s != NULL ? time_of(s) : NAN;
+}
+
+static bool finite_scene(const spring_scene *s)
+{
+    const size_t stride = s->layout.particle_stride;
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->layout.particles; i++)
+            if (!spring_finite(x[stride * i]) || !spring_finite(v[stride * i]))
+                return false;
+    }
+    return true;
+}
+
+/* After a failure without rollback the whole state becomes NaN, so that nobody uses the part that is finite. */
+static void invalidate(spring_scene *s)
+{
+    const size_t stride = s->layout.particle_stride;
+    for (uint32_t a = 0; a < (s->layout.small ? quad_size : s->layout.axes); a++) {
+        const bool axis = a < s->layout.axes; /* spring_scene_set() never sets the other numbers of a quad */
+        scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->layout.particles; i++)
+            x[stride * i] = v[stride * i] = axis ? (scalar)NAN : 0;
+    }
+    s->lost = true;
+}
+
+/* What cannot be advanced, and why. */
+static spring_status check_advance(const spring_scene *s, spring_method m, double dt)
+{
+    if (s == NULL || spring_method_describe(m) == NULL || !spring_finite((scalar)dt))
+        return SPRING_EINVAL;
+    if ((s->layout.methods & 1u << m) == 0)
+        return spring_scene_steppers[m].step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
+    if (spring_method_describe(m)->positions_only && scene_forces_use_velocity(s))
+        return SPRING_EUNSUPPORTED;
+    return SPRING_OK;
+}
+
+/* Takes n steps from step `before` of a run on. Returns the forces that are known at the end; finite: all steps were. */
+static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
+                                    bool *finite)
+{
+    known_force known = step->scene->known;
+    for (uint64_t i = 0; i < n; i++) {
+        step->done = (double)(before + i);
+        step->force = force_at(step, step->from);
+        step->first = i == 0;
+        step->last = i + 1 == n;
+        if (known == NO_FORCE || (known == PREDICTED_FORCE && !stepper->predicts)) {
+            evaluate(step, x_at(step, step->from), v_at(step, step->from), 0);
+            step->force = force_at(step, step->to); /* the stored forces stay, for a rollback */
+        }
+        const scene_outcome outcome = stepper->step(step);
+        *finite = outcome.finite;
+        if (!outcome.finite)
+            return NO_FORCE;
+        known = outcome.known;
+        step->from = step->to;
+    }
+    return known;
+}
+
+spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
+                                        uint64_t n)
+{
+    const spring_status status = check_advance(s, m, dt);
+    if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
+        return status;
+    if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
+        return SPRING_ENONFINITE;
+    s->lost = false;
+    const bool rollback = (s->layout.flags & SPRING_SCENE_NO_UNDO) == 0;
+    const bool same_run = s->dt == dt;
+    const double t0 = same_run ? s->t0 : time_of(s);
+    const uint64_t before = same_run ? s->steps : 0;
+    if (!spring_finite(t0 + (double)(before + n) * dt))
+        return SPRING_ENONFINITE;
+    scene_band band[most_bands];
+    const scene_links links = scene_prepare_links(s, band);
+    scene_step step = {.kernels = s->layout.small ? kernels->small : kernels,
+                       .scene = s,
+                       .links = &links,
+                       .forces = scene_prepare_forces(s, NULL),
+                       .particles = scene_prepare_particles(s),
+                       .from = s->buffer,
+                       .to = rollback ? 1 - s->buffer : s->buffer,
+                       .h = (scalar)dt,
+                       .t0 = t0,
+                       .dt = dt};
+    bool finite = true;
+    const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
+    if (!finite) {
+        if (!rollback)
+            invalidate(s);
+        if (s->known != PREDICTED_FORCE) /* the stored forces may be overwritten, or not finite themselves */
+            s->known = NO_FORCE;
+        return SPRING_ENONFINITE;
+    }
+    s->known = known;
+    s->buffer = step.to;
+    s->t0 = t0;
+    s->dt = dt;
+    s->steps = before + n;
+    return SPRING_OK;
+}
+
+spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n)
+{
+    return spring_scene_advance_with(best_scene_kernels(), s, m, dt, n);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- at rest */
+
+/* The forces at the state. The forces of a callback are not stored: what *user holds may change before the next step. */
+static const scalar *forces_of_state(spring_scene *s)
+{
+    scalar *const force = scene_axis(s, forces_in(s->known == PREDICTED_FORCE ? 1 - s->buffer : s->buffer), 0);
+    if (s->known == FORCE)
+        return force;
+    scene_band band[most_bands];
+    const scene_links links = scene_prepare_links(s, band);
+    scene_forces forces = scene_prepare_forces(s, force);
+    const scene_kernels *kernels = best_scene_kernels();
+    scene_evaluate(s->layout.small ? kernels->small : kernels, s, &links, scene_state(s, SPRING_POSITION, 0),
+                   scene_state(s, SPRING_VELOCITY, 0), time_of(s), &forces);
+    if (s->known == NO_FORCE && s->force == NULL)
+        s->known = FORCE;
+    return force;
+}
+
+bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
+{
+    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
+        return false;
+    const scalar *all = forces_of_state(s);
+    const size_t stride = s->layout.particle_stride;
+    for (size_t i = 0; i < s->layout.particles; i++) {
+        const double inverse = inverse_mass_at(s, i);
+        double speed = 0, acceleration = 0;
+        for (uint32_t a = 0; a < s->layout.axes; a++) {
+            const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
+            const double force = (double)all[a * s->layout.stride + stride * i] - s->drag * v;
+            const double accel = inverse > 0 ? inverse * force + s->gravity[a] : 0;
+            speed = spring_hypot(speed, fabs(v));
+            acceleration = spring_hypot(acceleration, fabs(accel));
+        }
+        if (!(speed <= v_tol) || !(acceleration <= a_tol))
+            return false;
+    }
+    return true;
+}

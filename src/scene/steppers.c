@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One step of each method for scenes, and its stable step.
+ *
+ * The formulas are those of the files in methods/, with the acceleration a(x, v) of a particle by its links, gravity, drag
+ * and the callback. The stable steps follow from bounds on the sums over the links of a particle (stable_step.c).
+ */
+#include "pass.h"
+#include "../methods/rkn8_tableau.h"
+#include "../spring/propagator.h"
+#include "../spring/roots.h"
+
+/* x1 = x + h v;  v1 = v + h a(x, v) */
+static scene_outcome scene_euler(scene_step *s)
+{
+    const scene_motion m = whole_step(s);
+    return (scene_outcome){.finite = move(s, s->kernels->stage, &m)};
+}
+
+static double scene_euler_limit(const scene_bounds *b)
+{
+    return b->stiffness_sum > 0 ? fmin(b->drag / b->stiffness_sum, 2 / b->damping) : 2 / b->damping;
+}
+
+/* v1 = v + h a(x, v1), with implicit drag and explicit damping of links;  x1 = x + h v1 */
+static scene_outcome scene_symplectic_euler(scene_step *s)
+{
+    const scene_motion m = whole_step(s);
+    return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
+}
+
+/* Explicit damping of links lowers the limit, implicit drag raises it: a motion with stiffness k, link damping c and drag
+   d, all divided by the mass, is stable for h^2 k + 2 h c < 4 + 2 h d. */
+static double scene_symplectic_euler_limit(const scene_bounds *b)
+{
+    const double excess = b->link_damping - b->least_drag;
+    const double root = spring_hypot(fabs(excess), 2 * spring_sqrt(b->stiffness));
+    if (excess > 0 || root == 0 || root == INFINITY) /* infinite: no stable step is known */
+        return 4 / (excess + root);
+    return (root - excess) / b->stiffness;
+}
+
+/* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
+   particles, with the results of two.
+   Where forces depend on velocities by more than drag, they are evaluated at velocities v* that are predicted from the
+   forces at the start of the step: v* = v' + h/2 a(v*), v1 = v' + h/2 a(x1, v*), with implicit drag only. The next step
+   starts with these forces, so they are part of the state. The forces of a callback that uses velocities are not kept,
+   since what it reads may change between calls: there forces are evaluated twice a step and each kick is a pass. */
+static scene_outcome scene_leapfrog(scene_step *s)
+{
+    const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
+    kick_drift.kick = last_kick.kick = s->h / 2;
+    kick_drift.ends_step = keeps && !s->first;
+    kick_drift.predicted = predicts ? predicted_velocities(s) : NULL;
+    last_kick.v0 = kick_drift.v;
+    last_kick.force = force_at(s, s->to);
+    particle_kernel *const implicit_kick = keeps && !s->last ? NULL : s->kernels->implicit_kick;
+    const scalar *const v = predicts ? kick_drift.predicted : kick_drift.v;
+    return (scene_outcome){
+        .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1, implicit_kick, &last_kick),
+        .known = !keeps     ? NO_FORCE
+                 : predicts ? PREDICTED_FORCE
+                            : FORCE,
+    };
+}
+
+/* With link damping c: h^2 k/4 + h c < 1. */
+static double scene_leapfrog_limit(const scene_bounds *b)
+{
+    return b->link_damping > 0 ? 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)))
+                               : 2 / spring_sqrt(b->stiffness);
+}
+
+/* y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4) */
+static scene_outcome scene_rk4(scene_step *s)
+{
+    static const double fraction[] = {0.5, 0.5, 1}; /* of the step, at the next stage */
+    scene_motion end = whole_step(s), stage = whole_step(s);
+    stage.x = stage_storage(s, 0);
+    stage.v = stage_storage(s, 1);
+    stage.sum_x = end.sum_x = stage_storage(s, 2);
+    stage.sum_v = end.sum_v = stage_storage(s, 3);
+    stage.weight = 2;
+    for (int k = 0; k < 3; k++) {
+        stage.kick = stage.drift = (scalar)fraction[k] * s->h;
+        if (!move(s, k == 0 ? s->kernels->first_stage : s->kernels->next_stage, &stage))
+            return (scene_outcome){.finite = false};
+        evaluate(s, stage.x, stage.v, fraction[k]);
+        stage.stage_v = end.stage_v = stage.v;
+        stage.force = end.force = force_at(s, s->to);
+    }
+    end.kick = end.drift = s->h / 6;
+    return (scene_outcome){.finite = move(s, s->kernels->last_stage, &end)};
+}
+
+static double scene_rk4_limit(const scene_bounds *b)
+{
+    const double limit = 2.61; /* for |h z| below it RK4 is stable in the whole left half plane */
+    return limit / fmax(spring_sqrt(b->stiffness), b->damping);
+}
+
+/* Indices of what RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each c of the stages
+   after the first, and loss e^(-g h/2) - 1. */
+enum { RKN8_GROWTH, RKN8_DECAY = rkn8_stages, RKN8_LOSS = 2 * rkn8_stages, RKN8_FACTORS };
+
+static void compute_rkn8_factors(const scene_step *s)
+{
+    const scene_particles *p = &s->particles;
+    const size_t count = p->mass_stride != 0 ? p->count : padding;
+    for (size_t i = 0; i < count; i++) {
+        const bool same = i > 0 && p->inverse_mass[i] == p->inverse_mass[i - 1];
+        const double z = (double)(p->drag * p->inverse_mass[i]) * (double)s->h / 2;
+        for (unsigned k = 0; k < rkn8_stages; k++) {
+            scalar *growth = mass_factor(s, RKN8_GROWTH + k), *decay = mass_factor(s, RKN8_DECAY + k);
+            growth[i] = same ? growth[i - 1] : (scalar)(1 + spring_expm1(rkn8_c[k] * z));
+            decay[i] = same ? decay[i - 1] : (scalar)(1 + spring_expm1(-rkn8_c[k] * z));
+        }
+        scalar *loss = mass_factor(s, RKN8_LOSS);
+        loss[i] = same ? loss[i - 1] : (scalar)spring_expm1(-z);
+    }
+}
+
+/* The first of the nine stages has the forces at the end of the step before. */
+static scene_outcome scene_rkn8(scene_step *s)
+{
+    const bool dragged = s->particles.drag != 0;
+    if (s->first && dragged)
+        compute_rkn8_factors(s);
+    scene_motion end = whole_step(s), stage = whole_step(s);
+    scene_nystrom n = {.square = s->h * s->h,
+                       .accel = stage_storage(s, 0),
+                       .accel_stride = s->scene->layout.quantity,
+                       .stage_x = stage_storage(s, rkn8_stages)};
+    end.nystrom = stage.nystrom = &n;
+    stage.x = stage_storage(s, rkn8_stages);
+    for (unsigned k = 0; k < rkn8_stages; k++) {
+        n.number = k + 1;
+        stage.drift = (scalar)rkn8_c[k] * s->h;
+        n.weight_x = rkn8_a[k];
+        n.decay = dragged ? mass_factor(s, RKN8_DECAY + k) : NULL;
+        if (!move_and_evaluate(s, s->kernels->nystrom_stage, &stage, stage.v0, rkn8_c[k]))
+            return (scene_outcome){.finite = false};
+        stage.force = end.force = force_at(s, s->to);
+        n.growth = dragged ? mass_factor(s, RKN8_GROWTH + k) : NULL;
+    }
+    n.weight_x = rkn8_b;
+    n.weight_v = rkn8_b_v;
+    n.loss = dragged ? mass_factor(s, RKN8_LOSS) : NULL;
+    return (scene_outcome){.finite = move_and_evaluate(s, s->kernels->nystrom_end, &end, end.v, 1), .known = FORCE};
+}
+
+/* A growth far beyond e^20 would overflow in float, and leave no significant digit of a stage. */
+static double scene_rkn8_limit(const scene_bounds *b)
+{
+    return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
+}
+
+SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
+    [SPRING_EULER] = {scene_euler, scene_euler_limit},
+    [SPRING_SYMPLECTIC_EULER] = {scene_symplectic_euler, scene_symplectic_euler_limit},
+    [SPRING_LEAPFROG] = {scene_leapfrog, scene_leapfrog_limit, .predicts = true},
+    [SPRING_RK4] = {scene_rk4, scene_rk4_limit, .stages = 4},
+    [SPRING_RKN8] = {scene_rkn8, scene_rkn8_limit, .stages = rkn8_stages + 1, .mass_factors = RKN8_FACTORS},
+};

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/* The methods for scenes: one stepper each, see steppers.c. */
+#ifndef SPRINGSTEP_STEPPERS_H
+#define SPRINGSTEP_STEPPERS_H
+
+#include "block.h"
+
+typedef struct scene_step scene_step; /* pass.h */
+
+/* A step ends at the first number that is not finite, so that a callback sees finite numbers only. */
+typedef struct scene_outcome {
+    bool finite;
+    known_force known; /* at the end of the step */
+} scene_outcome;
+
+typedef struct scene_stepper {
+    scene_outcome (*step)(scene_step *s); /* NULL: the method is not for scenes */
+    double (*stable_step)(const scene_bounds *b);
+    bool predicts;         /* stores predicted velocities and the forces at them, where forces depend on velocities */
+    unsigned stages;       /* quantities of all particles that it stores for its stages */
+    unsigned mass_factors; /* numbers that it stores for each mass, with drag */
+} scene_stepper;
+
+SPRING_INTERNAL const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT];
+
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/* Reading and writing the links of a scene, and what makes a link or a mass valid. */
+#ifndef SPRINGSTEP_STORED_LINKS_H
+#define SPRINGSTEP_STORED_LINKS_H
+
+#include "block.h"
+
+#include <math.h>
+
+/* Where a link is stored. */
+typedef struct link_place {
+    uint32_t a, b; /* its ends; in a band the lower one first */
+    bool banded;   /* else the index is that among the unbanded links */
+    size_t slot;   /* banded: among those of all bands */
+    size_t index;  /* of its coefficients */
+} link_place;
+
+static inline link_place scene_link_place(const spring_scene *s, size_t index)
+{
+    const scene_layout *l = &s->layout;
+    const uint32_t *slots = scene_read(s, SLOTS), *a = scene_read(s, LINK_A), *b = scene_read(s, LINK_B);
+    const size_t slot = slots != NULL ? slots[index] : index;
+    if (slot >= l->band_slots) {
+        const size_t i = slot - l->band_slots;
+        return (link_place){a[i], b[i], false, slot, i};
+    }
+    const band_layout *band = l->band;
+    while (band + 1 < l->band + l->bands && band[1].slots <= slot)
+        band++;
+    const uint32_t lower = (uint32_t)(band->first / tile * tile + slot - band->slots);
+    return (link_place){lower, lower + band->offset, true, slot,
+                        band->coefficients + (band->equal ? 0 : slot - band->slots)};
+}
+
+/* A link in the precision of the scene. */
+typedef struct stored_link {
+    uint32_t a, b;
+    scalar stiffness, rest, damping; /* rest: negative on one axis if the definition has a and b in the other order */
+} stored_link;
+
+static inline stored_link scene_link(const spring_scene *s, size_t index)
+{
+    const link_place at = scene_link_place(s, index);
+    const scalar *stiffness = scene_read(s, at.banded ? BAND_STIFFNESS : LINK_STIFFNESS);
+    const scalar *rest = scene_read(s, at.banded ? BAND_REST : LINK_REST);
+    const scalar *damping = scene_read(s, at.banded ? BAND_DAMPING : LINK_DAMPING);
+    return (stored_link){at.a, at.b, stiffness[at.index], rest[at.index], damping != NULL ? damping[at.index] : 0};
+}
+
+static inline void scene_write_link(spring_scene *s, size_t index, const spring_link *link)
+{
+    const link_place at = scene_link_place(s, index);
+    scalar *stiffness = scene_memory(s, at.banded ? BAND_STIFFNESS : LINK_STIFFNESS);
+    scalar *rests = scene_memory(s, at.banded ? BAND_REST : LINK_REST);
+    scalar *damping = scene_memory(s, at.banded ? BAND_DAMPING : LINK_DAMPING);
+    int8_t *occupied = scene_memory(s, OCCUPIED);
+    const scalar rest = (scalar)fabs(link->rest); /* -0.0 would reverse a link on one axis */
+    stiffness[at.index] = (scalar)link->stiffness;
+    rests[at.index] = s->layout.axes == 1 && at.a != link->a ? -rest : rest;
+    if (damping != NULL)
+        damping[at.index] = (scalar)link->damping;
+    if (at.banded)
+        occupied[at.slot] = (scalar)link->stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
+}
+
+/* ---------------------------------------------------------------------------------------------------- other values */
+
+static inline void scene_store_gravity(spring_scene *s, const double *gravity)
+{
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        s->gravity[a] = gravity[a];
+        for (size_t i = 0; i < padding; i++)
+            if (!s->layout.small)
+                s->gravity_vectors[a][i] = (scalar)gravity[a];
+            else if (i % quad_size == a)
+                s->gravity_vectors[0][i] = (scalar)gravity[a];
+    }
+}
+
+/* In a small scene, for all numbers of a quad. */
+static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inverse)
+{
+    scalar *const mass = (scalar *)scene_memory(s, INVERSE_MASS) + s->layout.particle_stride * i;
+    for (size_t k = 0; k < s->layout.particle_stride; k++)
+        mass[k] = inverse;
+}
+
+/* ------------------------------------------------------------------------------------------------------ valid values */
+
+static inline bool scene_fits(double value) /* finite in the precision of the scene */
+{
+    return spring_finite((scalar)value);
+}
+
+static inline bool scene_not_negative(double value)
+{
+    return value >= 0 && scene_fits(value);
+}
+
+static inline bool scene_mass_valid(double mass)
+{
+    return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
+}
+
+/* The field of a link that is not valid, whatever its masses; NULL: none. */
+static inline const char *scene_link_invalid_field(const spring_link *link)
+{
+    return !scene_not_negative(link->rest)        ? "link.rest"
+           : !scene_not_negative(link->stiffness) ? "link.stiffness"
+           : !scene_not_negative(link->damping)   ? "link.damping"
+                                                  : NULL;
+}
+
+/* The field that is too large for the masses at the ends; NULL: none. */
+static inline const char *scene_link_overflows(const spring_link *link, double inverse_a, double inverse_b)
+{
+    const double lightest = fmax(inverse_a, inverse_b);
+    return !scene_fits(2 * (link->stiffness * lightest)) ? "link.stiffness"
+           : !scene_fits(2 * (link->damping * lightest)) ? "link.damping"
+                                                         : NULL;
+}
+
+#endif

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/* How the exact solution moves any state over a time: what exact.c computes once from a spring and that time. */
+#ifndef SPRINGSTEP_PROPAGATOR_H
+#define SPRINGSTEP_PROPAGATOR_H
+
+#include "../simd/targets.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <springstep/spring.h>
+
+typedef struct spring_propagator {
+    double half;           /* e^(-bt/2), or of the slow root */
+    double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
+} spring_propagator;
+
+SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_params *p, double t,
+                                                       bool loaded); /* without loaded, P = 0 */
+
+/* spring_step_exact(), by value. */
+SPRING_INTERNAL spring_state spring_exact(spring_state s, const spring_params *p, double t);
+
+/* e^x - 1 */
+SPRING_INTERNAL double spring_expm1(double x);
+
+/* Springs that the exact solution moves each by its own coefficients, in double, whatever they are stored in: bitwise
+   identical to spring_exact(). One that would not stay finite, or has a negative rate, keeps its state. */
+typedef struct exact_array {
+    const void *first; /* NULL: all are 0 */
+    size_t stride;     /* from spring to spring: 1, or 0 for a vector of equal elements */
+} exact_array;
+
+typedef struct exact_run {
+    size_t count; /* a multiple of any vector's */
+    bool single;  /* arrays of float, not double */
+    void *x, *v;
+    exact_array omega2, gamma, accel;
+    double t; /* [s] */
+} exact_run;
+
+typedef bool exact_kernel(const exact_run *b); /* false: at least one spring has kept its state */
+
+#ifndef SPRING_NO_BATCH
+SPRING_INTERNAL exact_kernel spring_exact_v128; /* by bits of a vector */
+#if SPRING_LONG_VECTORS
+SPRING_INTERNAL exact_kernel spring_exact_v256, spring_exact_v512;
+#endif
+#endif
+
+#endif

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/* The roots of r^2 + g r + w, the characteristic equation of a spring, free of cancellation. */
+#ifndef SPRINGSTEP_ROOTS_H
+#define SPRINGSTEP_ROOTS_H
+
+#include "../simd/arithmetic.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+#include <springstep/spring.h>
+
+/* -b +- i split, or -b +- split where overdamped. Every quotient and square root enters with its own rounding error
+   added back, so that w - b^2 has full relative accuracy even where it is all but zero (critical damping). */
+typedef struct spring_roots {
+    double omega2;   /* [1/s^2] stiffness/mass, rounded once */
+    double omega;    /* [1/s]   sqrt(stiffness/mass) */
+    double b;        /* [1/s]   damping/(2 mass) */
+    double split;    /* [1/s]   sqrt |omega^2 - b^2| */
+    bool overdamped; /*         omega < b */
+} spring_roots;
+
+/* omega^2 - b^2 = w - b^2 + rest */
+typedef struct spring_quotients {
+    double omega2, b, rest;
+} spring_quotients;
+
+/* k, c, m: stiffness, damping, mass. By value: clang 14 would read two at once, and wait for a caller's two stores. */
+SPRING_INTERNAL spring_quotients spring_quotients_of(double k, double c, double m);
+
+SPRING_INTERNAL spring_roots spring_roots_of(const spring_params *p);
+
+static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an overdamped spring */
+{
+    return r->b + r->split;
+}
+
+/* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow. (hypot() has other last bits in each C library.) */
+static inline double spring_hypot(double a, double b)
+{
+    const double large = fmax(a, b), small = fmin(a, b);
+    const double ratio = large > 0 && large < INFINITY ? small / large : 0;
+    return large * spring_sqrt(1 + ratio * ratio);
+}
+
+#endif

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* What spring_self_test() asks of a method. */
+#ifndef SPRINGSTEP_SELF_TEST_H
+#define SPRINGSTEP_SELF_TEST_H
+
+#include "../simd/arithmetic.h"
+
+#include <springstep/spring.h>
+
+/* Only the whole library has digests: see springstep.c about leaving parts out. */
+#if !defined(SPRING_NO_BATCH) && !defined(SPRING_NO_SCENE) && !defined(SPRING_NO_FLOAT)
+#define SPRING_WHOLE
+SPRING_INTERNAL uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
+SPRING_INTERNAL uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right */
+#endif
+
+#endif

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The settling time: when a spring has come to rest.
+ *
+ * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
+ *           oscillating spring, at most one for an overdamped one. The swings at these turning points shrink by a fixed
+ *           factor; after the last one beyond x_tol y enters the band for good. The first turning point and the crossing
+ *           are found by bisection of time on the exact solution: whoever walks through the same bits gets the same time.
+ * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load. At an infinite time the exact
+ *           solution is NaN, which ends every search.
+ * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance
+ *           within its rounding error of the state gives a time that means nothing
+ */
+#include <stddef.h>
+
+#include "exact_formula.h"
+#include "propagator.h"
+
+static const double pi = 3.141592653589793;
+
+typedef struct motion {
+    spring_state start; /* from the rest position */
+    spring_params params;
+    spring_roots roots;
+    double tol; /* [m] */
+} motion;
+
+/* Of the rest position, or without stiffness of where the particle will stop, v/g ahead. */
+static bool is_within(const motion *m, double t)
+{
+    const double g = 2 * m->roots.b;
+    if (m->roots.omega2 > 0)
+        return !(fabs(spring_exact(m->start, &m->params, t).x) > m->tol);
+    const exact_halves E = exact_halves_of(-g * t);
+    return !(fabs(m->start.v * E.other * E.half / g) > m->tol);
+}
+
+static bool has_turned(const motion *m, double t)
+{
+    const double v = spring_exact(m->start, &m->params, t).v;
+    return !(m->start.v > 0 ? v > 0 : v < 0);
+}
+
+/* The first time in (before .. after] of which something is true, where it is false before. */
+static double first_time(const motion *m, bool is_true(const motion *, double), double before, double after)
+{
+    for (;;) {
+        const double middle = before + (after - before) / 2;
+        if (!(middle > before && middle < after))
+            return after;
+        if (is_true(m, middle))
+            after = middle;
+        else
+            before = middle;
+    }
+}
+
+/* A time at which something is true: `from` plus 1/b, doubled as often as it takes; infinite if that does. */
+static double some_time(const motion *m, bool is_true(const motion *, double), double from)
+{
+    double span = 1 / m->roots.b;
+    while (!is_true(m, from + span))
+        span *= 2;
+    return from + span;
+}
+
+/* The time after the last swing beyond the tolerance: of the swings at first + n spacing swing 0 is. Between n and 2n, and
+   n a power of two, bisection of time looks at swings alone as long as there are any. */
+static double after_last_swing(const motion *m, double first, double spacing)
+{
+    double beyond = 0, within = 1;
+    while (!is_within(m, first + within * spacing)) {
+        beyond = within;
+        within *= 2;
+    }
+    return first_time(m, is_within, first + beyond * spacing, first + within * spacing);
+}
+
+static double settling_oscillating(const motion *m)
+{
+    const double spacing = pi / m->roots.split;
+    const double first = m->start.v != 0 ? first_time(m, has_turned, 0, spacing) : 0;
+    if (is_within(m, first))
+        return is_within(m, 0) ? 0 : first_time(m, is_within, 0, first);
+    return m->roots.b == 0 ? INFINITY : after_last_swing(m, first, spacing);
+}
+
+/* A spring that never turns does so here when its velocity underflows; then it is at rest. */
+static double settling_creeping(const motion *m)
+{
+    const double turn = m->start.v != 0 ? first_time(m, has_turned, 0, some_time(m, has_turned, 0)) : 0;
+    if (is_within(m, turn))
+        return is_within(m, 0) ? 0 : first_time(m, is_within, 0, turn);
+    return first_time(m, is_within, turn, some_time(m, is_within, turn));
+}
+
+double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
+{
+    if (s == NULL || !spring_finite(s->x) || !spring_finite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
+        return NAN;
+    motion m = {
+        .start = {s->x, s->v},
+        .params = {p->mass, p->stiffness, p->damping, 0},
+        .roots = spring_roots_of(p),
+        .tol = x_tol,
+    };
+    if (m.roots.omega2 > 0)
+        m.start.x -= p->load / p->stiffness;
+    if (!spring_finite(m.start.x) || (m.roots.omega2 == 0 && p->load != 0))
+        return INFINITY;
+    if (m.tol == 0) /* what moves never comes so near for good */
+        return m.start.v == 0 && is_within(&m, 0) ? 0 : INFINITY;
+    return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* How far the roots of a spring lie apart, on `real`, in double: see roots.h. */
+#ifndef SPRINGSTEP_SPLIT_H
+#define SPRINGSTEP_SPLIT_H
+
+#include "../simd/elementary.h"
+
+/* split = sqrt |w - b^2|; overdamped: w < b^2 */
+typedef struct spring_split {
+    real split;
+    mask overdamped;
+} spring_split;
+
+/* rest: what rounding has taken from w - b^2 before. */
+SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
+{
+    real scale = splat(1), back = splat(1);
+    const mask large = (b > 0x1p400) | (w > 0x1p800), small = (b < 0x1p-400) & (w < 0x1p-800);
+    if (SPRING_UNLIKELY(any(large | small))) { /* squares, or their errors, might overflow or underflow */
+        scale = select_real(large, splat(0x1p-700), select_real(small, splat(0x1p600), scale));
+        back = select_real(large, splat(0x1p700), select_real(small, splat(0x1p-600), back));
+    }
+    const real c = b * scale, square = c * c;
+    const real D = (((w * scale) * scale - square) - square_error(c, square)) + (rest * scale) * scale;
+    return (spring_split){vec_sqrt(vec_abs(D)) * back, D < 0};
+}
+
+#endif
