@@ -96,9 +96,9 @@ static void many_bands(void)
         for (unsigned features = 0; features < feature_masks; features += 3) {
             build_bands(&m, axes, features, features % 16 == 0 ? offset_count : 5);
             spring_scene *s = scene_of(&m.def);
-            bands = s->plan.bands > bands ? s->plan.bands : bands;
-            for (uint32_t r = 0; r < s->plan.bands; r++)
-                tiles += s->plan.band[r].first > tile && s->plan.band[r].offset > tile;
+            bands = s->layout.bands > bands ? s->layout.bands : bands;
+            for (uint32_t r = 0; r < s->layout.bands; r++)
+                tiles += s->layout.band[r].first > tile && s->layout.band[r].offset > tile;
             free(s);
             check_bits_of_kernels(&m, 0.001);
             for (int k = 0; k < kernel_count; k++)
@@ -120,7 +120,7 @@ static void one_band_too_many(void)
             for (uint32_t i = 0; i < lowers - (o == 3); i++)
                 m.link[m.def.links++] = (spring_link){i, i + 4 * o, 0.6, 2.7, 0};
         spring_scene *s = scene_of(&m.def);
-        CHECK(s->plan.bands == 32 && s->plan.edges == lowers - 1, "the shortest has no band");
+        CHECK(s->layout.bands == 32 && s->layout.unbanded == lowers - 1, "the shortest has no band");
         free(s);
         check_bits_of_kernels(&m, 0.001);
         for (int k = 0; k < kernel_count; k++)
@@ -179,7 +179,7 @@ static void odd_links(void)
                     for (size_t d = 0; d < sizeof apart / sizeof apart[0]; d++) {
                         build_odd_link(&m, axes, at, apart[d], damped != 0);
                         spring_scene *s = run_with(kernels_of(k), &m.def, 0.004);
-                        CHECK(s->plan.bands == 1 && s->plan.edges == 0, "all in a band");
+                        CHECK(s->layout.bands == 1 && s->layout.unbanded == 0, "all in a band");
                         get_state(s, m.def.particles, &all);
                         free(s);
                         size_t differ = 0;
@@ -219,8 +219,8 @@ static void short_bands(void)
                 link[def.links++] = (spring_link){i, i + offset, 0.7, pulls ? 3 : 0, 0};
             }
             spring_scene *many = scene_of(&def);
-            CHECK(few->plan.bands == 1 && many->plan.bands == 1 && few->plan.edges == 0, "a band");
-            CHECK(few->plan.bytes < many->plan.bytes, "few links, little memory");
+            CHECK(few->layout.bands == 1 && many->layout.bands == 1 && few->layout.unbanded == 0, "a band");
+            CHECK(few->layout.bytes < many->layout.bytes, "few links, little memory");
             for (int k = 0; k < kernel_count; k++) {
                 if (kernels_of(k) == NULL)
                     continue;
@@ -323,7 +323,7 @@ static void one_pass(void)
                     continue;
                 l.def.force = NULL;
                 spring_scene *swept = scene_of(&l.def);
-                CHECK(swept->plan.edges == 0 && swept->plan.bands > 0, "bands alone");
+                CHECK(swept->layout.unbanded == 0 && swept->layout.bands > 0, "bands alone");
                 l.def.force = add_nothing;
                 spring_scene *parts = scene_of(&l.def);
                 for (uint64_t n = 1; n <= 3; n++) {
@@ -388,11 +388,11 @@ static void records_of_edges(void)
                 def.particles = few.def.particles;
                 spring_scene *by_records = run_with(kernels_of(k), &def, 0.004);
                 spring_scene *by_edges = run_with(kernels_of(k), &m.def, 0.004);
-                CHECK(by_records->plan.records != 0 && by_edges->plan.records == 0 &&
-                          by_records->plan.edges == by_edges->plan.edges,
+                CHECK(scene_has(by_records, ARRAY_RECORDS) && !scene_has(by_edges, ARRAY_RECORDS) &&
+                          by_records->layout.unbanded == by_edges->layout.unbanded,
                       "at least as many edges as particles, or fewer");
-                with_bands += by_records->plan.bands > 0;
-                without += by_records->plan.bands == 0;
+                with_bands += by_records->layout.bands > 0;
+                without += by_records->layout.bands == 0;
                 CHECK(same_first(by_records, by_edges, particles, axes), "the same operations");
                 free(by_records);
                 free(by_edges);

@@ -18,9 +18,9 @@ static void against_a_plain_loop(void)
             for (unsigned features = (unsigned)(g + axes) % 3; features < MASSES; features += 3) {
                 build(&m, grids[g], axes, features);
                 spring_scene *s = scene_of(&m.def);
-                with_bands += s->plan.bands > 0 && s->plan.edges == 0;
-                with_edges += s->plan.bands == 0;
-                with_both += s->plan.bands > 0 && s->plan.edges > 0;
+                with_bands += s->layout.bands > 0 && s->layout.unbanded == 0;
+                with_edges += s->layout.bands == 0;
+                with_both += s->layout.bands > 0 && s->layout.unbanded > 0;
                 free(s);
                 for (int k = 0; k < kernel_count; k++)
                     if (kernels_of(k) != NULL)

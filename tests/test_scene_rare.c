@@ -28,7 +28,7 @@ static void weak_links(void)
             }
             use_all_methods(&m.def);
             spring_scene *s = scene_of(&m.def);
-            CHECK((s->plan.bands == 0) == (how / 2 != 0), "without order there are no bands");
+            CHECK((s->layout.bands == 0) == (how / 2 != 0), "without order there are no bands");
             get_state(s, m.def.particles, &y);
             double force[3 * most] = {0}, size[most] = {0};
             plain_forces(&m.def, axes, y.x, y.v, force, size);
@@ -59,8 +59,8 @@ static uint32_t bands_of(uint32_t links, uint32_t offset, uint32_t first, uint32
     const spring_scene_def def = {
         .particles = last + offset + more, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    const uint32_t bands = s->plan.bands;
-    CHECK(s->plan.edges == (bands == 0 ? links : 0), "in a band, or in the edge list");
+    const uint32_t bands = s->layout.bands;
+    CHECK(s->layout.unbanded == (bands == 0 ? links : 0), "in a band, or in the edge list");
     free(s);
     return bands;
 }
@@ -112,7 +112,7 @@ static void bands_of_every_length(void)
                     if (kernels_of(k) == NULL)
                         continue;
                     spring_scene *s = scene_of(&m.def);
-                    CHECK(s->plan.bands == 1 && s->plan.band[0].equal == (how / 3 == 0), "a band");
+                    CHECK(s->layout.bands == 1 && s->layout.band[0].equal == (how / 3 == 0), "a band");
                     get_state(s, m.def.particles, &start);
                     CHECK(spring_scene_advance_with(kernels_of(k), s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK,
                           "a step");
@@ -136,7 +136,7 @@ static void many_offsets(void)
                 for (uint32_t i = offset % 5 == 0 ? shorter : 0; i < lowers; i++)
                     m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
             spring_scene *s = scene_of(&m.def);
-            CHECK(s->plan.bands == most_bands && s->plan.edges == (offsets - most_bands) * (lowers - shorter),
+            CHECK(s->layout.bands == most_bands && s->layout.unbanded == (offsets - most_bands) * (lowers - shorter),
                   "the longest have bands, what has none is in the edge list");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
@@ -161,7 +161,7 @@ static void offsets_that_meet(void)
                                       .position = position,
                                       .link = link};
         spring_scene *s = scene_of(&def);
-        CHECK(s->plan.bands == most_bands && s->plan.edges == 0, "each has its band");
+        CHECK(s->layout.bands == most_bands && s->layout.unbanded == 0, "each has its band");
         free(s);
     }
 }
@@ -191,7 +191,7 @@ static void stray_links(void)
             m.def.link = link;
             m.def.links = links;
             spring_scene *s = scene_of(&m.def);
-            CHECK(s->plan.bands == 1 && s->plan.edges == 3, "a band, and three beside it");
+            CHECK(s->layout.bands == 1 && s->layout.unbanded == 3, "a band, and three beside it");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
@@ -212,7 +212,7 @@ static void every_offset(void)
     const spring_scene_def def = {
         .axes = 1, .particles = links + 1, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    CHECK(s->plan.bands == 0, "one link makes no band");
+    CHECK(s->layout.bands == 0, "one link makes no band");
     for (uint32_t i = 0; i < links; i++)
         CHECK_BITS(spring_scene_tension(s, i), 2 * (i + 0.5), "2 N/m of (i + 1) m - 0.5 m, exactly");
     free(s);
@@ -226,7 +226,7 @@ static void bands_of_a_block(void)
     static model m;
     build(&m, (uint32_t[]){5, 6, 7}, 3, 0);
     spring_scene *s = scene_of(&m.def);
-    CHECK(s->plan.bands == 16 && s->plan.edges == 0, "no link is left for the edge list");
+    CHECK(s->layout.bands == 16 && s->layout.unbanded == 0, "no link is left for the edge list");
     free(s);
 }
 
@@ -276,7 +276,7 @@ static void check_gap(uint32_t axes, unsigned how)
     const spring_scene_def def = {
         .axes = axes, .particles = particles, .links = links, .position = position, .link = link};
     spring_scene *s = scene_of(&def);
-    CHECK((s->plan.edges == 0) == !(how & IN_EDGE_LIST), "where the links lie");
+    CHECK((s->layout.unbanded == 0) == !(how & IN_EDGE_LIST), "where the links lie");
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 5) == SPRING_OK, "their distance does not matter");
     double x[3];
     spring_scene_get(s, SPRING_POSITION, x, 0, 5, 1);

@@ -3,28 +3,36 @@
  * A feature that is zero gives the bits of the loop that does not know it. The methods are compiled in once more, since
  * spring_advance() always picks the shortest loop.
  */
-#define SPRING_SHAPE_ONE
 #include "methods/methods.h"
 
 #include "check.h"
 
-#define METHOD_ROW(value, method) &method##_one,
-static const one_method *const methods[] = {SPRING_METHODS(METHOD_ROW)};
+#define METHOD(value, row) &(row),
+static const method_row *const methods[] = {METHODS(METHOD)};
+static const spring_method steppers[] = {
+#define STEPPER(value, prepare, start, step) value,
+    STEP_METHODS(STEPPER)};
+enum { stepper_count = sizeof steppers / sizeof steppers[0] };
 
 /* Zeros of both signs, the smallest and the largest numbers, and some between: where signs and underflow could show. */
 static const double corners[] = {0.0, -0.0, 5e-324, -5e-324, 1e-310, -1e-310, 2.3e-308, -2.3e-308,
                                  0.7, -0.7, 1.5,    -1.5,    1e150,  -1e150,  1e-160,   -1e-160};
 static const size_t corner_count = sizeof corners / sizeof corners[0];
 
-/* n steps by the loop for damped and loaded springs or by a shorter one, whatever g and a are. */
-static spring_state steps(const one_method *m, spring_state s, spring_rates r, double dt, uint64_t n, bool damped,
+/* n steps by the loop for damped and loaded springs or by a shorter one, whatever gamma and accel are. */
+static spring_state steps(spring_method m, spring_state s, spring_rates r, double dt, uint64_t n, bool damped,
                           bool loaded)
 {
-    spring_loop *loop = m->loop[damped][loaded];
-    return loop != NULL ? loop(s, &r, dt, n) : s;
+#define STEPS(value, prepare, start, step) \
+    case value:                            \
+        return SPRING_BY_FEATURES(damped, loaded, take_steps, s, &r, dt, n, prepare, start, step);
+    switch ((int)m) {
+        STEP_METHODS(STEPS)
+    }
+    return s;
 }
 
-static void zero_is_absent_from(const one_method *m, spring_state s, double stiffness, double dt)
+static void zero_is_absent_from(spring_method m, spring_state s, double stiffness, double dt)
 {
     const spring_rates r = {stiffness, 0, 0};
     for (uint64_t n = 1; n <= 2; n++) {
@@ -33,7 +41,7 @@ static void zero_is_absent_from(const one_method *m, spring_state s, double stif
         CHECK_STATE(steps(m, s, r, dt, n, false, true), plain, "load 0");
         CHECK_STATE(steps(m, s, r, dt, n, true, true), plain, "damping 0 and load 0");
     }
-    const spring_rates damped = {r.w, 0.6, 0}, heavy = {r.w, 900, 0}, loaded = {r.w, 0, 0.4};
+    const spring_rates damped = {stiffness, 0.6, 0}, heavy = {stiffness, 900, 0}, loaded = {stiffness, 0, 0.4};
     CHECK_STATE(steps(m, s, damped, dt, 2, true, true), steps(m, s, damped, dt, 2, true, false), "damped, load 0");
     CHECK_STATE(steps(m, s, heavy, dt, 2, true, true), steps(m, s, heavy, dt, 2, true, false), "overdamped, load 0");
     CHECK_STATE(steps(m, s, loaded, dt, 2, true, true), steps(m, s, loaded, dt, 2, false, true), "loaded, damping 0");
@@ -43,10 +51,10 @@ static void zero_is_absent(void)
 {
     static const double stiffness[] = {0, 1e-310, 0.3, 2.7, 1e12};
     static const double steps_taken[] = {0.01, -0.01, 0.7, -0.7, 1e-300, 1e-6};
-    for (size_t m = 0; m < SPRING_METHOD_COUNT; m++)
+    for (size_t m = 0; m < stepper_count; m++)
         for (size_t i = 0; i < corner_count * corner_count * 5 * 6; i++) {
             const spring_state s = {corners[i % corner_count], corners[i / corner_count % corner_count]};
-            zero_is_absent_from(methods[m], s, stiffness[i / corner_count / corner_count % 5],
+            zero_is_absent_from(steppers[m], s, stiffness[i / corner_count / corner_count % 5],
                                 steps_taken[i / corner_count / corner_count / 5]);
         }
 }
@@ -58,25 +66,25 @@ static void negative_zero_is_zero(void)
         const spring_params p = {1.3, -0.0, -0.0, -0.0}, q = {1.3, 0, 0, 0};
         const spring_state start = {corners[i % corner_count], corners[i / corner_count]};
         const spring_rates a = spring_rates_of(&p), b = spring_rates_of(&q);
-        CHECK_BITS(a.w, 0.0, "one sign of zero");
-        CHECK_BITS(a.g, 0.0, "one sign of zero");
-        CHECK_BITS(a.a, 0.0, "one sign of zero");
-        for (size_t m = 0; m < SPRING_METHOD_COUNT; m++)
-            CHECK_STATE(steps(methods[m], start, a, 0.1, 1, true, true),
-                        steps(methods[m], start, b, 0.1, 1, false, false), "-0 is 0");
+        CHECK_BITS(a.omega2, 0.0, "one sign of zero");
+        CHECK_BITS(a.gamma, 0.0, "one sign of zero");
+        CHECK_BITS(a.accel, 0.0, "one sign of zero");
+        for (size_t m = 0; m < stepper_count; m++)
+            CHECK_STATE(steps(steppers[m], start, a, 0.1, 1, true, true),
+                        steps(steppers[m], start, b, 0.1, 1, false, false), "-0 is 0");
     }
 }
 
-/* A loop that is missing would be the exact solution. */
+/* Every method for springs has what it needs, and is either the exact solution or has a formula. */
 static void methods_are_complete(void)
 {
+    int for_springs = 0;
     for (size_t m = 0; m < SPRING_METHOD_COUNT; m++) {
-        const one_method *method = methods[m];
-        const bool exact = strcmp(method->info.name, "exact") == 0;
+        const method_row *method = methods[m];
         CHECK(method->info.springs == (method->kernel != NULL && method->stable_step != NULL), method->info.name);
-        for (int i = 0; i < 4; i++)
-            CHECK((method->loop[i / 2][i % 2] != NULL) == (method->info.springs && !exact), method->info.name);
+        for_springs += method->info.springs && strcmp(method->info.name, "exact") != 0;
     }
+    CHECK(for_springs == stepper_count, "each has a formula");
 }
 
 int main(void)

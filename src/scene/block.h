@@ -11,32 +11,32 @@
 
 /* The arrays, in the order of their offsets. layout.c says which scenes have them, and how many elements. */
 typedef enum scene_array {
-    X_0, /* [m] positions of all particles on all axes, in two buffers: see step.c */
-    V_0, /* [m/s] velocities */
-    X_1,
-    V_1,
-    FORCE_0,        /* [N] forces at the state in buffer 0 */
-    FORCE_1,        /* [N] at the state in buffer 1; FORCE_0 if no forces depend on a predicted velocity */
-    PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
-    STAGES,         /* quantities that Runge-Kutta methods store */
-    INVERSE_MASS,   /* [1/kg] 0: pinned */
-    FREE_MASS,      /* [1/kg] the inverse mass of a particle once it is freed; 0: its mass is not valid */
-    MASS_FACTORS,   /* numbers that RKN8 stores for each mass, with drag */
-    OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
-    RINGS,          /* [N] bands: forces that are kept; see kernels/bands.h */
-    BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
-    BAND_REST,      /* [m] */
-    BAND_DAMPING,   /* [N s/m] */
-    LINK_A,         /* unbanded links: particles at the ends */
-    LINK_B,
-    LINK_STIFFNESS, /* [N/m] */
-    LINK_REST,      /* [m] */
-    LINK_DAMPING,   /* [N s/m] */
-    SLOTS,          /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
-    RECORDS,        /* see kernels/unbanded.h */
-    CALLBACK,       /* a small scene: positions, velocities and forces as a callback sees them, by axis */
-    SUMS,           /* work space of the stable step, by particle */
-    SCENE_ARRAYS
+    ARRAY_X_0, /* [m] positions of all particles on all axes, in two buffers: see step.c */
+    ARRAY_V_0, /* [m/s] velocities */
+    ARRAY_X_1,
+    ARRAY_V_1,
+    ARRAY_FORCE_0,        /* [N] forces at the state in buffer 0 */
+    ARRAY_FORCE_1,        /* [N] at the state in buffer 1; ARRAY_FORCE_0 if no forces depend on a predicted velocity */
+    ARRAY_PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
+    ARRAY_STAGES,         /* quantities that Runge-Kutta methods store */
+    ARRAY_INVERSE_MASS,   /* [1/kg] 0: pinned */
+    ARRAY_FREE_MASS,      /* [1/kg] the inverse mass of a particle once it is freed; 0: its mass is not valid */
+    ARRAY_MASS_FACTORS,   /* numbers that RKN8 stores for each mass, with drag */
+    ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
+    ARRAY_RINGS,          /* [N] bands: forces that are kept; see kernels/bands.h */
+    ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
+    ARRAY_BAND_REST,      /* [m] */
+    ARRAY_BAND_DAMPING,   /* [N s/m] */
+    ARRAY_LINK_A,         /* unbanded links: particles at the ends */
+    ARRAY_LINK_B,
+    ARRAY_LINK_STIFFNESS, /* [N/m] */
+    ARRAY_LINK_REST,      /* [m] */
+    ARRAY_LINK_DAMPING,   /* [N s/m] */
+    ARRAY_SLOTS,    /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
+    ARRAY_RECORDS,  /* see kernels/unbanded.h */
+    ARRAY_CALLBACK, /* a small scene: positions, velocities and forces as a callback sees them, by axis */
+    ARRAY_SUMS,     /* work space of the stable step, by particle */
+    ARRAY_COUNT
 } scene_array;
 
 /* A band: its links, and the position of its slots, coefficients and ring among those of all bands. */
@@ -60,7 +60,7 @@ typedef struct scene_layout {
     band_layout band[most_bands];                    /* by ascending offset */
     size_t band_slots, band_coefficients, band_ring; /* of all bands */
     size_t unbanded;                                 /* links in no band */
-    size_t offset[SCENE_ARRAYS];                     /* [bytes] from the start of the block; SIZE_MAX: absent */
+    size_t offset[ARRAY_COUNT];                      /* [bytes] from the start of the block; SIZE_MAX: absent */
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
 
@@ -87,7 +87,7 @@ struct spring_scene {
     void *user;
     double mass_all, drag, gravity[3];
     scalar gravity_vectors[3][padding];  /* by axis; in a small scene the first holds quads */
-    scalar inverse_mass_vector[padding]; /* for scenes without INVERSE_MASS */
+    scalar inverse_mass_vector[padding]; /* for scenes without ARRAY_INVERSE_MASS */
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
@@ -137,17 +137,17 @@ static inline const scalar *scene_read_axis(const spring_scene *s, scene_array a
 /* The arrays of a buffer. */
 static inline scene_array positions_in(uint32_t buffer)
 {
-    return buffer == 0 ? X_0 : X_1;
+    return buffer == 0 ? ARRAY_X_0 : ARRAY_X_1;
 }
 
 static inline scene_array velocities_in(uint32_t buffer)
 {
-    return buffer == 0 ? V_0 : V_1;
+    return buffer == 0 ? ARRAY_V_0 : ARRAY_V_1;
 }
 
 static inline scene_array forces_in(uint32_t buffer)
 {
-    return buffer == 0 ? FORCE_0 : FORCE_1;
+    return buffer == 0 ? ARRAY_FORCE_0 : ARRAY_FORCE_1;
 }
 
 /* The array that holds a quantity of the state. */
@@ -169,7 +169,7 @@ static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32
 
 static inline double inverse_mass_at(const spring_scene *s, size_t i)
 {
-    const scalar *each = scene_read(s, INVERSE_MASS);
+    const scalar *each = scene_read(s, ARRAY_INVERSE_MASS);
     return each != NULL ? (double)each[s->layout.particle_stride * i] : 1 / s->mass_all;
 }
 

@@ -73,7 +73,7 @@ static bool is_pinned_now(const spring_scene *s, size_t i)
 /* The inverse mass of a particle while it is free; 0: its mass is not valid. */
 static scalar free_inverse_mass(const spring_scene *s, const proposal *p, size_t i)
 {
-    const scalar *now = scene_read(s, FREE_MASS);
+    const scalar *now = scene_read(s, ARRAY_FREE_MASS);
     return p->mass != NULL ? (scalar)(1 / p->mass[i - p->first]) : now[i];
 }
 
@@ -132,7 +132,7 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         s->known = NO_FORCE;
         s->bounds_known = false;
     }
-    scalar *const freed = scene_memory(s, FREE_MASS);
+    scalar *const freed = scene_memory(s, ARRAY_FREE_MASS);
     for (size_t i = p->first; i < p->first + p->count; i++) {
         const bool pinned = will_be_pinned(s, p, i);
         const scalar inverse = free_inverse_mass(s, p, i);

@@ -148,7 +148,7 @@ typedef struct array_row {
 } array_row;
 
 /* The arrays of a scene. This table is the one place that decides sizes and conditions; docs/scenes.md describes it. */
-static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[SCENE_ARRAYS])
+static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[ARRAY_COUNT])
 {
     const bool rollback = (l->flags & SPRING_SCENE_NO_UNDO) == 0, editable = (l->flags & SPRING_SCENE_EDITABLE) != 0;
     const bool damped = editable || has_damped_links(def);
@@ -158,32 +158,32 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
-    const array_row rows[SCENE_ARRAYS] = {
-        [X_0] = {number, quantity, true},
-        [V_0] = {number, quantity, true},
-        [X_1] = {number, quantity, rollback},
-        [V_1] = {number, quantity, rollback},
-        [FORCE_0] = {number, quantity, true},
-        [FORCE_1] = {number, quantity, predicts},
-        [PREDICTED] = {number, quantity, predicts && damped && l->unbanded > 0 && (l->bands > 0 || !records)},
-        [STAGES] = {number, needs.stages * quantity, needs.stages > 0},
-        [INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
-        [FREE_MASS] = {number, l->particles, editable},
-        [MASS_FACTORS] = {number, needs.mass_factors * l->masses, def->drag > 0 && needs.mass_factors > 0},
-        [OCCUPIED] = {1, l->band_slots, l->bands > 0},
-        [RINGS] = {number, l->band_ring, l->bands > 0},
-        [BAND_STIFFNESS] = {number, coefficients, l->bands > 0},
-        [BAND_REST] = {number, coefficients, l->bands > 0},
-        [BAND_DAMPING] = {number, coefficients, l->bands > 0 && damped},
-        [LINK_A] = {index, l->unbanded, l->unbanded > 0},
-        [LINK_B] = {index, l->unbanded, l->unbanded > 0},
-        [LINK_STIFFNESS] = {number, unbanded, l->unbanded > 0},
-        [LINK_REST] = {number, unbanded, l->unbanded > 0},
-        [LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
-        [SLOTS] = {index, l->links, l->bands > 0},
-        [RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
-        [CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
-        [SUMS] = {number, l->particles, true},
+    const array_row rows[ARRAY_COUNT] = {
+        [ARRAY_X_0] = {number, quantity, true},
+        [ARRAY_V_0] = {number, quantity, true},
+        [ARRAY_X_1] = {number, quantity, rollback},
+        [ARRAY_V_1] = {number, quantity, rollback},
+        [ARRAY_FORCE_0] = {number, quantity, true},
+        [ARRAY_FORCE_1] = {number, quantity, predicts},
+        [ARRAY_PREDICTED] = {number, quantity, predicts && damped && l->unbanded > 0 && (l->bands > 0 || !records)},
+        [ARRAY_STAGES] = {number, needs.stages * quantity, needs.stages > 0},
+        [ARRAY_INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
+        [ARRAY_FREE_MASS] = {number, l->particles, editable},
+        [ARRAY_MASS_FACTORS] = {number, needs.mass_factors * l->masses, def->drag > 0 && needs.mass_factors > 0},
+        [ARRAY_OCCUPIED] = {1, l->band_slots, l->bands > 0},
+        [ARRAY_RINGS] = {number, l->band_ring, l->bands > 0},
+        [ARRAY_BAND_STIFFNESS] = {number, coefficients, l->bands > 0},
+        [ARRAY_BAND_REST] = {number, coefficients, l->bands > 0},
+        [ARRAY_BAND_DAMPING] = {number, coefficients, l->bands > 0 && damped},
+        [ARRAY_LINK_A] = {index, l->unbanded, l->unbanded > 0},
+        [ARRAY_LINK_B] = {index, l->unbanded, l->unbanded > 0},
+        [ARRAY_LINK_STIFFNESS] = {number, unbanded, l->unbanded > 0},
+        [ARRAY_LINK_REST] = {number, unbanded, l->unbanded > 0},
+        [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
+        [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
+        [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
+        [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
+        [ARRAY_SUMS] = {number, l->particles, true},
     };
     memcpy(row, rows, sizeof rows);
 }
@@ -195,15 +195,15 @@ static uint64_t aligned(uint64_t bytes)
 
 static void place_arrays(const spring_scene_def *def, scene_layout *l)
 {
-    array_row row[SCENE_ARRAYS];
+    array_row row[ARRAY_COUNT];
     list_arrays(def, l, row);
     l->bytes = aligned(sizeof(spring_scene));
-    for (int a = 0; a < SCENE_ARRAYS; a++) {
+    for (int a = 0; a < ARRAY_COUNT; a++) {
         l->offset[a] = row[a].present ? (size_t)l->bytes : SIZE_MAX;
         l->bytes += row[a].present ? aligned((uint64_t)row[a].count * row[a].element) : 0;
     }
-    if (!row[FORCE_1].present)
-        l->offset[FORCE_1] = l->offset[FORCE_0];
+    if (!row[ARRAY_FORCE_1].present)
+        l->offset[ARRAY_FORCE_1] = l->offset[ARRAY_FORCE_0];
 }
 
 /* Most particles and most links of a small scene: fewer do not fill SIMD vectors over particles. */
@@ -266,15 +266,15 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
     const uint32_t axes = s->layout.axes;
     const size_t stride = s->layout.particle_stride;
     for (uint32_t a = 0; a < axes; a++) {
-        scalar *x = scene_axis(s, X_0, a), *v = scene_axis(s, V_0, a);
+        scalar *x = scene_axis(s, ARRAY_X_0, a), *v = scene_axis(s, ARRAY_V_0, a);
         for (size_t i = 0; i < def->particles; i++) {
             x[stride * i] = (scalar)def->position[i * axes + a];
             v[stride * i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
         }
     }
-    for (size_t i = 0; i < def->particles && scene_has(s, INVERSE_MASS); i++)
+    for (size_t i = 0; i < def->particles && scene_has(s, ARRAY_INVERSE_MASS); i++)
         scene_set_inverse_mass(s, i, inverse_mass_of(def, i));
-    scalar *freed = scene_memory(s, FREE_MASS);
+    scalar *freed = scene_memory(s, ARRAY_FREE_MASS);
     for (size_t i = 0; i < def->particles && freed != NULL; i++)
         freed[i] = free_inverse_mass_of(def, i);
 }
@@ -297,7 +297,8 @@ static void spread(scalar *vector)
 static void fill_links(spring_scene *s, const spring_scene_def *def)
 {
     const scene_layout *l = &s->layout;
-    uint32_t *slots = scene_memory(s, SLOTS), *link_a = scene_memory(s, LINK_A), *link_b = scene_memory(s, LINK_B);
+    uint32_t *slots = scene_memory(s, ARRAY_SLOTS), *link_a = scene_memory(s, ARRAY_LINK_A),
+             *link_b = scene_memory(s, ARRAY_LINK_B);
     uint32_t next[most_bands] = {0}; /* least lower end that each band still accepts */
     uint32_t unbanded = 0;
     for (size_t i = 0; i < def->links; i++) {
@@ -319,7 +320,7 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
         scene_write_link(s, i, link);
         s->damped_links += (scalar)link->damping > 0;
     }
-    const scene_array coefficients[] = {BAND_STIFFNESS, BAND_REST, BAND_DAMPING};
+    const scene_array coefficients[] = {ARRAY_BAND_STIFFNESS, ARRAY_BAND_REST, ARRAY_BAND_DAMPING};
     for (int k = 0; k < 3; k++) {
         scalar *all = scene_memory(s, coefficients[k]);
         for (uint32_t r = 0; r < l->bands && all != NULL; r++)

@@ -39,13 +39,13 @@ static inline scalar *force_at(const scene_step *s, uint32_t buffer)
 /* Storage of stage i, for all particles and axes. */
 static inline scalar *stage_storage(const scene_step *s, unsigned i)
 {
-    return scene_axis(s->scene, STAGES, 0) + i * s->scene->layout.quantity;
+    return scene_axis(s->scene, ARRAY_STAGES, 0) + i * s->scene->layout.quantity;
 }
 
 /* Storage of factor i of each mass, indexed like scene_particles.inverse_mass. */
 static inline scalar *mass_factor(const scene_step *s, unsigned i)
 {
-    return (scalar *)scene_memory(s->scene, MASS_FACTORS) + i * s->scene->layout.masses;
+    return (scalar *)scene_memory(s->scene, ARRAY_MASS_FACTORS) + i * s->scene->layout.masses;
 }
 
 /* Where leapfrog stores predicted velocities. Forces that depend on velocities in a callback are not kept, so the array
@@ -55,7 +55,7 @@ static inline scalar *predicted_velocities(const scene_step *s)
 {
     if (scene_callback_uses_velocity(s->scene))
         return force_at(s, 1 - s->to);
-    return scene_has(s->scene, PREDICTED) ? scene_axis(s->scene, PREDICTED, 0) : force_at(s, s->to);
+    return scene_has(s->scene, ARRAY_PREDICTED) ? scene_axis(s->scene, ARRAY_PREDICTED, 0) : force_at(s, s->to);
 }
 
 /* A motion over the whole step, from the state at its start to the state at its end. */
@@ -78,12 +78,12 @@ static inline scene_motion whole_step(const scene_step *s)
 static inline scene_particles scene_prepare_particles(const spring_scene *s)
 {
     const scene_layout *l = &s->layout;
-    const bool each = scene_has(s, INVERSE_MASS);
+    const bool each = scene_has(s, ARRAY_INVERSE_MASS);
     return (scene_particles){
         .count = l->small ? quad_size * l->particles : l->particles,
         .axes = l->small ? 1 : l->axes,
         .stride = l->stride,
-        .inverse_mass = each ? scene_read(s, INVERSE_MASS) : s->inverse_mass_vector,
+        .inverse_mass = each ? scene_read(s, ARRAY_INVERSE_MASS) : s->inverse_mass_vector,
         .mass_stride = each,
         .gravity = s->gravity_vectors[0],
         .drag = (scalar)s->drag,
@@ -95,9 +95,9 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
 {
     const scene_layout *l = &s->layout;
     const bool damped = s->damped_links > 0;
-    const int8_t *occupied = scene_read(s, OCCUPIED);
-    const scalar *stiffness = scene_read(s, BAND_STIFFNESS), *rest = scene_read(s, BAND_REST);
-    const scalar *damping = scene_read(s, BAND_DAMPING);
+    const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
+    const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
+    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING);
     for (uint32_t i = 0; i < l->bands; i++) {
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
@@ -124,11 +124,11 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
         .unbanded =
             {
                 .count = l->unbanded,
-                .a = scene_read(s, LINK_A),
-                .b = scene_read(s, LINK_B),
-                .stiffness = scene_read(s, LINK_STIFFNESS),
-                .rest = scene_read(s, LINK_REST),
-                .damping = damped ? scene_read(s, LINK_DAMPING) : NULL,
+                .a = scene_read(s, ARRAY_LINK_A),
+                .b = scene_read(s, ARRAY_LINK_B),
+                .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
+                .rest = scene_read(s, ARRAY_LINK_REST),
+                .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
             },
     };
 }
@@ -136,7 +136,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
 /* force: where the forces will be stored. */
 static inline scene_forces scene_prepare_forces(spring_scene *s, scalar *force)
 {
-    return (scene_forces){force, scene_memory(s, RINGS), scene_memory(s, RECORDS)};
+    return (scene_forces){force, scene_memory(s, ARRAY_RINGS), scene_memory(s, ARRAY_RECORDS)};
 }
 
 /* ------------------------------------------------------------------------------------------------------- evaluation */
@@ -148,7 +148,7 @@ SPRING_NOINLINE void call_back_small(spring_scene *s, const scalar *x, const sca
     const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
     scalar *force[3] = {NULL};
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        scalar *const shown = (scalar *)scene_memory(s, CALLBACK) + 3 * a * n;
+        scalar *const shown = (scalar *)scene_memory(s, ARRAY_CALLBACK) + 3 * a * n;
         position[a] = shown;
         velocity[a] = shown + n;
         force[a] = shown + 2 * n;

@@ -60,7 +60,7 @@ static int largest_exponent(const spring_scene *s, link_coefficient which, doubl
 static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
     const int exponent = largest_exponent(s, which, own, by_mass);
-    scalar *sum = scene_memory(s, SUMS);
+    scalar *sum = scene_memory(s, ARRAY_SUMS);
     memset(sum, 0, s->layout.particles * sizeof *sum);
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);

@@ -18,7 +18,8 @@ typedef struct link_place {
 static inline link_place scene_link_place(const spring_scene *s, size_t index)
 {
     const scene_layout *l = &s->layout;
-    const uint32_t *slots = scene_read(s, SLOTS), *a = scene_read(s, LINK_A), *b = scene_read(s, LINK_B);
+    const uint32_t *slots = scene_read(s, ARRAY_SLOTS), *a = scene_read(s, ARRAY_LINK_A),
+                   *b = scene_read(s, ARRAY_LINK_B);
     const size_t slot = slots != NULL ? slots[index] : index;
     if (slot >= l->band_slots) {
         const size_t i = slot - l->band_slots;
@@ -41,19 +42,19 @@ typedef struct stored_link {
 static inline stored_link scene_link(const spring_scene *s, size_t index)
 {
     const link_place at = scene_link_place(s, index);
-    const scalar *stiffness = scene_read(s, at.banded ? BAND_STIFFNESS : LINK_STIFFNESS);
-    const scalar *rest = scene_read(s, at.banded ? BAND_REST : LINK_REST);
-    const scalar *damping = scene_read(s, at.banded ? BAND_DAMPING : LINK_DAMPING);
+    const scalar *stiffness = scene_read(s, at.banded ? ARRAY_BAND_STIFFNESS : ARRAY_LINK_STIFFNESS);
+    const scalar *rest = scene_read(s, at.banded ? ARRAY_BAND_REST : ARRAY_LINK_REST);
+    const scalar *damping = scene_read(s, at.banded ? ARRAY_BAND_DAMPING : ARRAY_LINK_DAMPING);
     return (stored_link){at.a, at.b, stiffness[at.index], rest[at.index], damping != NULL ? damping[at.index] : 0};
 }
 
 static inline void scene_write_link(spring_scene *s, size_t index, const spring_link *link)
 {
     const link_place at = scene_link_place(s, index);
-    scalar *stiffness = scene_memory(s, at.banded ? BAND_STIFFNESS : LINK_STIFFNESS);
-    scalar *rests = scene_memory(s, at.banded ? BAND_REST : LINK_REST);
-    scalar *damping = scene_memory(s, at.banded ? BAND_DAMPING : LINK_DAMPING);
-    int8_t *occupied = scene_memory(s, OCCUPIED);
+    scalar *stiffness = scene_memory(s, at.banded ? ARRAY_BAND_STIFFNESS : ARRAY_LINK_STIFFNESS);
+    scalar *rests = scene_memory(s, at.banded ? ARRAY_BAND_REST : ARRAY_LINK_REST);
+    scalar *damping = scene_memory(s, at.banded ? ARRAY_BAND_DAMPING : ARRAY_LINK_DAMPING);
+    int8_t *occupied = scene_memory(s, ARRAY_OCCUPIED);
     const scalar rest = (scalar)fabs(link->rest); /* -0.0 would reverse a link on one axis */
     stiffness[at.index] = (scalar)link->stiffness;
     rests[at.index] = s->layout.axes == 1 && at.a != link->a ? -rest : rest;
@@ -80,7 +81,7 @@ static inline void scene_store_gravity(spring_scene *s, const double *gravity)
 /* In a small scene, for all numbers of a quad. */
 static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inverse)
 {
-    scalar *const mass = (scalar *)scene_memory(s, INVERSE_MASS) + s->layout.particle_stride * i;
+    scalar *const mass = (scalar *)scene_memory(s, ARRAY_INVERSE_MASS) + s->layout.particle_stride * i;
     for (size_t k = 0; k < s->layout.particle_stride; k++)
         mass[k] = inverse;
 }
