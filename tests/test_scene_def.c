@@ -189,7 +189,7 @@ static double particle_cost(spring_scene_def def)
     return (double)(bytes_of(&def) - small) / (many - few);
 }
 
-/* Besides, each particle has one number for the stable step. */
+/* A particle has `axes` numbers for each of these, and one number for the stable step. */
 static const cost particle_costs[] = {
     {"x and v twice, force, predicted v", 6, 0},
     {"without rollback: once", 4, 0},
