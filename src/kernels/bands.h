@@ -240,8 +240,8 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
     }
 }
 
-static void band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                        size_t to)
+static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                                size_t to)
 {
     SPRING_BY_AXES(s->axes, s->damped, all_bands, s, x, v, out, from, to);
 }

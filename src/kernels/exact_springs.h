@@ -4,6 +4,9 @@
 #ifndef SPRINGSTEP_EXACT_SPRINGS_H
 #define SPRINGSTEP_EXACT_SPRINGS_H
 
+#include "../spring/exact_formula.h"
+#include "spring_group.h"
+
 /* Coefficients that are equal for all springs, computed once in double. */
 SPRING_INLINE exact_coefficients exact_prepare(const spring_propagator *y)
 {

@@ -32,19 +32,19 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .small = &SMALL_TABLE,
-    .band_forces = band_forces,
-    .unbanded_forces = unbanded_forces,
-    .record_forces = record_forces,
-    .quad_forces = quad_forces,
-    .kick_drift = kick_drift,
-    .implicit_kick = implicit_kick,
-    .implicit_kick_drift = implicit_kick_drift,
-    .stage = stage,
-    .first_stage = first_stage,
-    .next_stage = next_stage,
-    .last_stage = last_stage,
-    .nystrom_stage = nystrom_stage,
-    .nystrom_end = nystrom_end,
+    .band_forces = compute_band_forces,
+    .unbanded_forces = compute_unbanded_forces,
+    .record_forces = compute_record_forces,
+    .quad_forces = compute_quad_forces,
+    .kick_drift = move_kick_drift,
+    .implicit_kick = move_implicit_kick,
+    .implicit_kick_drift = move_implicit_kick_drift,
+    .stage = move_stage,
+    .first_stage = move_first_stage,
+    .next_stage = move_next_stage,
+    .last_stage = move_last_stage,
+    .nystrom_stage = move_nystrom_stage,
+    .nystrom_end = move_nystrom_end,
 };
 #endif
 

@@ -100,7 +100,7 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     return wrong | not_finite(predicted);
 }
 
-static bool kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     if (m->predicted == NULL)
         return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP)
@@ -117,7 +117,7 @@ SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates
     return not_finite(v);
 }
 
-static bool implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_implicit_kick, 0);
 }
@@ -130,7 +130,7 @@ SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coord
     return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * v, v) | hidden;
 }
 
-static bool implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0);
 }
@@ -152,17 +152,17 @@ SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, uns
     return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * dx, vec_load(m->v0 + c->at) + m->kick * dv);
 }
 
-static bool stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_stage, NO_SUM);
 }
 
-static bool first_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_first_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_stage, FIRST_SUM);
 }
 
-static bool next_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_next_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_stage, NEXT_SUM);
 }
@@ -175,7 +175,7 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
                        vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + dv));
 }
 
-static bool last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_last_stage, 0);
 }
@@ -212,7 +212,7 @@ SPRING_INLINE mask update_nystrom_stage(const scene_motion *m, const coordinates
     return not_finite(x);
 }
 
-static bool nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     switch (m->nystrom->number) {
     case 1:
@@ -247,7 +247,7 @@ SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *
     return store_state(m, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
 }
 
-static bool nystrom_end(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_nystrom_end, 0);
 }

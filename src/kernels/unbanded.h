@@ -169,12 +169,12 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         forces_of_records(s, out, 2, damped);
 }
 
-static void unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     SPRING_BY_AXES(s->axes, s->damped, all_unbanded, s, x, v, out);
 }
 
-static void record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+static void compute_record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     if (s->damped)
         all_records(s, x, v, out, true);
@@ -183,7 +183,7 @@ static void record_forces(const scene_links *s, const scalar *x, const scalar *v
 }
 
 /* The forces of a small scene, whose quantities are arrays of quads. */
-static void quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+static void compute_quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(out->force + quad_size * i, quad_all(0));

@@ -5,6 +5,7 @@
 
 #include "method.h"
 
+#ifndef SPRING_VECTOR
 static double exact_stable_step(const spring_roots *r)
 {
     (void)r;
@@ -17,5 +18,6 @@ static const method_row exact_method = {
     .stable_step = exact_stable_step,
     .digest = UINT64_C(0x00349312ac922285),
 };
+#endif
 
 #endif

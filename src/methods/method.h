@@ -15,12 +15,9 @@
 
 #include "../simd/real.h"
 #include "../spring/rates.h"
-#include "implicit_kick.h"
-
-#ifndef SPRING_VECTOR
 #include "../spring/roots.h"
+#include "implicit_kick.h"
 #include "step_matrix.h"
-#endif
 
 /* Coefficients of a step. The prepare() of each method sets those that its step() uses. */
 typedef struct step_coefficients {

@@ -4,13 +4,11 @@
 #define SPRINGSTEP_METHODS_H
 
 #include "euler.h"
+#include "exact.h"
 #include "leapfrog.h"
 #include "rk4.h"
-#include "symplectic_euler.h"
-#ifndef SPRING_VECTOR
-#include "exact.h"
 #include "rkn8.h"
-#endif
+#include "symplectic_euler.h"
 
 /* ROW(value, its entry in the table) */
 #define METHODS(ROW)                                      \

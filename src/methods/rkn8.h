@@ -23,9 +23,11 @@
 
 #include "method.h"
 
+#ifndef SPRING_VECTOR
 static const method_row rkn8_method = {
     .info = {.name = "rkn8", .order = 8, .forces_per_step = 8, .scenes = true, .label = "RKN8", .positions_only = true},
     .digest = UINT64_C(0x74494ed0e40a48e5),
 };
+#endif
 
 #endif

@@ -7,7 +7,8 @@
 #define SPRINGSTEP_BLOCK_H
 
 #include "../kernels/scene_kernels.h"
-#include "../simd/quad.h"
+#include "../simd/arithmetic.h"
+#include "../simd/compiler.h"
 
 /* The arrays, in the order of their offsets. layout.c says which scenes have them, and how many elements. */
 typedef enum scene_array {

@@ -18,6 +18,8 @@
 
 #include "real.h"
 
+#ifndef SPRING_FLOAT
+
 /* a = high + low, halves of 26 bits, so that products of halves are exact. For numbers below 2^990. */
 typedef struct halves {
     real high, low;
@@ -116,5 +118,7 @@ SPRING_INLINE sine_cosine sine_cosine_of(real angle)
     return (sine_cosine){from_bits(to_bits(select_real(odd_turn, cosine, sine)) ^ minus_sine),
                          from_bits(to_bits(select_real(odd_turn, sine, cosine)) ^ minus_cosine)};
 }
+
+#endif
 
 #endif

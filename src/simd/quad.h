@@ -5,8 +5,6 @@
 
 #include "real.h"
 
-enum { quad_size = 4 };
-
 #if defined(SPRING_VECTOR) && SPRING_VECTORS
 #if SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
 #include "quad_pair.h"

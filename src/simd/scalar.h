@@ -13,4 +13,6 @@ typedef double scalar;
 typedef int64_t scalar_bits;
 #endif
 
+enum { quad_size = 4 }; /* numbers of a quad, see quad.h */
+
 #endif

@@ -24,11 +24,9 @@
 #ifndef SPRINGSTEP_EXACT_FORMULA_H
 #define SPRINGSTEP_EXACT_FORMULA_H
 
-#include "roots.h"
 #include "../simd/real.h"
-#ifndef SPRING_FLOAT
+#include "roots.h"
 #include "split.h"
-#endif
 
 typedef struct exact_coefficients {
     real half;           /* of E, see exact_halves */

@@ -5,6 +5,8 @@
 
 #include "../simd/elementary.h"
 
+#ifndef SPRING_FLOAT
+
 /* split = sqrt |w - b^2|; overdamped: w < b^2 */
 typedef struct spring_split {
     real split;
@@ -24,5 +26,7 @@ SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
     const real D = (((w * scale) * scale - square) - square_error(c, square)) + (rest * scale) * scale;
     return (spring_split){vec_sqrt(vec_abs(D)) * back, D < 0};
 }
+
+#endif
 
 #endif

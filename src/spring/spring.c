@@ -34,8 +34,8 @@ static bool finite_state(spring_state s)
 }
 
 /* n steps; the exact solution takes them as one. */
-static spring_state advance(spring_method m, spring_state s, const spring_params *p, const spring_rates *r, double dt,
-                            uint64_t n)
+static spring_state advance_spring(spring_method m, spring_state s, const spring_params *p, const spring_rates *r,
+                                   double dt, uint64_t n)
 {
 #define STEP_METHOD(value, prepare, start, step) \
     case value:                                  \
@@ -59,7 +59,7 @@ spring_status spring_advance(spring_state *s, const spring_params *p, spring_met
         return method->info.springs ? SPRING_OK : SPRING_EUNSUPPORTED;
     while (n > 0) {
         const uint64_t some = n < SPRING_CHECK_INTERVAL || m == SPRING_EXACT ? n : SPRING_CHECK_INTERVAL;
-        now = advance(m, now, p, &r, dt, some);
+        now = advance_spring(m, now, p, &r, dt, some);
         if (!finite_state(now))
             return SPRING_ENONFINITE;
         n -= some;
