@@ -157,9 +157,12 @@ static double scene_rkn8_limit(const scene_bounds *b)
 }
 
 SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
-    [SPRING_EULER] = {scene_euler, scene_euler_limit},
-    [SPRING_SYMPLECTIC_EULER] = {scene_symplectic_euler, scene_symplectic_euler_limit},
-    [SPRING_LEAPFROG] = {scene_leapfrog, scene_leapfrog_limit, .predicts = true},
-    [SPRING_RK4] = {scene_rk4, scene_rk4_limit, .stages = 4},
-    [SPRING_RKN8] = {scene_rkn8, scene_rkn8_limit, .stages = rkn8_stages + 1, .mass_factors = RKN8_FACTORS},
+    [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
+    [SPRING_SYMPLECTIC_EULER] = {.step = scene_symplectic_euler, .stable_step = scene_symplectic_euler_limit},
+    [SPRING_LEAPFROG] = {.step = scene_leapfrog, .stable_step = scene_leapfrog_limit, .predicts = true},
+    [SPRING_RK4] = {.step = scene_rk4, .stable_step = scene_rk4_limit, .stages = 4},
+    [SPRING_RKN8] = {.step = scene_rkn8,
+                     .stable_step = scene_rkn8_limit,
+                     .stages = rkn8_stages + 1,
+                     .mass_factors = RKN8_FACTORS},
 };
