@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Many springs: checks, choice of the kernel, and what does not fill a group of vectors.
+ * Many independent springs: checks, choice of the kernels, and springs that do not fill a group.
  */
 #include "../kernels/batch_kernels.h"
 #include "../simd/targets.h"
@@ -24,7 +24,7 @@ static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_c
     return p < q ? q - p < a_count * sizeof(scalar) : p - q < b_count * sizeof(scalar);
 }
 
-/* Does an array of parameters, if there is one, leave the state alone? */
+/* Whether an array of parameters, if there is one, does not overlap the state. */
 static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, uint32_t bit)
 {
     const size_t count = is_shared(b, bit) ? 1 : b->count;
@@ -32,7 +32,7 @@ static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, u
            (!overlap(b->x, b->count, parameter, count) && !overlap(b->v, b->count, parameter, count));
 }
 
-/* A parameter of all springs has to be valid before anything happens; one spring's is that spring's business. */
+/* A shared parameter must be valid before anything changes. Other parameters concern their own spring only. */
 static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
     return parameter == NULL || !is_shared(b, bit) || (spring_finite(*parameter) && *parameter >= least);
@@ -57,7 +57,7 @@ static scalar element(const scalar *p, size_t i, bool shared)
     return p == NULL ? 0 : p[shared ? 0 : i];
 }
 
-/* The single spring that spring i is. */
+/* Spring i as a single spring. */
 static spring_params spring_at(const spring_batch *b, size_t i)
 {
     return (spring_params){
@@ -68,7 +68,7 @@ static spring_params spring_at(const spring_batch *b, size_t i)
     };
 }
 
-/* Why some springs have kept their state: it, or their parameters, was not valid, or would not have stayed finite. */
+/* Why some springs kept their state: their state or parameters are not valid, or the result would not be finite. */
 static spring_status reason(const spring_batch *b)
 {
     for (size_t i = 0; i < b->count; i++) {
@@ -93,8 +93,8 @@ static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t si
     return to;
 }
 
-/* The springs that do not fill a group advance in one that is filled up with copies of the first of them, so that the
-   group is given up when all of them are lost. */
+/* Advances the springs that do not fill a group, together with copies of the first of them, so that the loop ends early
+   when none of them is finite any more. */
 static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
 {
     scalar x[largest_group], v[largest_group];
@@ -116,7 +116,7 @@ static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, co
     return done;
 }
 
-/* A parameter as kernels read it: a shared one from `same`. */
+/* A parameter as kernels read it. A shared value is repeated in `same`. */
 static batch_array array_of(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar *same)
 {
     if (parameter == NULL)
@@ -143,7 +143,7 @@ static bool advance_all(const batch_kernels *kernels, const spring_batch *b, bat
     return done;
 }
 
-/* What concerns the whole batch. */
+/* Checks that concern the whole batch. */
 static spring_status check_batch(const spring_batch *b, spring_method m, scalar dt)
 {
     const spring_method_info *info = spring_method_describe(m);
@@ -179,7 +179,7 @@ static const scalar *from_spring(const spring_batch *b, const scalar *parameter,
     return parameter == NULL || is_shared(b, bit) ? parameter : parameter + first;
 }
 
-/* Some of its springs, with their states at x and v. */
+/* Springs first ... first + count - 1, with their states at x and v. */
 static spring_batch part_of(const spring_batch *b, size_t first, size_t count, scalar *x, scalar *v)
 {
     return (spring_batch){
@@ -203,7 +203,7 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
     for (size_t first = 0; first < b->count; first += part) {
         const size_t count = b->count - first < part ? b->count - first : part;
         const spring_batch some = part_of(b, first, count, b->x + first, b->v + first);
-        scalar x[part], v[part]; /* from which each is advanced once more, by itself, to see which do not */
+        scalar x[part], v[part]; /* copies, advanced one by one to find the springs that fail */
         memcpy(x, some.x, count * sizeof *x);
         memcpy(v, some.v, count * sizeof *v);
         memset(failed + first, 0, count);

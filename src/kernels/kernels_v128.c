@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Kernels in vectors of 16 bytes: SSE2 on x86-64, and for every other processor. */
+/* Kernels with SIMD vectors of 16 bytes: SSE2 on x86-64, and all other processors. */
 #define SPRING_VECTOR       16
 #define SPRING_BATCH_TABLE  spring_batch_v128
 #define SPRING_SCENE_TABLE  spring_scene_v128

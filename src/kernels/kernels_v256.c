@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Kernels in vectors of 32 bytes: AVX2. */
+/* Kernels with SIMD vectors of 32 bytes: AVX2. */
 #include "../simd/targets.h"
 #if SPRING_LONG_VECTORS
 #define SPRING_VECTOR       32

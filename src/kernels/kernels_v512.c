@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Kernels in vectors of 64 bytes: AVX-512. */
+/* Kernels with SIMD vectors of 64 bytes: AVX-512. */
 #include "../simd/targets.h"
 #if SPRING_LONG_VECTORS
 #define SPRING_VECTOR       64

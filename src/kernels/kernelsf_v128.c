@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Kernels in vectors of 16 bytes, in float: SSE2 on x86-64, and for every other processor. */
+/* Kernels with SIMD vectors of 16 bytes, single precision: SSE2 on x86-64, and all other processors. */
 #define SPRING_FLOAT
 #define SPRING_VECTOR       16
 #define SPRING_BATCH_TABLE  spring_batch_v128

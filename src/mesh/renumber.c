@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A numbering of particles that puts those near each other in memory which are joined.
+ * A numbering of particles that places joined particles near each other in memory.
  *
  * Method    Links of constant offset between their ends make bands (scene_init.c). Cuthill and McKee number breadth
  *           first from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
@@ -47,7 +47,7 @@ static uint32_t degree(const graph *g, uint32_t v)
     return g->start[v + 1] - g->start[v];
 }
 
-/* Joined by links up to a length. */
+/* Lists the neighbours by links up to a length. */
 static void list_neighbours(graph *g, double longest)
 {
     memset(g->start, 0, (g->particles + 1) * sizeof *g->start);
@@ -65,10 +65,11 @@ static void list_neighbours(graph *g, double longest)
         }
 }
 
-/* Puts what is joined to root into the queue from first on, breadth first, and numbers it. Returns where it ends. */
-static uint32_t sweep(graph *g, uint32_t root, uint32_t first)
+/* Numbers the particles that are connected to root, breadth first, in the queue from `first` on. Returns the end. */
+static uint32_t breadth_first(graph *g, uint32_t root, uint32_t first)
 {
-    const uint32_t most_moves = 64; /* of a particle in the queue: all would be quadratic, where one has many links */
+    /* of a particle in the queue; without a limit the time would be quadratic in the links of a particle */
+    const uint32_t most_moves = 64;
     uint32_t end = first + 1;
     g->queue[first] = root;
     for (uint32_t at = first; at < end; at++) {
@@ -78,7 +79,7 @@ static uint32_t sweep(graph *g, uint32_t root, uint32_t first)
             const uint32_t w = g->neighbour[k];
             if (g->number[w] != none)
                 continue;
-            g->number[w] = 0; /* any, until it is known */
+            g->number[w] = 0; /* any number until it is known */
             uint32_t to = end++;
             for (; to > children && end - to <= most_moves && degree(g, g->queue[to - 1]) > degree(g, w); to--)
                 g->queue[to] = g->queue[to - 1];
@@ -95,14 +96,14 @@ static void number_by_levels(graph *g)
     for (uint32_t v = 0; v < g->particles; v++) {
         if (g->number[v] != none)
             continue;
-        const uint32_t end = sweep(g, v, first);
+        const uint32_t end = breadth_first(g, v, first);
         for (uint32_t at = first; at < end; at++)
             g->number[g->queue[at]] = none;
-        first = sweep(g, g->queue[end - 1], first);
+        first = breadth_first(g, g->queue[end - 1], first);
     }
 }
 
-/* Follows a numbering by levels. */
+/* Requires a numbering by levels. */
 static void number_by_chains(graph *g, uint32_t *order)
 {
     memset(g->next, -1, g->particles * sizeof *g->next);
@@ -126,10 +127,10 @@ static void number_by_chains(graph *g, uint32_t *order)
         }
 }
 
-/* How many different offsets there are between the ends of links. */
+/* The number of different offsets between the ends of links. */
 static size_t count_offsets(graph *g)
 {
-    uint32_t *seen = g->next; /* not needed any more */
+    uint32_t *seen = g->next; /* not in use at this time */
     memset(seen, 0, g->particles * sizeof *seen);
     size_t offsets = 0;
     for (size_t i = 0; i < g->links; i++) {

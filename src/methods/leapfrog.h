@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Leapfrog (kick, drift, kick) for a damped, loaded spring; the last half kick is solved for the velocity.
+ * Leapfrog (kick, drift, kick) for a damped, loaded spring. The last half kick is implicit in the damping.
  *
  * Method    kick   v' = v - (K x - A + q v)          K = w h/2,  A = a h/2,  q = g h/2
  *           drift  x1 = x + h v'
@@ -63,7 +63,7 @@ static step_terms leapfrog_terms(step_rates r)
 {
     const double a = r.a, c = r.c, q = r.G / 2, W = a * c;
     return (step_terms){
-        .share = 0.5,
+        .implicit = 0.5,
         .term = {[1] = {q, a, -c, -q}, {-W / 2, 0, 0, -W / 2}, {-q * W / 2, -q * q * a, c * W / 4, q * W / 2}},
     };
 }

@@ -10,7 +10,7 @@
  *           y'' = e^(g t/2) a + (g/2)^2 y. With growth E_i = e^(g c_i h/2) and d_i = X_i - x0:
  *               A_i = E_i (a(X_i) + (g/2)^2 d_i),   d_i = (c_i h v + h^2 sum a_ij A_j)/E_i,
  *           and the velocity is v1 = e^(-g h/2) (y' - g/2 y), written as v plus what it changes by.
- * Order     8. Undamped phase error after time T: 2.2e-8 omega^9 h^8 T; a share of 3.8e-8 z^10 of the energy is lost a
+ * Order     8. Undamped phase error after time T: 2.2e-8 omega^9 h^8 T; the relative loss of energy is 3.8e-8 z^10 a
  *           step, z = h omega.
  * Limit     z = 3.1402 without drag, larger with it. (There a gap begins that ends at 3.1417; the next is from 3.29 on.)
  *           From g h = 1400 on, in float 176, E is infinite.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One step of a method as a matrix, in powers of the step: what the error of a method is computed from (accuracy.c). */
+/* One step of a method as a matrix, in powers of the step. The error of a method follows from it: spring/accuracy.c. */
 #ifndef SPRINGSTEP_STEP_TERMS_H
 #define SPRINGSTEP_STEP_TERMS_H
 
@@ -19,9 +19,9 @@ typedef struct step_rates {
 
 enum { STEP_TERMS = 5 }; /* more than the largest power of h in a step */
 
-/* One step is (1 + term[1] + term[2] + ...)/(1 + share G), where term[k] is proportional to h^k; term[0] is not read. */
+/* One step is (1 + term[1] + term[2] + ...)/(1 + implicit G), where term[k] is proportional to h^k; term[0] is not read. */
 typedef struct step_terms {
-    double share; /* of a step, by which the damping is solved for */
+    double implicit; /* fraction of the step over which the damping is implicit */
     spring_matrix term[STEP_TERMS];
 } step_terms;
 
@@ -51,7 +51,7 @@ static inline spring_matrix next_power(spring_matrix power, spring_matrix Z, int
     return matrix_sum(none, 1.0 / k, matrix_product(power, Z));
 }
 
-/* Of a method that is the exponential series up to its order, as Runge-Kutta methods of up to four stages are. */
+/* The terms of a method that is the exponential series up to its order, as Runge-Kutta methods of up to four stages. */
 static inline step_terms exponential_terms(step_rates r, int order)
 {
     const spring_matrix Z = matrix_of(r);

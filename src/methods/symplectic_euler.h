@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Symplectic (semi-implicit) Euler for a damped, loaded spring; the damping is solved for.
+ * Symplectic (semi-implicit) Euler for a damped, loaded spring. The damping is implicit.
  *
  * Method    v1 = (v - ((h w) x - h a)) / (1 + q),   x1 = x + h v1,   q = h g
  *           Without damping two shears: they keep the phase-space area whatever the rounding, so the energy error stays
@@ -54,7 +54,7 @@ static double symplectic_euler_stable_step(const spring_roots *r)
 
 static step_terms symplectic_euler_terms(step_rates r)
 {
-    return (step_terms){.share = 1, .term = {[1] = {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
+    return (step_terms){.implicit = 1, .term = {[1] = {r.G, r.a, -r.c, 0}, {-r.a * r.c, 0, 0, 0}}};
 }
 
 static const method_row symplectic_euler_method = {

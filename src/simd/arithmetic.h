@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The arithmetic every file here needs: IEEE 754, in the declared type, one rounding an operation. Included first. */
+/* Checks and fixes the arithmetic that all sources need: IEEE 754, in the declared type, one rounding per operation. Included
+   first. */
 #ifndef SPRINGSTEP_ARITHMETIC_H
 #define SPRINGSTEP_ARITHMETIC_H
 
@@ -15,7 +16,7 @@
 #error "springstep needs types as declared; 32-bit x86: -msse2 -mfpmath=sse, s390x: -fexcess-precision=fast"
 #endif
 
-/* Those who drop src/ into a build of their own may forget -ffp-contract=off. gcc 12 ignores the standard pragma and
+/* A build that includes src/ may lack -ffp-contract=off. gcc 12 ignores the standard pragma and
    fuses in GNU mode. It also pairs x and v into one wide load, which then waits for the two narrow stores of the call
    before: spring_advance() by one step took 15 ns instead of 9. */
 #if defined(__clang__)
@@ -31,13 +32,13 @@
 _Static_assert((long long)9007199254740991.0 == 9007199254740991,
                "springstep needs constants in double: compile it without -fsingle-precision-constant");
 
-/* What the sources share and programs do not see: declarations, and definitions of tables. */
+/* Linkage of what the sources share and programs do not see: declarations, and definitions of tables. */
 #ifndef SPRING_INTERNAL
 #define SPRING_INTERNAL extern
 #define SPRING_TABLE
 #endif
 
-/* Vectors of GNU C. On 32-bit ARM those of floats would be instructions that take denormal numbers for 0. */
+/* Vector types of GNU C. On 32-bit ARM float vectors would use instructions that flush denormal numbers to 0. */
 #ifndef SPRING_VECTORS
 #if defined(__GNUC__) && !defined(__arm__)
 #define SPRING_VECTORS 1
@@ -46,7 +47,7 @@ _Static_assert((long long)9007199254740991.0 == 9007199254740991,
 #endif
 #endif
 
-/* Where a file may be compiled for instructions that the rest does without. */
+/* Whether functions may be compiled for an instruction set that the others do not use. */
 #ifndef SPRING_X86_64
 #if defined(__GNUC__) && defined(__x86_64__)
 #define SPRING_X86_64 1

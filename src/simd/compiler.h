@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* What compilers are told beyond C. */
+/* Compiler extensions. */
 #ifndef SPRINGSTEP_COMPILER_H
 #define SPRINGSTEP_COMPILER_H
 
 #if defined(__GNUC__)
 #define SPRING_INLINE              static inline __attribute__((always_inline)) /* constant flags vanish at -O1 too */
-#define SPRING_NOINLINE            static __attribute__((noinline))             /* kept out of the code that runs */
+#define SPRING_NOINLINE            static __attribute__((noinline)) /* keeps rare code out of the hot path */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #define SPRING_PREFETCH(address)   __builtin_prefetch(address)
 #else
@@ -15,7 +15,7 @@
 #define SPRING_PREFETCH(address)   (void)(address)
 #endif
 
-/* Before a loop whose arrays are to live in registers. For RISC-V without vectors clang unrolls no such loop, and warns. */
+/* Before a loop whose arrays should be kept in registers. For RISC-V without vectors clang unrolls no such loop, and warns. */
 #if defined(__clang__) && defined(__riscv) && !defined(__riscv_vector)
 #define SPRING_UNROLL
 #elif defined(__clang__)
@@ -26,7 +26,7 @@
 #define SPRING_UNROLL
 #endif
 
-/* Before a loop with a long body, which is to be there once. */
+/* Before a loop whose long body should not be repeated. */
 #if defined(__clang__)
 #define SPRING_ROLLED _Pragma("clang loop unroll(disable)")
 #elif defined(__GNUC__)

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the exact solution needs beyond + - * / and sqrt: the error of a product, powers of two, e^x, sine and cosine.
+ * Functions of the exact solution beyond + - * / and sqrt: the error of a product, powers of two, e^x, sine and cosine.
  * On `real`, in double, from multiplications, additions, integer operations and exact scalings alone: the same bits
  * lane by lane, and from every compiler, processor and C library.
  *
  * Method    The argument is taken to the nearest multiple of ln 2, or of pi/2, in two parts: multiples of the first,
  *           of few bits, are exact, so what is left over has the error of the second. Then Taylor's polynomial about 0,
- *           by Horner's rule: coefficients that everybody knows cost a term or two more than the best ones.
+ *           by Horner's rule: well-known coefficients, which need a term or two more than the best ones.
  * Special   NaN gives NaN; an infinite angle too. e^x of an infinite x is 0, or infinite.
  * Accuracy  e^x 1.1 ulp, 1 - e^x 1.6 ulp, sine and cosine 1.5 ulp and, of angles beyond 10^8, half an eps of the angle
  *           (tests/test_elementary.c)
@@ -110,7 +110,7 @@ SPRING_INLINE sine_cosine sine_cosine_of(real angle)
     const real quarter = known * two_over_pi + to_integer, q = quarter - to_integer;
     const real r = (known - q * half_pi_high) - q * half_pi_low, z = r * r;
     const real sine = r + r * z * polynomial(z, odd, 8);
-    const real near = 1 - z / 2; /* and what its rounding has lost: */
+    const real near = 1 - z / 2; /* its rounding error is added below */
     const real cosine = near + (((1 - near) - z / 2) + z * z * polynomial(z, even, 8));
     const real_bits turn = to_bits(quarter);
     const mask odd_turn = (turn & 1) != 0;

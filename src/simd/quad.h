@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Four numbers: the axes of one particle, side by side; those it does not have are 0. */
+/* Four numbers: the axes of one particle, side by side. Unused axes are 0. */
 #ifndef SPRINGSTEP_QUAD_H
 #define SPRINGSTEP_QUAD_H
 
@@ -20,14 +20,14 @@ SPRING_INLINE quad quad_all(scalar a)
     return quad_of(a, a, a, a);
 }
 
-/* Of the axes. */
+/* Over the three axes. */
 SPRING_INLINE scalar quad_dot(quad a, quad b)
 {
     const quad product = quad_times(a, b);
     return quad_at(product, 0) + quad_at(product, 1) + quad_at(product, 2);
 }
 
-/* Is none infinite or NaN? */
+/* Whether no number is infinite or NaN. */
 SPRING_INLINE bool quad_finite(quad a)
 {
     const quad zero = quad_minus(a, a);

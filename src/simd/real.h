@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the formulas compute with: `real`, one number for a single spring or a vector of them, one a spring, for a
- * batch.
+ * `real`, the type that formulas are written on: one number for a single spring, or a SIMD vector of springs.
  *
- * The file that includes this decides: SPRING_FLOAT for float instead of double, SPRING_VECTOR for vectors of so many
- * bytes. Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector.
- * Compilers without vectors of the GNU kind get one number, and whatever their loops make of it.
+ * The including file defines SPRING_FLOAT for float instead of double, and SPRING_VECTOR for vectors of so many bytes. Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector.
+ * Compilers without vector types of GNU C use one number.
  */
 #ifndef SPRINGSTEP_REAL_H
 #define SPRINGSTEP_REAL_H

@@ -9,7 +9,7 @@ SPRING_INLINE real splat(scalar s)
     return s - (real){0}; /* -0.0 stays -0.0 */
 }
 
-/* Not 0 in the lanes that are infinite or NaN. */
+/* Lanes that are infinite or NaN are not 0. */
 SPRING_INLINE mask not_finite(real a)
 {
     return (mask)(a - a);
@@ -20,7 +20,7 @@ SPRING_INLINE mask sign_bit(real a)
     return (mask)a & (mask)splat(-(scalar)0);
 }
 
-/* Is any bit set? */
+/* Whether any bit is set. */
 SPRING_INLINE bool any(mask t)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64

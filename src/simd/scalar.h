@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The number that springs are stored in: double, or with SPRING_FLOAT float. */
+/* The type that springs are stored in: double, or float with SPRING_FLOAT. */
 #ifndef SPRINGSTEP_SCALAR_H
 #define SPRINGSTEP_SCALAR_H
 

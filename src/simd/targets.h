@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Instruction sets: for which there are kernels, and which of them this processor has. */
+/* Instruction sets: those with kernels, and those of this processor. */
 #ifndef SPRINGSTEP_TARGETS_H
 #define SPRINGSTEP_TARGETS_H
 
@@ -12,7 +12,7 @@
 #endif
 
 /* Vectors longer than 16 bytes. gcc for Windows may keep them on the stack as if that were aligned to their length (GCC
-   bug 54412; not every build of it has the mend). */
+   bug 54412; not every build of it has the fix). */
 #if SPRING_X86_64 && !(defined(_WIN32) && !defined(__clang__))
 #define SPRING_LONG_VECTORS 1
 #else

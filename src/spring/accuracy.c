@@ -1,36 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How wrong n steps of a method are on a linear spring, whatever the start, and how many steps are accurate enough.
+ * The error of n steps of a method on a linear spring, for the worst start, and the number of steps for a given error.
  *
  * Method    On (x, v/Omega) a step is a matrix R, and the exact solution over a step is F = e^Z, so
  *
  *               E(n) = max over i <= n of |R^i - F^i|, the spectral norm.
  *
- *           R - F is small beside R: it is a power series in the step whose first terms cancel exactly, those up to the
- *           order, and is summed without them. What is carried from i to i + k steps is the advance F^i - 1 and the
- *           error R^i - F^i, by products that cancel nothing:
+ *           R - F is a power series in the step whose terms up to the order cancel exactly, so it is summed without
+ *           them. The advance F^i - 1 and the error R^i - F^i are carried from i to i + k steps without cancellation:
  *
  *               R^(i+k) - F^(i+k) = R^i (R^k - F^k) + (R^i - F^i) F^k
  *
- *           The maximum is looked for at every i while they are few; at so many times that there are enough of them in
- *           a period while periods are few; else at times in geometric progression, and there over all phases of the
- *           oscillation (envelope_at()), which is never below the error, and above it by a few parts in a hundred.
- * Search    E grows with the step, and is searched for the tolerance by its power law. Where damping is solved for,
- *           coarse steps may jump over a fast decay and be better than fine ones (symplectic Euler with heavy damping).
- *           So the search begins at a step that is short beside every time scale, where the power law holds, and goes
- *           from there to coarser ones, a twentieth at a time at most, until one is not accurate enough.
- * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are not counted, and never enough. The quotient of a
- *           duration and a step may round up from that number, by one ulp.
+ *           The maximum is searched at every i if there are few; at enough times of each period if there are few periods;
+ *           else at times in geometric progression, each over all phases of the oscillation (envelope_at()). That is never
+ *           below the error, and above it by a few percent.
+ * Search    E follows a power law for small steps. With implicit damping, large steps may skip a fast decay and be more
+ *           accurate than small ones (symplectic Euler with heavy damping). So the search starts with a step that is short
+ *           compared with every time scale, and enlarges it by a twentieth at most until the error exceeds the tolerance.
+ * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are never accurate enough.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
  *           (tests/test_accurate_step.c)
  * Source    Golub, Van Loan, Matrix Computations (2013), section 9.3 (the exponential by scaling and squaring);
  *           Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.3 (how errors add up)
  */
 #include "accuracy.h"
-
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "roots.h"
 
 static const spring_matrix matrix_identity = {1, 0, 0, 1};
@@ -108,12 +101,12 @@ static spring_matrix exact_advance(step_rates r)
     return sum;
 }
 
-/* R - F by the series; with q = share G
+/* R - F by the series; with q = implicit G
        (1 + q) (R - F) = sum over k > order of term[k] - Z^k/k! - q Z^(k-1)/(k-1)! */
 static spring_matrix short_error(const step_terms *t, step_rates r, int order)
 {
     const spring_matrix Z = matrix_of(r);
-    const double q = t->share * r.G;
+    const double q = t->implicit * r.G;
     spring_matrix power = matrix_identity, sum = {0};
     for (int k = 1; k < SERIES_TERMS; k++) {
         const spring_matrix before = power;
@@ -130,7 +123,7 @@ static spring_matrix short_error(const step_terms *t, step_rates r, int order)
 /* R - F = (R - 1) - (F - 1) */
 static spring_matrix long_error(const step_terms *t, step_rates r, spring_matrix advance)
 {
-    const double q = t->share * r.G;
+    const double q = t->implicit * r.G;
     spring_matrix sum = matrix_sum(t->term[1], -q, matrix_identity);
     for (int k = 2; k < STEP_TERMS; k++)
         sum = matrix_plus(sum, t->term[k]);
@@ -211,8 +204,8 @@ static void error_peak_add(error_peak *p, double t, double value)
         const double before = p->t[0] - p->t[1], after = t - p->t[0];
         const double rise = (p->value[0] - p->value[1]) / before, fall = (p->value[0] - value) / after;
         const double curve = (rise + fall) / (before + after),
-                     slope = (rise * after - fall * before) / (before + after);
-        p->most = fmax(p->most, p->value[0] + slope * slope / (4 * curve));
+                     derivative = (rise * after - fall * before) / (before + after);
+        p->most = fmax(p->most, p->value[0] + derivative * derivative / (4 * curve));
     }
     p->t[1] = p->t[0];
     p->value[1] = p->value[0];
@@ -261,7 +254,7 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
         if (stride > 1)
             error_peak_add(&p, i, value);
         else
-            p.most = fmax(p.most, value); /* there is nothing in between */
+            p.most = fmax(p.most, value); /* there are no steps in between */
     }
     const double left = to - (i - stride);
     if (left > 0)
@@ -303,7 +296,7 @@ static double most_at_powers(const step_run *level, int levels, double from, dou
         const double i = ldexp(1, j);
         if (2 * i <= from)
             continue;
-        if (from > 0 && s.i_before == 0) { /* nothing before this is looked at */
+        if (from > 0 && s.i_before == 0) { /* earlier samples do not count */
             s.before = level[j];
             s.i_before = i;
         }

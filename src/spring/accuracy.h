@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The error of the steps of a method on a spring, and the step that an error asks for; see accuracy.c. */
+/* The error of the steps of a method on a spring, and the steps for a given error; see accuracy.c. */
 #ifndef SPRINGSTEP_ACCURACY_H
 #define SPRINGSTEP_ACCURACY_H
 

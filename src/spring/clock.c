@@ -2,8 +2,8 @@
 /*
  * Fixed steps from frames of any length.
  *
- * Method    fmod() gives the exact remainder of the pending time by dt, so nothing is lost from frame to frame but the
- *           rounding of one addition.
+ * Method    fmod() gives the exact remainder of the pending time by dt, so a frame adds the rounding error of one
+ *           addition and no other.
  * Source    G. Fiedler, Fix your timestep (2004)
  */
 #include "../simd/arithmetic.h"

@@ -69,7 +69,7 @@ SPRING_INLINE exact_halves exact_halves_of(real x)
     return (exact_halves){power_of_two(y.k - k), power + power * y.e};
 }
 
-/* Numbers below this are nothing beside 1, even squared and many times. */
+/* Numbers below this do not change 1, even as a sum of many squares. */
 static const scalar exact_tiny = 0x1p-55;
 
 /* P/t^2 as the sum of h_n/(n + 2)!, h_n = -sum h_(n-1) - product h_(n-2), sum and product those of the roots times t:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How the exact solution moves any state over a time: what exact.c computes once from a spring and that time. */
+/* The exact solution over a given time as coefficients that apply to any state of a spring; see exact.c. */
 #ifndef SPRINGSTEP_PROPAGATOR_H
 #define SPRINGSTEP_PROPAGATOR_H
 

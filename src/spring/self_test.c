@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Is the arithmetic here what the library promises its bits on?
+ * Checks that the floating-point environment of this thread gives reproducible results.
  *
- * Method    Numbers that a compiler does not know are rounded, halved below the smallest normal number, multiplied and
- *           added. Then every method moves for a few steps what it can: a spring, alone and in batches, and a scene. A
- *           digest of the bits stands in its row.
+ * Method    Numbers that the compiler cannot fold are rounded, halved below the smallest normal number, multiplied and
+ *           added. Then every method takes a few steps of a spring, a batch and a scene, as far as it offers them. The
+ *           digest of the results must be the one in the entry of the method.
  * Source    FNV-1a: Fowler, Noll, Vo (1991)
  */
 #include <springstep/batch.h>
@@ -77,7 +77,7 @@ static uint64_t digest_of_springs(uint64_t digest, spring_method m)
 static uint64_t digest_of_scene(uint64_t digest, spring_method m)
 {
     const spring_link link = {.a = 0, .b = 1, .rest = 1.25, .stiffness = test_stiffness};
-    unsigned char room[(1 << 14) + SPRING_SCENE_ALIGN]; /* compilers align less on the stack than _Alignas asks for */
+    unsigned char room[(1 << 14) + SPRING_SCENE_ALIGN]; /* some compilers ignore large _Alignas on the stack */
     unsigned char *memory = room + (SPRING_SCENE_ALIGN - (uintptr_t)room % SPRING_SCENE_ALIGN);
     double position[] = {test_x, test_v, 1 - test_x, 1 + test_v};
     const spring_scene_def def = {.axes = 2,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What spring_self_test() asks of a method. */
+/* The digests of methods for spring_self_test(). */
 #ifndef SPRINGSTEP_SELF_TEST_H
 #define SPRINGSTEP_SELF_TEST_H
 
@@ -10,8 +10,8 @@
 /* Only the whole library has digests: see springstep.c about leaving parts out. */
 #if !defined(SPRING_NO_BATCH) && !defined(SPRING_NO_SCENE) && !defined(SPRING_NO_FLOAT)
 #define SPRING_WHOLE
-SPRING_INTERNAL uint64_t spring_digest_of_method(spring_method m); /* of a short run here and now */
-SPRING_INTERNAL uint64_t spring_expected_digest(spring_method m);  /* what that is where bits are right */
+SPRING_INTERNAL uint64_t spring_digest_of_method(spring_method m); /* of a short run on this machine */
+SPRING_INTERNAL uint64_t spring_expected_digest(spring_method m);  /* the digest of correct results */
 #endif
 
 #endif

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The settling time: when a spring has come to rest.
+ * The settling time of a spring.
  *
  * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
  *           oscillating spring, at most one for an overdamped one. The swings at these turning points shrink by a fixed
  *           factor; after the last one beyond x_tol y enters the band for good. The first turning point and the crossing
- *           are found by bisection of time on the exact solution: whoever walks through the same bits gets the same time.
+ *           are found by bisection of time on the exact solution: the same solution gives the same time, bit for bit.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load. At an infinite time the exact
  *           solution is NaN, which ends every search.
  * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One spring: checks, dispatch, and the questions one can ask of it.
+ * One spring: checks, dispatch, energy, stable and accurate steps, parameters, texts.
  */
 #include "../methods/methods.h"
 #include "accuracy.h"
@@ -135,8 +135,8 @@ double spring_step_error(const spring_params *p, spring_method m, double duratio
 static spring_params params_of(double omega, double damping_ratio)
 {
     const spring_params p = {.mass = 1, .stiffness = omega * omega, .damping = 2 * damping_ratio * omega};
-    const bool lost = omega > 0 && p.stiffness < DBL_MIN; /* by underflow */
-    return spring_params_valid(&p) && !lost ? p : (spring_params){NAN, NAN, NAN, NAN};
+    const bool underflows = omega > 0 && p.stiffness < DBL_MIN;
+    return spring_params_valid(&p) && !underflows ? p : (spring_params){NAN, NAN, NAN, NAN};
 }
 
 spring_params spring_params_hertz(double hertz, double damping_ratio)
