@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Batches against single springs, with one instruction set: v128, v256 or v512 on the command line. Built twice: once
- * with SPRING_FLOAT, for the twins in float.
+ * with SPRING_FLOAT, for the single-precision version.
  *
  * In double a spring is what spring_advance() makes of it. In float it is what the kernels without vectors make of it,
  * and that lies near what spring_advance() makes of it in double.

@@ -451,7 +451,7 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle is
  *         too large, or a count. Nothing is written after an error
  * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969), and chains through its
- *                numbering, src/renumber.c
+ *                numbering, src/mesh/renumber.c
  */
 SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, spring_link *link, uint32_t *order,
                                                uint32_t *link_order, uint32_t *work);

@@ -176,7 +176,7 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *                of the exact one, omega = sqrt(stiffness/mass), zeta the damping ratio, Phi the propagator of
  *                (x, v/omega), all norms Euclidean; critical damping is no exception. What a load a = load/mass adds to
  *                x is within 8 eps (1 + omega t) of itself, or of a/omega^2 where it oscillates (tests/test_exact.c)
- * @par Source    src/exact_formula.h derives the formula
+ * @par Source    src/spring/exact_formula.h derives the formula
  * @par Threads   re-entrant; allocates nothing, keeps nothing
  */
 SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, double dt);
@@ -219,7 +219,7 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
  *
  * @return limit [s], to 8 ulp. 0: never stable (Euler without damping). INFINITY: always (the exact solution; no force
  *         at all; leapfrog without stiffness). NaN for bad parameters or an unknown method.
- * @par Source    the header of each method, such as src/rk4.h, derives its limit
+ * @par Source    the header of each method, such as src/methods/rk4.h, derives its limit
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 
@@ -241,7 +241,7 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  *         `duration` for the exact solution. NaN for bad input, and a method that is not for one spring
  * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
  *                (tests/test_accurate_step.c)
- * @par Source    src/accuracy.c derives the error
+ * @par Source    src/spring/accuracy.c derives the error
  */
 SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance);
 
