@@ -2,7 +2,7 @@
 /*
  * Ropes, sheets and blocks: the particles and links of a regular grid.
  *
- * Links are listed by their first particle, which makes bands of them in a scene (scene_init.c).
+ * Links are listed by their first particle, so that they form bands in a scene (scene/layout.c).
  */
 #include "../simd/arithmetic.h"
 
@@ -42,7 +42,7 @@ static double stretch_of(const spring_grid *g)
     return g->stretch == 0 ? 1 : g->stretch;
 }
 
-static bool wanted(const spring_grid *g, const direction *d)
+static bool has_family(const spring_grid *g, const direction *d)
 {
     return ((g->families == 0 ? SPRING_GRID_STRUCTURAL : g->families) & d->family) != 0;
 }
@@ -55,7 +55,8 @@ static bool valid(const spring_grid *g)
     if (g == NULL || axes_of_grid(g) > 3 || (g->height && g->axes > 1) || (g->families & ~families) != 0 ||
         (g->pinned & ~faces) != 0)
         return false;
-    for (int a = (int)axes_of_grid(g); a < 3 && !g->height; a++) /* nothing may lie along an axis that is not there */
+    for (int a = (int)axes_of_grid(g); a < 3 && !g->height;
+         a++) /* no particles along an axis that positions do not have */
         if (count_of(g, a) > 1)
             return false;
     const double longest = 4; /* spacings: no link is longer */
@@ -67,7 +68,7 @@ static bool valid(const spring_grid *g)
            spring_finite(g->damping);
 }
 
-/* Links in one direction: as many as there are places for them along each axis. */
+/* The number of links in one direction. */
 static uint64_t links_along(const spring_grid *g, const direction *d)
 {
     uint64_t links = 1;
@@ -87,7 +88,7 @@ spring_status spring_grid_size(const spring_grid *g, size_t *particles, size_t *
         return SPRING_ERANGE;
     uint64_t sum = 0;
     for (int d = 0; d < direction_count; d++)
-        if (wanted(g, &directions[d]))
+        if (has_family(g, &directions[d]))
             sum += links_along(g, &directions[d]);
     if (sum > SIZE_MAX)
         return SPRING_ERANGE;
@@ -106,7 +107,7 @@ static bool on_pinned_face(const spring_grid *g, const uint32_t at[3])
     return false;
 }
 
-/* The index of the particle at the other end, or that of this one where there is none. */
+/* The index of the particle at the other end, or `index` if there is none. */
 static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t index, const direction *d)
 {
     uint32_t other = index, stride = 1;
@@ -142,7 +143,7 @@ spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *
         if (pinned != NULL)
             pinned[i] = on_pinned_face(g, at);
         for (int d = 0; d < direction_count && link != NULL; d++) {
-            const uint32_t other = wanted(g, &directions[d]) ? neighbour(g, at, i, &directions[d]) : i;
+            const uint32_t other = has_family(g, &directions[d]) ? neighbour(g, at, i, &directions[d]) : i;
             if (other != i)
                 *link++ = make_link(g, i, other, &directions[d]);
         }

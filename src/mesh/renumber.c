@@ -2,7 +2,7 @@
 /*
  * A numbering of particles that places joined particles near each other in memory.
  *
- * Method    Links of constant offset between their ends make bands (scene_init.c). Cuthill and McKee number breadth
+ * Method    Links with a constant offset between their ends form bands (scene/layout.c). Cuthill and McKee number breadth
  *           first from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
  *           Chains through that numbering, each particle behind the last numbered of its neighbours that has none
  *           behind it yet, are the rows of a sheet, if only the shortest links are followed: those along rows. Where

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The closed-form solution of a damped, loaded spring, on `real`: one spring, or a vector of them.
+ * The exact (closed-form) solution of a damped, loaded spring, on `real`: one spring or a SIMD vector of springs.
  *
  * Method    With b = g/2 and D = w - b^2, and h = (1 - d)/gap, d = e^(-gap |t|), where the roots p < q are real:
  *
@@ -10,15 +10,14 @@
  *                                                                       G = d - p h     split = sqrt(-D)
  *                                                 E = e^(-qt), F = d - p h, G = 1 + p h, H = -h    for t < 0
  *
- *           q = b + split, p = w/q, gap = 2 split. No difference here cancels more than the solution does, and both
+ *           q = b + split, p = w/q, gap = 2 split. No difference cancels more than the solution itself does, and both
  *           forms hold up to critical damping, where H = t. P, the integral of E H, is (1 - E F)/w, or, with real
  *           roots, ((1 - e^(-pt))/p - E H)/q; where the larger root times t is below 1 both cancel, and P is the power
  *           series of t^2 times a divided difference of the exponential at 0 and the roots. Powers of two of E are
- *           applied in two halves, so that a large start times a tiny factor is neither 0 nor infinite before it has
- *           to be.
+ *           applied in two halves, so that a large start times a tiny factor does not overflow or underflow early.
  * Special   w = 0 is a free particle; t that is not finite gives NaN.
- * Accuracy  see spring.h; tests/test_exact.c prints how near the bound it comes. Without the rounding errors of w and
- *           of b^2 it would be hundreds of times the bound near critical damping.
+ * Accuracy  see spring.h; tests/test_exact.c prints the largest error found. Without the rounding errors of w and b^2 it
+ *           would be hundreds of times the bound near critical damping.
  * Source    textbook; divided differences: Higham, Functions of Matrices (2008), section B.16
  */
 #ifndef SPRINGSTEP_EXACT_FORMULA_H
@@ -57,7 +56,7 @@ SPRING_INLINE exact_decay exact_decay_of(real x)
     return (exact_decay){(1 - power) - part, power + part};
 }
 
-/* e^x as a product of two numbers, which neither underflow nor overflow long after it does */
+/* e^x as a product of two numbers, which overflow or underflow much later than e^x */
 typedef struct exact_halves {
     real half, other; /* half is a power of two */
 } exact_halves;

@@ -2,8 +2,8 @@
 /*
  * The characteristic roots of a spring, r^2 + (c/m) r + k/m = 0, without cancellation.
  *
- * Method    w - b^2 is all rounding error near critical damping. So the square carries its own error along, exactly, and
- *           so do the quotients w = k/m and g = c/m: n/d = q + (n - q d)/d to twice the precision.
+ * Method    Near critical damping w - b^2 is nothing but rounding error. So the exact rounding error of the square is added,
+ *           and so are those of the quotients w = k/m and g = c/m: n/d = q + (n - q d)/d to twice the precision.
  * Accuracy  omega, b, and split: 2 eps, relative, at every damping ratio
  * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
@@ -11,15 +11,15 @@
 #include "roots.h"
 #include "split.h"
 
-/* n - q d, where q is n/d rounded: a number. */
+/* n - q d, where q is n/d rounded; exact */
 static double remainder_of(double n, double d, double q)
 {
     const double product = q * d;
     return (n - product) - product_error(q, d, product);
 }
 
-/* n/d - q, the rounding error of the quotient q, of numbers of any size. A denormal q is off by much more than eps of
-   it, and is the spring that the steppers move: at most half of the least number, its error is rounded to 0. */
+/* n/d - q, the rounding error of the quotient q, for numbers of any size. The error of a denormal q is much more than eps q,
+   but the steppers use q itself: the error, at most half of the smallest number, is rounded to 0. */
 static double rest_of(double n, double d, double q)
 {
     int by_n, by_d, by_q;
@@ -29,7 +29,7 @@ static double rest_of(double n, double d, double q)
     return ldexp(remainder_of(ldexp(n, by_n - by_d - by_q), d, q) / d, by_q);
 }
 
-/* Neither it, nor its product with another one, nor the error of that is near the ends of what there is. */
+/* Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
 static bool moderate(double a)
 {
     return a > 0x1p-400 && a < 0x1p400;

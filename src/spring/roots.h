@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The roots of r^2 + g r + w, the characteristic equation of a spring, free of cancellation. */
+/* The roots of the characteristic equation of a spring, r^2 + gamma r + omega^2 = 0, without cancellation. */
 #ifndef SPRINGSTEP_ROOTS_H
 #define SPRINGSTEP_ROOTS_H
 
@@ -10,8 +10,8 @@
 
 #include <springstep/spring.h>
 
-/* -b +- i split, or -b +- split where overdamped. Every quotient and square root enters with its own rounding error
-   added back, so that w - b^2 has full relative accuracy even where it is all but zero (critical damping). */
+/* The roots are -b +- i split, or -b +- split if overdamped. The rounding errors of all quotients and squares are added
+   back, so that omega^2 - b^2 has full relative accuracy even near critical damping. */
 typedef struct spring_roots {
     double omega2;   /* [1/s^2] stiffness/mass, rounded once */
     double omega;    /* [1/s]   sqrt(stiffness/mass) */
@@ -20,12 +20,12 @@ typedef struct spring_roots {
     bool overdamped; /*         omega < b */
 } spring_roots;
 
-/* omega^2 - b^2 = w - b^2 + rest */
+/* omega2 and b rounded; the exact omega^2 - b^2 is omega2 - b^2 + rest */
 typedef struct spring_quotients {
     double omega2, b, rest;
 } spring_quotients;
 
-/* k, c, m: stiffness, damping, mass. By value: clang 14 would read two at once, and wait for a caller's two stores. */
+/* k, c, m: stiffness, damping, mass. By value, since clang 14 would load two of them at once and wait for two stores. */
 SPRING_INTERNAL spring_quotients spring_quotients_of(double k, double c, double m);
 
 SPRING_INTERNAL spring_roots spring_roots_of(const spring_params *p);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How far the roots of a spring lie apart, on `real`, in double: see roots.h. */
+/* The distance between the roots of a spring, on `real`, in double: see roots.h. */
 #ifndef SPRINGSTEP_SPLIT_H
 #define SPRINGSTEP_SPLIT_H
 
@@ -13,12 +13,12 @@ typedef struct spring_split {
     mask overdamped;
 } spring_split;
 
-/* rest: what rounding has taken from w - b^2 before. */
+/* rest: the rounding error of w - b^2, where w is omega^2 rounded */
 SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
 {
     real scale = splat(1), back = splat(1);
     const mask large = (b > 0x1p400) | (w > 0x1p800), small = (b < 0x1p-400) & (w < 0x1p-800);
-    if (SPRING_UNLIKELY(any(large | small))) { /* squares, or their errors, might overflow or underflow */
+    if (SPRING_UNLIKELY(any(large | small))) { /* squares or their rounding errors might overflow or underflow */
         scale = select_real(large, splat(0x1p-700), select_real(small, splat(0x1p600), scale));
         back = select_real(large, splat(0x1p700), select_real(small, splat(0x1p-600), back));
     }
