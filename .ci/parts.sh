@@ -98,6 +98,24 @@ install_packages() {
     apt-get -q update && apt-get -q -y install --no-install-recommends "$@"
 }
 
+# build_and_test NAME SUITES MESON-OPTION...: all tests except those of the named suites
+build_and_test() {
+    local build=$work/$1 without status=0
+    read -ra without <<<"$2"
+    shift 2
+    meson setup "$build" "$tree" -Dwerror=true -Dtools=enabled -Dtests=enabled -Dreport=disabled "$@" &&
+        meson compile -C "$build" || return
+    meson test -C "$build" --no-rebuild --print-errorlogs "${without[@]/#/--no-suite=}" || status=1
+    python3 "$tree/tools/count_tests.py" "$build/meson-logs" || status=1
+    return $status
+}
+
+# under_sanitizers SUITES: the tests except those of the named suites. Without -fno-sanitize-recover a sanitizer prints its
+# finding and the test passes.
+under_sanitizers() {
+    CC=gcc build_and_test sanitizers "$1" -Db_sanitize=address,undefined -Db_lundef=false -Dc_args=-fno-sanitize-recover=all
+}
+
 # Last: the table and the sum of the counts; its status is that of the script.
 finish() {
     row total $SECONDS ''

@@ -97,7 +97,7 @@ export class Controls {
     checked(what, value, good, usual) {
         this.remark = good
             ? ""
-            : `The page does not offer ${what} ${value}; it uses ${usual || "its default"}.`;
+            : `The ${what} ${value} is not offered. The page uses ${usual || "its default"}.`;
         return good ? value : usual;
     }
 
