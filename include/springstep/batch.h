@@ -90,8 +90,9 @@ typedef struct spring_batchf {
  */
 SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);
 
-/** The same in float. */
-SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, float dt, uint64_t n);
+/** The single-precision version. dt is rounded to float once, at the start. A dt that rounds to 0 changes nothing and is
+   SPRING_OK; a dt that is not finite as a float is SPRING_EINVAL. */
+SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, double dt, uint64_t n);
 
 /**
  * spring_batch_advance(), and which springs have kept their state. As fast where none has; each group of some hundred
@@ -104,8 +105,8 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
 SPRING_API spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,
                                                      uint8_t *failed);
 
-/** The same in float. */
-SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, spring_method m, float dt, uint64_t n,
+/** The single-precision version; dt as in spring_batchf_advance(). */
+SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, spring_method m, double dt, uint64_t n,
                                                       uint8_t *failed);
 
 /**
@@ -118,8 +119,9 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
  */
 SPRING_API double spring_batch_stable_step(const spring_batch *b, spring_method m);
 
-/** The same in float: computed in double, rounded once. */
-SPRING_API float spring_batchf_stable_step(const spring_batchf *b, spring_method m);
+/** The single-precision version. The result is computed in double and rounded to float once, so it is a float value, and
+   INFINITY above FLT_MAX. */
+SPRING_API double spring_batchf_stable_step(const spring_batchf *b, spring_method m);
 
 #ifdef __cplusplus
 }

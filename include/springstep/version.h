@@ -10,7 +10,7 @@
 #define SPRING_VERSION "0.3.0"
 
 /** Of the shared library: changes when programs that were compiled for the last release would not run any more. */
-#define SPRING_SOVERSION "0"
+#define SPRING_SOVERSION "0.3"
 
 /** @def SPRING_API
  * The mark of a public function: exported from a shared library. */
