@@ -248,8 +248,8 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  * @param[in] duration   > 0 [s]
  * @param[in] tolerance  > 0, relative to the start
  * @return time step [s]. 0: there is none, because the rounding error of n steps, sqrt(n) eps, exceeds the tolerance,
- *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered for
- *         one spring.
+ *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
+ *         for one spring.
  * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
  *                (tests/test_accurate_step.c)
  * @par Source    src/spring/accuracy.c derives the error
