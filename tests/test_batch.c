@@ -19,7 +19,7 @@
 
 static const batch_kernels *kernels;
 
-static spring_status advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
+static spring_status advance(const spring_batch *b, spring_method m, double dt, uint64_t n)
 {
     return spring_batch_advance_with(kernels, b, m, dt, n);
 }
@@ -566,14 +566,14 @@ static void nothing_to_do(void)
 
 static scalar memory[400];
 
-static spring_status ask(const spring_batch *b, spring_method m, scalar dt)
+static spring_status ask(const spring_batch *b, spring_method m, double dt)
 {
     for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
         memory[i] = (scalar)0.5 + (scalar)i / 1024;
     return advance(b, m, dt, 3);
 }
 
-static void refuse(const spring_batch *b, spring_method m, scalar dt, const char *why)
+static void refuse(const spring_batch *b, spring_method m, double dt, const char *why)
 {
     uint8_t failed = 77;
     CHECK(ask(b, m, dt) == SPRING_EINVAL, why);
@@ -582,7 +582,7 @@ static void refuse(const spring_batch *b, spring_method m, scalar dt, const char
     for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++)
         same = same && memory[i] == (scalar)0.5 + (scalar)i / 1024;
     CHECK(same, "nothing has changed");
-    if (isfinite(dt)) /* what is wrong is the batch or the method */
+    if (isfinite((scalar)dt)) /* what is wrong is the batch or the method */
         CHECK(isnan(spring_batch_stable_step(b, m)), why);
 }
 
@@ -680,6 +680,45 @@ static void bad_shared_parameters(void)
         }
 }
 
+#ifdef SPRING_FLOAT
+
+/* A time step is double in both precisions. Here it is rounded to float once, at the start. */
+static void steps_are_rounded(void)
+{
+    const double rounded[] = {0.05, -1.0 / 3, 0x1.fffffefffffffp127, 0x1.8p-149, -0x1p-130 / 3};
+    const double zero[] = {0x1p-150, -0x1p-151, 1e-300, -DBL_TRUE_MIN};
+    const double too_large[] = {0x1.ffffffp127, 1e39, -1e300, DBL_MAX, NAN, INFINITY, -INFINITY};
+    const features each = {EACH, EACH, EACH};
+    static place got, want;
+    uint8_t failed[129];
+    draw(0);
+    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
+        for (size_t k = 0; k < sizeof rounded / sizeof rounded[0]; k++)
+            for (size_t shared = 0; shared < feature_count; shared++) {
+                const spring_batch b = lay_out(&got, springs, 129, features_of(shared));
+                spring_batch c = b;
+                want = got;
+                c.x = want.of[0] + (b.x - got.of[0]);
+                c.v = want.of[1] + (b.v - got.of[1]);
+                CHECK(spring_batch_advance(&b, *m, rounded[k], 3) == advance(&c, *m, (float)rounded[k], 3),
+                      "the step is rounded");
+                check_place(&got, &want, "the step is rounded");
+            }
+        for (size_t k = 0; k < sizeof zero / sizeof zero[0]; k++) {
+            const spring_batch b = lay_out(&got, springs, 129, each);
+            want = got;
+            CHECK(advance(&b, *m, zero[k], UINT64_MAX) == SPRING_OK, "a step that rounds to 0");
+            CHECK(spring_batch_advance_marked(&b, *m, zero[k], UINT64_MAX, failed) == SPRING_OK && failed[128] == 0,
+                  "a step that rounds to 0");
+            check_place(&got, &want, "changes nothing");
+        }
+        for (size_t k = 0; k < sizeof too_large / sizeof too_large[0]; k++)
+            refuse(&good, *m, too_large[k], "a step that is not finite as a float");
+    }
+}
+
+#endif
+
 /* ------------------------------------------------------------------------------------------------------- stable
    step */
 
@@ -689,8 +728,8 @@ static void stable_step(void)
     const spring_batch empty = {0}, empty_shared = {.omega2 = &step, .shared = SPRING_SHARED_OMEGA2};
     for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         const spring_method method = *m;
-        CHECK_BITS((double)spring_batch_stable_step(&empty, method), INFINITY, "no springs");
-        CHECK_BITS((double)spring_batch_stable_step(&empty_shared, method), INFINITY, "no springs");
+        CHECK_BITS(spring_batch_stable_step(&empty, method), INFINITY, "no springs");
+        CHECK_BITS(spring_batch_stable_step(&empty_shared, method), INFINITY, "no springs");
         for (size_t k = 0; k < feature_count; k++) {
             const features f = features_of(k);
             for (size_t count = 1; count < 40; count += 19) {
@@ -701,9 +740,9 @@ static void stable_step(void)
                     least = fmin(least, spring_stable_step(&one, method));
                 }
                 const spring_batch b = lay_out(&p, springs, count, f);
-                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least, "the least of all");
+                CHECK_BITS(spring_batch_stable_step(&b, method), (double)(scalar)least, "the least of all");
                 b.x[0] = NAN;
-                CHECK_BITS((double)spring_batch_stable_step(&b, method), (double)(scalar)least, "whatever the state");
+                CHECK_BITS(spring_batch_stable_step(&b, method), (double)(scalar)least, "whatever the state");
             }
         }
         for (size_t i = 0; i < 30; i++) { /* one bad spring */
@@ -826,6 +865,7 @@ int main(int argc, char **argv)
         {"bad shared parameters", bad_shared_parameters},
         {"stable step", stable_step},
 #ifdef SPRING_FLOAT
+        {"a step is rounded to float", steps_are_rounded},
         {"near double", near_double},
         {"exact solution near double", exact_near_double},
 #endif

@@ -17,7 +17,7 @@ static const float field = 100;        /* [m]; blade i stands at field * i / BLA
 static const float gust_speed = 8;     /* [m/s] */
 static const float gust_length = 5;    /* [m] */
 static const float gust_strength = 40; /* [m/s^2] on the tip of a blade */
-static const float dt = 1.0f / 120;    /* [s] */
+static const double dt = 1.0 / 120;    /* [s] */
 
 static float place(int i)
 {
@@ -25,10 +25,11 @@ static float place(int i)
 }
 
 /* A hill with its top at gust_speed * t, of finite length: most blades need no arithmetic. */
-static void blow(float *accel, float t)
+static void blow(float *accel, double t)
 {
+    const float top = (float)(gust_speed * t);
     for (int i = 0; i < BLADES; i++) {
-        const float d = (place(i) - gust_speed * t) / gust_length;
+        const float d = (place(i) - top) / gust_length;
         const float h = 1 - d * d;
         accel[i] = h > 0 ? gust_strength * h * h : 0;
     }
@@ -58,7 +59,7 @@ int main(void)
     if (!(dt < spring_batchf_stable_step(&grass, SPRING_LEAPFROG)))
         return 1;
     for (int step = 0; step < 1200; step++) {
-        blow(accel, ((float)step + 0.5f) * dt);
+        blow(accel, (step + 0.5) * dt);
         if (spring_batchf_advance(&grass, SPRING_LEAPFROG, dt, 1) != SPRING_OK)
             return 1;
         if ((step + 1) % 120 != 0)
@@ -71,9 +72,9 @@ int main(void)
             sum += tip[i];
             sum_place += tip[i] * place(i);
         }
-        const float t = (float)(step + 1) * dt;
-        printf("%4.1f s  gust at %6.2f m  grass bent around %6.2f m  most %.3f m  at the far end %.6f m\n", (double)t,
-               (double)(gust_speed * t), sum_place / sum, (double)tip[most], (double)tip[BLADES - 1]);
+        const double t = (step + 1) * dt;
+        printf("%4.1f s  gust at %6.2f m  grass bent around %6.2f m  most %.3f m  at the far end %.6f m\n", t,
+               gust_speed * t, sum_place / sum, (double)tip[most], (double)tip[BLADES - 1]);
     }
     free(memory);
     return 0;

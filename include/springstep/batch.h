@@ -1,23 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /** @file
- * springstep: many independent springs at once, as structures of arrays.
+ * springstep: simulation of many independent springs, stored as structures of arrays.
  *
  *     x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'
  *
- *     double x[1000], v[1000], omega2[1000];                         // yours; aligned as any array of double is
+ *     double x[1000], v[1000], omega2[1000];                         // owned by you; any alignment of double
  *     const double gamma = 0.3;
  *     spring_batch b = {1000, x, v, omega2, &gamma, NULL, SPRING_SHARED_GAMMA};
  *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
- * What holds for every function here, beside what spring.h says:
- *  - Bits. In double, advancing spring i is bitwise identical to advancing the single spring {1, omega2[i], gamma[i],
- *    accel[i]}, in every batch, at every index, with every instruction set. So a batch may be split by pointer, to use
- *    threads. A float spring does the same arithmetic in float; its bits do not depend on its index either.
- *  - An array that is NULL is not modelled: it is neither read nor computed with. An array that is shared has one
- *    element. docs/performance.md says what each feature costs.
- *  - Each call reads and writes the state once, however many steps it takes.
- *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor has is used; elsewhere what the compiler makes
- *    of 16-byte vectors, or of plain loops.
+ * These rules hold for every function in this file, in addition to those in spring.h:
+ *  - Determinism. In double precision, advancing spring i is bit-identical to advancing the single spring
+ *    {1, omega2[i], gamma[i], accel[i]}: in every batch, at every index, with every instruction set. A batch may
+ *    therefore be split by pointer, to use threads. In single precision the same arithmetic is done in float, and the
+ *    results do not depend on the index either.
+ *  - A feature whose array is NULL is disabled: it is neither read nor computed. A shared array has one element.
+ *    docs/performance.md lists the cost of each feature.
+ *  - Each call reads and writes the state once, for any number of steps.
+ *  - On x86-64 the widest of SSE2, AVX2 and AVX-512 that the processor supports is used. Elsewhere the compiler's code
+ *    for SIMD vectors of 16 bytes is used, or plain loops.
  */
 #ifndef SPRINGSTEP_BATCH_H
 #define SPRINGSTEP_BATCH_H
@@ -31,21 +32,22 @@ extern "C" {
 #endif
 
 #define SPRING_SHARED_OMEGA2 UINT32_C(1) /**< for spring_batch.shared: one omega2 for all springs */
-#define SPRING_SHARED_GAMMA  UINT32_C(2) /**< one gamma */
-#define SPRING_SHARED_ACCEL  UINT32_C(4) /**< one accel */
+#define SPRING_SHARED_GAMMA  UINT32_C(2) /**< one gamma for all springs */
+#define SPRING_SHARED_ACCEL  UINT32_C(4) /**< one accel for all springs */
 
-/** A batch. Zero-initialise what is not modelled. x and v overlap nothing; the others may be the same array. */
+/** A batch. Leave features that you do not use at zero. x and v must not overlap each other or another array. The other
+   arrays may be the same array. */
 typedef struct spring_batch {
-    size_t count;         /**< springs */
+    size_t count;         /**< number of springs */
     double *x;            /**< [count] displacement from the unloaded rest position [m] */
     double *v;            /**< [count] velocity [m/s] */
     const double *omega2; /**< [count] stiffness/mass [1/s^2] >= 0; required */
-    const double *gamma;  /**< [count] damping/mass [1/s] >= 0; NULL: not modelled, not paid for */
-    const double *accel;  /**< [count] load/mass [m/s^2];       NULL: not modelled, not paid for */
+    const double *gamma;  /**< [count] damping/mass [1/s] >= 0; NULL: no damping, at no cost */
+    const double *accel;  /**< [count] load/mass [m/s^2];       NULL: no load, at no cost */
     uint32_t shared;      /**< SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL */
 } spring_batch;
 
-/** A batch in float: half the memory, half the time. */
+/** The single-precision version of spring_batch: half the memory, half the time. */
 typedef struct spring_batchf {
     /** As in spring_batch.
      * @{ */
@@ -59,67 +61,74 @@ typedef struct spring_batchf {
 } spring_batchf;
 
 /**
- * Advance every spring of a batch by n steps.
+ * Advances every spring of a batch by n steps.
  *
- * Each spring for itself: one that would become non-finite keeps its state, and all others advance. So does one that
- * spring_advance() would refuse, because its state or one of its own parameters is not finite or a parameter is
- * negative. What concerns the whole batch is checked first, and then nothing changes. A count of 0, n = 0 and dt = 0
- * change nothing, and the springs are not looked at.
+ * The batch as a whole is checked first; if it is invalid, nothing changes. Otherwise each spring succeeds or fails
+ * alone. A spring that would become non-finite keeps its state, and all others advance. The same holds for a spring
+ * that spring_advance() would reject, because its state or one of its own parameters is not finite or a parameter is
+ * negative. With a count of 0, n = 0 or dt = 0, nothing changes and the springs are not checked.
  *
- * SPRING_EXACT is one evaluation over n dt. With omega2 shared and gamma shared or NULL its coefficients are computed
- * once, and a spring costs six multiplications and two additions; otherwise each spring has its own, in vectors too.
- * In float, shared coefficients are computed in double and rounded once, and a spring with parameters of its own is
- * moved in double and rounded at the end: here, and only here, sharing changes the last bit.
+ * SPRING_EXACT is one evaluation over n dt. If omega2 is shared, and gamma is shared or NULL, its coefficients are
+ * computed once, and a spring costs six multiplications and two additions. Otherwise each spring has its own
+ * coefficients, also computed with SIMD. In single precision, shared coefficients are computed in double and rounded
+ * once, while a spring with its own coefficients is advanced in double and rounded at the end. This is the only case in
+ * which sharing changes the last bit.
  *
- * Far below 1e-308 (1e-38 in float) numbers become denormal, as a damped spring's do when it has settled, and on many
- * processors slow. Nothing is cut off here, since that would change bits: leave settled springs out, or let the
- * processor flush denormals to zero in the threads that do this work.
+ * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
+ * processors. They are not set to zero, because that would change bits. Leave settled springs out of the batch, or let
+ * the processor flush denormal numbers to zero in the threads that advance it.
  *
- * @param[in,out] b   the batch
+ * @param[in,out] b   batch
  * @param[in]     m   method
- * @param[in]     dt  finite step [s]; negative runs backwards
+ * @param[in]     dt  finite time step [s]; a negative step integrates backwards
  * @param[in]     n   number of steps
  * @return SPRING_OK: all springs advanced.
- *         SPRING_EINVAL, nothing changed: b, x, v or omega2 NULL; x or v overlapping another array; an unknown method
- *         or bit in shared; dt or a shared parameter not finite, or negative where it must not be.
- *         SPRING_EUNSUPPORTED, nothing changed: a method for scenes alone.
- *         SPRING_EINVAL, all others advanced: a spring's own state or parameters are not valid.
- *         SPRING_ENONFINITE, all others advanced: a spring would have become non-finite. A group of neighbours that
- *         have all overflowed is given up within SPRING_CHECK_INTERVAL steps.
- * @par Threads   re-entrant; allocates nothing, keeps nothing; distinct ranges of one batch may be advanced at once
+ *         SPRING_EINVAL, nothing changed: b, x, v or omega2 is NULL; x or v overlaps another array; unknown method or
+ *         bit in shared; dt or a shared parameter is not finite, or a shared parameter is negative where it must not
+ *         be.
+ *         SPRING_EUNSUPPORTED, nothing changed: a method for scenes only.
+ *         SPRING_EINVAL, all other springs advanced: a spring's own state or parameters are invalid.
+ *         SPRING_ENONFINITE, all other springs advanced: a spring would have become non-finite. A group of neighbours
+ *         that have all overflowed is abandoned within SPRING_CHECK_INTERVAL steps.
+ * @par Threads   re-entrant; allocates nothing and keeps no state; disjoint ranges of a batch may be advanced
+ *                concurrently
  */
 SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);
 
-/** The same in float. */
-SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, float dt, uint64_t n);
+/** The single-precision version. dt is rounded to float once, at the start. A step that rounds to 0 changes nothing and
+   returns SPRING_OK. A step that is not finite as a float is SPRING_EINVAL. */
+SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, double dt, uint64_t n);
 
 /**
- * spring_batch_advance(), and which springs have kept their state. As fast where none has; each group of some hundred
- * springs with one that has is advanced twice.
+ * Advances a batch like spring_batch_advance(), and marks the springs that kept their state because they failed.
  *
- * @param[out] failed  [count] 1 where spring i has kept its state for a reason of its own, else 0; may not be part of
- *                     another array. Not written where nothing changed
- * @return as spring_batch_advance(); SPRING_EINVAL also where failed is NULL
+ * It is as fast as spring_batch_advance() if no spring fails. Each group of some hundred springs with a failed spring
+ * is advanced twice.
+ *
+ * @param[out] failed  [count] 1 if spring i failed by itself and kept its state, else 0; must not overlap another
+ *                     array. Not written if nothing changed because of an error of the whole batch.
+ * @return as spring_batch_advance(); SPRING_EINVAL also if failed is NULL
  */
 SPRING_API spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,
                                                      uint8_t *failed);
 
-/** The same in float. */
-SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, spring_method m, float dt, uint64_t n,
+/** The single-precision version; dt as in spring_batchf_advance(). */
+SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, spring_method m, double dt, uint64_t n,
                                                       uint8_t *failed);
 
 /**
- * The stable step of a batch: the least spring_stable_step() of its springs [s].
+ * Returns the stability limit of a batch: the smallest spring_stable_step() of its springs [s].
  *
- * Computed from scratch by looking at every spring that has parameters of its own, with square roots: call it when
- * parameters change, not for every frame.
+ * It visits every spring that has its own parameters, and computes square roots. Call it when parameters change, not
+ * every frame.
  *
- * @return INFINITY for a batch without springs; NaN for a batch, a method or a spring that is not valid
+ * @return limit [s]; INFINITY for a batch without springs; NaN for an invalid batch, method or spring
  */
 SPRING_API double spring_batch_stable_step(const spring_batch *b, spring_method m);
 
-/** The same in float: computed in double, rounded once. */
-SPRING_API float spring_batchf_stable_step(const spring_batchf *b, spring_method m);
+/** The single-precision version. The limit is computed in double and rounded to float once, so it is a float value, and
+   INFINITY above FLT_MAX. */
+SPRING_API double spring_batchf_stable_step(const spring_batchf *b, spring_method m);
 
 #ifdef __cplusplus
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /** @file
- * springstep: particles joined by springs (rope, cloth, jelly, water), in memory that the caller owns.
+ * springstep: simulation of mass-spring systems (rope, cloth, soft bodies, height-field water) in caller-owned memory.
  *
  *     mass x'' = link forces + mass gravity - drag x' + F(t, x, x')
  *
- *     static spring_scene_def def;                                      // all zero: everything is off
+ *     static spring_scene_def def;                                      // all zero: every feature is off
  *     def.particles = 3, def.links = 2, def.position = p, def.pinned = pinned, def.link = links;
  *     def.gravity[1] = -9.81;
  *     size_t bytes;
@@ -15,21 +15,23 @@
  *     const double dt = fmin(1.0 / 240, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG));
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
- * What holds for every function here, beside what spring.h says:
- *  - What the definition does not set costs no time and, but for SPRING_SCENE_FORCE_IGNORES_VELOCITY, no memory;
- *    docs/scenes.md says what each feature takes in bytes, docs/performance.md in time.
- *  - All or nothing: after any status but SPRING_OK the scene is as it was (but see SPRING_SCENE_NO_UNDO).
- *  - The scene is at the start of its memory, and holds no pointer to itself: after memcpy() of its bytes to another
- *    place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot is a
- *    memcpy(), and rolling back another. The callback and its user pointer are copied as they are.
- *  - Distinct scenes may be used by distinct threads at once. One scene may be asked by several at once, by functions
- *    that take a const scene, as long as none changes it.
- *  - The same bits with every compiler, instruction set and vector length, as far as the callback does its part.
- *  - There is no position solver: for a contact, move particles between calls of spring_scene_advance(..., 1) with
- *    spring_scene_get() and spring_scene_set(), or push them in the callback.
+ * These rules hold for every function in this file, in addition to those in spring.h:
+ *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
+ *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY takes more memory. docs/scenes.md lists the bytes of each
+ *    feature, docs/performance.md the time.
+ *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO.
+ *  - A scene begins at the first byte of its memory and holds no pointer to itself. After a memcpy() of its bytes to
+ *    another place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot
+ *    is a memcpy(), and so is a rollback. The callback and its user pointer are copied unchanged.
+ *  - Threads may use different scenes concurrently. They may also read one scene concurrently, with functions that take
+ *    a const scene, while no thread changes it.
+ *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the callback's are.
+ *  - There is no position solver. For a contact, move particles between calls of spring_scene_advance(..., 1) with
+ *    spring_scene_get() and spring_scene_set(), or apply a force in the callback.
  *
- * spring_scenef_... is the float twin, from the same source: state and arithmetic in float, half the memory, most of
- * twice the speed. Definitions, times, energies and spring_scenef_get() stay in double; only its callback sees floats.
+ * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float:
+ * half the memory and nearly twice the speed. Definitions, times, energies and spring_scenef_get() stay in double; only
+ * its callback receives floats.
  */
 #ifndef SPRINGSTEP_SCENE_H
 #define SPRINGSTEP_SCENE_H
@@ -45,106 +47,114 @@ extern "C" {
 /** @defgroup scene_def The definition
  * @{ */
 
-#define SPRING_SCENE_ALIGN 64 /**< of the memory of a scene [bytes] */
+#define SPRING_SCENE_ALIGN 64 /**< alignment of the memory of a scene [bytes] */
 
-/** A spring between two particles. On one axis it is linear, pulling a with stiffness ((x_b - x_a) - rest) + damping
-   (v_b - v_a); on more it pulls both ends along the line between them with stiffness (length - rest) + damping (rate of
-   length). Where both ends are at the same place that line has no direction, and there is no force; nor is there
-   a sensible one where the square of the length underflows, below some 1e-160 m, in float 1e-21 m. */
+/** A spring between two particles.
+ *
+ * With two or three axes, it pulls both ends along the line between them with the tension stiffness (length - rest) +
+ * damping rate, where rate is the derivative of the length. If both ends are at the same place, this line has no
+ * direction and there is no force. If the square of the length underflows (below about 1e-160 m, in float 1e-21 m), the
+ * force is not meaningful. With one axis it is linear: it pulls a with stiffness ((x_b - x_a) - rest) +
+ * damping (v_b - v_a). */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
-    uint32_t b;       /**<         index of another */
-    double rest;      /**< [m]     length at which it does not pull >= 0 */
+    uint32_t b;       /**<         index of another particle */
+    double rest;      /**< [m]     rest length >= 0 */
     double stiffness; /**< [N/m]   >= 0 */
     double damping;   /**< [N s/m] >= 0, along the link */
 } spring_link;
 
-/** Adds forces to force[axis][particle] [N]. Called once for each force evaluation with the time t [s] of the positions
-   [m] and velocities [m/s]. Arrays of axes that the scene does not have are NULL. All positions and velocities are
-   finite. With SPRING_SCENE_FORCE_IGNORES_VELOCITY the contents of the velocity arrays are unspecified: do not read them.
-   The callback must depend on nothing but its arguments and *user, or advance(10)
-   is not 10 times advance(1). It must not call a function on its own scene. After a change of what *user holds, call
-   spring_scene_set_force() again, because a force may have been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY). If the force
-   on a free particle is not finite, the call fails with SPRING_ENONFINITE. RKN8 keeps the last force of a call, so there
-   the next call fails. Forces on pinned particles are ignored. */
+/** A callback that adds forces to force[axis][particle] [N].
+ *
+ * It is called once per force evaluation, with the time t [s] of the positions [m] and velocities [m/s]. All positions
+ * and velocities are finite. Arrays of axes that the scene does not have are NULL. With
+ * SPRING_SCENE_FORCE_IGNORES_VELOCITY the contents of the velocity arrays are unspecified: do not read them.
+ *
+ * The callback must depend only on its arguments and *user; otherwise advance(10) is not 10 times advance(1). It must
+ * not call a function on its own scene. After a change of *user, call spring_scene_set_force() again, because a force
+ * may have been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY).
+ *
+ * If the force on a free particle is not finite, the call fails with SPRING_ENONFINITE. RKN8 keeps the last force of a
+ * call, so with RKN8 the next call fails. Forces on pinned particles are ignored. */
 typedef void spring_scene_force_fn(void *user, double t, size_t particles, const double *const position[3],
                                    const double *const velocity[3], double *const force[3]);
-/** The same for a scene in float. */
+/** The callback of a single-precision scene. */
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
-/** spring_scene_set_link(), _set_pinned() and _set_mass() are allowed. Each link and each particle has numbers of its own,
-   equal to others or not. */
+/** Enables spring_scene_set_link(), _set_pinned() and _set_mass(). Each link and each particle then has its own stored
+   numbers, even if they are equal. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/** No second copy of the state. An advance that fails in a step loses it: positions and velocities are NaN then, and no step
-   succeeds until spring_scene_set() has set all of them. */
+/** The scene has no second copy of the state. A call of spring_scene_advance() that fails in a step loses the state:
+   positions and velocities become NaN, and no step succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/** No callback uses velocities, or there is none and none is going to be set. (What it is shown as velocities may be
-   other numbers then.) Leapfrog keeps the force at the end of a step for the next then, which halves its work; and it
-   needs no memory for a prediction where no link is damped or can be changed. */
+/** Promises that the callback does not use velocities; also for scenes that never have a callback. The velocities that
+   the callback receives are unspecified. Leapfrog then keeps the force at the end of a step for the next step, which
+   halves its work. If no link is damped or editable, leapfrog also needs no memory for predicted velocities. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
-/** Zero-initialise what is not modelled. Every array is copied. */
+/** The definition of a scene. Leave features that you do not use at zero. Every array is copied. */
 typedef struct spring_scene_def {
     uint32_t axes;                /**< 1, 2 or 3; 0 means 3 */
     uint32_t flags;               /**< SPRING_SCENE_... */
-    uint32_t methods;             /**< 1u << SPRING_EULER | ...: which will be used; 0: all but RK4, RKN8 */
-    size_t particles;             /**< from 1 to nearly 2^32; where addresses have 32 bits, at most 2^23 - 1 */
-    size_t links;                 /**< less than 2^29; likewise */
+    uint32_t methods;             /**< methods to be used, 1u << SPRING_EULER | ...; 0: all except RK4 and RKN8 */
+    size_t particles;             /**< 1 to nearly 2^32; at most 2^23 - 1 if addresses have 32 bits */
+    size_t links;                 /**< less than 2^29; at most 2^23 - 1 if addresses have 32 bits */
     const double *position;       /**< [particles*axes] x0 y0 z0 x1 ... [m] */
     const double *velocity;       /**< [particles*axes] [m/s]; NULL: at rest */
-    const double *mass;           /**< [particles] [kg] > 0 unless pinned; NULL: mass_all for every one */
+    const double *mass;           /**< [particles] [kg] > 0 unless pinned; NULL: mass_all for every particle */
     double mass_all;              /**< [kg]; 0 means 1 */
-    const uint8_t *pinned;        /**< [particles]; non-zero: feels no force, keeps its velocity; NULL: none */
-    const spring_link *link;      /**< [links]; best in the order of their particles, see docs/scenes.md */
+    const uint8_t *pinned;        /**< [particles]; non-zero: ignores forces, keeps its velocity; NULL: none */
+    const spring_link *link;      /**< [links]; sorted links are fastest, see docs/scenes.md */
     double gravity[3];            /**< [m/s^2]; elements beyond the axes are ignored */
     double drag;                  /**< [N s/m] >= 0, on every particle */
-    spring_scene_force_fn *force; /**< NULL: none */
-    void *user;                   /**< handed to force */
+    spring_scene_force_fn *force; /**< callback; NULL: none */
+    void *user;                   /**< passed to force */
 } spring_scene_def;
 
-/** A scene, in memory that the caller owns. */
+/** A scene, in caller-owned memory. */
 typedef struct spring_scene spring_scene;
 
 /**
- * Is a definition valid?
+ * Checks a definition.
  *
- * @param[out] field  name of the first field that is not, such as "mass" or "link.a"; NULL if all are. May be NULL
- * @param[out] index  of the particle or link, of gravity the axis, else 0. May be NULL
- * @return SPRING_OK; SPRING_EINVAL: also where a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or drag/mass
- *         is not finite in the precision of the scene; SPRING_ERANGE: an index of a particle is too large, or a count;
- *         SPRING_EUNSUPPORTED: among the methods the exact solution, or RKN8 where a link is damped or the callback may
- *         use velocities
+ * @param[out] field  name of the first invalid field, such as "mass" or "link.a"; NULL if the definition is valid. May
+ *                    be NULL
+ * @param[out] index  index of the particle or link; the axis of gravity; else 0. May be NULL
+ * @return SPRING_OK; SPRING_EINVAL: an invalid value, or a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or
+ *         drag/mass that is not finite in the precision of the scene; SPRING_ERANGE: an index of a particle or a count
+ *         is too large; SPRING_EUNSUPPORTED: the methods include the exact solution, or RKN8 for a scene with a damped
+ *         link or a callback that may use velocities
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
 
 /**
- * The memory that a scene takes [bytes], a multiple of SPRING_SCENE_ALIGN.
+ * Computes the size of a scene [bytes], a multiple of SPRING_SCENE_ALIGN.
  *
  * @return as spring_scene_check()
  */
 SPRING_API spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes);
 
 /**
- * Make a scene in the memory given. Time is 0.
+ * Creates a scene in the given memory. Its time is 0.
  *
  * @param[out] memory  aligned to SPRING_SCENE_ALIGN
- * @param[in]  bytes   of memory, at least what spring_scene_bytes() says
- * @param[out] scene   the scene; NULL after an error. There is nothing to release but the memory
- * @return SPRING_OK; SPRING_ENOMEM; SPRING_EALIGN; and as spring_scene_check()
+ * @param[in]  bytes   size of memory, at least that of spring_scene_bytes()
+ * @param[out] scene   the scene; NULL after an error. Only its memory needs to be released
+ * @return SPRING_OK; SPRING_ENOMEM; SPRING_EALIGN; otherwise as spring_scene_check()
  */
 SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def,
                                            spring_scene **scene);
 
 /** @} */
 
-/** @defgroup scene_steps Steps, and what to ask
+/** @defgroup scene_steps Steps, energy, rest
  * @{ */
 
 /**
- * Advance a scene by n steps.
+ * Advances a scene by n steps.
  *
  *     Euler             x1 = x + dt v;   v1 = v + dt a(t, x, v)
  *     symplectic Euler  v1 = v + dt a(t, x, v);   x1 = x + dt v1
@@ -153,71 +163,78 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *     RKN8              X_i = x + c_i dt v + dt^2 sum a_ij A_j,   A_i = a(t + c_i dt, X_i),   i = 1 ... 8
  *                       x1 = x + dt v + dt^2 sum b_j A_j,   v1 = v + dt sum b'_j A_j
  *
- * Drag is solved for in the kick of symplectic Euler and in the last half kick of leapfrog. Velocities that enter link
- * damping and callbacks in that half kick are predicted, v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), with a* the
- * acceleration by the forces of the first half kick and the drag at v*, solved for: still of second order.
+ * Drag is implicit in the kick of symplectic Euler and in the last half kick of leapfrog. Link damping and callbacks
+ * use predicted velocities in that half kick: v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), where a* is the acceleration
+ * by the forces of the first half kick and by the implicit drag at v*. This is still second order.
  *
- * RKN8, of order 8, is for links without damping and callbacks that promise not to use velocities; they are shown those
- * at the start of the step. Drag goes into y = e^(drag t/2 mass) (x - x0), to which the method is applied: the order stays 8
- * (drag alone, at dt drag/mass = 1: 3e-11 of the way, at 4: 2e-6). Forces have to be smooth: a contact, or a push that sets in suddenly, leaves a low order. Not symplectic: at dt sqrt(L) = 0.4
- * an oscillator loses 6e-11 of its energy a period.
+ * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. Drag enters through
+ * y = e^(drag t/(2 mass)) (x - x0), to which the method is applied, so the order stays 8: with drag alone, the error is
+ * 3e-11 of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a contact or a
+ * force that starts suddenly reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in
+ * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
- * Force evaluations a step: both Eulers one, RK4 four, RKN8 eight, leapfrog one. The force at the end of a step of
- * leapfrog or RKN8 is that at the start of the next, and is kept. Leapfrog's with damped links is the one at v*: it is
- * part of the state then, is copied with a snapshot, and is found afresh, at v, by one evaluation more, after
- * spring_scene_set(), a change of a link, of pins, masses, the callback or the velocity of a driven particle, or steps of
- * another method. What a callback finds may change between steps, so with one that may use velocities leapfrog keeps
- * nothing and evaluates twice, see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
+ * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4, eight for RKN8. Leapfrog and RKN8
+ * keep the force at the end of a step for the start of the next. With damped links, the force that leapfrog keeps is
+ * the one at v*. This force is then part of the state, and a snapshot contains it. It is evaluated again, at v, after
+ * spring_scene_set(), after a change of links, pins, masses, the callback or the velocity of a pinned particle, and
+ * after steps of another method. With a callback that may use velocities, leapfrog keeps no force and evaluates twice
+ * per step, because what the callback reads may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
- * Step i of a run of calls with the same dt is at t0 + i dt: time is not accumulated.
+ * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
- * @param[in] m   one of the methods of the definition
- * @param[in] dt  finite step [s]; negative runs backwards, where leapfrog with drag has a pole at dt = -2 mass/drag,
- *                symplectic Euler at half of it; 0, or in float what rounds to 0, does nothing
- * @return SPRING_OK; SPRING_EINVAL; SPRING_EDISABLED: a method that the definition does not have; SPRING_EUNSUPPORTED: the
- *         exact solution, or RKN8 where forces use velocities by now; SPRING_ENONFINITE: the state or the time would
- *         become infinite or NaN, noticed at the step where it does
+ * @param[in] m   one of the methods in the definition
+ * @param[in] dt  time step [s], finite in the precision of the scene; 0 does nothing, and neither does a step that
+ *                rounds to 0 in the precision of the scene; a negative step integrates backwards, where leapfrog with
+ *                drag has a pole at dt = -2 mass/drag, and symplectic Euler at half of this
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_EDISABLED: a method that is not in the definition; SPRING_EUNSUPPORTED: the
+ *         exact solution, or RKN8 if forces now use velocities; SPRING_ENONFINITE: the state or the time would become
+ *         infinite or NaN, detected in the step where it happens
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
- *                Solving Ordinary Differential Equations I (1993), section II.1; Dormand, El-Mikkawy, Prince, High-order
- *                embedded Runge-Kutta-Nystrom formulae, IMA J. Numer. Anal. 7 (1987)
+ *                Solving Ordinary Differential Equations I (1993), section II.1; Dormand, El-Mikkawy, Prince,
+ *                High-order embedded Runge-Kutta-Nystrom formulae, IMA J. Numer. Anal. 7 (1987)
  */
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * A stable step, from the stiffness of the links: below it the method makes no motion about rest grow, as long as no
- * link is compressed below half its rest length.
+ * Returns a lower bound of the stability limit, from the stiffness of the links: below it, motion about rest does not
+ * grow, if no link is compressed below half its rest length.
  *
- * With L the largest sum of (2/mass) stiffness over the links of a particle (1/mass where the other end is pinned), and
- * G the same of damping, plus drag/mass: leapfrog 2/sqrt(L), with link damping 2/(G + sqrt(G^2 + L)); RK4
- * 2.61/max(sqrt(L), G); RKN8 min(3.14/sqrt(L), 40/G); Euler 0 without drag, and min(drag/K, 2/G) with it, K the largest
- * sum of 2 stiffness; symplectic Euler 4/(p + sqrt(p^2 + 4 L)), p = (the largest sum for links alone) - drag/(largest
- * mass).
- * A bound: without link damping the limit itself is 1.2 to 1.3 times larger on a height field, 1.5 to 1.8 times on
- * cloth, twice on jelly; with heavy damping it may be several times larger. Links that spin or swing far can gain
- * energy from the step by resonance closer to it: take half, and less where a link turns faster than it would swing.
- * The callback is not looked at.
+ * L is the largest sum of (2/mass) stiffness over the links of a particle, with 1/mass for links whose other end is
+ * pinned. G is the same sum of damping, plus drag/mass. K is the largest sum of 2 stiffness, counted
+ * likewise. The bounds are:
  *
- * @return [s]; 0: none is known; INFINITY: no links or drag to be unstable with; NaN for bad input or the
- *         exact solution
- * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures how far the limit is away
+ *     leapfrog          2/sqrt(L), with link damping 2/(G + sqrt(G^2 + L))
+ *     RK4               2.61/max(sqrt(L), G)
+ *     RKN8              min(3.14/sqrt(L), 40/G)
+ *     Euler             min(drag/K, 2/G) with drag, else 0
+ *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G of the links alone) - drag/(largest mass)
+ *
+ * Without link damping the limit itself is 1.2 to 1.3 times larger for a height field, 1.5 to 1.8 times for cloth and 2
+ * times for a soft body. With heavy damping it may be several times larger. Closer to the bound, links that rotate or
+ * swing far can gain energy by resonance with the step: use half of the bound, and less if a link rotates faster than
+ * it would oscillate. Forces of the callback are not considered.
+ *
+ * @return time step [s]. 0: no stable step is known. INFINITY: no links or drag that could become unstable. NaN for
+ *         invalid input and for the exact solution
+ * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures the distance to the limit
  */
 SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 
-/** [s] since init; NaN for NULL. */
+/** Returns the time [s] since spring_scene_init(); NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
 
-/** The energies of a scene. */
+/** The energies of a scene, as spring_scene_energy() returns them. */
 typedef struct spring_scene_energies {
-    double kinetic; /**< [J] of particles that are not pinned */
+    double kinetic; /**< [J] of all free particles */
     double elastic; /**< [J] of all links */
-    double gravity; /**< [J] of particles that are not pinned; 0 at the origin */
+    double gravity; /**< [J] of all free particles; 0 at the origin */
 } spring_scene_energies;
 
-/** Energies of the links and of the particles that are not pinned; gravity is 0 at the origin. NaN for NULL. */
+/** Returns the energies of the links and of the free particles; NaN for NULL. */
 SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
-/** Is every speed at most v_tol [m/s], and every acceleration of a particle that is not pinned at most a_tol [m/s^2]?
-    May evaluate the forces. False for bad input. */
+/** Returns whether every speed is at most v_tol [m/s] and the acceleration of every free particle is at most a_tol
+    [m/s^2]. May evaluate the forces. False for invalid input. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
 /** @} */
@@ -225,21 +242,21 @@ SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol
 /** @defgroup scene_state State and changes
  * @{ */
 
-/** What spring_scene_get() and spring_scene_set() copy. */
+/** The quantities that spring_scene_get() and spring_scene_set() copy. */
 typedef enum spring_quantity {
     SPRING_POSITION, /**< [m] */
     SPRING_VELOCITY  /**< [m/s] */
 } spring_quantity;
 
 /**
- * Copy the state of particles first ... first + count - 1 out of a scene, and into one.
+ * Copies the state of particles first ... first + count - 1 out of a scene, or into it.
  *
- * spring_scene_getf() fills a float vertex buffer, which may hold other things between the positions. To move a pin use
- * spring_scene_drive(): where its position is set it jumps, and link damping sees none of it.
+ * spring_scene_getf() fills a float vertex buffer, which may hold other data between the positions. To move a pinned
+ * particle, use spring_scene_drive(): spring_scene_set() makes it jump, and link damping does not see the motion.
  *
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
- * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a number to be set that is not finite;
- *         SPRING_ERANGE: there are not so many particles
+ * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a new value that is not finite;
+ *         SPRING_ERANGE: there are not that many particles
  * @{
  */
 SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out, size_t stride,
@@ -250,76 +267,77 @@ SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, co
                                           size_t first, size_t count);
 /** @} */
 
-/** Change gravity [m/s^2]; elements beyond the axes are ignored. SPRING_EINVAL for NULL or numbers that are not
+/** Changes gravity [m/s^2]. Elements beyond the axes are ignored. SPRING_EINVAL for NULL or values that are not
    finite. */
 SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
 
-/** Change the callback; NULL: none. */
+/** Changes the callback; NULL: none. */
 SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *force, void *user);
 
 /**
- * Change a link of an editable scene; stiffness 0 and damping 0 cut it.
+ * Changes a link of an editable scene. Stiffness 0 and damping 0 cut it.
  *
- * @param[in] link  a and b as defined; swapped they mean the same, but on one axis, where that turns the link
+ * @param[in] link  a and b as defined. They may be swapped; with one axis this reverses the link
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
 
 /**
- * A link as it is now, in the precision of the scene; of more than one axis a and b may be swapped.
+ * Copies the present values of a link, in the precision of the scene. With two or three axes a and b may be swapped.
  *
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: no such link
  */
 SPRING_API spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link);
 
-/** The least index of a link between two particles, in either order, cut ones included; SIZE_MAX if there is none, and
-    for NULL. Looks at all links. */
+/** Returns the smallest index of a link between two particles, in either order. Cut links are included. SIZE_MAX if
+    there is none, and for NULL. Searches all links. */
 SPRING_API size_t spring_scene_find_link(const spring_scene *s, uint32_t a, uint32_t b);
 
 /**
- * Pin particles first ... first + count - 1 of an editable scene, and free them: to grab one, pin it and drive it; to let
- * it go, free it, and it flies on.
+ * Pins and frees particles first ... first + count - 1 of an editable scene. To grab a particle, pin it and move it
+ * with spring_scene_drive(). To release it, free it; it keeps its velocity.
  *
- * A particle that was free stops where it is, one that was pinned keeps its velocity, and what does not change is left
- * alone. A freed one has the mass last set, or that of the definition: mass[i] if it is positive, else mass_all. May look
- * at all links.
+ * A free particle that is pinned stops where it is. A particle that is already pinned keeps its velocity, and a
+ * particle whose pin does not change is not affected. A freed particle has the mass that was last set, or else that of
+ * the definition: mass[i] if it is positive, otherwise mass_all. May visit all links.
  *
  * @param[in] pinned  [count]; non-zero: pinned
- * @return SPRING_OK; SPRING_EINVAL: NULL, or one that would be freed has no mass that the scene could have been defined
- *         with; SPRING_ERANGE: there are not so many particles; SPRING_EDISABLED: the scene is not editable
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a particle would be freed with a mass that spring_scene_check() rejects;
+ *         SPRING_ERANGE: there are not that many particles; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_pinned(spring_scene *s, size_t first, size_t count, const uint8_t *pinned);
 
 /**
- * Change the masses of particles first ... first + count - 1 of an editable scene; of a pinned one, what it will have when
- * it is freed. May look at all links.
+ * Changes the masses of particles first ... first + count - 1 of an editable scene. The mass of a pinned particle takes
+ * effect when the particle is freed. May visit all links.
  *
  * @param[in] mass  [count] [kg]
- * @return SPRING_OK; SPRING_EINVAL: NULL, or a mass that the scene could not have been defined with; SPRING_ERANGE: there
- *         are not so many particles; SPRING_EDISABLED: the scene is not editable
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a mass that spring_scene_check() rejects; SPRING_ERANGE: there are not
+ *         that many particles; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, size_t count, const double *mass);
 
 /**
- * Give a pinned particle the velocity that brings it to a target, which the links see; beyond, it moves on. Any scene.
+ * Sets a pinned particle's velocity so that it reaches `target` after `duration`, in any scene. Link damping sees this
+ * velocity. The particle keeps moving at it until it is changed.
  *
- * @param[in] target    [axes] [m]; NULL: it stops
- * @param[in] duration  > 0 [s]: of the steps about to be taken, n dt; not used without a target
- * @return SPRING_OK; SPRING_EINVAL: NULL, numbers that are not finite, a distance or a velocity that is not, or a particle
- *         that is not pinned; SPRING_ERANGE: no such particle
+ * @param[in] target    [axes] [m]; NULL: the particle stops
+ * @param[in] duration  > 0 [s]: that of the next steps, n dt; ignored without a target
+ * @return SPRING_OK; SPRING_EINVAL: NULL, a value, distance or velocity that is not finite, or a particle that is not
+ *         pinned; SPRING_ERANGE: no such particle
  */
 SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration);
 
-/** The force along a link [N], > 0 pulls; its damping included. At length 0, where no force acts, that of its
-    stiffness. NaN for bad input. */
+/** Returns the force along a link [N], including its damping; > 0 pulls. At length 0 no force acts, and the result is
+    the force of the stiffness. NaN for invalid input. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */
 
-/** @defgroup scenef The float twin
+/** @defgroup scenef The single-precision version
  * @{ */
 
-/** spring_scene_def, but for the callback. */
+/** As spring_scene_def, except for the type of the callback. */
 typedef struct spring_scenef_def {
     /** As in spring_scene_def.
      * @{ */
@@ -341,12 +359,12 @@ typedef struct spring_scenef_def {
     /** @} */
 } spring_scenef_def;
 
-/** A scene in float. */
+/** A single-precision scene. */
 typedef struct spring_scenef spring_scenef;
-/** Its energies, in double. */
+/** The energies of a single-precision scene, in double. */
 typedef spring_scene_energies spring_scenef_energies;
 
-/** As spring_scene_..., for a scene in float.
+/** As spring_scene_..., for a single-precision scene.
  * @{ */
 SPRING_API spring_status spring_scenef_check(const spring_scenef_def *def, const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_t *bytes);
@@ -376,18 +394,18 @@ SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 
 /** @} */
 
-/** @defgroup grids Ropes, sheets and blocks
+/** @defgroup grids Ropes, sheets, blocks and meshes
  * @{ */
 
-/** @name The links of a grid
+/** @name The springs of a grid
  * @{ */
-#define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< to the next particle along each edge */
-#define SPRING_GRID_SHEAR      UINT32_C(2) /**< across the faces and through the middle of each cell */
-#define SPRING_GRID_BEND       UINT32_C(4) /**< to the particle after the next */
+#define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural: to the next particle along each edge */
+#define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear: across the faces and through the middle of each cell */
+#define SPRING_GRID_BEND       UINT32_C(4) /**< bend: to the particle after the next */
 /** @} */
 
-/** The faces of a grid whose particles are pinned: first or last along x, y, z; of a sheet first and last along z are all of
- * it.
+/** The faces of a grid whose particles are pinned: first or last along x, y or z. In a sheet, the first and the last
+ * face along z contain all particles.
  * @{ */
 #define SPRING_GRID_FIRST_X UINT32_C(1)
 #define SPRING_GRID_LAST_X  UINT32_C(2)
@@ -397,32 +415,32 @@ SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 #define SPRING_GRID_LAST_Z  UINT32_C(32)
 /** @} */
 
-/** Particles at the corners of a grid of cubes: one row of them is a rope, a layer a sheet, more a block of jelly.
-   Particle (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
+/** A grid of cubes with a particle at each corner. One row of particles is a rope, one layer is a sheet, more layers
+   are a soft body. Particle (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise. */
 typedef struct spring_grid {
     uint32_t count[3]; /**< particles along x, y, z; 0 means 1 */
-    uint32_t axes;     /**< of the positions: 1, 2 or 3, as many as the grid has directions; 0 means 3 */
-    bool height;       /**< a height field: axes = 1, across the grid; positions and rest lengths are 0 */
-    double spacing;    /**< [m] > 0 from one particle to the next, of a height field too */
-    double stretch;    /**< length over rest length of every link > 0; 0 means 1; above 1 is tension */
-    uint32_t families; /**< SPRING_GRID_STRUCTURAL | ...; 0 means structural alone */
+    uint32_t axes;     /**< of the positions: 1, 2 or 3; the grid extends along no other axes; 0 means 3 */
+    bool height;       /**< height field: axes = 1, across the grid; positions and rest lengths are 0 */
+    double spacing;    /**< [m] > 0 from one particle to the next, also in a height field */
+    double stretch;    /**< length over rest length of every link > 0; 0 means 1; tension if above 1 */
+    uint32_t families; /**< springs, SPRING_GRID_STRUCTURAL | ...; 0 means structural only */
     double stiffness;  /**< [N/m] of every link */
-    double damping;    /**< [N s/m] */
+    double damping;    /**< [N s/m] of every link */
     uint32_t pinned;   /**< SPRING_GRID_FIRST_X | ... */
 } spring_grid;
 
 /**
- * How many particles and links a grid has.
+ * Computes the number of particles and links of a grid.
  *
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: too many for 32-bit indices
  */
 SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particles, size_t *links);
 
 /**
- * Fill the arrays of a definition, of either precision. They are the caller's, and may be changed before they are used.
+ * Fills the arrays of a definition, for either precision. The arrays are the caller's, who may change them before use.
  *
- * The links have a < b, and are sorted by a; those of one a are in the order structural, shear, bend; of these, shear
- * across faces xy, xz, yz, then through the cell; and of these by b.
+ * Links have a < b and are sorted by a. Links with the same a are in the order structural, shear, bend. Shear springs
+ * are in the order of the faces xy, xz, yz, then through the cell. Within these groups, links are sorted by b.
  *
  * @param[out] position  [particles*axes], from the origin along the axes
  * @param[out] pinned    [particles]; may be NULL
@@ -432,24 +450,26 @@ SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particle
 SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link);
 
 /**
- * Number particles so that those are near each other in memory which are joined, and sort links by their lower, then
- * their upper ends: before a scene is made, in either precision, of what is in no order. Ropes get back their order and
- * sheets their rows, which make bands, if the links along rows are the shortest (by a fifth) or all; other meshes get a
- * small bandwidth.
+ * Renumbers particles so that linked particles are near each other in memory, and sorts links by their lower, then
+ * their upper ends. Use it before a scene of either precision is created from an unsorted mesh.
  *
- * The caller permutes his own arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
+ * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
+ * unbanded links. Ropes get their order back and sheets their rows, which form bands, if the links along rows are at
+ * least a fifth shorter than all other links, or if there are no other links. Other meshes get a small bandwidth.
  *
- * Time is proportional to particles + links: ten passes over both ends of all links in random order, fifteen where
- * there are no rows to be found. What is done depends on nothing but the arguments.
+ * The caller permutes other arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
+ *
+ * Time is proportional to particles + links: ten passes over both ends of all links in random order, or fifteen if
+ * there are no rows. The result depends only on the arguments.
  *
  * @param[in]     particles   fewer than 2^32 - 1
  * @param[in]     links       fewer than 2^29
  * @param[in,out] link        [links]; a stays a, and b stays b. May be NULL if there are none
  * @param[out]    order       [particles]; order[new index] = old index
  * @param[out]    link_order  [links]; link_order[new index] = old index. May be NULL
- * @param         work        [4*particles + 2*links + 1], not to be kept
- * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle is
- *         too large, or a count. Nothing is written after an error
+ * @param         work        [4*particles + 2*links + 1], used only during the call
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle or
+ *         a count is too large. Nothing is written after an error
  * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969), and chains through its
  *                numbering, src/mesh/renumber.c
  */

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /** @file
- * The version of springstep, written here and nowhere else (meson.build, CMakeLists.txt and packages read it), and the
- * mark of a public function.
+ * The version of springstep and the SPRING_API mark of public functions. The version is defined only here; meson.build,
+ * CMakeLists.txt and packages read it.
  */
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
 
-/** What spring_version() says of the library that is linked. */
+/** The version of these headers; spring_version() returns that of the linked library. */
 #define SPRING_VERSION "0.3.0"
 
-/** Of the shared library: changes when programs that were compiled for the last release would not run any more. */
-#define SPRING_SOVERSION "0"
+/** The binary interface of the shared library. It changes when programs compiled for the last release would no longer
+   run. */
+#define SPRING_SOVERSION "0.3"
 
 /** @def SPRING_API
- * The mark of a public function: exported from a shared library. */
+ * Marks a public function, which a shared library exports. */
 #if defined(_WIN32) && defined(SPRING_BUILD_DLL)
 #define SPRING_API __declspec(dllexport)
-#elif defined(_WIN32) && defined(SPRING_DLL) /* of a program that uses the DLL; without it calls take a detour */
+#elif defined(_WIN32) && defined(SPRING_DLL) /* for programs that use the DLL; optional, avoids an indirect call */
 #define SPRING_API __declspec(dllimport)
 #elif defined(__GNUC__) && !defined(_WIN32)
 #define SPRING_API __attribute__((visibility("default")))

@@ -143,19 +143,21 @@ static bool advance_all(const batch_kernels *kernels, const spring_batch *b, bat
     return done;
 }
 
-/* Checks that concern the whole batch. */
-static spring_status check_batch(const spring_batch *b, spring_method m, scalar dt)
+/* Checks that concern the whole batch. In single precision a step is not valid either if it is not finite as a float. */
+static spring_status check_batch(const spring_batch *b, spring_method m, double step)
 {
     const spring_method_info *info = spring_method_describe(m);
-    if (b == NULL || !batch_valid(b) || info == NULL || !spring_finite(dt))
+    if (b == NULL || !batch_valid(b) || info == NULL || !spring_finite((scalar)step))
         return SPRING_EINVAL;
     return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
 }
 
-spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m, scalar dt,
-                                        uint64_t n)
+/* The step is rounded to the precision of the batch once, here. */
+spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m,
+                                        double step, uint64_t n)
 {
-    const spring_status status = check_batch(b, m, dt);
+    const spring_status status = check_batch(b, m, step);
+    const scalar dt = (scalar)step;
     if (status != SPRING_OK || b->count == 0 || n == 0 || dt == 0)
         return status;
     const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
@@ -169,7 +171,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     return advance_all(kernels, b, run) ? SPRING_OK : reason(b);
 }
 
-spring_status spring_batch_advance(const spring_batch *b, spring_method m, scalar dt, uint64_t n)
+spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n)
 {
     return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
 }
@@ -193,7 +195,7 @@ static spring_batch part_of(const spring_batch *b, size_t first, size_t count, s
     };
 }
 
-spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, scalar dt, uint64_t n,
+spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,
                                           uint8_t *failed)
 {
     enum { part = 4 * largest_group };
@@ -219,7 +221,7 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
     return worst;
 }
 
-scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
+double spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
     if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
         return NAN;
@@ -236,5 +238,5 @@ scalar spring_batch_stable_step(const spring_batch *b, spring_method m)
         if (limit != limit)
             return NAN;
     }
-    return (scalar)least;
+    return (double)(scalar)least;
 }

@@ -40,6 +40,6 @@ SPRING_INTERNAL const batch_kernels spring_batch_v256, spring_batch_v512;
 
 /* spring_batch_advance() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b,
-                                                        spring_method m, scalar dt, uint64_t n);
+                                                        spring_method m, double step, uint64_t n);
 
 #endif

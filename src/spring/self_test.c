@@ -68,7 +68,7 @@ static uint64_t digest_of_springs(uint64_t digest, spring_method m)
           vf[] = {(float)test_v * 0x1p-131F, (float)test_v}; /* the first denormal */
     const float wf[] = {(float)w[0], 1e30F}, gf[] = {(float)g[0], 1e20F};
     const spring_batchf bf = {2, xf, vf, wf, gf, NULL, 0};
-    digest = digest_of(digest, spring_batchf_advance(&bf, m, (float)test_dt, test_steps));
+    digest = digest_of(digest, spring_batchf_advance(&bf, m, test_dt, test_steps));
     for (int i = 0; i < 2; i++)
         digest = digest_of(digest_of(digest_of(digest_of(digest, x[i]), v[i]), (double)xf[i]), (double)vf[i]);
     return digest;

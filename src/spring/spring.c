@@ -205,15 +205,15 @@ const char *spring_status_string(spring_status s)
     case SPRING_EUNSUPPORTED:
         return "not supported";
     case SPRING_EDISABLED:
-        return "the definition of the scene did not ask for this";
+        return "not enabled in the definition of the scene";
     case SPRING_EROUNDING:
-        return "rounding is not to nearest";
+        return "the rounding mode is not round-to-nearest";
     case SPRING_EFLUSHED:
-        return "denormal numbers count as 0";
+        return "denormal numbers are flushed to zero";
     case SPRING_EFUSED:
         return "products and sums are fused";
     case SPRING_EBITS:
-        return "other bits than there should be";
+        return "results are not bit-identical to the expected ones";
     }
     return "unknown status";
 }

@@ -168,7 +168,6 @@ static void check_float_batch(const input *in, spring_method m)
             const bool fits = fabs(start[i][j]) <= (double)FLT_MAX; /* else the conversion is not defined */
             whole[i][j] = parts[i][j] = fits ? (float)start[i][j] : (float)INFINITY;
         }
-    const float dt = fabs(in->dt) <= (double)FLT_MAX ? (float)in->dt : (float)NAN;
     const spring_batchf b = {count, whole[0], whole[1], whole[2], whole[3], whole[4], 0};
     const spring_batchf left = {first, parts[0], parts[1], parts[2], parts[3], parts[4], 0}, right = {count - first,
                                                                                                       parts[0] + first,
@@ -177,9 +176,9 @@ static void check_float_batch(const input *in, spring_method m)
                                                                                                       parts[3] + first,
                                                                                                       parts[4] + first,
                                                                                                       0};
-    const spring_status status = spring_batchf_advance(&b, m, dt, n),
-                        status_left = spring_batchf_advance(&left, m, dt, n),
-                        status_right = spring_batchf_advance(&right, m, dt, n);
+    const spring_status status = spring_batchf_advance(&b, m, in->dt, n),
+                        status_left = spring_batchf_advance(&left, m, in->dt, n),
+                        status_right = spring_batchf_advance(&right, m, in->dt, n);
     must(memcmp(whole, parts, sizeof whole) == 0, "a batch may be split, to the bit");
     must((status == SPRING_OK) == (status_left == SPRING_OK && status_right == SPRING_OK),
          "the whole is well if its parts are");

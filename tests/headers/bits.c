@@ -73,7 +73,7 @@ static void print_batches(const char *name, spring_method m, bool damped, bool l
     const spring_batch b = {count, x, v, w, damped ? g : NULL, loaded ? a : NULL, shared};
     const spring_batchf bf = {count, xf, vf, wf, damped ? gf : NULL, loaded ? af : NULL, shared};
     const spring_status status = spring_batch_advance(&b, m, 0.0123, 1000),
-                        statusf = spring_batchf_advance(&bf, m, 0.0123f, 1000);
+                        statusf = spring_batchf_advance(&bf, m, 0.0123, 1000);
     uint64_t hash = no_digest, hashf = no_digest;
     for (int i = 0; i < count; i++) {
         hash = digest(digest(hash, &x[i], 1), &v[i], 1);

@@ -137,7 +137,7 @@ static void advance(const subject *s, bool unaligned, uint64_t calls)
     const spring_batchf f = {s->count, a[X], a[V], a[OMEGA2], a[GAMMA], a[ACCEL], shared};
     spring_status status = SPRING_OK;
     for (; calls > 0 && status == SPRING_OK; calls--)
-        status = s->single ? spring_batchf_advance(&f, s->method, (float)dt, s->steps)
+        status = s->single ? spring_batchf_advance(&f, s->method, dt, s->steps)
                            : spring_batch_advance(&b, s->method, dt, s->steps);
     if (status != SPRING_OK)
         cli_fail(CLI_FAILED, "%zu springs: %s", s->count, spring_status_string(status));

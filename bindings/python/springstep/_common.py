@@ -51,7 +51,7 @@ class NonFiniteError(SpringError, ArithmeticError):
 
 
 class UnsupportedError(SpringError):
-    """Not offered for this kind of system, or not asked for when it was made."""
+    """Not supported for this kind of system, or not enabled when it was made."""
 
 
 _CLASSES = {

@@ -24,7 +24,7 @@ int main(void)
     const spring_batch b = {.count = 3, .x = x, .v = v, .omega2 = &omega2, .shared = SPRING_SHARED_OMEGA2};
     const spring_batchf bf = {.count = 1, .x = xf, .v = vf, .omega2 = &omega2f};
     if (spring_batch_advance(&b, SPRING_LEAPFROG, dt, n) != SPRING_OK || x[0] != s.x || x[1] != s.x / 2 ||
-        spring_batchf_advance(&bf, SPRING_LEAPFROG, (float)dt, n) != SPRING_OK)
+        spring_batchf_advance(&bf, SPRING_LEAPFROG, dt, n) != SPRING_OK)
         return 1;
     printf("%s %a %a\n", spring_version(), s.x, (double)xf[0]);
     return 0;
