@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "harness/stages.h"
+#include "common/stages.h"
 
 typedef struct counted_rates {
     double w, g, a;

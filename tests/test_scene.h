@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "harness/link.h"
 #include "test_methods.h"
 #include "scene/block.h"
 #include "simd/targets.h"
@@ -233,25 +234,16 @@ SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t 
 /* ----------------------------------------------------------------------------------------------------------- a plain
    loop */
 
-/* What a link does, from its definition in scene.h. On one axis length and rate are those from a to b. */
-typedef struct drawn_link {
-    double delta[3], length, rate, tension;
-} drawn_link;
-
-SPRING_INLINE drawn_link draw_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
+/* The parameters of a link are those that the scene stores: rounded to float in single precision. */
+SPRING_INLINE link_force evaluate_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
 {
-    drawn_link d = {{0}, 0, 0, 0};
-    double square = 0, product = 0;
+    double delta[3], relative[3];
     for (uint32_t a = 0; a < axes; a++) {
-        d.delta[a] = x[link->b * axes + a] - x[link->a * axes + a];
-        square += d.delta[a] * d.delta[a];
-        product += d.delta[a] * (v[link->b * axes + a] - v[link->a * axes + a]);
+        delta[a] = x[link->b * axes + a] - x[link->a * axes + a];
+        relative[a] = v[link->b * axes + a] - v[link->a * axes + a];
     }
-    d.length = axes == 1 ? d.delta[0] : sqrt(square);
-    d.rate = d.length != 0 ? product / d.length : axes == 1 ? v[link->b] - v[link->a] : 0;
-    d.tension = (double)(scalar)link->stiffness * (d.length - (double)(scalar)link->rest) +
-                (double)(scalar)link->damping * d.rate;
-    return d;
+    return link_evaluate(axes, delta, relative, (double)(scalar)link->stiffness, (double)(scalar)link->damping,
+                         (double)(scalar)link->rest);
 }
 
 /* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) +
@@ -261,18 +253,17 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
 {
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
-        const drawn_link d = draw_link(link, axes, x, v);
+        const link_force f = evaluate_link(link, axes, x, v);
         for (uint32_t a = 0; a < axes; a++) {
-            const double f = axes == 1 ? d.tension : d.length > 0 ? d.tension * d.delta[a] / d.length : 0;
-            force[link->a * axes + a] += f;
-            force[link->b * axes + a] -= f;
+            force[link->a * axes + a] += f.force[a];
+            force[link->b * axes + a] -= f.force[a];
         }
         if (size == NULL)
             continue;
         double relative = 0;
         for (uint32_t a = 0; a < axes; a++)
             relative = hypot(relative, v[link->b * axes + a] - v[link->a * axes + a]);
-        const double larger = link->stiffness * (fabs(d.length) + 2 * link->rest) + link->damping * relative;
+        const double larger = link->stiffness * (fabs(f.length) + 2 * link->rest) + link->damping * relative;
         size[link->a] += larger;
         size[link->b] += larger;
     }

@@ -199,11 +199,11 @@ static void tension_and_energies(void)
                 }
             for (size_t i = 0; i < m.def.links; i++) {
                 const spring_link *link = &m.def.link[i];
-                const drawn_link d = draw_link(link, axes, y.x, y.v);
-                const double extension = d.length - link->rest, size = fabs(d.length) + link->rest;
+                const link_force f = evaluate_link(link, axes, y.x, y.v);
+                const double extension = f.length - link->rest, size = fabs(f.length) + link->rest;
                 elastic += link->stiffness * extension * extension / 2;
                 all += link->stiffness * size * size / 2;
-                CHECK_CLOSE(spring_scene_tension(s, i), d.tension,
+                CHECK_CLOSE(spring_scene_tension(s, i), f.tension,
                             8 * EPS * (link->stiffness * size + 2 * link->damping),
                             "eight roundings, velocities below 1");
             }

@@ -10,7 +10,7 @@
 #include <springstep/spring.h>
 
 #include "common/cli.h"
-#include "harness/random.h"
+#include "scenes/random.h"
 #include "common/stepper.h"
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};

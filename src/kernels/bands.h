@@ -102,7 +102,6 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
     const size_t together = links_together(axes);
     size_t j = 0;
     for (; j < count; j += together * lanes) {
-        SPRING_HOT_LOOP("link", together * lanes);
         real delta[most_together][3], relative[most_together][3];
         real k[most_together], rest[most_together], c[most_together];
         mask joined[most_together];
@@ -168,7 +167,6 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
                 force[m][a] = splat(0);
         }
         for (const kept_forces *k = plus; k < plus + pluses; k++) {
-            SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
@@ -177,7 +175,6 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
             }
         }
         for (const kept_forces *k = minus; k < minus + minuses; k++) {
-            SPRING_HOT_LOOP("link-end", some * lanes);
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL

@@ -57,7 +57,6 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
         const scalar *const quad_gravity = p.gravity + a * padding;
         const real gravity = vec_load(quad_gravity);
         for (size_t i = from; i < to; i += lanes) {
-            SPRING_HOT_LOOP("coordinate", lanes);
             real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
             if (SPRING_UNLIKELY(i + lanes > p.count)) /* padding lanes of the last vector keep their finite values */
                 inverse_mass =

@@ -36,7 +36,6 @@ SPRING_INLINE void step_group(real *x, real *v, real h, const step_coefficients 
     for (size_t k = 0; k < vectors; k++)
         kept[k] = start(x[k], &c[k], loaded);
     for (; n > 0; n--) {
-        SPRING_HOT_LOOP("spring", group);
         vec_read_again(c);
         SPRING_UNROLL
         for (size_t k = 0; k < vectors; k++)
@@ -91,7 +90,6 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     const real h = splat(b.dt);
     bool all = true;
     for (size_t i = 0; i < b.count; i += lanes) {
-        SPRING_HOT_LOOP("spring", lanes);
         const spring_rates r = rates_at(&b, i, damped, loaded);
         step_coefficients c;
         prepare(&c, r, h, damped, loaded);

@@ -41,7 +41,6 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
         }
         if (!link_acts(l, j, damped) || (axes > 1 && !(square > 0)))
             continue;
-        SPRING_HOT_LOOP("link", 1);
         if (axes == 1) {
             delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
             if (damped)
@@ -107,7 +106,6 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
                 one_quad_link(l, j + m, x, v, force, stride, damped);
             continue;
         }
-        SPRING_HOT_LOOP("link", quad_size);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];

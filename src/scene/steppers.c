@@ -100,6 +100,8 @@ static double scene_rk4_limit(const scene_bounds *b)
     return limit / fmax(spring_sqrt(b->stiffness), b->damping);
 }
 
+_Static_assert((int)rkn8_stages == (int)nystrom_stages, "the kernels compute the stages of RKN8");
+
 /* Indices of what RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each c of the stages
    after the first, and loss e^(-g h/2) - 1. */
 enum { RKN8_GROWTH, RKN8_DECAY = rkn8_stages, RKN8_LOSS = 2 * rkn8_stages, RKN8_FACTORS };

@@ -42,12 +42,4 @@
 #endif
 #endif
 
-/* For tools/bench/instructions, which looks for it in the assembly: the innermost loop around this is a hot one, and a
-   pass through it does so many ("link", 8) of a thing. It stands behind what ends a pass early. */
-#ifdef SPRING_MCA
-#define SPRING_HOT_LOOP(thing, count) __asm__ volatile("# hot loop: " thing " %c0" : : "i"(count))
-#else
-#define SPRING_HOT_LOOP(thing, count) ((void)0)
-#endif
-
 #endif

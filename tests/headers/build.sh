@@ -9,7 +9,7 @@ compile() {
     local directory=$1 sources=$2
     shift 2
     mkdir -p "$directory" && (cd "$directory" &&
-        printf '%s\0' "$sources"/*.c "$bits.c" "$root/tests/headers/layout.c" | xargs -0 -n 1 -P "$(nproc)" "$@" -I"$root/include" -I"$root/src" -c)
+        printf '%s\0' "$sources"/*/*.c "$bits.c" "$root/tests/headers/layout.c" | xargs -0 -n 1 -P "$(nproc)" "$@" -I"$root/include" -I"$root/src" -c)
 }
 
 # link DIRECTORY COMPILER FLAG...: a program

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The loops of an assembly file that SPRING_HOT_LOOP marks (src/simd/real.h), as regions for llvm-mca: from the last label
+# The loops of an assembly file that tools/bench/instructions marks, as regions for llvm-mca: from the last label
 # before a mark that a branch behind it goes back to, up to that branch. Called by tools/bench/instructions.
 #
 # A region is called FUNCTION,THING,COUNT; the compiler may have unrolled the loop: then it has several marks, whose

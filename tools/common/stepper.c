@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "harness/stages.h"
+#include "common/stages.h"
 
 enum { LIBRARY, STAGES };
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "harness/iterates.h"
+#include "harness/link.h"
 #include "harness/reference.h"
 
 void *scene_room(size_t count, size_t size)
@@ -112,32 +113,23 @@ static double *axis_of(const scene_problem *p, int what, size_t axis)
     return p->room + ((size_t)what * p->def.axes + axis) * p->def.particles;
 }
 
-/* A link pulls a towards b with k (length - rest) + c (rate of length), on one axis with the signs of b - a. */
-static void pull(const scene_problem *p, const spring_link *link)
+/* Adds the force of a link to both ends, and the sizes of its terms. */
+static void add_link(const scene_problem *p, const spring_link *link)
 {
     const size_t axes = p->def.axes, a = link->a, b = link->b;
-    double delta[3], length = 0, rate = 0;
+    double delta[3], relative[3];
     for (size_t d = 0; d < axes; d++) {
         delta[d] = axis_of(p, POSITION, d)[b] - axis_of(p, POSITION, d)[a];
-        length += delta[d] * delta[d];
-        rate += delta[d] * (axis_of(p, VELOCITY, d)[b] - axis_of(p, VELOCITY, d)[a]);
+        relative[d] = axis_of(p, VELOCITY, d)[b] - axis_of(p, VELOCITY, d)[a];
     }
-    length = axes == 1 ? delta[0] : sqrt(length);
-    if (axes == 1) {
-        rate = axis_of(p, VELOCITY, 0)[b] - axis_of(p, VELOCITY, 0)[a];
-        delta[0] = 1;
-    } else if (length > 0) {
-        rate /= length;
-        for (size_t d = 0; d < axes; d++)
-            delta[d] /= length;
-    }
-    const double force = link->stiffness * (length - link->rest) + link->damping * rate;
-    const double size = link->stiffness * (fabs(length) + link->rest) + link->damping * fabs(rate);
+    const link_force f = link_evaluate(axes, delta, relative, link->stiffness, link->damping, link->rest);
+    const double size = link->stiffness * (fabs(f.length) + link->rest) + link->damping * fabs(f.rate);
     for (size_t d = 0; d < axes; d++) {
-        axis_of(p, FORCE, d)[a] += force * delta[d];
-        axis_of(p, FORCE, d)[b] -= force * delta[d];
-        axis_of(p, SIZE, d)[a] += size * fabs(delta[d]);
-        axis_of(p, SIZE, d)[b] += size * fabs(delta[d]);
+        const double along = axes == 1 ? 1 : f.length > 0 ? fabs(delta[d] / f.length) : 0;
+        axis_of(p, FORCE, d)[a] += f.force[d];
+        axis_of(p, FORCE, d)[b] -= f.force[d];
+        axis_of(p, SIZE, d)[a] += size * along;
+        axis_of(p, SIZE, d)[b] += size * along;
     }
 }
 
@@ -162,7 +154,7 @@ static void accelerations(const void *data, double t, const double *x, const dou
         axis[VELOCITY][at % axes][at / axes] = v[i];
     }
     for (size_t i = 0; i < def->links; i++)
-        pull(p, &p->link[i]);
+        add_link(p, &p->link[i]);
     if (def->force != NULL)
         def->force(def->user, t, def->particles, (const double *const *)axis[POSITION],
                    (const double *const *)axis[VELOCITY], axis[FORCE]);

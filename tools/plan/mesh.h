@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_MESH_H
 #define SPRINGSTEP_MESH_H
 
-#include "harness/presets.h"
+#include "scenes/presets.h"
 
 typedef struct mesh_settings {
     double mass;      /* [kg] > 0 of a vertex */

@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_PLAN_H
 #define SPRINGSTEP_PLAN_H
 
-#include "harness/presets.h"
+#include "scenes/presets.h"
 
 /* Errors are the largest at any step of a spring, relative to the size of the start, for the worst start
    (spring_accurate_step()); of a scene at any frame of 1/60 s: the Euclidean distance of all positions from those of an

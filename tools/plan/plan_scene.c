@@ -14,7 +14,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "plan.h"
-#include "scene/start.h"
+#include "scenes/start.h"
 
 static const double frames_a_second = 60;
 static const double most_numbers = 2e7; /* of the reference that are kept: a second of 10^5 particles */

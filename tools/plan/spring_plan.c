@@ -12,7 +12,7 @@
 #include "common/timing.h"
 #include "mesh.h"
 #include "plan.h"
-#include "scene/start.h"
+#include "scenes/start.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */
 

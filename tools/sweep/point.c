@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "harness/disturbances.h"
-#include "harness/presets.h"
-#include "harness/scene_run.h"
+#include "scenes/disturbances.h"
+#include "scenes/presets.h"
+#include "scenes/scene_run.h"
 
 static const double frame_rate = 60;            /* [1/s] */
 static const double most_steps = 1e7;           /* of one spring: a tenth of a second */

@@ -13,7 +13,7 @@
 
 #include <springstep/spring.h>
 
-/* Of what a point is: one spring, or a preset of harness/presets.h, its number plus 1. */
+/* Of what a point is: one spring, or a preset of scenes/presets.h, its number plus 1. */
 enum { SWEEP_SPRING };
 
 /** The word for it, "spring" or that of the preset; NULL: there are no more. */

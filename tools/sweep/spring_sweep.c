@@ -18,7 +18,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
-#include "harness/presets.h"
+#include "scenes/presets.h"
 #include "sweep/grid.h"
 #include "sweep/journal.h"
 #include "sweep/rows.h"

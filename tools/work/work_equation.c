@@ -2,11 +2,11 @@
 /* The right-hand side that GSL and SUNDIALS integrate for a scene; see work_equation.h. */
 #include "work_equation.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/cli.h"
+#include "harness/link.h"
 
 static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving, uint32_t held,
                 const uint32_t *number)
@@ -55,52 +55,32 @@ void work_equation_clear(work_equation *e)
     free(e->per_mass);
 }
 
-/* A link pulls a towards b. What there is of each axis stands written out, for compilers do not unroll such short
-   loops. */
-typedef void puller(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
-                    double *restrict force_b);
-
-static inline void pull_1(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
-                          double *restrict force_b)
+/* Adds the force of an undamped link between two points to the sums of both. */
+static inline void add_link(size_t axes, const double *a, const double *b, double stiffness, double rest,
+                            double *restrict force_a, double *restrict force_b)
 {
-    const double force = stiffness * (b[0] - a[0] - rest);
-    force_a[0] += force;
-    force_b[0] -= force;
+    const double delta[3] = {b[0] - a[0], axes > 1 ? b[1] - a[1] : 0, axes > 2 ? b[2] - a[2] : 0}, still[3] = {0};
+    const link_force f = link_evaluate(axes, delta, still, stiffness, 0, rest);
+    force_a[0] += f.force[0];
+    force_b[0] -= f.force[0];
+    if (axes > 1) {
+        force_a[1] += f.force[1];
+        force_b[1] -= f.force[1];
+    }
+    if (axes > 2) {
+        force_a[2] += f.force[2];
+        force_b[2] -= f.force[2];
+    }
 }
 
-static inline void pull_2(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
-                          double *restrict force_b)
-{
-    const double x = b[0] - a[0], y = b[1] - a[1];
-    const double length = sqrt(x * x + y * y), scale = stiffness * (length - rest) / length;
-    force_a[0] += scale * x;
-    force_a[1] += scale * y;
-    force_b[0] -= scale * x;
-    force_b[1] -= scale * y;
-}
-
-static inline void pull_3(const double *a, const double *b, double stiffness, double rest, double *restrict force_a,
-                          double *restrict force_b)
-{
-    const double x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
-    const double length = sqrt(x * x + y * y + z * z), scale = stiffness * (length - rest) / length;
-    force_a[0] += scale * x;
-    force_a[1] += scale * y;
-    force_a[2] += scale * z;
-    force_b[0] -= scale * x;
-    force_b[1] -= scale * y;
-    force_b[2] -= scale * z;
-}
-
-/* With constants for axes and pull wherever it is called: three loops. */
-static inline void add_forces(size_t axes, puller *pull, const work_equation *e, const double *x, const double *v,
-                              double *sum)
+/* Called with constants, so that the compiler writes a loop for each number of axes. */
+static inline void add_forces(size_t axes, const work_equation *e, const double *x, const double *v, double *sum)
 {
     double unused[3] = {0};
     for (const work_link *l = e->link; l < e->link + e->links; l++)
-        pull(x + axes * l->a, x + axes * l->b, l->stiffness, l->rest, sum + axes * l->a, sum + axes * l->b);
+        add_link(axes, x + axes * l->a, x + axes * l->b, l->stiffness, l->rest, sum + axes * l->a, sum + axes * l->b);
     for (const work_tie *t = e->tie; t < e->tie + e->ties; t++)
-        pull(x + axes * t->a, t->point, t->stiffness, t->rest, sum + axes * t->a, unused);
+        add_link(axes, x + axes * t->a, t->point, t->stiffness, t->rest, sum + axes * t->a, unused);
     for (size_t i = 0; i < axes * e->particles && e->drag > 0; i++)
         sum[i] -= e->drag * v[i];
 }
@@ -121,11 +101,11 @@ void work_equation_derivative(double t, const double *y, double *dy, const void 
     memcpy(dy, v, moving * sizeof *dy);
     memset(sum, 0, moving * sizeof *sum);
     if (e->axes == 1)
-        add_forces(1, pull_1, e, x, v, sum);
+        add_forces(1, e, x, v, sum);
     else if (e->axes == 2)
-        add_forces(2, pull_2, e, x, v, sum);
+        add_forces(2, e, x, v, sum);
     else
-        add_forces(3, pull_3, e, x, v, sum);
+        add_forces(3, e, x, v, sum);
     if (e->force != NULL)
         e->force(e->user, t, e->particles, (const double *const[3]){x}, (const double *const[3]){v},
                  (double *const[3]){sum});

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "harness/stages.h"
+#include "common/stages.h"
 #include "work.h"
 
 static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4};

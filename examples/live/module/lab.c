@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "harness/scene_run.h"
+#include "scenes/scene_run.h"
 
 static const double frame_rate = 60;
 

@@ -8,8 +8,8 @@
 
 #include <springstep/clock.h>
 
-#include "harness/disturbances.h"
-#include "harness/presets.h"
+#include "scenes/disturbances.h"
+#include "scenes/presets.h"
 
 #define EXPORT __attribute__((visibility("default"), used))
 

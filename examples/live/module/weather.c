@@ -2,7 +2,7 @@
 /* Wind, rain, and a ball that falls into the water. */
 #include <math.h> /* sqrt() */
 
-#include "harness/random.h"
+#include "scenes/random.h"
 #include "lab.h"
 
 /* --------------------------------------------------------------------------------------------------------- wind */

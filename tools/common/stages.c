@@ -7,7 +7,7 @@
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.1;
  *           GNU Scientific Library 2.7.1, ode-initval2/rk4.c, for the order of its sum
  */
-#include "harness/stages.h"
+#include "common/stages.h"
 
 typedef struct rates {
     double w, g, a; /* stiffness/mass [1/s^2], damping/mass [1/s], load/mass [m/s^2] */

@@ -13,7 +13,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "start.h"
+#include "scenes/start.h"
 
 static const double frame_time = 1.0 / 60; /* [s] */
 

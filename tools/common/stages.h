@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The classical Runge-Kutta method of order 4 with its four stages evaluated one by one, as textbooks write it. */
-#ifndef SPRINGSTEP_HARNESS_STAGES_H
-#define SPRINGSTEP_HARNESS_STAGES_H
+#ifndef SPRINGSTEP_SPRINGSTEP_STAGES_H
+#define SPRINGSTEP_SPRINGSTEP_STAGES_H
 
 #include <stdint.h>
 

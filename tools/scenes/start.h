@@ -3,8 +3,8 @@
 #ifndef SPRINGSTEP_SCENE_START_H
 #define SPRINGSTEP_SCENE_START_H
 
-#include "harness/disturbances.h"
-#include "harness/presets.h"
+#include "disturbances.h"
+#include "presets.h"
 
 /** As preset_init(). */
 void start_preset(preset *r, const preset_settings *s);

@@ -15,8 +15,8 @@
 
 #include "common/cli.h"
 #include "common/run_length.h"
-#include "harness/scene_run.h"
-#include "start.h"
+#include "scenes/scene_run.h"
+#include "scenes/start.h"
 
 /* ---------------------------------------------------------------------------------------------- the command line */
 

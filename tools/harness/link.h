@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The force of a link, from its definition in scene.h and independent of src/: for references, tests and the equation that
+ * GSL and SUNDIALS integrate.
+ *
+ *     tension = stiffness (length - rest) + damping rate,    force on a = tension (b - a)/length,    on b the opposite
+ *
+ * On one axis length and rate are the differences b - a of position and velocity, with their sign.
+ */
+#ifndef HARNESS_LINK_H
+#define HARNESS_LINK_H
+
+#include <math.h>
+#include <stddef.h>
+
+typedef struct link_force {
+    double length, rate; /* [m], [m/s] */
+    double tension;      /* [N] */
+    double scale;        /* [N/m] tension/length; 0 for ends at the same place. Not for one axis */
+    double force[3];     /* [N] on end a */
+} link_force;
+
+/** Evaluates a link from b - a, in position [m] and velocity [m/s]. A constant number of axes gives straight code. */
+static inline link_force link_evaluate(size_t axes, const double *delta, const double *relative, double stiffness,
+                                       double damping, double rest)
+{
+    link_force r = {.force = {0}};
+    if (axes == 1) {
+        r.length = delta[0];
+        r.rate = relative[0];
+        r.tension = r.force[0] = stiffness * (r.length - rest) + damping * r.rate;
+        return r;
+    }
+    const double z = axes == 3 ? delta[2] : 0, product_z = axes == 3 ? delta[2] * relative[2] : 0;
+    r.length = sqrt(delta[0] * delta[0] + delta[1] * delta[1] + z * z);
+    if (r.length > 0)
+        r.rate = (delta[0] * relative[0] + delta[1] * relative[1] + product_z) / r.length;
+    r.tension = stiffness * (r.length - rest) + damping * r.rate;
+    r.scale = r.length > 0 ? r.tension / r.length : 0;
+    r.force[0] = r.scale * delta[0];
+    r.force[1] = r.scale * delta[1];
+    r.force[2] = r.scale * z;
+    return r;
+}
+
+#endif
