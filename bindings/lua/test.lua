@@ -52,8 +52,8 @@ holds("every function is there", function()
   assert(functions > 50)
 end)
 
--- The compiler has held what layout.c says against the headers; here the addresses have as many bits.
-local layout = read("tests/headers/layout.c")
+-- The compiler has held what interface.c says against the headers; here the addresses have as many bits.
+local layout = read("tests/headers/interface.c")
 local here = ffi.abi("64bit") and 1 or 2
 
 holds("structures have the compiler's sizes", function()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# bits.c, layout.c and the library's sources, compiled as in a build of one's own. Sourced, with $root set to the source root.
+# bits.c, interface.c and the library's sources, compiled as in a build of one's own. Sourced, with $root set to the source root.
 # shellcheck disable=SC2154
 bits=$root/tests/headers/bits
 
@@ -9,7 +9,7 @@ compile() {
     local directory=$1 sources=$2
     shift 2
     mkdir -p "$directory" && (cd "$directory" &&
-        printf '%s\0' "$sources"/*/*.c "$bits.c" "$root/tests/headers/layout.c" | xargs -0 -n 1 -P "$(nproc)" "$@" -I"$root/include" -I"$root/src" -c)
+        printf '%s\0' "$sources"/*/*.c "$bits.c" "$root/tests/headers/interface.c" | xargs -0 -n 1 -P "$(nproc)" "$@" -I"$root/include" -I"$root/src" -c)
 }
 
 # link DIRECTORY COMPILER FLAG...: a program

@@ -4,7 +4,7 @@
 
     interface.py list SOURCE-ROOT       prints it: tests/headers/released.tsv is this list, of the last release
     interface.py changes SOURCE-ROOT    does CHANGELOG.md name all that is not as in the last release?
-    interface.py layout SOURCE-ROOT     does layout.c know every structure, field, value and flag?
+    interface.py layout SOURCE-ROOT     does interface.c know every structure, field, value and flag?
 
 Prints what is wrong; status 1 if anything is.
 """
@@ -72,7 +72,7 @@ def wrong_changes(root):
 
 
 def wrong_layout(root):
-    layout = (root / "tests/headers/layout.c").read_text()
+    layout = (root / "tests/headers/interface.c").read_text()
     for name, declaration in interface(root).items():
         if body := re.search(r"struct \w+ \{(.*)\}", declaration):
             wanted = [f"SIZE({name}, "]
@@ -89,7 +89,7 @@ def wrong_layout(root):
             continue
         for line in wanted:
             if line not in layout:
-                yield f"layout.c has no {line}"
+                yield f"interface.c has no {line}"
 
 
 def main():
