@@ -3,6 +3,8 @@
 #ifndef SPRINGSTEP_LINK_LAW_H
 #define SPRINGSTEP_LINK_LAW_H
 
+#include "../simd/arithmetic.h"
+
 /* [N] > 0 pulls; rate: [m/s] rate of change of the length */
 static inline double link_tension(double stiffness, double rest, double damping, double length, double rate)
 {
