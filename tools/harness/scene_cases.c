@@ -261,15 +261,6 @@ static void build_patchwork(const scene_case *c, scene_problem *p)
     p->def.drag = 0.2;
 }
 
-static void make_grid(scene_problem *p, const spring_grid *g)
-{
-    size_t particles, links;
-    if (spring_grid_size(g, &particles, &links) != SPRING_OK)
-        exit(EXIT_FAILURE);
-    make(p, g->height ? 1 : g->axes, particles, links);
-    spring_grid_fill(g, p->position, p->pinned, p->link);
-}
-
 static void build_cloth(const scene_case *c, scene_problem *p)
 {
     const spring_grid g = {.count = {5, 5, 1},
@@ -281,7 +272,7 @@ static void build_cloth(const scene_case *c, scene_problem *p)
                            .damping = 0.4,
                            .pinned = SPRING_GRID_FIRST_Y};
     (void)c;
-    make_grid(p, &g);
+    scene_problem_grid(p, &g, 0, mass);
     p->def.gravity[1] = -2;
     p->def.gravity[2] = -9.5;
     p->def.drag = 0.3;
@@ -300,7 +291,7 @@ static void build_water(const scene_case *c, scene_problem *p)
                            .pinned =
                                SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
     (void)c;
-    make_grid(p, &g);
+    scene_problem_grid(p, &g, 0, mass);
     for (size_t i = 0; i < p->def.particles; i++)
         if (!p->pinned[i]) {
             p->position[i] = 0.1 * exp(-0.5 * pow((double)i - 16, 2));
@@ -330,24 +321,17 @@ static void build_mode(const scene_case *c, scene_problem *p)
         .families = all ? SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND : SPRING_GRID_STRUCTURAL,
         .stiffness = 25000,
         .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
-    size_t particles, links;
-    if (spring_grid_size(&g, &particles, &links) != SPRING_OK)
-        exit(EXIT_FAILURE);
-    make(p, g.axes, particles, links + (mirrored ? 4 * (N - 2) : 0));
-    spring_grid_fill(&g, p->position, p->pinned, p->link);
+    size_t links = scene_problem_grid(p, &g, mirrored ? 4 * (N - 2) : 0, 1);
     for (uint32_t i = 1; mirrored && i + 1 < N; i++) {
         const uint32_t row = i * N, last = N * N - N,
                        twice[][2] = {{row, row + 1}, {row + N - 2, row + N - 1}, {i, N + i}, {last - N + i, last + i}};
         for (int side = 0; side < 4; side++)
             p->link[links++] = (spring_link){twice[side][0], twice[side][1], 0, 2 * g.stiffness, 0};
     }
-    for (size_t i = 0; i < particles; i++) {
-        p->mass[i] = 1;
+    for (size_t i = 0; i < p->def.particles; i++)
         if (!p->pinned[i])
             p->position[g.axes * i + g.axes - 1] =
                 sin(pi * P * (double)(i % N) / (N - 1)) * sin(pi * Q * (double)(i / N) / (N - 1));
-    }
-    p->def.mass_all = 1;
 }
 
 /* ------------------------------------------------------------------------------------------------ linear scenes */

@@ -46,6 +46,18 @@ void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_
                                 .link = p->link};
 }
 
+size_t scene_problem_grid(scene_problem *p, const spring_grid *g, size_t more_links, double mass)
+{
+    size_t particles, links;
+    if (spring_grid_size(g, &particles, &links) != SPRING_OK) {
+        fputs("scenes: not a grid\n", stderr);
+        exit(EXIT_FAILURE);
+    }
+    scene_problem_make(p, g->height ? 1 : g->axes, particles, links + more_links, mass);
+    spring_grid_fill(g, p->position, p->pinned, p->link);
+    return links;
+}
+
 /* The methods that take a definition. */
 static uint32_t methods_of(spring_scene_def def)
 {

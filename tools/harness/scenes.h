@@ -59,6 +59,8 @@ void *scene_room(size_t count, size_t size); /* zeros; exits without memory */
 
 /* At the origin, at rest, not pinned, links of zeros; all have one mass [kg]. Exits without memory. */
 void scene_problem_make(scene_problem *p, uint32_t axes, size_t particles, size_t links, double mass);
+/* A grid at rest, with room for more links behind those of the grid, whose number is returned. Exits if there is none. */
+size_t scene_problem_grid(scene_problem *p, const spring_grid *g, size_t more_links, double mass);
 void scene_problem_init(scene_problem *p, const scene_case *c); /* exits without memory */
 void scene_problem_clear(scene_problem *p);
 

@@ -16,17 +16,6 @@
 
 /* --------------------------------------------------------------------------------------------------- two sheets */
 
-/* At rest where the grid puts it, all particles of one mass. */
-static void make_sheet(scene_problem *p, const spring_grid *g, double mass)
-{
-    size_t particles, links;
-    const uint32_t axes = g->height ? 1 : g->axes;
-    if (spring_grid_size(g, &particles, &links) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no grid");
-    scene_problem_make(p, axes, particles, links, mass);
-    spring_grid_fill(g, p->position, p->pinned, p->link);
-}
-
 enum { SIDE = 25 }; /* particles along an edge of a sheet */
 
 #define ALL_FAMILIES SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND
@@ -42,7 +31,7 @@ static void build_cloth(const scene_case *c, scene_problem *p)
                            .stiffness = 60,
                            .pinned = SPRING_GRID_FIRST_Y};
     (void)c;
-    make_sheet(p, &g, 0.003);
+    scene_problem_grid(p, &g, 0, 0.003);
     p->def.gravity[1] = -1.7;
     p->def.gravity[2] = -9.66;
     p->def.drag = 0.001;
@@ -59,7 +48,7 @@ static void build_water(const scene_case *c, scene_problem *p)
                            .stiffness = 25000,
                            .pinned =
                                SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y};
-    make_sheet(p, &g, 1);
+    scene_problem_grid(p, &g, 0, 1);
     p->def.drag = 0.5;
     for (size_t i = 0; i < p->def.particles; i++)
         if (!p->pinned[i]) {
