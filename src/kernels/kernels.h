@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * All kernels for one vector width and precision: SPRING_VECTOR bytes, double or with SPRING_FLOAT float, as the tables
- * SPRING_BATCH_TABLE and SPRING_SCENE_TABLE. Included by the sources of this folder.
+ * SPRING_BATCH_TABLE, SPRING_SCENE_TABLE and SPRING_UNBANDED_TABLE. Included by the sources of this folder.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -19,7 +19,14 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
 #include "particles.h"
+#if SPRING_VECTOR < 64
 #include "unbanded.h"
+SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
+    .forces = compute_unbanded_forces,
+    .record_forces = compute_record_forces,
+    .quad_forces = compute_quad_forces,
+};
+#endif
 
 /* Quads have 32 bytes in double and 16 in float. */
 #if SPRING_VECTOR == 16
@@ -33,9 +40,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .small = &SMALL_TABLE,
     .band_forces = compute_band_forces,
-    .unbanded_forces = compute_unbanded_forces,
-    .record_forces = compute_record_forces,
-    .quad_forces = compute_quad_forces,
+    .unbanded = &SPRING_UNBANDED_TABLE,
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
     .implicit_kick_drift = move_implicit_kick_drift,

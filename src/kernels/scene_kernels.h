@@ -102,16 +102,21 @@ typedef struct scene_motion {
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
+/* Unbanded links are computed on quads, so vectors of 64 bytes gain nothing over 32 (1 % on an AMD EPYC). */
+typedef struct unbanded_kernels {
+    unbanded_kernel *forces;        /* adds the forces of unbanded links */
+    unbanded_kernel *record_forces; /* the same for many unbanded links, on two or three axes */
+    unbanded_kernel *quad_forces;   /* the forces of the links of a small scene */
+} unbanded_kernels;
+
 /* a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct scene_kernels {
     const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
                                           needs the results of two stores has to wait for both */
     band_kernel *band_forces;          /* the forces of all bands */
-    unbanded_kernel *unbanded_forces;  /* adds the forces of unbanded links */
-    unbanded_kernel *record_forces;    /* the same for many unbanded links, on two or three axes */
-    unbanded_kernel *quad_forces;      /* the forces of the links of a small scene */
-    particle_kernel *kick_drift;       /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted) */
-    particle_kernel *implicit_kick;    /* v = v0 + kick a(v) */
+    const unbanded_kernels *unbanded;
+    particle_kernel *kick_drift;    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted) */
+    particle_kernel *implicit_kick; /* v = v0 + kick a(v) */
     particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
     particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
@@ -122,8 +127,10 @@ typedef struct scene_kernels {
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */
+SPRING_INTERNAL const unbanded_kernels spring_unbanded_v128;
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;
+SPRING_INTERNAL const unbanded_kernels spring_unbanded_v256;
 #endif
 
 #endif

@@ -45,6 +45,8 @@
 #define spring_scene_v128         spring_scenef_v128
 #define spring_scene_v256         spring_scenef_v256
 #define spring_scene_v512         spring_scenef_v512
+#define spring_unbanded_v128      spring_unbandedf_v128
+#define spring_unbanded_v256      spring_unbandedf_v256
 #endif
 
 #endif

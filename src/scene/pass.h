@@ -180,14 +180,14 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
 {
     const scene_layout *l = &s->layout;
     if (l->small)
-        kernels->quad_forces(links, x, v, out);
+        kernels->unbanded->quad_forces(links, x, v, out);
     else if (l->bands > 0)
         kernels->band_forces(links, x, v, out, 0, l->particles);
     else if (out->records == NULL)
         for (uint32_t a = 0; a < l->axes; a++)
             memset(out->force + a * l->stride, 0, l->particles * sizeof *out->force);
     if (!l->small && l->unbanded > 0)
-        (out->records != NULL ? kernels->record_forces : kernels->unbanded_forces)(links, x, v, out);
+        (out->records != NULL ? kernels->unbanded->record_forces : kernels->unbanded->forces)(links, x, v, out);
     if (s->force != NULL && l->small)
         call_back_small(s, x, v, t, out->force);
     else if (s->force != NULL)
