@@ -18,13 +18,6 @@
 #include "../simd/quad.h"
 #include "scene_kernels.h"
 
-/* function(..., axes, damped) with both as constants. */
-#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
-    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
-       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
-       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
-                   : function(__VA_ARGS__, 3, false))
-
 /* Vectors of links that are computed together: while one waits for a square root, another is computed. A link on one axis
    has no root and few operations, so that more vectors amortise the loop (measured for vectors of 16 and 64 bytes). */
 enum { most_together = 4 };
@@ -237,10 +230,39 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
     }
 }
 
+/* A function for each number of axes: in one function, gcc would keep less of the loops in registers. */
+SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           size_t from, size_t to)
+{
+    if (s->damped)
+        all_bands(s, x, v, out, from, to, 1, true);
+    else
+        all_bands(s, x, v, out, from, to, 1, false);
+}
+
+SPRING_NOINLINE void band_forces_on_2_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           size_t from, size_t to)
+{
+    if (s->damped)
+        all_bands(s, x, v, out, from, to, 2, true);
+    else
+        all_bands(s, x, v, out, from, to, 2, false);
+}
+
+SPRING_NOINLINE void band_forces_on_3_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           size_t from, size_t to)
+{
+    if (s->damped)
+        all_bands(s, x, v, out, from, to, 3, true);
+    else
+        all_bands(s, x, v, out, from, to, 3, false);
+}
+
 static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
                                 size_t to)
 {
-    SPRING_BY_AXES(s->axes, s->damped, all_bands, s, x, v, out, from, to);
+    band_kernel *const of_axes[] = {band_forces_on_1_axis, band_forces_on_2_axes, band_forces_on_3_axes};
+    of_axes[s->axes - 1](s, x, v, out, from, to);
 }
 
 #endif

@@ -167,6 +167,13 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         forces_of_records(s, out, 2, damped);
 }
 
+/* function(..., axes, damped) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
+                   : function(__VA_ARGS__, 3, false))
+
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     SPRING_BY_AXES(s->axes, s->damped, all_unbanded, s, x, v, out);
