@@ -189,12 +189,12 @@ static void one_is_not_special(void)
     for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         const spring_params at[] = {{2, 2.7, 2, 0}, {2, 2.7, 0, 2}, {2, 2.7, 2, 2}};
         for (int i = 0; i < 3; i++) {
-            spring_params beside = at[i];
-            beside.damping *= 1 + DBL_EPSILON;
-            beside.load *= 1 + DBL_EPSILON;
+            spring_params changed = at[i];
+            changed.damping *= 1 + DBL_EPSILON;
+            changed.load *= 1 + DBL_EPSILON;
             spring_state a = start, b = start, kernel = start;
             spring_advance(&a, &at[i], *m, 0.013, 100);
-            spring_advance(&b, &beside, *m, 0.013, 100);
+            spring_advance(&b, &changed, *m, 0.013, 100);
             for (int j = 0; j < 100; j++)
                 spring_method_kernel (*m)(&kernel, &at[i], 0.013);
             CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");

@@ -72,11 +72,11 @@ static void nothing_is_dropped_without_need(void)
     }
 }
 
-/* A goal jumps, and what is drawn between the last two states does not: x is the position, of which load = stiffness
-   goal changes nothing until time passes. */
-static void drawn_while_the_goal_jumps(void)
+/* A target jumps, and what is drawn between the last two states does not: x is the position, of which load = stiffness
+   target changes nothing until time passes. */
+static void drawn_while_the_target_jumps(void)
 {
-    const double dt = 1.0 / 240, frame = 1.5 * dt, goal = 100;
+    const double dt = 1.0 / 240, frame = 1.5 * dt, target = 100;
     spring_params p = spring_params_hertz(2, 0.5);
     for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         spring_clock clock = {0};
@@ -84,7 +84,7 @@ static void drawn_while_the_goal_jumps(void)
         double drawn = 0, time = 0; /* [s] since the jump */
         for (int i = 0; i < 20; i++) {
             const bool jumped = i >= 4;
-            p.load = jumped ? p.stiffness * goal : 0;
+            p.load = jumped ? p.stiffness * target : 0;
             double alpha = -1;
             for (uint64_t n = spring_clock_tick(&clock, frame, dt, 8, &alpha); n > 0; n--) {
                 previous = now;
@@ -94,9 +94,9 @@ static void drawn_while_the_goal_jumps(void)
             const double before = drawn;
             drawn = previous.x + alpha * (now.x - previous.x);
             CHECK(drawn >= before && drawn <= now.x, "between where it was and where it is");
-            CHECK(drawn <= p.stiffness / p.mass * goal * time * time, "twice what this acceleration can do so far");
+            CHECK(drawn <= p.stiffness / p.mass * target * time * time, "twice what this acceleration can do so far");
         }
-        CHECK(drawn > 0.01 * goal && drawn < 0.5 * goal, "under way");
+        CHECK(drawn > 0.01 * target && drawn < 0.5 * target, "under way");
     }
 }
 
@@ -133,7 +133,7 @@ int main(void)
         {"dropped time", dropped_time},
         {"nothing is lost", nothing_is_lost},
         {"nothing is dropped without need", nothing_is_dropped_without_need},
-        {"drawn while the goal jumps", drawn_while_the_goal_jumps},
+        {"drawn while the target jumps", drawn_while_the_target_jumps},
         {"bad input", bad_input},
     };
     return RUN_TESTS("clock", tests);

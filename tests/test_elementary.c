@@ -23,7 +23,7 @@ static double error_in_ulp(double got)
     return ldexp(fabs(mpfr_get_d(part, MPFR_RNDN)), (DBL_MANT_DIG - 1) - (exponent < -1022 ? -1022 : exponent));
 }
 
-/* Somewhere, or a little beside an odd multiple of `step`, where the nearest even one changes; of both signs. */
+/* Somewhere, or a little off an odd multiple of `step`, where the nearest even one changes; of both signs. */
 static double argument(double step, double largest)
 {
     const double sign = random_bits() % 2 ? 1 : -1;
@@ -121,7 +121,7 @@ static double worst_of_angles(double largest, double share)
 static void angles(void)
 {
     const double near = worst_of_angles(1e8, 1e-25), far = worst_of_angles(0x1p51 / 1.01, 0.51 * DBL_EPSILON);
-    printf("# sine and cosine: largest error %.3f ulp to 10^8, %.3f ulp beside half an eps of the angle to 2^51\n",
+    printf("# sine and cosine: largest error %.3f ulp to 10^8, %.3f ulp besides half an eps of the angle to 2^51\n",
            near, far);
     CHECK_BELOW(near, 1.5,
                 "half an ulp of the last sum, another of what is left of the angle: of half as large a sine");

@@ -79,7 +79,7 @@ static scalar any_square(unsigned kind)
     }
 }
 
-/* Each block by itself and, every second one, with squares beside it that are not looked at, or are rare. */
+/* Each block by itself and, every second one, with squares next to it that are not read, or are rare. */
 static void fill(scalar *a, int8_t *where, bool mixed)
 {
     static const scalar rare[] = {0, LEAST, LARGEST, INFINITY, NAN, -NAN};
@@ -122,7 +122,7 @@ static void accuracy(void)
                 differ += where[i] != 0 && memcmp(&vectors[i], &plain[i], sizeof plain[i]) != 0;
         }
     }
-    CHECK(differ == 0, "lane by lane the same operations, whatever is beside it");
+    CHECK(differ == 0, "lane by lane the same operations, whatever is next to it");
     CHECK(inexact == 0, "0 for 0");
     printf("# largest error %.4f ulp by a seed, %.4f ulp by a quotient\n", worst_seed, worst_quotient);
     CHECK_BELOW(worst_seed, 1.0001, "half an ulp of the sum, as much of a y^2, what is left out");

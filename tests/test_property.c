@@ -88,8 +88,8 @@ static void superposition(void)
         const double bound = 6 * (double)(a.n + 1) * DBL_EPSILON * (size_of(a) + size_of(b) + size_of(both));
         for (const spring_method *m = spring_methods(); *m != no_method; m++) {
             const spring_state ya = run(a, *m), yb = run(b, *m), sum = run(both, *m);
-            CHECK_CLOSE(sum.x, ya.x + yb.x, bound, "linear, but for 6 eps a step");
-            CHECK_CLOSE(sum.v, ya.v + yb.v, bound * omega, "linear, but for 6 eps a step");
+            CHECK_CLOSE(sum.x, ya.x + yb.x, bound, "linear, except for 6 eps a step");
+            CHECK_CLOSE(sum.v, ya.v + yb.v, bound * omega, "linear, except for 6 eps a step");
         }
     }
 }

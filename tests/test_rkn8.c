@@ -117,7 +117,7 @@ static void error_constant(void)
     }
 }
 
-/* A step multiplies the energy by the determinant of its matrix, 1 - 3.7436e-8 z^10 + 4.6927e-9 z^12 - ..., but for
+/* A step multiplies the energy by the determinant of its matrix, 1 - 3.7436e-8 z^10 + 4.6927e-9 z^12 - ..., except for
    what the ellipse is off. */
 static void energy_law(void)
 {

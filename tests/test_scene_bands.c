@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Bands of links, many and far apart; what one link does to the bits of others; motion and forces in one pass over
-   memory; records of edges. */
+   memory; records of unbanded links. */
 #include "test_scene.h"
 
 /* The first n particles of two scenes, to the bit. */
@@ -366,8 +366,8 @@ static void one_pass_fails(void)
 
 /* --------------------------------------------------------------------------------------------------------- records */
 
-/* Many edges go through records of their particles, few do not: with the same bits. */
-static void records_of_edges(void)
+/* Many unbanded links go through records of their particles, few do not: with the same bits. */
+static void records_of_links(void)
 {
     static model m;
     size_t with_bands = 0, without = 0;
@@ -390,7 +390,7 @@ static void records_of_edges(void)
                 spring_scene *by_edges = run_with(kernels_of(k), &m.def, 0.004);
                 CHECK(scene_has(by_records, ARRAY_RECORDS) && !scene_has(by_edges, ARRAY_RECORDS) &&
                           by_records->layout.unbanded == by_edges->layout.unbanded,
-                      "at least as many edges as particles, or fewer");
+                      "at least as many unbanded links as particles, or fewer");
                 with_bands += by_records->layout.bands > 0;
                 without += by_records->layout.bands == 0;
                 CHECK(same_first(by_records, by_edges, particles, axes), "the same operations");
@@ -398,7 +398,7 @@ static void records_of_edges(void)
                 free(by_edges);
             }
         }
-    CHECK(with_bands > 0 && without > 0, "beside bands, and alone");
+    CHECK(with_bands > 0 && without > 0, "with bands, and alone");
 }
 
 int main(void)
@@ -410,7 +410,7 @@ int main(void)
         {"a few links far apart", short_bands},
         {"one pass over memory", one_pass},
         {"one pass that fails", one_pass_fails},
-        {"records of edges", records_of_edges},
+        {"records of unbanded links", records_of_links},
     };
     return RUN_TESTS("scene-bands", tests);
 }

@@ -428,7 +428,7 @@ static uint32_t family_of(const int delta[3])
                                           : 0;
 }
 
-/* Where a link stands among those of its first particle, but for the index of the other one. */
+/* Where a link stands among those of its first particle, except for the index of the other one. */
 static int rank_of(const int delta[3])
 {
     int across = 0; /* of a link across a face: 0 if that is xy, 1 xz, 2 yz; 3 of a link through a cell */

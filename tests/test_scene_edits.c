@@ -2,7 +2,7 @@
 /* What is changed in a scene while it moves: pins, masses, driven particles; and how links are found. */
 #include "test_scene.h"
 
-/* small, with bands, with edges alone */
+/* small, with bands, with unbanded links alone */
 static const struct {
     uint32_t count[3];
     unsigned features;
@@ -211,7 +211,7 @@ static void edits_of_nothing(void)
         build(&m, shapes[k].count, 2, shapes[k].features | EDITABLE | PINNED | MASSES);
         m.def.velocity = NULL;
         m.pinned[2] = 1;
-        spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
+        spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
         for (int i = 0; i < 20; i++) {
             CHECK(spring_scene_set_pinned(s, 0, m.def.particles, m.pinned) == SPRING_OK &&
                       spring_scene_set_mass(s, 0, m.def.particles, m.mass) == SPRING_OK &&
@@ -219,12 +219,12 @@ static void edits_of_nothing(void)
                       spring_scene_drive(s, 2, NULL, 0) == SPRING_OK,
                   "as they are");
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK &&
-                      spring_scene_advance(twin, SPRING_LEAPFROG, dt, 1) == SPRING_OK,
+                      spring_scene_advance(other, SPRING_LEAPFROG, dt, 1) == SPRING_OK,
                   "stable");
         }
-        CHECK(same_bits(s, twin, m.def.particles, 2), "as if nothing had been said");
+        CHECK(same_bits(s, other, m.def.particles, 2), "as if nothing had been said");
         free(s);
-        free(twin);
+        free(other);
     }
 }
 
@@ -277,9 +277,9 @@ static void driven(void)
             const size_t n = m.def.particles;
             const method_list all = use_all_methods(&m.def);
             for (const spring_method *method = all.at; *method != no_method; method++) {
-                spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
+                spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
                 spring_scene_advance(s, *method, dt, 3);
-                spring_scene_advance(twin, *method, dt, 3);
+                spring_scene_advance(other, *method, dt, 3);
                 get_state(s, n, &y);
                 double target[3], velocity[3];
                 for (uint32_t a = 0; a < axes; a++) {
@@ -287,10 +287,10 @@ static void driven(void)
                     velocity[a] = (target[a] - y.x[2 * axes + a]) / (4 * dt);
                 }
                 CHECK(spring_scene_drive(s, 2, target, 4 * dt) == SPRING_OK, "it is pinned");
-                CHECK(spring_scene_set(twin, SPRING_VELOCITY, velocity, 0, 2, 1) == SPRING_OK, "the same by hand");
+                CHECK(spring_scene_set(other, SPRING_VELOCITY, velocity, 0, 2, 1) == SPRING_OK, "the same by hand");
                 spring_scene_advance(s, *method, dt, 4);
-                spring_scene_advance(twin, *method, dt, 4);
-                CHECK(same_bits(s, twin, n, axes), "the velocity that brings it there");
+                spring_scene_advance(other, *method, dt, 4);
+                CHECK(same_bits(s, other, n, axes), "the velocity that brings it there");
                 get_state(s, n, &y);
                 for (uint32_t a = 0; a < axes; a++) /* 4 steps and a quotient are rounded */
                     CHECK_CLOSE(y.x[2 * axes + a], target[a], 16 * EPS * (1 + fabs(target[a])), "there it is");
@@ -300,7 +300,7 @@ static void driven(void)
                 spring_scene_get(s, SPRING_POSITION, stays, 0, 2, 1);
                 CHECK(memcmp(stays, &y.x[2 * axes], axes * sizeof stays[0]) == 0, "and stays there");
                 free(s);
-                free(twin);
+                free(other);
             }
         }
 }

@@ -128,7 +128,7 @@ static void units(void)
         }
 }
 
-/* A link between two pins does not count, however stiff, beside one that is weak and pulls at a large mass. */
+/* A link between two pins does not count, however stiff, compared with one that is weak and pulls at a large mass. */
 static void stiff_between_pins(void)
 {
     const int far = sizeof(scalar) == 4 ? 100 : 900;
@@ -471,13 +471,13 @@ static void late_frame(void)
     build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
     const method_list all = methods_of(m.def);
     for (const spring_method *method = all.at; *method != no_method; method++) {
-        spring_scene *s = scene_of(&m.def), *twin = scene_of(&m.def);
+        spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
         CHECK(spring_scene_advance(s, *method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
-        CHECK(same_bits(s, twin, m.def.particles, 3), "and is as it was");
+        CHECK(same_bits(s, other, m.def.particles, 3), "and is as it was");
         const double dt = 0.5 * spring_scene_stable_step(s, *method);
         CHECK(spring_scene_advance(s, *method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK, "so do it in small steps");
         free(s);
-        free(twin);
+        free(other);
     }
 }
 

@@ -191,7 +191,7 @@ static void stray_links(void)
             m.def.link = link;
             m.def.links = links;
             spring_scene *s = scene_of(&m.def);
-            CHECK(s->layout.bands == 1 && s->layout.unbanded == 3, "a band, and three beside it");
+            CHECK(s->layout.bands == 1 && s->layout.unbanded == 3, "a band, and three unbanded links");
             get_state(s, m.def.particles, &start);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.013, 1) == SPRING_OK, "a step");
             check_drift(&m, s, &start);
@@ -526,7 +526,7 @@ static void gravity_beyond_the_axes(void)
 }
 
 /* Stiff links between heavy particles do not hide soft ones between light particles, of which the bound is. */
-static void light_beside_heavy(void)
+static void light_and_heavy(void)
 {
     const double big = EPS < 1e-10 ? 1e300 : 1e30, tiny = EPS < 1e-10 ? 1e-100 : 1e-20, rate = 1e3; /* k/m [1/s^2] */
     const double position[] = {0, 1, 2, 3}, mass[] = {big, big, tiny, tiny};
@@ -598,7 +598,7 @@ int main(void)
         {"light particles", light_particles},
         {"gravity beyond the axes", gravity_beyond_the_axes},
         {"methods that are not used", methods_not_used},
-        {"light particles beside heavy ones", light_beside_heavy},
+        {"light particles linked to heavy ones", light_and_heavy},
         {"sums of stiffness that overflow", sums_that_overflow},
         {"drag that overflows in a solved kick", drag_that_overflows},
     };

@@ -169,7 +169,8 @@ static void one_by_one(void)
                 CHECK(same_bits(single, at_once, m.def.particles, axes), "advance(30) is 30 times advance(1)");
                 const bool kept = *k == SPRING_LEAPFROG && (runs[run] & DAMPED) != 0 && (runs[run] & WIND) == 0;
                 CHECK(kept != same_bits(set, at_once, m.def.particles, axes),
-                      "what is set unchanged changes nothing, but for the forces that leapfrog keeps for damped links");
+                      "what is set unchanged changes nothing, except for the forces that leapfrog keeps for damped "
+                      "links");
                 CHECK_BITS(spring_scene_time(single), spring_scene_time(at_once), "nor is time accumulated");
                 free(at_once);
                 free(single);
@@ -781,7 +782,7 @@ static void cut_rope(void)
         after += v[2 * i + 1] / (n - 6);
     /* its velocities below 10 m/s, forces of its links on each other below 800 N/m times 1 m, over 0.2 kg, for 0.5 s */
     CHECK_CLOSE(after - before, -9.5 * 0.5, 128 * 8 * EPS * (10 + 800 / 0.2 / 256 * 2),
-                "the mean velocity of a free piece grows with gravity alone, but for rounding");
+                "the mean velocity of a free piece grows with gravity alone, except for rounding");
     free(s);
 }
 

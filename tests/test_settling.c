@@ -54,7 +54,7 @@ static void settling_time_lightly_damped(void)
     CHECK_CLOSE(spring_settling_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
 }
 
-/* Tolerances just beside a swing: it counts if it is larger, and not otherwise. A few ulp beside it rounding decides,
+/* Tolerances just above and below an extremum: it counts if it is larger, and not otherwise. A few ulp from it rounding decides,
    and the spring must stay inside all the same. */
 static void settling_time_at_a_swing(void)
 {
@@ -107,7 +107,7 @@ static void settling_time_at_the_tolerance(void)
     }
 }
 
-/* Mirrored, the motion takes the same time, to the bit; however large one of x and v is beside the other. */
+/* Mirrored, the motion takes the same time, to the bit; however large one of x and v is compared with the other. */
 static void settling_time_mirrored(void)
 {
     static const double sizes[] = {1e-300, 1e-5, 1, 1e5, 1e300};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-run: one spring through time beside its exact solution.
+ * spring-run: simulates one spring and compares it with its exact solution.
  *
  * Time is i dt from the start, and so is the exact solution: neither is accumulated from row to row.
  */
@@ -34,7 +34,7 @@ static const cli_option options[] = {
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
      .help = "a row for every K-th step, the start included; else the end alone"},
     {"from", CLI_REAL, .real = &from, .value = "T", .needs = &every,
-     .help = "no rows for times before T [s], but for the end"},
+     .help = "no rows for times before T [s], except for the end"},
     {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]"},
     {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]"},

@@ -69,7 +69,7 @@ def test_rounding_is_in_the_way():
 
 
 def test_the_more_accurate_of_two_methods_that_are_as_fast():
-    """Leapfrog and symplectic Euler need the same steps here, for stability, and take the same time but for a few parts in a
+    """Leapfrog and symplectic Euler need the same steps here, for stability, and take the same time except for a few parts in a
     hundred; leapfrog is far more accurate."""
     args = '--scene cloth --size 40 --error 0.05 --duration 0.2'
     for _ in range(20):  # times on a busy machine

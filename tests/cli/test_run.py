@@ -28,12 +28,12 @@ def euler_step(x, v, h):
 
 def rk4_step(x, v, h):
     w, g, a = K / M, C / M, F / M
-    def slope(x, v):
+    def derivative(x, v):
         return v, a - w * x - g * v
-    k1 = slope(x, v)
-    k2 = slope(x + h / 2 * k1[0], v + h / 2 * k1[1])
-    k3 = slope(x + h / 2 * k2[0], v + h / 2 * k2[1])
-    k4 = slope(x + h * k3[0], v + h * k3[1])
+    k1 = derivative(x, v)
+    k2 = derivative(x + h / 2 * k1[0], v + h / 2 * k1[1])
+    k3 = derivative(x + h / 2 * k2[0], v + h / 2 * k2[1])
+    k4 = derivative(x + h * k3[0], v + h * k3[1])
     return (x + h / 6 * (k1[0] + 2 * k2[0] + 2 * k3[0] + k4[0]), v + h / 6 * (k1[1] + 2 * k2[1] + 2 * k3[1] + k4[1]))
 
 

@@ -265,7 +265,7 @@ def test_places_of_pushes(poke, place, frames_of):
 
 
 def test_disturbances_add_up(frames_of):
-    """On one axis water is linear: pokes and boxes together do what each does alone, summed up, but for rounding."""
+    """On one axis water is linear: pokes and boxes together do what each does alone, summed up, except for rounding."""
     pushes = [('--poke', '0,1,1,1e3,0.5'), ('--poke', '0.02,2.5,1.5,2e3,0.3'), ('--drop-box', '0.01,2'),
               ('--drop-box', '0.04,3')]
     water = [*FREE_WATER, '--stiffness', '2500']

@@ -134,7 +134,7 @@ def test_bench_one_spring():
 
 
 def test_bench_scenes():
-    """Of 35 x 35 particles, 7002 links. In double beside limits and a plain loop, in float beside double."""
+    """Of 35 x 35 particles, 7002 links. In double compared with limits and a plain loop, in float with double."""
     rows = bench('--part scene --count 7002')
     assert {'leapfrog_sheet_1', 'leapfrog_sheet_16', 'leapfrog_sheet_16_shuffled', 'leapfrog_sheet_16_damping',
             'rk4_sheet_16', 'init_sheet'} <= {row['kernel'] for row in rows}
@@ -143,7 +143,7 @@ def test_bench_scenes():
 
 
 def test_bench_ropes():
-    """Of few particles, which games have most: beside a plain loop, and one step a call beside sixteen."""
+    """Of few particles, which games have most: compared with a plain loop, and one step a call compared with sixteen."""
     for steps, limits in (16, {'streams', 'arithmetic'}), (1, {'16_steps'}):
         rows = bench(f'--kernel leapfrog_rope_{steps}')
         assert [int(row['count']) for row in rows] == [1, 2, 3, 7, 15, 31, 63]

@@ -168,7 +168,8 @@ static void print_scenes(spring_method m)
             const sheet s = make_sheet(axes, jumbled, jumbled && !spring_method_describe(m)->positions_only);
             print_scene(jumbled ? "list" : "rows", &s, m, 1, 1);
         }
-    const sheet height_field = make_sheet(1, false, false); /* is linear, so its motion is the same, but for rounding */
+    const sheet height_field =
+        make_sheet(1, false, false); /* is linear, so its motion is the same, except for rounding */
     print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
 }
 

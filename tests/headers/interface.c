@@ -14,7 +14,7 @@ struct natural {
     double number;
 };
 
-/* Where a double in a structure lies at a multiple of 4, as on 32-bit x86 but for Windows, offsets are others. */
+/* Where a double in a structure lies at a multiple of 4, as on 32-bit x86 except for Windows, offsets are others. */
 enum { WIDE = sizeof(void *) == 8, NATURAL = offsetof(struct natural, number) == 8 };
 
 #define EXPECT(what, wide, narrow)    _Static_assert(!NATURAL || (what) == (WIDE ? (wide) : (narrow)), #what)

@@ -9,7 +9,7 @@ import time
 import pytest
 
 GAME, LIBRARY = os.environ['GAME'], os.environ.get('SPRINGSTEP_LIBRARY')
-# The folder where the library is built, with springstep.lua beside it.
+# The folder where the library is built, with springstep.lua in it.
 BUILD = os.path.dirname(LIBRARY or '')
 
 pytestmark = [
@@ -64,7 +64,7 @@ def test_a_rope_on_the_pointer(screen, tmp_path):
 
 
 def test_in_the_checkout(screen):
-    """springstep.lua in LUA_PATH, and the library beside that."""
+    """springstep.lua in LUA_PATH, and the library next to it."""
     with running(screen, GAME, LUA_PATH=f'{BUILD}/?.lua;;'):
         window = screen.window('rope on the pointer')
         screen.move(window, 400, 150)

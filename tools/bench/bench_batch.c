@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, batches: every method over 10^3 to 10^7 springs, and what each feature costs, beside what the memory
+ * spring-bench, batches: every method over 10^3 to 10^7 springs, and the cost of each feature, compared with what the memory
  * and the arithmetic alone would take (bench_limits.h).
  */
 #include <stdio.h>
@@ -19,12 +19,12 @@ enum { alignment = 64 }; /* bytes: the widest vector, a line of the cache */
 
 typedef enum sharing { NONE, SHARED, OWN, ZERO } sharing; /* ZERO: an array of zeros, which is paid for */
 
-/* What stands beside the kernel. */
-typedef enum beside {
+/* What the kernel is compared with. */
+typedef enum against {
     LIMITS,   /* the kernels of bench_limits.h */
     ORDINARY, /* the same kernel with an ordinary start in aligned arrays */
     TEXTBOOK  /* the textbook's formula, spring by spring */
-} beside;
+} against;
 
 typedef struct subject {
     spring_method method;
@@ -32,7 +32,7 @@ typedef struct subject {
     uint64_t steps;
     sharing omega2, gamma, accel;
     bool single; /* float */
-    beside beside;
+    against against;
     bool settled, unaligned; /* ORDINARY */
     bool mixed;              /* TEXTBOOK: every second spring overdamped */
 } subject;
@@ -175,9 +175,9 @@ static double run(const bench_row *row, int which, uint64_t calls)
     const bool as_it_is = which == 0;
     prepare(s, as_it_is && s->settled);
     const double begin = timing_busy();
-    if (as_it_is || s->beside == ORDINARY)
+    if (as_it_is || s->against == ORDINARY)
         advance(s, as_it_is && s->unaligned, calls);
-    else if (s->beside == TEXTBOOK)
+    else if (s->against == TEXTBOOK)
         textbook(s, calls);
     else if (which == 1)
         move_streams(limits, s, calls);
@@ -195,7 +195,7 @@ static const size_t from_memory = 10000000, in_cache = 1000;
 
 static void add(const char *feature, subject s)
 {
-    const bool limited = s.beside == LIMITS;
+    const bool limited = s.against == LIMITS;
     bench_row row = {
         .part = "batch",
         .precision = s.single ? "float" : "double",
@@ -207,9 +207,9 @@ static void add(const char *feature, subject s)
                       : s.method == SPRING_RK4 ? memory_goal_rk4
                                                : memory_goal,
         .goal_ns = INFINITY,
-        .limits = {limited                ? "streams"
-                   : s.beside == ORDINARY ? "ordinary"
-                                          : "textbook",
+        .limits = {limited                 ? "streams"
+                   : s.against == ORDINARY ? "ordinary"
+                                           : "textbook",
                    limited ? "arithmetic" : NULL},
         .time = run,
     };
@@ -276,7 +276,7 @@ static void add_features(void)
 static void add_special(void)
 {
     for (int single = 0; single < 2; single++) {
-        const subject undamped = {SPRING_EXACT, in_cache, 1, OWN, .single = single, .beside = TEXTBOOK};
+        const subject undamped = {SPRING_EXACT, in_cache, 1, OWN, .single = single, .against = TEXTBOOK};
         subject exact = undamped;
         add("", exact);
         exact.gamma = OWN;
@@ -288,13 +288,13 @@ static void add_special(void)
         add("_own_gamma_accel", exact);
     }
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
-        const subject s = {spring_method_at(i), in_cache, 16, OWN, .beside = ORDINARY, .settled = true};
+        const subject s = {spring_method_at(i), in_cache, 16, OWN, .against = ORDINARY, .settled = true};
         if (is_accurate(s.method))
             add("_settled", s);
     }
-    const subject settled = {SPRING_LEAPFROG, in_cache, 16, OWN, .single = true, .beside = ORDINARY, .settled = true};
+    const subject settled = {SPRING_LEAPFROG, in_cache, 16, OWN, .single = true, .against = ORDINARY, .settled = true};
     add("_settled", settled);
-    const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .beside = ORDINARY, .unaligned = true};
+    const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .against = ORDINARY, .unaligned = true};
     add("_unaligned", unaligned);
 }
 

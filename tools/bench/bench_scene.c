@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, scenes: how their rows are timed, beside a plain loop over the links and beside what memory and
+ * spring-bench, scenes: how their rows are timed, compared with a plain loop over the links and with what memory and
  * arithmetic alone would take (bench_limits.h).
  *
  * The work of a scene is proportional to its links, so those are what counts.
@@ -189,13 +189,13 @@ static void prepare(const bench_row *row)
     filled = s;
     scene_fill(&all, s->shape, s->side, s->order, s->feature.damping);
     build(&ours, &s->feature, s->shape, s->single);
-    if (s->beside == LEAPFROG || s->beside == IN_DOUBLE)
+    if (s->against == LEAPFROG || s->against == IN_DOUBLE)
         build_other(s);
     if (row->baseline != NULL)
         build_plain(&plain, &all, &s->feature);
-    if (s->beside == SHUFFLED_LIST || s->work == RENUMBER)
+    if (s->against == SHUFFLED_LIST || s->work == RENUMBER)
         scene_fill(&shuffled, s->shape, s->side, SHUFFLED, s->feature.damping);
-    if (s->beside == SHUFFLED_LIST)
+    if (s->against == SHUFFLED_LIST)
         build_plain(&plain_shuffled, &shuffled, &s->feature);
 }
 
@@ -227,11 +227,11 @@ static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_
     const bench_limits *limits = bench_limits_of(s->single);
     if (s->work != STEPS)
         read_definition(calls);
-    else if (s->beside == SHUFFLED_LIST)
+    else if (s->against == SHUFFLED_LIST)
         plain_advance(&plain_shuffled, dt, steps);
-    else if (s->beside == SIXTEEN_STEPS)
+    else if (s->against == SIXTEEN_STEPS)
         advance(&ours, s->feature.method, 16, (s->steps * calls + 15) / 16);
-    else if (s->beside != LIMITS)
+    else if (s->against != LIMITS)
         advance(&other, SPRING_LEAPFROG, s->steps, calls);
     else if (which == 1)
         move_memory(s, steps);
@@ -245,7 +245,7 @@ double scene_time(const bench_row *row, int which, uint64_t calls)
     prepare(row);
     /* a step of the plain loop, or of a limit, takes as long as any other: in large scenes one stands for those of a
        call */
-    const bool scenes = which == 0 || (which != bench_baseline && s->beside != LIMITS && s->beside != SHUFFLED_LIST);
+    const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS && s->against != SHUFFLED_LIST);
     const uint64_t share = all.links > 300000 && !scenes ? s->steps : 1, steps = s->steps / share;
     const double begin = timing_busy();
     if (which == 0)

@@ -6,7 +6,7 @@
 #include "rows.h"
 #include "scene_grids.h"
 
-/* What a scene models beside its links, gravity and pins, or how it is advanced. */
+/* What a scene has besides its links, gravity and pins, or how it is advanced. */
 typedef struct scene_feature {
     spring_method method;
     uint32_t flags;
@@ -15,14 +15,14 @@ typedef struct scene_feature {
     bool masses;
 } scene_feature;
 
-/* What stands beside it. */
-typedef enum scene_beside {
+/* What a row is compared with. */
+typedef enum scene_against {
     LIMITS,        /* the kernels of bench_limits.h */
     LEAPFROG,      /* the scene without its feature, by leapfrog */
     IN_DOUBLE,     /* the scene in double */
     SIXTEEN_STEPS, /* the scene, 16 steps a call */
     SHUFFLED_LIST  /* the plain loop, before the scene was renumbered */
-} scene_beside;
+} scene_against;
 
 /* What is timed. */
 typedef enum scene_work { STEPS, INIT, RENUMBER } scene_work;
@@ -33,9 +33,9 @@ typedef struct scene_subject {
     scene_order order;
     scene_feature feature;
     uint64_t steps; /* a call */
-    scene_beside beside;
+    scene_against against;
     bool single;     /* float */
-    scene_work work; /* all but STEPS beside reading the links of the definition */
+    scene_work work; /* all but STEPS are compared with reading the links of the definition */
 } scene_subject;
 
 /** The time of a row whose subject is a scene_subject. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, one spring: the library beside the plain loop that anybody would write.
+ * spring-bench, one spring: the library compared with the plain loop that anybody would write.
  *
  * Start and parameters come out of volatile objects and the end goes into one: nothing can be computed by the compiler,
  * or left out.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rows of spring-bench: what is timed, and beside what. parts.h puts them into the table; spring_bench.c takes the
+ * The rows of spring-bench: what is timed, and what it is compared with. parts.h puts them into the table; spring_bench.c takes the
  * samples and writes it.
  */
 #ifndef SPRINGSTEP_BENCH_ROWS_H

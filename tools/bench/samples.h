@@ -2,7 +2,7 @@
 /*
  * How long what is in a row of rows.h takes.
  *
- * Method    A sample is the time of a fixed number of calls. Samples of the library and of what stands beside it
+ * Method    A sample is the time of a fixed number of calls. Samples of the library and of what they are compared with
  *           alternate, so that what slows the machine down for a while slows all of them; each figure is the median of
  *           its samples. Of two limits the slower one counts: nothing can be faster than either. Processor time is what
  *           is measured: other processes take part of the caches and of the memory's time, but not of the clock's.

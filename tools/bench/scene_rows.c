@@ -41,9 +41,9 @@ static double goal_speedup(const scene_subject *s)
 /* The time over that of the limit; INFINITY: none. */
 static double goal_ratio(const scene_subject *s)
 {
-    if (s->work != STEPS || s->beside == SIXTEEN_STEPS)
+    if (s->work != STEPS || s->against == SIXTEEN_STEPS)
         return INFINITY;
-    if (s->beside == SHUFFLED_LIST)
+    if (s->against == SHUFFLED_LIST)
         return s->side == 400 ? 1 / 2.5 : INFINITY; /* of 10^6 links */
     if (s->single)
         return 0.5;
@@ -55,11 +55,11 @@ static double goal_ratio(const scene_subject *s)
 }
 
 static const double most_init = 18;   /* [ns] a link, of scenes of 10^6 particles */
-static const double most_excess = 25; /* [ns] a step that is a call by itself, beside one of 16 steps */
+static const double most_excess = 25; /* [ns] a step that is a call by itself, compared with one of 16 steps */
 
 /* ------------------------------------------------------------------------------------------------------------- rows */
 
-/* Has it a plain loop beside it? That moves on three axes, in double, by leapfrog, and calls nobody back. */
+/* Is it compared with a plain loop? That moves on three axes, in double, by leapfrog, and calls nobody back. */
 static bool is_looped(const scene_subject *s)
 {
     return s->shape != WATER && !s->single && s->work == STEPS && s->feature.method == SPRING_LEAPFROG &&
@@ -85,10 +85,10 @@ static void add(const char *name, const scene_subject *s)
         .steps = s->steps,
         .goal_ratio = goal_ratio(s),
         .goal_ns = s->work == INIT && s->side == 1000 ? most_init : INFINITY,
-        .goal_excess_ns = s->beside == SIXTEEN_STEPS ? most_excess : 0,
+        .goal_excess_ns = s->against == SIXTEEN_STEPS ? most_excess : 0,
         .goal_speedup = looped ? goal_speedup(s) : 0,
-        .limits = {s->work != STEPS ? "definition" : besides[s->beside],
-                   s->beside == LIMITS && s->work == STEPS ? "arithmetic" : NULL},
+        .limits = {s->work != STEPS ? "definition" : besides[s->against],
+                   s->against == LIMITS && s->work == STEPS ? "arithmetic" : NULL},
         .baseline = looped ? "list" : NULL,
         .long_only = links > 2000000,
         .time = scene_time,
@@ -112,7 +112,7 @@ static void add_ropes(void)
     for (size_t i = 0; i < sizeof particles / sizeof particles[0]; i++) {
         add("", &(scene_subject){.shape = ROPE, .side = particles[i], .feature = plainly, .steps = 16});
         add("", &(scene_subject){
-                    .shape = ROPE, .side = particles[i], .feature = plainly, .steps = 1, .beside = SIXTEEN_STEPS});
+                    .shape = ROPE, .side = particles[i], .feature = plainly, .steps = 1, .against = SIXTEEN_STEPS});
     }
 }
 
@@ -135,13 +135,13 @@ static void add_shapes(void)
             add_both((scene_subject){.shape = SHEET, .side = sides[i], .order = order, .feature = plainly});
     for (int i = 0; i < side_count; i++)
         add_both((scene_subject){
-            .shape = SHEET, .side = sides[i], .order = RENUMBERED, .feature = plainly, .beside = SHUFFLED_LIST});
+            .shape = SHEET, .side = sides[i], .order = RENUMBERED, .feature = plainly, .against = SHUFFLED_LIST});
     for (uint32_t side = 10; side <= 40; side *= 2)
         add_both((scene_subject){.shape = JELLY, .side = side, .feature = plainly});
     for (int i = 1; i < side_count; i++) {
         add_both((scene_subject){.shape = WATER, .side = sides[i], .feature = plainly});
-        add_both(
-            (scene_subject){.shape = SHEET, .side = sides[i], .feature = plainly, .beside = IN_DOUBLE, .single = true});
+        add_both((scene_subject){
+            .shape = SHEET, .side = sides[i], .feature = plainly, .against = IN_DOUBLE, .single = true});
     }
 }
 
@@ -158,7 +158,7 @@ static void blow(void *user, double t, size_t particles, const double *const pos
         z[i] += 0.02;
 }
 
-/* The other methods, then one feature after the other, beside the scene without it. */
+/* The other methods, then one feature after the other, compared with the scene without it. */
 static void add_features(uint32_t side)
 {
     static const struct {
@@ -173,7 +173,7 @@ static void add_features(uint32_t side)
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
     };
-    scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .beside = LEAPFROG};
+    scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         s.feature = (scene_feature){.method = spring_method_at(i)};
         if (s.feature.method != SPRING_LEAPFROG && spring_method_describe(s.feature.method)->scenes && side <= 128)

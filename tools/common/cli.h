@@ -126,7 +126,7 @@ cli_table *cli_open_bare_output(void);
 /**
  * Open a further table, in the file that an option names; NULL: standard output.
  *
- * The rows go to a temporary file beside the one that is asked for, which takes its name in cli_finish() and not
+ * The rows go to a temporary file next to the requested one, which takes its name in cli_finish() and not
  * before: an older file survives a failure, and a file under that name is complete. Devices and pipes are written
  * directly.
  */

@@ -166,7 +166,7 @@ static void close_stream(const cli_table *table)
         fail_to_write(table);
 }
 
-/* Open a file of another name beside it, so that a rename can put it in place at once. It is the same name for the same
+/* Open a file of another name next to it, so that a rename can put it in place at once. It is the same name for the same
    file, and of no other process: in a container the numbers of processes come again. */
 static void open_temporary(cli_table *table)
 {

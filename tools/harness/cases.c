@@ -77,7 +77,7 @@ static void beating_in_middle(uint64_t i, segment *s)
     set_drive(s, beating, ((double)i + 0.5) * s->dt);
 }
 
-/* x = A t sin(w t)/(2 w) added to the free motion at resonance, A (cos d t - cos w t)/(w^2 - d^2) beside it. */
+/* x = A t sin(w t)/(2 w) added to the free motion at resonance, A (cos d t - cos w t)/(w^2 - d^2) near it. */
 static void driven(const validation_case *c, double frequency, double t, spring_state *s)
 {
     const double w = c->omega, A = drive_amplitude;

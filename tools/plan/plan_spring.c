@@ -13,7 +13,7 @@ static double norm(double a, double b, double c, double d)
     return (hypot(a + d, b - c) + hypot(a - d, b + c)) / 2;
 }
 
-/* Of a run of the library from both unit states, beside the exact solution: at the first 2^16 steps, where what decays
+/* Of a run of the library from both unit states, compared with the exact solution: at the first 2^16 steps, where what decays
    fast is wrong, and at so many of the others. */
 static double measured_error(const spring_params *p, spring_method m, double duration, double steps)
 {

@@ -67,7 +67,7 @@ typedef struct preset {
     spring_link *link; /* [links] */
 } preset;
 
-/** Make the definition of a scene, but for its methods. SPRING_ERANGE: a scene cannot be of this size; SPRING_ENOMEM.
+/** Make the definition of a scene, except for its methods. SPRING_ERANGE: a scene cannot be of this size; SPRING_ENOMEM.
     After either there is nothing to clear. */
 spring_status preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);

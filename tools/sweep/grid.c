@@ -167,7 +167,7 @@ static bool find_parameter(grid *g, const char *text, sweep_parameter *found)
                   g->scene == SWEEP_SPRING ? "one" : "the scene", sweep_scene_name(g->scene), offered);
 }
 
-/* Is each value within limits? They lie between the first and the last one, but for those of a list. */
+/* Is each value within limits? They lie between the first and the last one, except for those of a list. */
 static bool check_values(grid *g, const axis *a, const char *text)
 {
     const sweep_parameter_info *p = &sweep_parameters[a->parameter];

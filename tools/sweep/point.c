@@ -141,7 +141,7 @@ static double norm(double a, double b, double c, double d)
 
 static const spring_state starts[2] = {{1, 0}, {0, 1}};
 
-/* Beside the exact solution, at t. */
+/* Compared with the exact solution, at t. */
 static void look_at_spring(looks *l, const spring_params *p, const spring_state *run, double t)
 {
     const double settled = 0.01, hundredfold = 100;

@@ -43,7 +43,7 @@ static const cli_option options[] = {
              "steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
     {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = 1024, .unstamped = true,
      .help = "work with J processes on this machine; --output is needed\n"
-             "What they have done lies beside it in FILE.1-of-J, FILE.2-of-J, ... until all is done: the same "
+             "Their results are next to it in FILE.1-of-J, FILE.2-of-J, ... until all is done: the same "
              "command goes on with it."},
     {"part", CLI_WORDS, .words = &part, .value = "I/N", .unstamped = true,
      .help = "do the I-th of N parts alone, into the file of --output\n"
@@ -459,7 +459,7 @@ static void check_output(void)
     const char *path = cli_output_path();
     struct stat status;
     if (path == NULL)
-        cli_fail(CLI_USAGE, "--jobs: what is done lies in files beside that of --output, which should name it");
+        cli_fail(CLI_USAGE, "--jobs: results go to files next to that of --output, which is required");
     const bool good = stat(path, &status) == 0 ? S_ISREG(status.st_mode) && access(path, W_OK) == 0
                                                : lstat(path, &status) != 0; /* no link to nowhere */
     if (!good)
@@ -511,7 +511,8 @@ int main(int argc, char **argv)
     }
     if (joined.count > 0) {
         if (over.count + methods.count + measures.count + part.count + jobs > 0 || cli_given(&scene))
-            cli_fail(CLI_USAGE, "--join: the parts say which sweep they are of; it should be alone but for --output");
+            cli_fail(CLI_USAGE,
+                     "--join: the parts say which sweep they are of; it should be alone except for --output");
         check_no_part_is_replaced(joined.word, joined.count);
         join(joined.word, joined.count);
         return 0;

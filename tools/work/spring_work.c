@@ -37,7 +37,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-work",
-    .summary = "Time against error of every stepper, beside GSL and SUNDIALS, in one run.",
+    .summary = "Time against error of every stepper, compared with GSL and SUNDIALS, in one run.",
     .details =
         "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n\n"
         "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"

@@ -22,7 +22,7 @@
 
 typedef enum work_kind {
     WORK_SPRING, /* one spring, for spring_advance() */
-    WORK_STUDY,  /* the original study's, beside which no external solvers run */
+    WORK_STUDY,  /* that of the original study; no external solvers run on it */
     WORK_SCENE   /* for spring_scene_advance() */
 } work_kind;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The library as WebAssembly beside the loop over links that one would write in JavaScript, on typed arrays.
+// The library as WebAssembly compared with the loop over links that one would write in JavaScript, on typed arrays.
 //
 // usage: node bench.mjs cloth|water FLAGS MODULE.wasm [--quick]       (called by tools/bench/wasm/run)
 //
