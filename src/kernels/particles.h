@@ -170,8 +170,8 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
 {
     (void)variant;
     const real dx = vec_load(m->stage_v + c->at), dv = acceleration(m, c, dx);
-    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(m->sum_x + c->at) + dx),
-                       vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + dv));
+    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(m->sum_x + c->at) + m->weight * dx),
+                       vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + m->weight * dv));
 }
 
 static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)

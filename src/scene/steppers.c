@@ -91,6 +91,7 @@ static scene_outcome scene_rk4(scene_step *s)
         stage.force = end.force = force_at(s, s->to);
     }
     end.kick = end.drift = s->h / 6;
+    end.weight = 1;
     return (scene_outcome){.finite = move(s, s->kernels->last_stage, &end)};
 }
 
