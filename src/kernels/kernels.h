@@ -50,6 +50,7 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
+    .kick_damped_drift = move_kick_damped_drift,
 };
 #endif
 

@@ -251,4 +251,21 @@ static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, si
     return for_each_vector(p, m, from, to, update_nystrom_end, 0);
 }
 
+/* ------------------------------------------------------------------------------- kicks, and drifts with exact drag */
+
+SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
+    const real v0 = (variant & ENDS_STEP) != 0 ? start + m->kick * free : start;
+    const real v = v0 + m->kick * free;
+    return store_state(m, c, vec_load(m->x0 + c->at) + vec_load(m->span + c->mass) * v,
+                       v + vec_load(m->loss + c->mass) * v);
+}
+
+static bool move_kick_damped_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_damped_drift, ENDS_STEP)
+                        : for_each_vector(p, m, from, to, update_kick_damped_drift, 0);
+}
+
 #endif

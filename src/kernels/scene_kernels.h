@@ -97,6 +97,7 @@ typedef struct scene_motion {
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
+    const scalar *span, *loss; /* by mass, of a drift with drag: [s] (1 - e^(-drag drift))/drag, and e^(-drag drift) - 1 */
 } scene_motion;
 
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
@@ -124,6 +125,7 @@ typedef struct scene_kernels {
     particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
+    particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */
