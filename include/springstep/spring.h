@@ -62,8 +62,8 @@ typedef enum spring_method {
     SPRING_RK4,      /**< order 4; the smallest error for short runs; slowly loses energy */
     SPRING_EXACT,    /**< the exact solution; for one linear spring, no stepper is better */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
-    SPRING_RKN8,  /**< order 8; scenes without damped links: many significant digits of a smooth motion */
-    SPRING_SRKN6  /**< order 6, bounded energy error; scenes without damped links: long runs with three to six digits */
+    SPRING_RKN8,             /**< order 8; scenes without damped links: many significant digits of a smooth motion */
+    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links: long runs with 3 to 6 digits */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is

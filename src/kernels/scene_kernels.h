@@ -97,7 +97,7 @@ typedef struct scene_motion {
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
-    const scalar *span, *loss; /* by mass, of a drift with drag: [s] (1 - e^(-drag drift))/drag, and e^(-drag drift) - 1 */
+    const scalar *span, *loss; /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
 } scene_motion;
 
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */

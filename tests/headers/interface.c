@@ -135,7 +135,8 @@ VALUE(SPRING_RK4, 2);
 VALUE(SPRING_EXACT, 3);
 VALUE(SPRING_SYMPLECTIC_EULER, 4);
 VALUE(SPRING_RKN8, 5);
-#if SPRING_METHOD_COUNT < 6
+VALUE(SPRING_SRKN6, 6);
+#if SPRING_METHOD_COUNT < 7
 #error "the number of methods only grows, and the preprocessor can compare it"
 #endif
 
