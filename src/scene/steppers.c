@@ -169,14 +169,14 @@ static void compute_srkn6_factors(const scene_step *s)
     const scene_particles *p = &s->particles;
     const size_t count = p->mass_stride != 0 ? p->count : padding;
     for (size_t i = 0; i < count; i++) {
-        const bool same = i > 0 && p->inverse_mass[i] == p->inverse_mass[i - 1];
+        const bool as_before = i > 0 && p->inverse_mass[i] == p->inverse_mass[i - 1];
         const double drag = (double)(p->drag * p->inverse_mass[i]);
         for (unsigned k = 0; k < srkn6_different; k++) {
             scalar *span = mass_factor(s, SRKN6_SPAN + k), *loss = mass_factor(s, SRKN6_LOSS + k);
             const double drift = srkn6_a[k] * (double)s->h, z = drag * drift;
-            const double change = same ? 0 : spring_expm1(-z);
-            span[i] = same ? span[i - 1] : (scalar)(z != 0 ? drift * (-change / z) : drift);
-            loss[i] = same ? loss[i - 1] : (scalar)change;
+            const double change = as_before ? 0 : spring_expm1(-z);
+            span[i] = as_before ? span[i - 1] : (scalar)(z != 0 ? drift * (-change / z) : drift);
+            loss[i] = as_before ? loss[i - 1] : (scalar)change;
         }
     }
 }
