@@ -237,11 +237,13 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  * @param[in]     target_velocity  velocity of the target during the step [m/s], finite
  * @param[in]     dt               finite time step [s]; a negative step integrates backwards; 0 changes nothing
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE
- * @par Accuracy  With y = x - rest position and u = v - T', the error of (x, v/omega) is at most
- *                    4 eps (1 + omega dt max(1, zeta)) |Phi| |(y, u/omega)| + DBL_MIN (1 + 1/omega)
- *                as in spring_step_exact(), plus 2 eps (|x| + |rest position| + |T' dt| + |T'|/omega), where x and the
- *                rest position are the larger of those before and after the step, plus, if the spring is placed on its
- *                target, 9/8 ulp/min(1, slow dt), which also bounds what its landing changes (tests/test_follow.c).
+ * @par Accuracy  With y = x - rest position and u = v - T' before the step, the error of (x, v/omega) is at most the sum
+ *                of
+ *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(y, u/omega)| + DBL_MIN (1 + 1/omega)
+ *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
+ *                    9/8 ulp/min(1, slow dt), if the spring is placed on its target
+ *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness, the
+ *                error is that of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
  * @par Source    src/spring/follow_formula.h derives the condition
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */

@@ -161,9 +161,17 @@ static spring_status check_batch(const spring_batch *b, spring_method m, double 
     return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
 }
 
+/* Whether all springs have the same propagator. */
 static bool same_propagator(const spring_batch *b)
 {
     return is_shared(b, SPRING_SHARED_OMEGA2) && (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA));
+}
+
+static spring_propagator propagator_of(const spring_batch *b, double t, bool loaded)
+{
+    const spring_params p = spring_at(b, 0);
+    const spring_quotients r = spring_quotients_of(p.stiffness, p.damping, p.mass);
+    return spring_propagator_of(&r, t, loaded);
 }
 
 /* The step is rounded to the precision of the batch once, here. */
@@ -177,8 +185,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     batch_run run = {.method = m, .dt = dt, .n = n, .t = (double)dt * (double)n};
     spring_propagator propagator;
     if (m == SPRING_EXACT && same_propagator(b)) {
-        const spring_params p = spring_at(b, 0);
-        propagator = spring_propagator_of(&p, run.t, b->accel != NULL);
+        propagator = propagator_of(b, run.t, b->accel != NULL);
         run.propagator = &propagator;
     }
     return advance_all(kernels, b, run) ? SPRING_OK : reason(b, NULL);
@@ -223,8 +230,7 @@ spring_status spring_batch_follow_with(const batch_kernels *kernels, const sprin
         batch_run run = {.method = SPRING_EXACT, .t = dt, .target = target, .landing = landing};
         spring_propagator propagator;
         if (same_propagator(b) && *b->omega2 > 0) {
-            const spring_params p = spring_at(b, 0);
-            propagator = spring_propagator_of(&p, dt, false);
+            propagator = propagator_of(b, dt, false);
             run.propagator = &propagator;
         }
         status = advance_all(kernels, b, run) ? SPRING_OK : reason(b, target);

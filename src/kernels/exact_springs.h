@@ -92,7 +92,7 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 static bool advance_exactly(const batch_run *b)
 {
     if (b->propagator != NULL && b->target != NULL)
-        return b->accel.first != NULL ? follow_alike(b, true) : follow_alike(b, false);
+        return SPRING_BY_FEATURES(b->accel.first != NULL, b->propagator->half == 1, follow_alike, b);
     if (b->propagator != NULL)
         return b->accel.first != NULL ? advance_alike(b, true) : advance_alike(b, false);
     const exact_run each = {

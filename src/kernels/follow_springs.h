@@ -35,8 +35,9 @@ SPRING_INLINE real follow_rest(real target, real a, real w)
     return select_real(a != 0, target + a / w, target);
 }
 
-/* Where |y| is larger, a spring neither lands nor settles: limit = slope |rest| + least. From |x| <= (1 + eps) (|rest| + |y|)
-   and d <= eps/2 |x|, with factors of 2 to spare; and from share >= 32 eps, else the limit is infinite. */
+/* Where no |y| of a group is below slope * (the largest |rest|) + least, no spring of the group lands or settles. From
+   |x| <= |rest| + |y| and d <= eps/2 |x|, with a factor of 2 to spare; where share is so small that |y| may be larger than
+   |rest|, any spring may land. */
 typedef struct follow_limit {
     real slope, least;
 } follow_limit;
@@ -52,49 +53,62 @@ SPRING_INLINE follow_limit follow_limit_of(const exact_landing *b, scalar share)
     return (follow_limit){splat(per_share * eps), splat(per_share * normal + 2 * x_tol)};
 }
 
-/* A group of which some springs may land or settle. Returns the number of springs that still move. */
-SPRING_NOINLINE size_t land_group(const exact_landing *b, size_t i, real *x, real *v, const real *y, const real *rest,
-                                  const follow_coefficients *c)
+/* A vector of springs with stiffness, from spring i on; not stored. */
+typedef struct followed {
+    real x, v, y, rest;
+} followed;
+
+SPRING_INLINE followed follow_vector(const batch_run *b, size_t i, const follow_coefficients *c, bool loaded)
 {
-    size_t moving = 0;
-    for (size_t k = 0; k < vectors; k++) {
-        const mask lands = follow_lands(x[k], rest[k], y[k], v[k], c, sizeof(scalar) == sizeof(float));
-        x[k] = select_real(lands, rest[k], x[k]);
-        v[k] = select_real(lands, splat(0), v[k]);
-        moving += settle(b, i + k * lanes, &x[k], &v[k], rest[k]);
-    }
-    return moving;
+    const real target = vec_load(b->target + i);
+    const real rest = loaded ? follow_rest(target, rate(b->accel, i), c->omega2) : target;
+    real y = vec_load(b->x + i) - rest, u = vec_load(b->v + i);
+    exact_step(&y, &u, splat(0), &c->exact, false);
+    return (followed){rest + y, u, y, rest};
 }
 
-/* Springs with equal coefficients and stiffness. */
-SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded)
+/* A group of which some springs may land or settle. Returns false if a spring keeps its state. */
+SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coefficients *c)
+{
+    real x[vectors], v[vectors];
+    for (size_t k = 0; k < vectors; k++) {
+        const size_t j = i + k * lanes;
+        const followed s = follow_vector(b, j, c, b->accel.first != NULL);
+        const mask lands = follow_lands(s.x, s.rest, s.y, s.v, c, sizeof(scalar) == sizeof(float));
+        x[k] = select_real(lands, s.rest, s.x);
+        v[k] = select_real(lands, splat(0), s.v);
+        *b->landing.moving += settle(&b->landing, j, &x[k], &v[k], s.rest);
+    }
+    return store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
+}
+
+/* Springs with equal coefficients and stiffness. unit: the first half of E is 1, as it is for most frames. */
+SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
 {
     const batch_run b = *run; /* a local copy, so that stores cannot alias its fields */
-    const real w = splat(b.omega2.first[0]);
-    const follow_coefficients c = follow_prepare(exact_prepare(b.propagator), w, splat((scalar)b.t));
+    follow_coefficients c = follow_prepare(exact_prepare(b.propagator), splat(b.omega2.first[0]), splat((scalar)b.t));
     scalar share[lanes];
     vec_store(share, c.share);
     const follow_limit limit = follow_limit_of(&b.landing, share[0]);
+    if (unit)
+        c.exact.half = splat(1);
     size_t moving = 0;
     bool all = true;
     for (size_t i = 0; i < b.count; i += group) {
-        real x[vectors], v[vectors], y[vectors], rest[vectors];
-        mask near = {0};
+        real x[vectors], v[vectors], least_distance = splat(INFINITY), minus_largest = splat(0);
         SPRING_UNROLL
         for (size_t k = 0; k < vectors; k++) {
-            const size_t j = i + k * lanes;
-            const real target = vec_load(b.target + j);
-            rest[k] = loaded ? follow_rest(target, rate(b.accel, j), w) : target;
-            y[k] = vec_load(b.x + j) - rest[k];
-            v[k] = vec_load(b.v + j);
-            exact_step(&y[k], &v[k], splat(0), &c.exact, false);
-            x[k] = rest[k] + y[k];
-            near |= vec_abs(y[k]) <= limit.slope * vec_abs(rest[k]) + limit.least;
+            const followed s = follow_vector(&b, i + k * lanes, &c, loaded);
+            x[k] = s.x;
+            v[k] = s.v;
+            least_distance = vec_min(vec_abs(s.y), least_distance);
+            minus_largest = vec_min(-vec_abs(s.rest), minus_largest);
         }
-        if (SPRING_UNLIKELY(any(near)))
-            moving += land_group(&b.landing, i, x, v, y, rest, &c);
-        else
-            moving += counted_from(&b.landing, i, group);
+        if (SPRING_UNLIKELY(any(least_distance <= limit.least - limit.slope * minus_largest))) {
+            all &= land_group(run, i, &c);
+            continue;
+        }
+        moving += counted_from(&b.landing, i, group);
         all &= store_group(run, i, b.x + i, b.v + i, x, v, vectors, (mask){0});
     }
     *b.landing.moving += moving;

@@ -2,10 +2,9 @@
 /* The exact solution of one spring: exact_formula.h on numbers. */
 #include "exact_formula.h"
 
-spring_propagator spring_propagator_of(const spring_params *p, double t, bool loaded)
+spring_propagator spring_propagator_of(const spring_quotients *r, double t, bool loaded)
 {
-    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, p->mass);
-    const exact_coefficients c = exact_coefficients_of(r.omega2, r.b, r.rest, t, loaded);
+    const exact_coefficients c = exact_coefficients_of(r->omega2, r->b, r->rest, t, loaded);
     return (spring_propagator){c.half, c.F, c.G, c.H, c.wH, c.P, c.rate};
 }
 

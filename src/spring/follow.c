@@ -8,21 +8,24 @@ spring_status spring_follow(spring_state *s, const spring_params *p, double targ
     if (s == NULL || p == NULL || !spring_finite(target) || !spring_finite(target_velocity) || !spring_finite(dt))
         return SPRING_EINVAL;
     const double x0 = s->x, v0 = s->v;
-    const spring_rates r = spring_rates_of(p);
-    if (!spring_finite(x0) || !spring_finite(v0) || !spring_rates_valid(p, &r))
+    const bool has_load = p->load != 0;
+    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, p->mass);
+    const spring_rates rates = {r.omega2, 2 * r.b, has_load ? p->load / p->mass : 0};
+    if (!spring_finite(x0) || !spring_finite(v0) || !spring_rates_valid(p, &rates))
         return SPRING_EINVAL;
     if (dt == 0)
         return SPRING_OK;
 
-    /* Without stiffness there is no rest position: x is measured from where it is. */
-    const bool is_free = r.omega2 == 0, loaded = is_free && r.accel != 0;
-    const double rest = p->load != 0 ? target + p->load / p->stiffness : target;
+    /* A load shifts the rest position. Without stiffness there is none, and x is measured from where the target would be
+       if it had started at 0. */
+    const bool is_free = r.omega2 == 0, pushed = is_free && has_load;
+    const double rest = has_load ? target + p->load / p->stiffness : target;
     const double moved = target_velocity != 0 ? target_velocity * dt : 0;
     const double to = is_free ? moved : rest, from = is_free ? 0 : rest - moved;
-    const spring_propagator propagator = spring_propagator_of(p, dt, loaded);
+    const spring_propagator propagator = spring_propagator_of(&r, dt, pushed);
     const follow_coefficients c = follow_prepare(exact_prepare(&propagator), r.omega2, dt);
     double y = x0 - from, u = v0 - target_velocity;
-    exact_step(&y, &u, r.accel, &c.exact, loaded);
+    exact_step(&y, &u, rates.accel, &c.exact, pushed);
     double x = to + y, v = target_velocity != 0 ? target_velocity + u : u; /* -0 stays -0, as in batches */
     if (follow_lands(x, to, y, u, &c, false)) {
         x = to;

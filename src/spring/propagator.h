@@ -4,6 +4,7 @@
 #define SPRINGSTEP_PROPAGATOR_H
 
 #include "../simd/targets.h"
+#include "roots.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,7 +17,7 @@ typedef struct spring_propagator {
     double rate;           /* [1/s] for t > 0 the decay rate of the slowest mode */
 } spring_propagator;
 
-SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_params *p, double t,
+SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_quotients *r, double t,
                                                        bool loaded); /* without loaded, P = 0 */
 
 /* spring_step_exact(), by value. */
