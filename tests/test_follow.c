@@ -128,7 +128,8 @@ static void against_reference(void)
         if (i % 4 == 0)
             p.load = p.stiffness * random_uniform(-100, 100);
         const double shift = p.load / p.stiffness, near = i % 7 ? 1000 : 1e-11;
-        const spring_state start = {target + shift + near * random_uniform(-1, 1), velocity + near * random_uniform(-1, 1)};
+        const spring_state start = {target + shift + near * random_uniform(-1, 1),
+                                    velocity + near * random_uniform(-1, 1)};
         spring_state got = start;
         CHECK(spring_follow(&got, &p, target, velocity, dt) == SPRING_OK, "good input");
 
@@ -231,7 +232,8 @@ static void lands_only_if_it_decays(void)
 
 static void special_springs(void)
 {
-    const spring_params dragged = {2, 0, 6, 0}, pushed = {2, 0, 6, 3}, hanging = {2, 50, 6, -20}, soft = {1, 1e-300, 1, 1};
+    const spring_params dragged = {2, 0, 6, 0}, pushed = {2, 0, 6, 3}, hanging = {2, 50, 6, -20},
+                        soft = {1, 1e-300, 1, 1};
     spring_state s = {4, 7};
     spring_follow(&s, &dragged, 1e6, 2, 100);
     CHECK_CLOSE(s.x, 4 + 2 * 100 + 5 / 3.0, 1e-13, "without stiffness: a target velocity, and 5 m/s that decay at 3/s");
@@ -257,10 +259,10 @@ static void bad_input_changes_nothing(void)
 {
     const spring_params good = {1.3, 40, 2, 0.5};
     const double bad[] = {NAN, INFINITY, -INFINITY};
-    const spring_params bad_params[] = {{0, 40, 2, 0},   {-1, 40, 2, 0},       {NAN, 40, 2, 0},      {INFINITY, 40, 2, 0},
-                                        {1, -40, 2, 0},  {1, 40, -2, 0},       {1, NAN, 2, 0},       {1, 40, NAN, 0},
-                                        {1, 40, 2, NAN}, {1, 40, 2, INFINITY}, {1e-300, 1e9, 2, 0},  {1e-300, 40, 1e9, 0},
-                                        {1e-300, 1, 1, 1e9}};
+    const spring_params bad_params[] = {
+        {0, 40, 2, 0},       {-1, 40, 2, 0},       {NAN, 40, 2, 0},    {INFINITY, 40, 2, 0}, {1, -40, 2, 0},
+        {1, 40, -2, 0},      {1, NAN, 2, 0},       {1, 40, NAN, 0},    {1, 40, 2, NAN},      {1, 40, 2, INFINITY},
+        {1e-300, 1e9, 2, 0}, {1e-300, 40, 1e9, 0}, {1e-300, 1, 1, 1e9}};
     const spring_state start = {0.3, -0.7};
     spring_state s = start;
     CHECK(spring_follow(NULL, &good, 1, 0, 0.1) == SPRING_EINVAL, "no state");
@@ -323,14 +325,18 @@ static void parameters_by_settling_time(void)
 static void bad_parameters_are_nan(void)
 {
     const spring_params bad[] = {
-        spring_params_response(0, 1),         spring_params_response(-1, 1),         spring_params_response(NAN, 1),
-        spring_params_response(INFINITY, 1),  spring_params_response(1, -0.1),       spring_params_response(1, NAN),
-        spring_params_response(1, INFINITY),  spring_params_response(1e-200, 1),     spring_params_response(1e200, 1),
-        spring_params_bounce(0, 0),           spring_params_bounce(INFINITY, 0),     spring_params_bounce(1, -1),
-        spring_params_bounce(1, 1.01),        spring_params_bounce(1, NAN),          spring_params_settling(0, 1, 0.1),
-        spring_params_settling(NAN, 1, 0.1),  spring_params_settling(1, 0, 0.1),     spring_params_settling(1, NAN, 0.1),
-        spring_params_settling(1, -1, 0.1),   spring_params_settling(1, 1, 0),       spring_params_settling(1, 1, 1),
-        spring_params_settling(1, 1, NAN),    spring_params_settling(1e-200, 1, 0.1), spring_params_settling(1, INFINITY, 0.1),
+        spring_params_response(0, 1),           spring_params_response(-1, 1),
+        spring_params_response(NAN, 1),         spring_params_response(INFINITY, 1),
+        spring_params_response(1, -0.1),        spring_params_response(1, NAN),
+        spring_params_response(1, INFINITY),    spring_params_response(1e-200, 1),
+        spring_params_response(1e200, 1),       spring_params_bounce(0, 0),
+        spring_params_bounce(INFINITY, 0),      spring_params_bounce(1, -1),
+        spring_params_bounce(1, 1.01),          spring_params_bounce(1, NAN),
+        spring_params_settling(0, 1, 0.1),      spring_params_settling(NAN, 1, 0.1),
+        spring_params_settling(1, 0, 0.1),      spring_params_settling(1, NAN, 0.1),
+        spring_params_settling(1, -1, 0.1),     spring_params_settling(1, 1, 0),
+        spring_params_settling(1, 1, 1),        spring_params_settling(1, 1, NAN),
+        spring_params_settling(1e-200, 1, 0.1), spring_params_settling(1, INFINITY, 0.1),
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         const spring_params p = bad[i];

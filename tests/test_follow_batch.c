@@ -169,7 +169,8 @@ static void near_single_springs(void)
             if (one.stiffness == 0)
                 continue;
             const double target = (double)p.target[j], x0 = (double)before.x[j], v0 = (double)before.v[j];
-            const double omega = sqrt(one.stiffness), zeta = one.damping / 2 / omega, rest = target + one.load / one.stiffness;
+            const double omega = sqrt(one.stiffness), zeta = one.damping / 2 / omega,
+                         rest = target + one.load / one.stiffness;
             const double slow = zeta <= 1 ? zeta * omega : omega / (zeta + sqrt(zeta * zeta - 1));
             spring_state s = {x0, v0};
             spring_follow(&s, &one, target, 0, dt);
@@ -250,9 +251,9 @@ static void bad_input_changes_nothing(void)
         const scalar *target;
         double dt, x_tol, v_tol;
     } bad[] = {
-        {NULL, p.target, 0.1, 0, 0},      {&good, NULL, 0.1, 0, 0},          {&good, p.x + 3, 0.1, 0, 0},
-        {&good, p.v + 3, 0.1, 0, 0},      {&good, p.target, NAN, 0, 0},      {&good, p.target, INFINITY, 0, 0},
-        {&good, p.target, 0.1, -1e-9, 0}, {&good, p.target, 0.1, 0, -1e-9},  {&good, p.target, 0.1, NAN, 0},
+        {NULL, p.target, 0.1, 0, 0},      {&good, NULL, 0.1, 0, 0},         {&good, p.x + 3, 0.1, 0, 0},
+        {&good, p.v + 3, 0.1, 0, 0},      {&good, p.target, NAN, 0, 0},     {&good, p.target, INFINITY, 0, 0},
+        {&good, p.target, 0.1, -1e-9, 0}, {&good, p.target, 0.1, 0, -1e-9}, {&good, p.target, 0.1, NAN, 0},
         {&good, p.target, 0.1, 0, NAN},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

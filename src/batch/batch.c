@@ -215,15 +215,14 @@ spring_status spring_batch_follow_with(const batch_kernels *kernels, const sprin
                                        double dt, double x_tol, double v_tol, size_t *moving)
 {
     if (b == NULL || !batch_valid(b) || !spring_finite(dt) || !(x_tol >= 0) || !(v_tol >= 0) ||
-        (b->count > 0 && (target == NULL || overlap(b->x, b->count, target, b->count) ||
-                          overlap(b->v, b->count, target, b->count))))
+        (b->count > 0 &&
+         (target == NULL || overlap(b->x, b->count, target, b->count) || overlap(b->v, b->count, target, b->count))))
         return SPRING_EINVAL;
     size_t count = 0;
     spring_status status = SPRING_OK;
     const double largest = sizeof(scalar) == sizeof(float) ? FLT_MAX : DBL_MAX; /* infinity is at no distance */
-    const exact_landing landing = {.x_tol = (double)(scalar)fmin(x_tol, largest),
-                                   .v_tol = (double)(scalar)fmin(v_tol, largest),
-                                   .moving = &count};
+    const exact_landing landing = {
+        .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = &count};
     if (b->count > 0 && dt == 0)
         count = count_moving(b, target, &landing);
     if (b->count > 0 && dt != 0) {

@@ -25,9 +25,9 @@ typedef struct batch_run {
     batch_array omega2, gamma, accel;
     scalar dt;
     uint64_t n;
-    double t;              /* exact solution: n dt */
-    const scalar *target;  /* exact solution: NULL, or a target for each spring */
-    exact_landing landing; /* of springs with targets */
+    double t;                            /* exact solution: n dt */
+    const scalar *target;                /* exact solution: NULL, or a target for each spring */
+    exact_landing landing;               /* of springs with targets */
     const spring_propagator *propagator; /* exact solution of springs with equal parameters; NULL: they differ */
 } batch_run;
 

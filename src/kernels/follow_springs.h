@@ -138,7 +138,8 @@ SPRING_INLINE void follow_each(const exact_run *b, size_t i, real *x, real *v, r
 {
     const mask is_free = w == 0;
     const real target = exact_load(b->target, i, b->single);
-    const real shift = rounded(a / w, b->single), rest = rounded(select_real(a != 0, target + shift, target), b->single);
+    const real shift = rounded(a / w, b->single),
+               rest = rounded(select_real(a != 0, target + shift, target), b->single);
     const real to = select_real(is_free, target - target, rest);
     const follow_coefficients c = follow_prepare(*exact, w, splat(b->t));
     real y = *x - to;
