@@ -5,7 +5,7 @@
 spring_propagator spring_propagator_of(const spring_quotients *r, double t, bool loaded)
 {
     const exact_coefficients c = exact_coefficients_of(r->omega2, r->b, r->rest, t, loaded);
-    return (spring_propagator){c.half, c.F, c.G, c.H, c.wH, c.P, c.rate};
+    return (spring_propagator){c.half, c.F, c.G, c.H, c.wH, c.P, c.decay_rate};
 }
 
 spring_state spring_exact(spring_state s, const spring_params *p, double t)

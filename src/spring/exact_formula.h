@@ -31,15 +31,15 @@
 typedef struct exact_coefficients {
     real half;           /* of E, see exact_halves */
     real F, G, H, wH, P; /* times the other half; H [s], wH [1/s]; P [s^2] is complete */
-    real rate;           /* [1/s] of E; for t > 0 the decay rate of the slowest mode */
+    real decay_rate;     /* [1/s] of E; for t > 0 that of the slowest mode */
 } exact_coefficients;
 
 /* Coefficients that are equal for all springs, computed once in double. */
 SPRING_INLINE exact_coefficients exact_prepare(const spring_propagator *y)
 {
     return (exact_coefficients){
-        splat((scalar)y->half), splat((scalar)y->F), splat((scalar)y->G),    splat((scalar)y->H),
-        splat((scalar)y->wH),   splat((scalar)y->P), splat((scalar)y->rate),
+        splat((scalar)y->half), splat((scalar)y->F), splat((scalar)y->G),          splat((scalar)y->H),
+        splat((scalar)y->wH),   splat((scalar)y->P), splat((scalar)y->decay_rate),
     };
 }
 

@@ -32,7 +32,7 @@ typedef struct follow_coefficients {
 
 SPRING_INLINE follow_coefficients follow_prepare(exact_coefficients exact, real omega2, real dt)
 {
-    const real share = exact.rate * dt;
+    const real share = exact.decay_rate * dt;
     const mask lands = (share > 0) & (omega2 > 0);
     return (follow_coefficients){exact, omega2, select_real(lands, select_real(share < 1, share, splat(1)), splat(0))};
 }

@@ -14,7 +14,7 @@
 typedef struct spring_propagator {
     double half;           /* e^(-bt/2), or of the slow root */
     double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
-    double rate;           /* [1/s] for t > 0 the decay rate of the slowest mode */
+    double decay_rate;     /* [1/s] for t > 0 that of the slowest mode */
 } spring_propagator;
 
 SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_quotients *r, double t,
