@@ -13,19 +13,25 @@ SPRING_INLINE size_t counted_from(const exact_landing *b, size_t i, size_t many)
     return i >= b->counted ? 0 : b->counted - i < many ? b->counted - i : many;
 }
 
-/* Places the springs of a vector that have settled on their targets. Returns the number of others. NaN never settles. */
-SPRING_INLINE size_t settle(const exact_landing *b, size_t i, real *x, real *v, real rest)
+/* Places the springs of a vector that land or have settled on their targets. Returns the number of others, NaN among
+   them. */
+SPRING_INLINE size_t settle(const exact_landing *b, size_t i, real *x, real *v, real y, real rest,
+                            const follow_coefficients *c, bool single)
 {
     size_t moving = counted_from(b, i, lanes);
-    const mask settled = (vec_abs(*x - rest) <= (scalar)b->x_tol) & (vec_abs(*v) <= (scalar)b->v_tol);
-    if (!any(settled))
+    mask rests = (vec_abs(*x - rest) <= (scalar)b->x_tol) & (vec_abs(*v) <= (scalar)b->v_tol);
+    if (any(not_mask(rests)))
+        rests = rests | follow_lands(*x, rest, y, *v, c, single);
+    if (!any(rests))
         return moving;
-    scalar has_settled[lanes];
-    vec_store(has_settled, select_real(settled, splat(1), splat(0)));
+    *x = select_real(rests, rest, *x);
+    *v = select_real(rests, splat(0), *v);
+    if (!any(not_mask(rests)))
+        return 0;
+    scalar one[lanes];
+    vec_store(one, select_real(rests, splat(1), splat(0)));
     for (size_t k = moving; k-- > 0;)
-        moving -= has_settled[k] > 0;
-    *x = select_real(settled, rest, *x);
-    *v = select_real(settled, splat(0), *v);
+        moving -= one[k] > 0;
     return moving;
 }
 
@@ -35,9 +41,9 @@ SPRING_INLINE real follow_rest(real target, real a, real w)
     return select_real(a != 0, target + a / w, target);
 }
 
-/* Where no |y| of a group is below slope * (the largest |rest|) + least, no spring of the group lands or settles. From
-   |x| <= |rest| + |y| and d <= eps/2 |x|, with a factor of 2 to spare; where share is so small that |y| may be larger than
-   |rest|, any spring may land. */
+/* If no |y| of a group is below slope * (the largest |rest|) + least, no spring of the group lands or settles. This follows
+   from |x| <= |rest| + |y| and d <= eps/2 |x|, with a factor of 2 or more to spare. Where share is so small that a spring
+   may land from farther away than |rest|, there is no limit. */
 typedef struct follow_limit {
     real slope, least;
 } follow_limit;
@@ -74,10 +80,9 @@ SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coeff
     for (size_t k = 0; k < vectors; k++) {
         const size_t j = i + k * lanes;
         const followed s = follow_vector(b, j, c, b->accel.first != NULL);
-        const mask lands = follow_lands(s.x, s.rest, s.y, s.v, c, sizeof(scalar) == sizeof(float));
-        x[k] = select_real(lands, s.rest, s.x);
-        v[k] = select_real(lands, splat(0), s.v);
-        *b->landing.moving += settle(&b->landing, j, &x[k], &v[k], s.rest);
+        x[k] = s.x;
+        v[k] = s.v;
+        *b->landing.moving += settle(&b->landing, j, &x[k], &v[k], s.y, s.rest, c, sizeof(scalar) == sizeof(float));
     }
     return store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
 }
@@ -145,10 +150,7 @@ SPRING_INLINE void follow_each(const exact_run *b, size_t i, real *x, real *v, r
     real y = *x - to;
     exact_step(&y, v, select_real(is_free, a, splat(0)), exact, loaded);
     *x = to + y;
-    const mask lands = follow_lands(*x, to, y, *v, &c, b->single);
-    *x = select_real(lands, to, *x);
-    *v = select_real(lands, splat(0), *v);
-    *b->landing.moving += settle(&b->landing, i, x, v, rest);
+    *b->landing.moving += settle(&b->landing, i, x, v, y, rest, &c, b->single);
 }
 #endif
 
