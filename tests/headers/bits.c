@@ -247,19 +247,10 @@ static void print_follow_batches(const char *name, bool damped, bool loaded, uin
     printf("follow-batch %s %016" PRIx64 ", float %016" PRIx64 "\n", name, hash, hashf);
 }
 
-static void print_params(void)
+static void print_params(spring_params p)
 {
-    const spring_params made[] = {
-        spring_params_response(0.5, 0.75),      spring_params_bounce(0.5, 0.3),
-        spring_params_bounce(0.7, -0.3),        spring_params_settling(0.4, 1, 0.001),
-        spring_params_settling(0.4, 0.3, 0.01), spring_params_settling(0.4, 3, 0.01),
-    };
-    printf("parameters");
-    for (size_t i = 0; i < sizeof made / sizeof made[0]; i++) {
-        print(made[i].stiffness);
-        print(made[i].damping);
-    }
-    printf("\n");
+    print(p.stiffness);
+    print(p.damping);
 }
 
 int main(void)
@@ -338,6 +329,13 @@ int main(void)
     print_follow_batches("undamped", false, true, SPRING_SHARED_OMEGA2);
     print_follow_batches("same", true, false, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
     print_follow_batches("same-loaded", true, true, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
-    print_params();
+    printf("parameters");
+    print_params(spring_params_response(0.5, 0.75));
+    print_params(spring_params_bounce(0.5, 0.3));
+    print_params(spring_params_bounce(0.7, -0.3));
+    print_params(spring_params_settling(0.4, 1, 0.001));
+    print_params(spring_params_settling(0.4, 0.3, 0.01));
+    print_params(spring_params_settling(0.4, 3, 0.01));
+    printf("\n");
     return 0;
 }
