@@ -41,9 +41,9 @@ SPRING_INLINE real follow_rest(real target, real a, real w)
     return select_real(a != 0, target + a / w, target);
 }
 
-/* If no |y| of a group is below slope * (the largest |rest|) + least, no spring of the group lands or settles. This follows
-   from |x| <= |rest| + |y| and d <= eps/2 |x|, with a factor of 2 or more to spare. Where share is so small that a spring
-   may land from farther away than |rest|, there is no limit. */
+/* If no |y| of a group is below slope * (the largest |x|) + least, no spring of the group lands or settles. This follows
+   from |rest| <= |x| + |y| and d <= eps/2 |rest|, with a factor of 2 or more to spare. Where share is so small that a spring
+   may land from farther away than |x|, there is no limit. */
 typedef struct follow_limit {
     real slope, least;
 } follow_limit;
@@ -107,7 +107,7 @@ SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
             x[k] = s.x;
             v[k] = s.v;
             least_distance = vec_min(vec_abs(s.y), least_distance);
-            minus_largest = vec_min(-vec_abs(s.rest), minus_largest);
+            minus_largest = vec_min(vec_minus_abs(s.x), minus_largest);
         }
         if (SPRING_UNLIKELY(any(least_distance <= limit.least - limit.slope * minus_largest))) {
             all &= land_group(run, i, &c);

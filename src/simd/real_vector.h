@@ -165,6 +165,11 @@ SPRING_INLINE real vec_abs(real a)
     return (real)(~(mask)splat(-(scalar)0) & (mask)a);
 }
 
+SPRING_INLINE real vec_minus_abs(real a)
+{
+    return (real)((mask)splat(-(scalar)0) | (mask)a);
+}
+
 /* The smaller; b if a is NaN. */
 SPRING_INLINE real vec_min(real a, real b)
 {
