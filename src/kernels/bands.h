@@ -74,6 +74,23 @@ SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const
     }
 }
 
+/* The forces of damping alone, from damping/length^2 (on one axis damping). */
+SPRING_INLINE void to_damping_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const real *factor)
+{
+    SPRING_UNROLL
+    for (size_t m = 0; m < links_together(axes); m++) {
+        const mask joined = factor[m] > 0;
+        real rate = delta[m][0] * relative[m][0];
+        SPRING_UNROLL
+        for (uint32_t a = 1; a < axes; a++)
+            rate += delta[m][a] * relative[m][a];
+        const real scale = factor[m] * rate;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(joined, axes == 1 ? factor[m] * relative[m][a] : scale * delta[m][a], splat(0));
+    }
+}
+
 SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
@@ -83,15 +100,17 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
 
 /* Computes the forces of a band in `slots` slots from t on; those along axis a are stored at force + a * axis. shared: all
    slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
-SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared)
+SPRING_INLINE void tile_forces(const scene_band *band, const scalar *factor, const scalar *x, const scalar *v,
+                               size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes,
+                               link_terms terms, bool shared)
 {
+    const bool elastic = terms != DAMPING_TERM, damped = terms != STIFFNESS_TERM;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c,
-                        *const damping = damped ? band->damping + slot * stride_c : NULL;
+                        *const damping = elastic && damped ? band->damping + slot * stride_c : NULL;
     SPRING_PREFETCH(occupied + tile); /* so few cache lines that the hardware prefetcher does not see a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const size_t together = links_together(axes);
@@ -104,10 +123,14 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
             const ptrdiff_t number = (ptrdiff_t)i * stride_c;
-            k[m] = vec_load(stiffness + number);
-            rest[m] = vec_load(rest_length + number);
-            c[m] = damped ? vec_load(damping + number) : splat(0);
-            joined[m] = vec_load_mask(occupied + i);
+            if (elastic) {
+                k[m] = vec_load(stiffness + number);
+                rest[m] = vec_load(rest_length + number);
+                c[m] = damped ? vec_load(damping + number) : splat(0);
+                joined[m] = vec_load_mask(occupied + i);
+            } else {
+                c[m] = vec_load(factor + band->first_slot + slot + i);
+            }
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
@@ -116,7 +139,9 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
                     relative[m][a] = vec_load(with + offset) - vec_load(with);
             }
         }
-        if (axes == 1)
+        if (!elastic)
+            to_damping_forces(axes, delta, relative, c);
+        else if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
             to_forces(axes, delta, relative, joined, k, rest, c, damped);
@@ -131,14 +156,15 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                                   size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
+SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *factor, const scalar *x, const scalar *v,
+                                   size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes,
+                                   link_terms terms)
 {
-    if (axes == 1 &&
+    if (axes == 1 && terms != DAMPING_TERM &&
         band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
+        tile_forces(band, factor, x, v, stride, t, slots, force, axis, axes, terms, true);
     else
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);
+        tile_forces(band, factor, x, v, stride, t, slots, force, axis, axes, terms, false);
 }
 
 /* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
@@ -197,7 +223,7 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
 /* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. `axis` is the number
    of elements from one axis of a ring to the next, `t` the first slot of a tile. */
 SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                             size_t to, uint32_t axes, bool damped)
+                             size_t to, uint32_t axes, link_terms terms)
 {
     ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
@@ -218,7 +244,7 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
             if (t >= band->start && t < band->end) {
-                one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
+                one_band_forces(band, s->damping_factor, x, v, s->stride, t, count, force, axis, axes, terms);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
@@ -233,32 +259,29 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
     }
 }
 
+/* function(..., terms), with terms as a constant. */
+#define SPRING_BY_TERMS(terms, function, ...)                                                    \
+    ((terms) == STIFFNESS_TERM               ? function(__VA_ARGS__, STIFFNESS_TERM)             \
+     : (terms) == STIFFNESS_AND_DAMPING_TERM ? function(__VA_ARGS__, STIFFNESS_AND_DAMPING_TERM) \
+                                             : function(__VA_ARGS__, DAMPING_TERM))
+
 /* A function for each number of axes: in one function, gcc would keep less of the loops in registers. */
 SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    if (s->damped)
-        all_bands(s, x, v, out, from, to, 1, true);
-    else
-        all_bands(s, x, v, out, from, to, 1, false);
+    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 1);
 }
 
 SPRING_NOINLINE void band_forces_on_2_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    if (s->damped)
-        all_bands(s, x, v, out, from, to, 2, true);
-    else
-        all_bands(s, x, v, out, from, to, 2, false);
+    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 2);
 }
 
 SPRING_NOINLINE void band_forces_on_3_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    if (s->damped)
-        all_bands(s, x, v, out, from, to, 3, true);
-    else
-        all_bands(s, x, v, out, from, to, 3, false);
+    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 3);
 }
 
 static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
@@ -266,6 +289,40 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
 {
     band_kernel *const of_axes[] = {band_forces_on_1_axis, band_forces_on_2_axes, band_forces_on_3_axes};
     of_axes[s->axes - 1](s, x, v, out, from, to);
+}
+
+/* See factor_kernel. */
+SPRING_INLINE void all_band_factors(const scene_links *s, const scalar *x, scalar *factor, uint32_t axes)
+{
+    for (const scene_band *band = s->band; band < s->band + s->bands; band++) {
+        const size_t slots = (size_t)(band->end - band->start);
+        for (size_t j = 0; j < slots; j += lanes) {
+            const mask joined = vec_load_mask(band->occupied + j);
+            const real c = vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride);
+            real square = splat(0);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                const scalar *const at = x + a * s->stride + band->start + j;
+                const real delta = vec_load(at + band->offset) - vec_load(at);
+                square += delta * delta;
+            }
+            if (axes > 1)
+                vec_inverse_sqrt(&square, &joined, 1);
+            const real f = axes == 1 ? c : c * (square * square);
+            const real near = select_real(f <= scalar_max, f, splat(0)); /* ends that nearly coincide: no direction */
+            vec_store(factor + band->first_slot + j, select_real(joined, near, splat(0)));
+        }
+    }
+}
+
+static void compute_band_factors(const scene_links *s, const scalar *x, scalar *factor)
+{
+    if (s->axes == 1)
+        all_band_factors(s, x, factor, 1);
+    else if (s->axes == 2)
+        all_band_factors(s, x, factor, 2);
+    else
+        all_band_factors(s, x, factor, 3);
 }
 
 #endif

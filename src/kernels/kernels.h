@@ -40,6 +40,7 @@ SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .small = &SMALL_TABLE,
     .band_forces = compute_band_forces,
+    .band_factors = compute_band_factors,
     .unbanded = &SPRING_UNBANDED_TABLE,
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
@@ -50,6 +51,9 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
+    .first_damping_term = move_first_damping_term,
+    .next_damping_term = move_next_damping_term,
+    .last_damping_term = move_last_damping_term,
 };
 #endif
 

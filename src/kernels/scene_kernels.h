@@ -20,6 +20,13 @@ enum {
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
+/* Which terms of the law of a link are computed. */
+typedef enum link_terms {
+    STIFFNESS_TERM,             /* no link is damped, or damping is applied apart */
+    STIFFNESS_AND_DAMPING_TERM, /* of scene_band.damping and unbanded_links.damping */
+    DAMPING_TERM                /* of scene_links.damping_factor alone */
+} link_terms;
+
 /* A band: links whose upper end is `offset` particles after the lower one. A band has a slot for each particle of the
    tiles that hold lower ends. */
 typedef struct scene_band {
@@ -30,6 +37,7 @@ typedef struct scene_band {
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
+    size_t first_slot;            /* of `start`, among the slots of all bands */
     size_t ring_start;            /* of its ring of forces among the rings of all bands */
     ptrdiff_t ring;               /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
     ptrdiff_t back;               /* offset modulo ring */
@@ -40,15 +48,19 @@ typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
+    const scalar *damping_factor;             /* as in scene_links */
 } unbanded_links;
 
 typedef struct scene_links {
     size_t particles;
     uint32_t axes;
-    bool damped;
+    link_terms terms;
     size_t stride; /* elements from one axis to the next */
     size_t bands;
     const scene_band *band;
+    const scalar
+        *damping_factor; /* bands, by slot: damping/length^2 at the positions where directions are frozen, on one
+                                     axis damping; 0 without a link. NULL: the scene has none */
     unbanded_links unbanded;
 } scene_links;
 
@@ -59,10 +71,13 @@ typedef struct scene_forces {
     scalar *records; /* see unbanded.h; NULL: the scene has none */
 } scene_forces;
 
-/* Computes forces from positions, and from velocities if links are damped. band_forces: the forces of all bands on particles
+/* Computes forces from positions, and from velocities if `terms` has damping. band_forces: the forces of all bands on particles
    from ... to - 1, both multiples of tile or the end; v may be the array of forces. The others: of all unbanded links. */
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
+
+/* Computes scene_links.damping_factor of all bands into `factor`, at positions x. */
+typedef void factor_kernel(const scene_links *, const scalar *x, scalar *factor);
 
 /* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
 typedef struct scene_particles {
@@ -87,6 +102,13 @@ typedef struct scene_nystrom {
                                             e^(-drag kick/2) - 1 */
 } scene_nystrom;
 
+/* What a term of a Chebyshev polynomial, applied to velocities, uses besides scene_motion. */
+typedef struct scene_chebyshev {
+    const scalar *before, *second_before; /* [m/s] the two terms before */
+    scalar argument;                      /* w0, times 2 after the first term */
+    scalar weight, at_rest;               /* of the last term, and its value where nothing is damped */
+} scene_chebyshev;
+
 /* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
 typedef struct scene_motion {
     scalar kick, drift;    /* [s] how long forces act on v, and v on x */
@@ -99,6 +121,7 @@ typedef struct scene_motion {
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
+    const scene_chebyshev *chebyshev;
 } scene_motion;
 
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
@@ -116,6 +139,7 @@ typedef struct scene_kernels {
     const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
                                           needs the results of two stores has to wait for both */
     band_kernel *band_forces;          /* the forces of all bands */
+    factor_kernel *band_factors;
     const unbanded_kernels *unbanded;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced by
        the solution u of u = v0 + kick a(u). */
@@ -128,6 +152,9 @@ typedef struct scene_kernels {
     particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
+    particle_kernel *first_damping_term;  /* v = argument v0 + kick force/mass */
+    particle_kernel *next_damping_term;   /* v = argument before - second_before + kick force/mass */
+    particle_kernel *last_damping_term;   /* v = v0 + weight (this term - at_rest v0) */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */

@@ -26,6 +26,7 @@
 #define spring_scene_def          spring_scenef_def
 #define spring_scene_drive        spring_scenef_drive
 #define spring_scene_energy       spring_scenef_energy
+#define spring_scene_find_bounds  spring_scenef_find_bounds
 #define spring_scene_find_link    spring_scenef_find_link
 #define spring_scene_force_fn     spring_scenef_force_fn
 #define spring_scene_get          spring_scenef_get

@@ -33,10 +33,12 @@ typedef enum scene_array {
     ARRAY_LINK_STIFFNESS, /* [N/m] */
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
-    ARRAY_SLOTS,    /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
-    ARRAY_RECORDS,  /* see kernels/unbanded.h */
-    ARRAY_CALLBACK, /* a small scene: positions, velocities and forces as a callback sees them, by axis */
-    ARRAY_SUMS,     /* work space of the stable step, by particle */
+    ARRAY_SLOTS,   /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
+    ARRAY_RECORDS, /* see kernels/unbanded.h */
+    ARRAY_DAMPING_FACTORS, /* damping/length^2 (on one axis damping), by slot as in ARRAY_SLOTS; see freeze_directions() */
+    ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
+    ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
+    ARRAY_SUMS,          /* work space of the stable step, by particle */
     ARRAY_COUNT
 } scene_array;
 
@@ -78,8 +80,9 @@ typedef struct scene_bounds {
 /* The forces that are stored for the state. */
 typedef enum known_force {
     NO_FORCE,
-    FORCE,          /* at its positions and velocities */
-    PREDICTED_FORCE /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+    FORCE,           /* at its positions and velocities */
+    PREDICTED_FORCE, /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+    ELASTIC_FORCE    /* at its positions, without link damping */
 } known_force;
 
 struct spring_scene {
@@ -98,6 +101,9 @@ struct spring_scene {
     bool bounds_known;
     scene_bounds bounds;
 };
+
+/* The bounds for the present links and masses. */
+SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
 
 /* spring_scene_advance() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m,

@@ -6,7 +6,7 @@
  *           further steps stay in that one. It becomes the state when the call succeeds, so rolling back copies nothing.
  *           Without rollback there is one buffer.
  */
-#include "pass.h"
+#include "chebyshev.h"
 #include "../spring/roots.h"
 
 static const scene_kernels *best_scene_kernels(void)
@@ -66,24 +66,30 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
 static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
                                     bool *finite)
 {
-    known_force known = step->scene->known;
+    step->known = step->scene->known;
     for (uint64_t i = 0; i < n; i++) {
         step->done = (double)(before + i);
-        step->force = force_at(step, step->from);
         step->first = i == 0;
         step->last = i + 1 == n;
-        if (known == NO_FORCE || (known == PREDICTED_FORCE && !stepper->predicts)) {
-            evaluate(step, x_at(step, step->from), v_at(step, step->from), 0);
-            step->force = force_at(step, step->to); /* predicted forces stay in the other array, for a rollback */
-        }
         const scene_outcome outcome = stepper->step(step);
         *finite = outcome.finite;
         if (!outcome.finite)
             return NO_FORCE;
-        known = outcome.known;
+        step->known = outcome.known;
         step->from = step->to;
     }
-    return known;
+    return step->known;
+}
+
+/* The polynomial by which links are damped in each half step, beyond the limit of explicit damping. */
+static chebyshev_polynomial polynomial_of(spring_scene *s, const scene_stepper *stepper, double dt)
+{
+    if (s->damped_links == 0 || stepper->explicit_limit == NULL || dt < 0)
+        return (chebyshev_polynomial){.terms = 0};
+    const scene_bounds *bounds = spring_scene_find_bounds(s);
+    if (dt <= stepper->explicit_limit(bounds))
+        return (chebyshev_polynomial){.terms = 0};
+    return chebyshev_for(dt / 2, bounds->link_damping);
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
@@ -102,7 +108,10 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
-    const scene_links links = scene_prepare_links(s, band);
+    scene_links links = scene_prepare_links(s, band);
+    const chebyshev_polynomial polynomial = polynomial_of(s, &spring_scene_steppers[m], dt);
+    if (polynomial.terms > 0)
+        links.terms = STIFFNESS_TERM;
     scene_step step = {.kernels = s->layout.small ? kernels->small : kernels,
                        .scene = s,
                        .links = &links,
@@ -112,7 +121,9 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .to = rollback ? 1 - s->buffer : s->buffer,
                        .h = (scalar)dt,
                        .t0 = t0,
-                       .dt = dt};
+                       .dt = dt,
+                       .predicts = spring_scene_steppers[m].predicts,
+                       .damping_polynomial = polynomial};
     bool finite = true;
     const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
     if (!finite) {

@@ -5,7 +5,7 @@
  * The formulas are those of the files in methods/, with the acceleration a(x, v) of a particle by its links, gravity, drag
  * and the callback. The stable steps follow from bounds on the sums over the links of a particle (stable_step.c).
  */
-#include "pass.h"
+#include "chebyshev.h"
 #include "../methods/rkn8_tableau.h"
 #include "../spring/propagator.h"
 #include "../spring/roots.h"
@@ -13,6 +13,7 @@
 /* x1 = x + h v;  v1 = v + h a(x, v) */
 static scene_outcome scene_euler(scene_step *s)
 {
+    find_start_force(s, v_at(s, s->from));
     const scene_motion m = whole_step(s);
     return (scene_outcome){.finite = move(s, s->kernels->stage, &m)};
 }
@@ -25,6 +26,7 @@ static double scene_euler_limit(const scene_bounds *b)
 /* v1 = v + h a(x, v1), with implicit drag and explicit damping of links;  x1 = x + h v1 */
 static scene_outcome scene_symplectic_euler(scene_step *s)
 {
+    find_start_force(s, v_at(s, s->from));
     const scene_motion m = whole_step(s);
     return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
 }
@@ -40,6 +42,30 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
+/* Damping of links for half a step, kick, drift, evaluate, implicit kick, damping for half a step. The forces of a callback
+   that uses velocities are evaluated twice, the second time at predicted velocities; see scene_leapfrog(). */
+static scene_outcome scene_leapfrog_between_polynomials(scene_step *s)
+{
+    const bool predicts = scene_callback_uses_velocity(s->scene);
+    const scalar *const x0 = x_at(s, s->from), *const x1 = x_at(s, s->to);
+    scalar *const v = v_at(s, s->to);
+    if (s->first)
+        freeze_directions(s, x0);
+    if (!damp(s, x0, v_at(s, s->from), v))
+        return (scene_outcome){.finite = false};
+    find_start_force(s, v);
+    scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
+    kick_drift.kick = last_kick.kick = s->h / 2;
+    kick_drift.v0 = last_kick.v0 = v;
+    kick_drift.predicted = predicts ? predicted_velocities(s) : NULL;
+    last_kick.force = force_at(s, s->to);
+    if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, predicts ? kick_drift.predicted : v, 1,
+                            s->kernels->implicit_kick, &last_kick))
+        return (scene_outcome){.finite = false};
+    freeze_directions(s, x1);
+    return (scene_outcome){.finite = damp(s, x1, v, v), .known = predicts ? NO_FORCE : ELASTIC_FORCE};
+}
+
 /* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
    particles, with the results of two.
    Where forces depend on velocities by more than drag, they are evaluated at predicted velocities v*. Let v' be the
@@ -49,7 +75,10 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
    may change between calls: then forces are evaluated twice a step, and each kick is a pass. */
 static scene_outcome scene_leapfrog(scene_step *s)
 {
+    if (s->damping_polynomial.terms > 0)
+        return scene_leapfrog_between_polynomials(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    find_start_force(s, v_at(s, s->from));
     scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
     kick_drift.kick = last_kick.kick = s->h / 2;
     kick_drift.ends_step = keeps && !s->first;
@@ -66,17 +95,22 @@ static scene_outcome scene_leapfrog(scene_step *s)
     };
 }
 
-/* With link damping c: h^2 k/4 + h c < 1. */
 static double scene_leapfrog_limit(const scene_bounds *b)
 {
-    return b->link_damping > 0 ? 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)))
-                               : 2 / spring_sqrt(b->stiffness);
+    return 2 / spring_sqrt(b->stiffness);
+}
+
+/* With explicit damping c of links: h^2 k/4 + h c < 1. */
+static double scene_leapfrog_explicit_limit(const scene_bounds *b)
+{
+    return 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)));
 }
 
 /* y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4) */
 static scene_outcome scene_rk4(scene_step *s)
 {
     static const double fraction[] = {0.5, 0.5, 1}; /* of the step, at the next stage */
+    find_start_force(s, v_at(s, s->from));
     scene_motion end = whole_step(s), stage = whole_step(s);
     stage.x = stage_storage(s, 0);
     stage.v = stage_storage(s, 1);
@@ -131,6 +165,7 @@ static scene_outcome scene_rkn8(scene_step *s)
     const bool dragged = s->particles.drag != 0;
     if (s->first && dragged)
         compute_rkn8_factors(s);
+    find_start_force(s, v_at(s, s->from));
     scene_motion end = whole_step(s), stage = whole_step(s);
     scene_nystrom n = {.square = s->h * s->h,
                        .accel = stage_storage(s, 0),
@@ -163,7 +198,10 @@ static double scene_rkn8_limit(const scene_bounds *b)
 SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
     [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
     [SPRING_SYMPLECTIC_EULER] = {.step = scene_symplectic_euler, .stable_step = scene_symplectic_euler_limit},
-    [SPRING_LEAPFROG] = {.step = scene_leapfrog, .stable_step = scene_leapfrog_limit, .predicts = true},
+    [SPRING_LEAPFROG] = {.step = scene_leapfrog,
+                         .stable_step = scene_leapfrog_limit,
+                         .predicts = true,
+                         .explicit_limit = scene_leapfrog_explicit_limit},
     [SPRING_RK4] = {.step = scene_rk4, .stable_step = scene_rk4_limit, .stages = 4},
     [SPRING_RKN8] = {.step = scene_rkn8,
                      .stable_step = scene_rkn8_limit,
