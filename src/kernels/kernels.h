@@ -51,8 +51,7 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
-    .first_damping_term = move_first_damping_term,
-    .next_damping_term = move_next_damping_term,
+    .damping_term = move_damping_term,
     .last_damping_term = move_last_damping_term,
 };
 #endif

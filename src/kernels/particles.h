@@ -253,40 +253,29 @@ static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, si
 
 /* ------------------------------------------------------------------------------------------------ Chebyshev damping */
 
-enum { FIRST_TERM, NEXT_TERM, LAST_TERM };
-
-/* A term of the polynomial, by the forces of damping at the term before. A pinned particle keeps its velocity. */
-SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates *c, unsigned variant)
+/* A term of Clenshaw's recurrence, by the forces of damping at the term before. At the end, a pinned particle keeps its
+   velocity. */
+SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates *c, unsigned last)
 {
     const scene_chebyshev *const p = m->chebyshev;
     const mask free = c->inverse_mass > 0;
     const real accel = select_real(free, c->inverse_mass * vec_load(m->force + c->at), splat(0));
-    const real v0 = vec_load(m->v0 + c->at), change = m->kick * accel;
-    const real term = variant == FIRST_TERM
-                          ? p->argument * v0 + change
-                          : p->argument * vec_load(p->before + c->at) - vec_load(p->second_before + c->at) + change;
-    if (variant != LAST_TERM) {
-        vec_store(m->v + c->at, term);
-        return (mask){0};
-    }
-    const real v = select_real(free, v0 + p->weight * (term - p->at_rest * v0), v0);
-    vec_store(m->v + c->at, v);
-    return not_finite(v);
+    const real v0 = vec_load(m->v0 + c->at), change = p->before_weight * vec_load(p->before + c->at) -
+                                                      p->second_weight * vec_load(p->second_before + c->at) +
+                                                      m->kick * accel;
+    const real term = p->coefficient * v0 + change;
+    vec_store(m->v + c->at, last ? select_real(free, term, v0) : term);
+    return last ? not_finite(term) : (mask){0};
 }
 
-static bool move_first_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, FIRST_TERM);
-}
-
-static bool move_next_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return for_each_vector(p, m, from, to, update_damping_term, NEXT_TERM);
+    return for_each_vector(p, m, from, to, update_damping_term, 0);
 }
 
 static bool move_last_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, LAST_TERM);
+    return for_each_vector(p, m, from, to, update_damping_term, 1);
 }
 
 #endif

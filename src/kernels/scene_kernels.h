@@ -102,11 +102,10 @@ typedef struct scene_nystrom {
                                             e^(-drag kick/2) - 1 */
 } scene_nystrom;
 
-/* What a term of a Chebyshev polynomial, applied to velocities, uses besides scene_motion. */
+/* What a term of a Chebyshev series, applied to velocities, uses besides scene_motion. */
 typedef struct scene_chebyshev {
     const scalar *before, *second_before; /* [m/s] the two terms before */
-    scalar argument;                      /* w0, times 2 after the first term */
-    scalar weight, at_rest;               /* of the last term, and its value where nothing is damped */
+    scalar coefficient, before_weight, second_weight;
 } scene_chebyshev;
 
 /* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
@@ -152,9 +151,9 @@ typedef struct scene_kernels {
     particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
-    particle_kernel *first_damping_term;  /* v = argument v0 + kick force/mass */
-    particle_kernel *next_damping_term;   /* v = argument before - second_before + kick force/mass */
-    particle_kernel *last_damping_term;   /* v = v0 + weight (this term - at_rest v0) */
+    particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
+                                             + kick force/mass */
+    particle_kernel *last_damping_term;   /* the same, if no particle is pinned; pinned ones keep v0 */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */

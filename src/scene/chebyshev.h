@@ -1,63 +1,76 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Link damping at steps beyond the limit of explicit damping: a Chebyshev polynomial, applied to all velocities.
+ * Link damping at steps beyond the limit of explicit damping: a Chebyshev series, applied to all velocities.
  *
- * Method    The velocities after damping alone for a time t, with the directions of links frozen, are e^Z v, Z = -t M^-1 C.
- *           They are computed as P(Z) v, the damped Chebyshev polynomial of second order by Sommeijer, Shampine and Verwer:
+ * Method    Damping alone, for a time t and with the directions of links frozen, turns velocities v into e^Z v,
+ *           Z = -t M^-1 C. With Y = 1 + Z/rho the exponential is a series of Chebyshev polynomials T_k with coefficients
+ *           c_k > 0, which are modified Bessel functions:
  *
- *               P(Z) = 1 + b (T_s(w0 + w1 Z) - T_s(w0)),   b = T_s''(w0)/T_s'(w0)^2,   w1 = T_s'(w0)/T_s''(w0),
- *               w0 = 1 + 2/(13 s^2)
+ *               e^(rho (Y - 1)) = sum c_k T_k(Y),   c_0 = e^-rho I_0(rho),   c_k = 2 e^-rho I_k(rho)
  *
- *           by T_j(y) = 2 y T_{j-1}(y) - T_{j-2}(y), one evaluation of the forces of damping per term.
- * Limit     |P(z)| <= 1 for -(w0 + 1)/w1 <= z <= 0. So damping never adds kinetic energy if this interval holds the
- *           spectrum of Z, which is between -t G and 0 (G: scene_bounds.link_damping).
- * Accuracy  P(z) = e^z + O(z^3)
- * Source    Sommeijer, Shampine, Verwer, RKC: an explicit solver for parabolic PDEs, J. Comput. Appl. Math. 88 (1997)
+ *           P is the sum of the terms up to k = s, where c_s is increased so that P'(0) = 1, divided by sum c_k. It is
+ *           computed by Clenshaw's recurrence b_k = c_k v + 2 Y b_{k+1} - b_{k+2}, P v = c_0 v + Y b_1 - b_2, with s
+ *           evaluations of the forces of damping.
+ *           The c_k follow from their recurrence, downwards (Miller), so that + - * / and a square root are enough.
+ * Limit     |T_k(y)| <= 1 for |y| <= 1, and all c_k are positive. So |P(z)| <= P(0) = 1 for -2 rho <= z <= 0: damping never
+ *           adds kinetic energy if that interval holds the spectrum of Z, which lies between -t G and 0 (G:
+ *           scene_bounds.link_damping).
+ * Accuracy  |P(z) - e^z| < 0.1 in the interval, and P(z) - e^z = O(z^3) for small t: tests/test_scene_damping.c
+ * Source    Abramowitz, Stegun, Handbook of Mathematical Functions (1964), 9.6.34 and 9.12; Tal-Ezer, Kosloff, An accurate
+ *           and efficient scheme for propagating the time dependent Schroedinger equation, J. Chem. Phys. 81 (1984)
  */
 #ifndef SPRINGSTEP_CHEBYSHEV_H
 #define SPRINGSTEP_CHEBYSHEV_H
 
 #include "pass.h"
 
-/* The largest number of terms. A polynomial of this many terms covers t G up to 0.65 terms^2, about 10^8 in double and
-   10^6 in float; rounding errors grow like terms^1.5. Beyond it damping acts for the time that the polynomial covers. */
-enum { most_damping_terms = sizeof(scalar) == sizeof(float) ? 1024 : 16384 };
+/* Terms are left out from the end of the series as long as their coefficients sum up to less than this part of all. More
+   terms make no scene more accurate, since the error of a step is that of the splitting (docs/accuracy.md). */
+static const double left_out = 0.05;
 
-/* The interval (w0 + 1)/w1 of the polynomial of s terms is at least (s - 1)^2/1.54 - 1 (tests/test_scene_damping.c). */
-static inline unsigned chebyshev_terms(double reach)
+/* The least and the largest rho. For a larger one, damping acts for a shorter time, since rounding errors grow like
+   rho^(1/2). Series have at most 12 500 terms in double and 760 in float. */
+static const double least_rho = 0x1p-20, most_rho = sizeof(scalar) == sizeof(float) ? 1.5e5 : 4e7;
+
+/* One step of the recurrence I_{k-1} = I_{k+1} + 2 k/rho I_k, downwards. */
+static inline void bessel_step(double rho, unsigned k, double *above, double *here)
 {
-    const double terms = 1 + spring_sqrt(1 + 1.54 * reach);
-    return terms < 2 ? 2 : terms < most_damping_terms ? (unsigned)terms : most_damping_terms;
+    const double below = *above + 2 * k / rho * *here;
+    *above = *here;
+    *here = below;
 }
 
-static inline chebyshev_polynomial chebyshev_of(unsigned terms)
+/* The series for damping over the time t, at a bound of link_damping. */
+static inline chebyshev_series chebyshev_for(double t, double link_damping)
 {
-    const double w0 = 1 + 2.0 / 13 / ((double)terms * terms);
-    double value[2] = {1, w0}, slope[2] = {0, 1}, curvature[2] = {0, 0}; /* T_{j-1}, T_j and their derivatives at w0 */
-    for (unsigned j = 2; j <= terms; j++) {
-        const double next_curvature = 4 * slope[1] + 2 * w0 * curvature[1] - curvature[0];
-        const double next_slope = 2 * value[1] + 2 * w0 * slope[1] - slope[0];
-        const double next_value = 2 * w0 * value[1] - value[0];
-        curvature[0] = curvature[1], curvature[1] = next_curvature;
-        slope[0] = slope[1], slope[1] = next_slope;
-        value[0] = value[1], value[1] = next_value;
+    const double wanted = (1 + 0x1p-10) * t * link_damping / 2; /* a little more, for rounding errors of the bound */
+    const double rho = wanted < least_rho ? least_rho : wanted < most_rho ? wanted : most_rho;
+    const double covered = wanted > rho ? t * (rho / wanted) : t;
+    const unsigned start = 20 + (unsigned)(10 * spring_sqrt(rho)); /* I_start < 1e-21 I_0 */
+    double above = 0, here = 1e-30, total = 0;
+    for (unsigned k = start; k > 0; bessel_step(rho, k--, &above, &here))
+        total += 2 * here;
+    total += here;
+    unsigned terms = start;
+    above = 0, here = 1e-30;
+    for (double rest = 2 * here; terms > 3 && rest < left_out * total; rest += 2 * here)
+        bessel_step(rho, terms--, &above, &here);
+    const double last = here, beyond_last = above;
+    double sum = 0, squares = 0; /* of c_k and k^2 c_k: P'(0) = squares/(rho sum) */
+    for (unsigned k = terms; k > 0; bessel_step(rho, k--, &above, &here)) {
+        sum += 2 * here;
+        squares += 2 * here * k * k;
     }
-    return (chebyshev_polynomial){
+    sum += here;
+    const double more = (rho * sum - squares) / ((double)terms * terms - rho); /* of the last coefficient */
+    return (chebyshev_series){
         .terms = terms,
-        .w0 = w0,
-        .w1 = slope[1] / curvature[1],
-        .b = curvature[1] / (slope[1] * slope[1]),
-        .at_rest = value[1],
+        .rho = rho,
+        .last = 2 * last / (sum + more),
+        .beyond_last = 2 * beyond_last / (sum + more),
+        .more = more / (sum + more),
+        .kick = covered / rho,
     };
-}
-
-/* The polynomial for damping over the time t at a bound of link_damping. */
-static inline chebyshev_polynomial chebyshev_for(double t, double link_damping)
-{
-    chebyshev_polynomial p = chebyshev_of(chebyshev_terms(t * link_damping));
-    const double covered = (p.w0 + 1) / p.w1 / link_damping;
-    p.time = t < covered ? t : covered;
-    return p;
 }
 
 /* The forces of damping at velocities v, then the motion of all particles by them. The results are those of
@@ -102,28 +115,33 @@ static inline void freeze_directions(const scene_step *s, const scalar *x)
     }
 }
 
-/* v1 = P(Z) v0, with the directions of links at the positions that freeze_directions() was called for last. v1 may be v0.
+/* v1 = P v0, with the directions of links at the positions x that freeze_directions() was called for last. v1 may be v0.
    Returns false if a result is not finite. */
 static inline bool damp(scene_step *s, const scalar *x, const scalar *v0, scalar *v1)
 {
-    const chebyshev_polynomial *p = &s->damping_polynomial;
+    const chebyshev_series *p = &s->damping;
     scene_links links = *s->links;
     links.terms = DAMPING_TERM;
-    const double kick = p->w1 * p->time;
     scalar *const storage[] = {damping_storage(s, 1), damping_storage(s, 2)};
-    scene_chebyshev term = {.weight = (scalar)p->b, .at_rest = (scalar)p->at_rest, .argument = (scalar)p->w0};
-    scene_motion m = {
-        .v0 = v0, .v = storage[0], .force = damping_storage(s, 0), .kick = (scalar)kick, .chebyshev = &term};
-    bool finite = damping_term(s, &links, x, v0, s->kernels->first_damping_term, &m);
-    term.argument = (scalar)(2 * p->w0);
-    m.kick = (scalar)(2 * kick);
-    term.second_before = v0;
-    for (unsigned j = 2; j <= p->terms && finite; j++) {
-        term.before = m.v;
-        m.v = j == p->terms ? v1 : storage[(j - 1) % 2];
+    double above = p->beyond_last, c = p->last; /* the coefficients k + 1 and k of the whole series */
+    const double last = p->last + p->more;
+    /* b_s = c_s v0 is not stored: the terms that follow from it use v0. */
+    scene_chebyshev term = {.before = v0, .second_before = v0};
+    scene_motion m = {.v0 = v0, .force = damping_storage(s, 0), .chebyshev = &term};
+    bool finite = true;
+    for (unsigned k = p->terms; k > 0 && finite; k--) {
+        bessel_step(p->rho, k, &above, &c);
+        const double own = k > 1 ? c : c / 2, times = k > 1 ? 2 : 1;
+        const bool first = k == p->terms, second = k + 1 == p->terms;
+        term.coefficient = (scalar)(first ? own + times * last : second ? own - last : own);
+        term.before_weight = (scalar)(first ? 0 : times);
+        term.second_weight = first || second ? 0 : 1;
+        m.kick = (scalar)(first ? times * last * p->kick : times * p->kick);
+        m.v = k > 1 ? storage[k % 2] : v1;
         finite = damping_term(s, &links, x, term.before,
-                              j == p->terms ? s->kernels->last_damping_term : s->kernels->next_damping_term, &m);
-        term.second_before = term.before;
+                              k > 1 ? s->kernels->damping_term : s->kernels->last_damping_term, &m);
+        term.second_before = first ? v0 : term.before;
+        term.before = m.v;
     }
     return finite;
 }

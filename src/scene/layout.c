@@ -154,7 +154,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool damped = editable || has_damped_links(def);
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
-    const bool predicts = needs.predicts && velocity_used, polynomial = needs.predicts && damped;
+    const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
     const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
@@ -182,8 +182,8 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
-        [ARRAY_DAMPING_FACTORS] = {number, l->band_slots + unbanded, polynomial},
-        [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, polynomial},
+        [ARRAY_DAMPING_FACTORS] = {number, l->band_slots + unbanded, series},
+        [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
         [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
         [ARRAY_SUMS] = {number, l->particles, true},
     };

@@ -8,11 +8,13 @@
 #include <string.h>
 
 /* See chebyshev.h. */
-typedef struct chebyshev_polynomial {
+typedef struct chebyshev_series {
     unsigned terms; /* 0: links are damped explicitly */
-    double w0, w1, b, at_rest;
-    double time; /* [s] */
-} chebyshev_polynomial;
+    double rho;
+    double last, beyond_last; /* coefficients of the last term, and of the first one that is left out */
+    double more;              /* what is added to the last one */
+    double kick;              /* [s] how long the forces of damping act in one application of Y */
+} chebyshev_series;
 
 /* One step, from the state in one buffer to the state in another, or the same, buffer. */
 struct scene_step {
@@ -28,7 +30,7 @@ struct scene_step {
     double t0, dt, done; /* the step starts at the time t0 + done dt */
     known_force known;   /* the forces at the start */
     bool predicts;       /* see scene_stepper */
-    chebyshev_polynomial damping_polynomial;
+    chebyshev_series damping;
 };
 
 static inline scalar *x_at(const scene_step *s, uint32_t buffer)
@@ -231,9 +233,9 @@ static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, dou
 /* Sets s->force: the forces at the start of the step, at velocities v. They are evaluated unless they are known. */
 static inline void find_start_force(scene_step *s, const scalar *v)
 {
-    const bool polynomial = s->damping_polynomial.terms > 0;
     s->force = force_at(s, s->from);
-    if (polynomial ? s->known == ELASTIC_FORCE : s->known == FORCE || (s->known == PREDICTED_FORCE && s->predicts))
+    if (s->damping.terms > 0 ? s->known == ELASTIC_FORCE
+                             : s->known == FORCE || (s->known == PREDICTED_FORCE && s->predicts))
         return;
     evaluate(s, x_at(s, s->from), v, 0);
     s->force = force_at(s, s->to); /* predicted forces stay in the other array, for a rollback */

@@ -81,14 +81,14 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
     return step->known;
 }
 
-/* The polynomial by which links are damped in each half step, beyond the limit of explicit damping. */
-static chebyshev_polynomial polynomial_of(spring_scene *s, const scene_stepper *stepper, double dt)
+/* The series by which links are damped in each half step, beyond the limit of explicit damping. */
+static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
 {
     if (s->damped_links == 0 || stepper->explicit_limit == NULL || dt < 0)
-        return (chebyshev_polynomial){.terms = 0};
+        return (chebyshev_series){.terms = 0};
     const scene_bounds *bounds = spring_scene_find_bounds(s);
     if (dt <= stepper->explicit_limit(bounds))
-        return (chebyshev_polynomial){.terms = 0};
+        return (chebyshev_series){.terms = 0};
     return chebyshev_for(dt / 2, bounds->link_damping);
 }
 
@@ -109,8 +109,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
     scene_links links = scene_prepare_links(s, band);
-    const chebyshev_polynomial polynomial = polynomial_of(s, &spring_scene_steppers[m], dt);
-    if (polynomial.terms > 0)
+    const chebyshev_series damping = series_of(s, &spring_scene_steppers[m], dt);
+    if (damping.terms > 0)
         links.terms = STIFFNESS_TERM;
     scene_step step = {.kernels = s->layout.small ? kernels->small : kernels,
                        .scene = s,
@@ -123,7 +123,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .t0 = t0,
                        .dt = dt,
                        .predicts = spring_scene_steppers[m].predicts,
-                       .damping_polynomial = polynomial};
+                       .damping = damping};
     bool finite = true;
     const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
     if (!finite) {

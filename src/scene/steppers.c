@@ -44,7 +44,7 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
 
 /* Damping of links for half a step, kick, drift, evaluate, implicit kick, damping for half a step. The forces of a callback
    that uses velocities are evaluated twice, the second time at predicted velocities; see scene_leapfrog(). */
-static scene_outcome scene_leapfrog_between_polynomials(scene_step *s)
+static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
 {
     const bool predicts = scene_callback_uses_velocity(s->scene);
     const scalar *const x0 = x_at(s, s->from), *const x1 = x_at(s, s->to);
@@ -75,8 +75,8 @@ static scene_outcome scene_leapfrog_between_polynomials(scene_step *s)
    may change between calls: then forces are evaluated twice a step, and each kick is a pass. */
 static scene_outcome scene_leapfrog(scene_step *s)
 {
-    if (s->damping_polynomial.terms > 0)
-        return scene_leapfrog_between_polynomials(s);
+    if (s->damping.terms > 0)
+        return scene_leapfrog_with_heavy_damping(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
     find_start_force(s, v_at(s, s->from));
     scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
