@@ -74,23 +74,6 @@ SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const
     }
 }
 
-/* The forces of damping alone, from damping/length^2 (on one axis damping). */
-SPRING_INLINE void to_damping_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const real *factor)
-{
-    SPRING_UNROLL
-    for (size_t m = 0; m < links_together(axes); m++) {
-        const mask joined = factor[m] > 0;
-        real rate = delta[m][0] * relative[m][0];
-        SPRING_UNROLL
-        for (uint32_t a = 1; a < axes; a++)
-            rate += delta[m][a] * relative[m][a];
-        const real scale = factor[m] * rate;
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            delta[m][a] = select_real(joined, axes == 1 ? factor[m] * relative[m][a] : scale * delta[m][a], splat(0));
-    }
-}
-
 SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
@@ -100,17 +83,15 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
 
 /* Computes the forces of a band in `slots` slots from t on; those along axis a are stored at force + a * axis. shared: all
    slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
-SPRING_INLINE void tile_forces(const scene_band *band, const scalar *factor, const scalar *x, const scalar *v,
-                               size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes,
-                               link_terms terms, bool shared)
+SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared)
 {
-    const bool elastic = terms != DAMPING_TERM, damped = terms != STIFFNESS_TERM;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c,
-                        *const damping = elastic && damped ? band->damping + slot * stride_c : NULL;
+                        *const damping = damped ? band->damping + slot * stride_c : NULL;
     SPRING_PREFETCH(occupied + tile); /* so few cache lines that the hardware prefetcher does not see a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const size_t together = links_together(axes);
@@ -123,14 +104,10 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *factor, con
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
             const ptrdiff_t number = (ptrdiff_t)i * stride_c;
-            if (elastic) {
-                k[m] = vec_load(stiffness + number);
-                rest[m] = vec_load(rest_length + number);
-                c[m] = damped ? vec_load(damping + number) : splat(0);
-                joined[m] = vec_load_mask(occupied + i);
-            } else {
-                c[m] = vec_load(factor + band->first_slot + slot + i);
-            }
+            k[m] = vec_load(stiffness + number);
+            rest[m] = vec_load(rest_length + number);
+            c[m] = damped ? vec_load(damping + number) : splat(0);
+            joined[m] = vec_load_mask(occupied + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
@@ -139,9 +116,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *factor, con
                     relative[m][a] = vec_load(with + offset) - vec_load(with);
             }
         }
-        if (!elastic)
-            to_damping_forces(axes, delta, relative, c);
-        else if (axes == 1)
+        if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
             to_forces(axes, delta, relative, joined, k, rest, c, damped);
@@ -156,15 +131,46 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *factor, con
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *factor, const scalar *x, const scalar *v,
-                                   size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes,
-                                   link_terms terms)
+/* The same, by damping alone along frozen directions d: d (d . relative velocity). */
+SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+                                       size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
-    if (axes == 1 && terms != DAMPING_TERM &&
-        band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
-        tile_forces(band, factor, x, v, stride, t, slots, force, axis, axes, terms, true);
+    const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
+                        *const upper = lower + band->offset;
+    const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            real d[3], rate;
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                d[a] = vec_load(direction + a * stride_d + i);
+                const real along = d[a] * (vec_load(upper + a * stride + i) - vec_load(lower + a * stride + i));
+                rate = a == 0 ? along : rate + along;
+            }
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + i, d[a] * rate);
+        }
+    }
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
+}
+
+SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                                   size_t slots, scalar *force, size_t axis, uint32_t axes, link_terms terms)
+{
+    const bool damped = terms == STIFFNESS_AND_DAMPING_TERM;
+    if (terms == DAMPING_TERM)
+        tile_damping_forces(band, v, stride, t, slots, force, axis, axes);
+    else if (axes == 1 &&
+             band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
     else
-        tile_forces(band, factor, x, v, stride, t, slots, force, axis, axes, terms, false);
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);
 }
 
 /* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
@@ -244,7 +250,7 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
             if (t >= band->start && t < band->end) {
-                one_band_forces(band, s->damping_factor, x, v, s->stride, t, count, force, axis, axes, terms);
+                one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, terms);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
@@ -291,38 +297,39 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
     of_axes[s->axes - 1](s, x, v, out, from, to);
 }
 
-/* See factor_kernel. */
-SPRING_INLINE void all_band_factors(const scene_links *s, const scalar *x, scalar *factor, uint32_t axes)
+/* See direction_kernel. */
+SPRING_INLINE void all_band_directions(const scene_links *s, const scalar *x, scalar *direction, uint32_t axes)
 {
     for (const scene_band *band = s->band; band < s->band + s->bands; band++) {
-        const size_t slots = (size_t)(band->end - band->start);
-        for (size_t j = 0; j < slots; j += lanes) {
+        scalar *const of_band = direction + (band->direction - s->band[0].direction);
+        for (size_t j = 0; j < (size_t)(band->end - band->start); j += lanes) {
             const mask joined = vec_load_mask(band->occupied + j);
-            const real c = vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride);
-            real square = splat(0);
+            const real root = vec_sqrt(vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride));
+            real delta[3], inverse = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * s->stride + band->start + j;
-                const real delta = vec_load(at + band->offset) - vec_load(at);
-                square += delta * delta;
+                delta[a] = vec_load(at + band->offset) - vec_load(at);
+                inverse += delta[a] * delta[a];
             }
             if (axes > 1)
-                vec_inverse_sqrt(&square, &joined, 1);
-            const real f = axes == 1 ? c : c * (square * square);
-            const real near = select_real(f <= scalar_max, f, splat(0)); /* ends that nearly coincide: no direction */
-            vec_store(factor + band->first_slot + j, select_real(joined, near, splat(0)));
+                vec_inverse_sqrt(&inverse, &joined, 1);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(of_band + a * band->direction_stride + j,
+                          select_real(joined, axes == 1 ? root : root * (inverse * delta[a]), splat(0)));
         }
     }
 }
 
-static void compute_band_factors(const scene_links *s, const scalar *x, scalar *factor)
+static void compute_band_directions(const scene_links *s, const scalar *x, scalar *direction)
 {
     if (s->axes == 1)
-        all_band_factors(s, x, factor, 1);
+        all_band_directions(s, x, direction, 1);
     else if (s->axes == 2)
-        all_band_factors(s, x, factor, 2);
+        all_band_directions(s, x, direction, 2);
     else
-        all_band_factors(s, x, factor, 3);
+        all_band_directions(s, x, direction, 3);
 }
 
 #endif

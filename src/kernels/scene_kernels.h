@@ -24,7 +24,7 @@ _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 typedef enum link_terms {
     STIFFNESS_TERM,             /* no link is damped, or damping is applied apart */
     STIFFNESS_AND_DAMPING_TERM, /* of scene_band.damping and unbanded_links.damping */
-    DAMPING_TERM                /* of scene_links.damping_factor alone */
+    DAMPING_TERM                /* alone, along frozen directions */
 } link_terms;
 
 /* A band: links whose upper end is `offset` particles after the lower one. A band has a slot for each particle of the
@@ -37,10 +37,13 @@ typedef struct scene_band {
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    size_t first_slot;            /* of `start`, among the slots of all bands */
-    size_t ring_start;            /* of its ring of forces among the rings of all bands */
-    ptrdiff_t ring;               /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
-    ptrdiff_t back;               /* offset modulo ring */
+    const scalar *direction; /* [(N s/m)^(1/2)] root of damping, times the unit vector from the lower to the upper end
+                                     at positions where it was frozen (on one axis 1); by axis and slot; 0 without a link.
+                                     NULL: the scene has none */
+    size_t direction_stride; /* from axis to axis */
+    size_t ring_start;       /* of its ring of forces among the rings of all bands */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
+    ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
 /* Links that lie in no band. */
@@ -48,7 +51,7 @@ typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
-    const scalar *damping_factor;             /* as in scene_links */
+    const scalar *direction;                  /* the same, a quad for each link */
 } unbanded_links;
 
 typedef struct scene_links {
@@ -58,9 +61,6 @@ typedef struct scene_links {
     size_t stride; /* elements from one axis to the next */
     size_t bands;
     const scene_band *band;
-    const scalar
-        *damping_factor; /* bands, by slot: damping/length^2 at the positions where directions are frozen, on one
-                                     axis damping; 0 without a link. NULL: the scene has none */
     unbanded_links unbanded;
 } scene_links;
 
@@ -76,8 +76,8 @@ typedef struct scene_forces {
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 
-/* Computes scene_links.damping_factor of all bands into `factor`, at positions x. */
-typedef void factor_kernel(const scene_links *, const scalar *x, scalar *factor);
+/* Computes scene_band.direction of all bands at positions x. direction: that of the first band. */
+typedef void direction_kernel(const scene_links *, const scalar *x, scalar *direction);
 
 /* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
 typedef struct scene_particles {
@@ -138,7 +138,7 @@ typedef struct scene_kernels {
     const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
                                           needs the results of two stores has to wait for both */
     band_kernel *band_forces;          /* the forces of all bands */
-    factor_kernel *band_factors;
+    direction_kernel *band_directions;
     const unbanded_kernels *unbanded;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced by
        the solution u of u = v0 + kick a(u). */

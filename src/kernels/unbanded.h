@@ -26,10 +26,9 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
 
 /* From arrays of each axis. */
 SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                uint32_t axes, link_terms terms)
+                                uint32_t axes, bool damped)
 {
     const unbanded_links *const l = &s->unbanded;
-    const bool elastic = terms != DAMPING_TERM, damped = terms != STIFFNESS_TERM;
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
         scalar delta[3], scale = 1, square = 0, rate = 0;
@@ -40,13 +39,9 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
             if (damped)
                 rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
         }
-        if (elastic ? !link_acts(l, j, damped) || (axes > 1 && !(square > 0)) : l->damping_factor[j] == 0)
+        if (!link_acts(l, j, damped) || (axes > 1 && !(square > 0)))
             continue;
-        if (!elastic) {
-            scale = l->damping_factor[j] * rate;
-            if (axes == 1)
-                delta[0] = l->damping_factor[j] * (v[to] - v[from]), scale = 1;
-        } else if (axes == 1) {
+        if (axes == 1) {
             delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
             if (damped)
                 delta[0] += l->damping[j] * (v[to] - v[from]);
@@ -62,26 +57,23 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
 }
 
 SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
-                                 size_t stride, link_terms terms)
+                                 size_t stride, bool damped)
 {
-    const bool elastic = terms != DAMPING_TERM, damped = terms != STIFFNESS_TERM;
     const size_t a = stride * l->a[j], b = stride * l->b[j];
     const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
     const scalar square = quad_dot(delta, delta);
-    if (elastic ? !link_acts(l, j, damped) || !(square > 0) : l->damping_factor[j] == 0)
+    if (!link_acts(l, j, damped) || !(square > 0))
         return;
     const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
-    const scalar scale = elastic ? link_scale(l, j, square, rate, damped) : l->damping_factor[j] * rate;
-    const quad pull = quad_times(quad_all(scale), delta);
+    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped)), delta);
     quad_store(force + a, quad_plus(quad_load(force + a), pull));
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
 }
 
 /* From quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
 SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
-                              size_t stride, link_terms terms)
+                              size_t stride, bool damped)
 {
-    const bool elastic = terms != DAMPING_TERM, damped = terms != STIFFNESS_TERM;
     const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
     const size_t ahead = 32; /* links, whose ends are prefetched: for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
@@ -99,24 +91,19 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
             delta[m] = quad_minus(quad_load(x + b), quad_load(x + a));
-            squares[m] = elastic ? quad_dot(delta[m], delta[m]) : 0;
+            squares[m] = quad_dot(delta[m], delta[m]);
             if (damped)
                 rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
         }
         const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
-        const quad rate = quad_of(rates[0], rates[1], rates[2], rates[3]);
-        quad scale;
-        if (!elastic) {
-            scale = quad_times(quad_load(l->damping_factor + j), rate);
-        } else {
-            scale = quad_times(quad_load(l->stiffness + j),
-                               quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square))));
-            if (damped)
-                scale = quad_plus(scale, quad_times(quad_load(l->damping + j), quad_over(rate, square)));
-        }
+        quad scale = quad_times(quad_load(l->stiffness + j),
+                                quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square))));
+        if (damped)
+            scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
+                                                quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
         if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
             for (size_t m = 0; m < some; m++)
-                one_quad_link(l, j + m, x, v, force, stride, terms);
+                one_quad_link(l, j + m, x, v, force, stride, damped);
             continue;
         }
         SPRING_UNROLL
@@ -128,7 +115,45 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        one_quad_link(l, j, x, v, force, stride, terms);
+        one_quad_link(l, j, x, v, force, stride, damped);
+}
+
+/* -------------------------------------------------------------------------------- damping alone, along frozen directions */
+
+/* The force on the first end; it is that on the second with the sign reversed. */
+SPRING_INLINE quad damping_pull(const unbanded_links *l, size_t j, quad relative)
+{
+    const quad d = quad_load(l->direction + quad_size * j);
+    return quad_times(quad_all(quad_dot(d, relative)), d);
+}
+
+/* From arrays of each axis. */
+SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *v, scene_forces *out, uint32_t axes)
+{
+    const unbanded_links *const l = &s->unbanded;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        scalar relative[quad_size] = {0};
+        for (uint32_t a = 0; a < axes; a++)
+            relative[a] = v[a * s->stride + to] - v[a * s->stride + from];
+        const quad pull = damping_pull(l, j, quad_load(relative));
+        for (uint32_t a = 0; a < axes; a++) {
+            out->force[a * s->stride + from] += quad_at(pull, (int)a);
+            out->force[a * s->stride + to] -= quad_at(pull, (int)a);
+        }
+    }
+}
+
+/* From quads, as quad_links(). */
+SPRING_INLINE void quad_damping(const unbanded_links *links, const scalar *v, scalar *force, size_t stride)
+{
+    const unbanded_links own = *links, *const l = &own;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t a = stride * l->a[j], b = stride * l->b[j];
+        const quad pull = damping_pull(l, j, quad_minus(quad_load(v + b), quad_load(v + a)));
+        quad_store(force + a, quad_plus(quad_load(force + a), pull));
+        quad_store(force + b, quad_minus(quad_load(force + b), pull));
+    }
 }
 
 /* Records: position, velocity if links are damped, and force of a particle in one piece of memory, for scenes with many
@@ -166,35 +191,46 @@ SPRING_INLINE void forces_of_records(const scene_links *s, scene_forces *out, ui
     }
 }
 
-SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                               link_terms terms)
+SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped,
+                               bool alone)
 {
-    const bool damped = terms != STIFFNESS_TERM;
     const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
     if (s->axes == 3)
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
-    quad_links(&s->unbanded, out->records, out->records + quad_size, out->records + at_force, stride, terms);
+    if (alone)
+        quad_damping(&s->unbanded, out->records + quad_size, out->records + at_force, stride);
+    else
+        quad_links(&s->unbanded, out->records, out->records + quad_size, out->records + at_force, stride, damped);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
         forces_of_records(s, out, 2, damped);
 }
 
+/* function(..., axes, damped) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
+                   : function(__VA_ARGS__, 3, false))
+
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
-    if (s->axes == 1)
-        SPRING_BY_TERMS(s->terms, all_unbanded, s, x, v, out, 1);
-    else if (s->axes == 2)
-        SPRING_BY_TERMS(s->terms, all_unbanded, s, x, v, out, 2);
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
+    if (s->terms == DAMPING_TERM)
+        all_unbanded_damping(s, v, out, s->axes);
     else
-        SPRING_BY_TERMS(s->terms, all_unbanded, s, x, v, out, 3);
+        SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
 }
 
 static void compute_record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
-    SPRING_BY_TERMS(s->terms, all_records, s, x, v, out);
+    if (s->terms == STIFFNESS_TERM)
+        all_records(s, x, v, out, false, false);
+    else
+        all_records(s, x, v, out, true, s->terms == DAMPING_TERM);
 }
 
 /* The forces of a small scene, whose quantities are arrays of quads. */
@@ -202,7 +238,12 @@ static void compute_quad_forces(const scene_links *s, const scalar *x, const sca
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(out->force + quad_size * i, quad_all(0));
-    SPRING_BY_TERMS(s->terms, quad_links, &s->unbanded, x, v, out->force, quad_size);
+    if (s->terms == STIFFNESS_TERM)
+        quad_links(&s->unbanded, x, v, out->force, quad_size, false);
+    else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        quad_links(&s->unbanded, x, v, out->force, quad_size, true);
+    else
+        quad_damping(&s->unbanded, v, out->force, quad_size);
 }
 
 #endif

@@ -35,7 +35,8 @@ typedef enum scene_array {
     ARRAY_LINK_DAMPING,   /* [N s/m] */
     ARRAY_SLOTS,   /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded.h */
-    ARRAY_DAMPING_FACTORS, /* damping/length^2 (on one axis damping), by slot as in ARRAY_SLOTS; see freeze_directions() */
+    ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
+    ARRAY_LINK_DIRECTIONS,
     ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
     ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
     ARRAY_SUMS,          /* work space of the stable step, by particle */

@@ -94,24 +94,27 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
     return true;
 }
 
-/* Stores damping/length^2 of all links at positions x, so that damping at any velocities takes no root and no quotient. 0
-   where the ends of a link are so near each other that it has no direction. */
+/* Stores the directions of all links at positions x, times the root of their damping, so that damping at any velocities
+   takes no root and no quotient. The direction is 0 where the ends of a link coincide. */
 static inline void freeze_directions(const scene_step *s, const scalar *x)
 {
     const scene_layout *l = &s->scene->layout;
     const unbanded_links *links = &s->links->unbanded;
-    scalar *const factor = scene_memory(s->scene, ARRAY_DAMPING_FACTORS);
     if (l->bands > 0)
-        s->kernels->band_factors(s->links, x, factor);
+        s->kernels->band_directions(s->links, x, scene_memory(s->scene, ARRAY_BAND_DIRECTIONS));
+    scalar *const direction = scene_memory(s->scene, ARRAY_LINK_DIRECTIONS);
     for (size_t j = 0; j < links->count; j++) {
-        scalar square = 0;
+        const scalar *const from = x + l->particle_stride * links->a[j], *const to =
+                                                                             x + l->particle_stride * links->b[j];
+        scalar delta[3], square = 0;
         for (uint32_t a = 0; a < l->axes; a++) {
-            const scalar *const axis = x + a * l->stride;
-            const scalar delta = axis[l->particle_stride * links->b[j]] - axis[l->particle_stride * links->a[j]];
-            square += delta * delta;
+            delta[a] = to[a * l->stride] - from[a * l->stride];
+            square += delta[a] * delta[a];
         }
-        const scalar f = l->axes == 1 ? links->damping[j] : links->damping[j] / square;
-        factor[l->band_slots + j] = f <= scalar_max ? f : 0;
+        const scalar root = (scalar)spring_sqrt((double)links->damping[j]),
+                     length = (scalar)spring_sqrt((double)square);
+        for (uint32_t a = 0; a < l->axes; a++)
+            direction[quad_size * j + a] = l->axes == 1 ? root : square > 0 ? root * (delta[a] / length) : 0;
     }
 }
 

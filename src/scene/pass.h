@@ -115,7 +115,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
     const bool damped = s->damped_links > 0;
     const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
     const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
-    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING), *factor = scene_read(s, ARRAY_DAMPING_FACTORS);
+    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING), *direction = scene_read(s, ARRAY_BAND_DIRECTIONS);
     for (uint32_t i = 0; i < l->bands; i++) {
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
@@ -127,7 +127,8 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
-            .first_slot = b->slots,
+            .direction = direction != NULL ? direction + b->slots : NULL,
+            .direction_stride = l->band_slots,
             .ring_start = b->ring_start,
             .ring = (ptrdiff_t)b->ring,
             .back = (ptrdiff_t)b->back,
@@ -137,7 +138,6 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
         .particles = l->particles,
         .axes = l->axes,
         .terms = damped ? STIFFNESS_AND_DAMPING_TERM : STIFFNESS_TERM,
-        .damping_factor = factor,
         .stride = l->stride,
         .bands = l->bands,
         .band = band,
@@ -149,7 +149,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
                 .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
-                .damping_factor = factor != NULL ? factor + l->band_slots : NULL,
+                .direction = scene_read(s, ARRAY_LINK_DIRECTIONS),
             },
     };
 }
