@@ -118,9 +118,8 @@ static inline void freeze_directions(const scene_step *s, const scalar *x)
     }
 }
 
-/* v1 = P v0, with the directions of links at the positions x that freeze_directions() was called for last. v1 may be v0.
-   Returns false if a result is not finite. */
-static inline bool damp(scene_step *s, const scalar *x, const scalar *v0, scalar *v1)
+/* v = P v, with the directions of links at positions x. Returns false if a result is not finite. */
+static inline bool damp_links(scene_step *s, const scalar *x, scalar *v)
 {
     const chebyshev_series *p = &s->damping;
     scene_links links = *s->links;
@@ -128,9 +127,10 @@ static inline bool damp(scene_step *s, const scalar *x, const scalar *v0, scalar
     scalar *const storage[] = {damping_storage(s, 1), damping_storage(s, 2)};
     double above = p->beyond_last, c = p->last; /* the coefficients k + 1 and k of the whole series */
     const double last = p->last + p->more;
-    /* b_s = c_s v0 is not stored: the terms that follow from it use v0. */
-    scene_chebyshev term = {.before = v0, .second_before = v0};
-    scene_motion m = {.v0 = v0, .force = damping_storage(s, 0), .chebyshev = &term};
+    /* b_s = c_s v is not stored: the terms that follow from it use v. */
+    scene_chebyshev term = {.before = v, .second_before = v};
+    scene_motion m = {.v0 = v, .force = damping_storage(s, 0), .chebyshev = &term};
+    freeze_directions(s, x);
     bool finite = true;
     for (unsigned k = p->terms; k > 0 && finite; k--) {
         bessel_step(p->rho, k, &above, &c);
@@ -140,10 +140,10 @@ static inline bool damp(scene_step *s, const scalar *x, const scalar *v0, scalar
         term.before_weight = (scalar)(first ? 0 : times);
         term.second_weight = first || second ? 0 : 1;
         m.kick = (scalar)(first ? times * last * p->kick : times * p->kick);
-        m.v = k > 1 ? storage[k % 2] : v1;
+        m.v = k > 1 ? storage[k % 2] : v;
         finite = damping_term(s, &links, x, term.before,
                               k > 1 ? s->kernels->damping_term : s->kernels->last_damping_term, &m);
-        term.second_before = first ? v0 : term.before;
+        term.second_before = first ? v : term.before;
         term.before = m.v;
     }
     return finite;

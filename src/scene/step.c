@@ -81,7 +81,7 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
     return step->known;
 }
 
-/* The series by which links are damped in each half step, beyond the limit of explicit damping. */
+/* The series by which links are damped once a step, beyond the limit of explicit damping. */
 static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
 {
     if (s->damped_links == 0 || stepper->explicit_limit == NULL || dt < 0)
@@ -89,7 +89,7 @@ static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper,
     const scene_bounds *bounds = spring_scene_find_bounds(s);
     if (dt <= stepper->explicit_limit(bounds))
         return (chebyshev_series){.terms = 0};
-    return chebyshev_for(dt / 2, bounds->link_damping);
+    return chebyshev_for(dt, bounds->link_damping);
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,

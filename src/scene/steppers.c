@@ -42,28 +42,36 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
-/* Damping of links for half a step, kick, drift, evaluate, implicit kick, damping for half a step. The forces of a callback
-   that uses velocities are evaluated twice, the second time at predicted velocities; see scene_leapfrog(). */
+/* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each half
+   is kick, drift, evaluate, implicit kick, as in scene_leapfrog(), and so is the way to treat callbacks: the forces of one
+   that uses velocities are not kept, and are evaluated at predicted velocities. */
 static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
 {
-    const bool predicts = scene_callback_uses_velocity(s->scene);
-    const scalar *const x0 = x_at(s, s->from), *const x1 = x_at(s, s->to);
-    scalar *const v = v_at(s, s->to);
-    if (s->first)
-        freeze_directions(s, x0);
-    if (!damp(s, x0, v_at(s, s->from), v))
-        return (scene_outcome){.finite = false};
-    find_start_force(s, v);
+    const bool keeps = !scene_callback_uses_velocity(s->scene);
+    find_start_force(s, v_at(s, s->from));
     scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
-    kick_drift.kick = last_kick.kick = s->h / 2;
-    kick_drift.v0 = last_kick.v0 = v;
-    kick_drift.predicted = predicts ? predicted_velocities(s) : NULL;
+    kick_drift.kick = last_kick.kick = s->h / 4;
+    kick_drift.drift = s->h / 2;
+    kick_drift.ends_step = keeps && !s->first;
+    kick_drift.predicted = keeps ? NULL : predicted_velocities(s);
+    last_kick.v0 = kick_drift.v;
     last_kick.force = force_at(s, s->to);
-    if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, predicts ? kick_drift.predicted : v, 1,
-                            s->kernels->implicit_kick, &last_kick))
+    const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
+    particle_kernel *const implicit_kick = s->kernels->implicit_kick;
+    if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||
+        !damp_links(s, kick_drift.x, kick_drift.v))
         return (scene_outcome){.finite = false};
-    freeze_directions(s, x1);
-    return (scene_outcome){.finite = damp(s, x1, v, v), .known = predicts ? NO_FORCE : ELASTIC_FORCE};
+    if (!keeps)
+        evaluate(s, kick_drift.x, kick_drift.v, 0.5);
+    kick_drift.x0 = kick_drift.x;
+    kick_drift.v0 = kick_drift.v;
+    kick_drift.force = last_kick.force;
+    kick_drift.ends_step = false;
+    return (scene_outcome){
+        .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1,
+                                     keeps && !s->last ? NULL : implicit_kick, &last_kick),
+        .known = keeps ? ELASTIC_FORCE : NO_FORCE,
+    };
 }
 
 /* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
