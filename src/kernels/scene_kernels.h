@@ -116,7 +116,7 @@ typedef struct scene_motion {
     scalar *x, *v;         /* written */
     bool ends_step;        /* begin with the implicit kick that ends the step before */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
-    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to */
+    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
@@ -148,7 +148,8 @@ typedef struct scene_kernels {
     particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
     particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
     particle_kernel *next_stage;          /* the same, and these times weight are added to the sums */
-    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
+    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v));
+                                             x = x0 + drift (sum_x + weight stage_v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
     particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before

@@ -222,8 +222,8 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
         call_back(s, x, v, t, out->force);
 }
 
-/* Evaluates the forces at x and v into the force array of the end of the step, at a fraction of the step. The end of a
-   step has the same time as the start of the next one, to the bit. */
+/* Evaluates the forces at x and v, at a fraction of the step, and stores them in force_at(s, s->to), the force array of
+   the end of the step. The end of a step has the same time as the start of the next one, to the bit. */
 static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     s->forces.force = force_at(s, s->to);
