@@ -36,11 +36,23 @@ SPRING_INLINE real acceleration(const scene_motion *m, const coordinates *c, rea
     return c->dragged ? free - c->drag * v : free;
 }
 
-SPRING_INLINE mask store_state(const scene_motion *m, const coordinates *c, real x, real v)
+/* Lanes of free particles whose velocity at the end of a step is above max_speed, infinite or NaN. */
+SPRING_INLINE mask too_fast(const scene_motion *m, const coordinates *c, real v)
+{
+    return not_mask(vec_abs(v) <= m->max_speed) & (c->inverse_mass > 0);
+}
+
+SPRING_INLINE void store_state(const scene_motion *m, const coordinates *c, real x, real v)
 {
     vec_store(m->x + c->at, x);
     vec_store(m->v + c->at, v);
-    return not_finite(x) | not_finite(v);
+}
+
+/* The state at the end of a step. */
+SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x, real v)
+{
+    store_state(m, c, x, v);
+    return not_finite(x) | too_fast(m, c, v);
 }
 
 /* Moves one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
@@ -90,8 +102,9 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
     const real v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly(m, c, start, free) : start;
-    const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free);
-    const mask wrong = store_state(m, c, vec_load(m->x0 + c->at) + m->drift * v, v);
+    const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free), x = vec_load(m->x0 + c->at) + m->drift * v;
+    store_state(m, c, x, v);
+    const mask wrong = (variant & ENDS_STEP) != 0 ? not_finite(x) | too_fast(m, c, v0) : not_finite(x);
     if ((variant & PREDICTS) == 0)
         return wrong;
     const real predicted = kicked_implicitly(m, c, v, free);
@@ -113,7 +126,7 @@ SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates
     (void)variant;
     const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));
     vec_store(m->v + c->at, v);
-    return not_finite(v);
+    return too_fast(m, c, v);
 }
 
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -126,7 +139,7 @@ SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coord
     (void)variant;
     const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));
     const mask hidden = not_finite(m->kick * c->drag); /* 1/(1 + q) is 0 for infinite q */
-    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * v, v) | hidden;
+    return store_end(m, c, vec_load(m->x0 + c->at) + m->drift * v, v) | hidden;
 }
 
 static bool move_implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -148,7 +161,11 @@ SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, uns
         vec_store(m->sum_x + c->at, vec_load(m->sum_x + c->at) + m->weight * dx);
         vec_store(m->sum_v + c->at, vec_load(m->sum_v + c->at) + m->weight * dv);
     }
-    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * dx, vec_load(m->v0 + c->at) + m->kick * dv);
+    const real x = vec_load(m->x0 + c->at) + m->drift * dx, v = vec_load(m->v0 + c->at) + m->kick * dv;
+    if (variant == NO_SUM)
+        return store_end(m, c, x, v);
+    store_state(m, c, x, v);
+    return not_finite(x) | not_finite(v);
 }
 
 static bool move_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -170,8 +187,8 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
 {
     (void)variant;
     const real dx = vec_load(m->stage_v + c->at), dv = acceleration(m, c, dx);
-    return store_state(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(m->sum_x + c->at) + m->weight * dx),
-                       vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + m->weight * dv));
+    return store_end(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(m->sum_x + c->at) + m->weight * dx),
+                     vec_load(m->v0 + c->at) + m->kick * (vec_load(m->sum_v + c->at) + m->weight * dv));
 }
 
 static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -241,9 +258,9 @@ SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *
     const real kick =
         m->kick * (nystrom_sum(m, c, m->nystrom->weight_v, stored) + m->nystrom->weight_v[stored] * accel);
     if (!c->dragged)
-        return store_state(m, c, x0 + moved, v0 + kick);
+        return store_end(m, c, x0 + moved, v0 + kick);
     const real decay = vec_load(m->nystrom->decay + c->mass), loss = vec_load(m->nystrom->loss + c->mass);
-    return store_state(m, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
+    return store_end(m, c, x0 + decay * moved, v0 + (loss * v0 + decay * (kick - c->drag / 2 * moved)));
 }
 
 static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, size_t from, size_t to)

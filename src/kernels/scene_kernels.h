@@ -115,6 +115,7 @@ typedef struct scene_motion {
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
     bool ends_step;        /* begin with the implicit kick that ends the step before */
+    scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; scalar_max: no limit */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
     const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
@@ -123,7 +124,8 @@ typedef struct scene_motion {
     const scene_chebyshev *chebyshev;
 } scene_motion;
 
-/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
+/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN, or if
+   a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
 /* Unbanded links are computed on quads, so vectors of 64 bytes gain nothing over 32 (1 % on an AMD EPYC). */

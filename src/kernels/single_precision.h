@@ -43,6 +43,7 @@
 #define spring_scene_stable_step  spring_scenef_stable_step
 #define spring_scene_tension      spring_scenef_tension
 #define spring_scene_time         spring_scenef_time
+#define spring_links_soften       spring_linksf_soften
 #define spring_scene_v128         spring_scenef_v128
 #define spring_scene_v256         spring_scenef_v256
 #define spring_scene_v512         spring_scenef_v512

@@ -15,7 +15,7 @@
  * Limit     |T_k(y)| <= 1 for |y| <= 1, and all c_k are positive. So |P(z)| <= P(0) = 1 for -2 rho <= z <= 0: damping never
  *           adds kinetic energy if that interval holds the spectrum of Z, which lies between -t G and 0 (G:
  *           scene_bounds.link_damping).
- * Accuracy  |P(z) - e^z| < 0.1 in the interval, and P(z) - e^z = O(z^3) for small t: tests/test_scene_damping.c
+ * Accuracy  |P(z) - e^z| < 0.15 in the interval, and P(z) - e^z = O(z^3) for small t: tests/test_scene_damping.c
  * Source    Abramowitz, Stegun, Handbook of Mathematical Functions (1964), 9.6.34 and 9.12; Tal-Ezer, Kosloff, An accurate
  *           and efficient scheme for propagating the time dependent Schroedinger equation, J. Chem. Phys. 81 (1984)
  */

@@ -48,7 +48,9 @@ static def_error check_head(const spring_scene_def *def)
     for (uint32_t a = 0; a < axes_of(def); a++)
         if (!scene_fits(def->gravity[a]))
             return invalid("gravity", a);
-    return scene_not_negative(def->drag) ? no_error : invalid("drag", 0);
+    if (!scene_not_negative(def->drag))
+        return invalid("drag", 0);
+    return scene_not_negative(def->max_speed) ? no_error : invalid("max_speed", 0);
 }
 
 static def_error check_particles(const spring_scene_def *def)

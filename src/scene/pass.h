@@ -88,6 +88,7 @@ static inline scene_motion whole_step(const scene_step *s)
         .x = x_at(s, s->to),
         .v = v_at(s, s->to),
         .stage_v = v_at(s, s->from),
+        .max_speed = s->scene->max_speed,
     };
 }
 

@@ -4,6 +4,7 @@
 #include "check.c"
 #include "edit.c"
 #include "layout.c"
+#include "soften.c"
 #include "stable_step.c"
 #include "state.c"
 #include "step.c"

@@ -56,6 +56,7 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     kick_drift.predicted = keeps ? NULL : predicted_velocities(s);
     last_kick.v0 = kick_drift.v;
     last_kick.force = force_at(s, s->to);
+    last_kick.max_speed = scalar_max; /* not yet the end of the step */
     const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
     particle_kernel *const implicit_kick = s->kernels->implicit_kick;
     if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||
@@ -67,6 +68,7 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     kick_drift.v0 = kick_drift.v;
     kick_drift.force = last_kick.force;
     kick_drift.ends_step = false;
+    last_kick.max_speed = s->scene->max_speed;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1,
                                      keeps && !s->last ? NULL : implicit_kick, &last_kick),
