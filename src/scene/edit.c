@@ -22,9 +22,10 @@ spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_
         return SPRING_EINVAL;
     s->damped_links -= old.damping > 0;
     s->damped_links += (scalar)link->damping > 0;
+    if ((scalar)link->stiffness != old.stiffness || (scalar)link->damping != old.damping)
+        s->bounds_known = false;
     scene_write_link(s, index, link);
     s->known = NO_FORCE;
-    s->bounds_known = false;
     return SPRING_OK;
 }
 

@@ -161,6 +161,21 @@ static void print_scene(const char *name, const sheet *s, spring_method m, doubl
            spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
 }
 
+/* Link damping far beyond the limit of explicit damping, in scenes with bands, without, and small ones. */
+static void print_heavy_damping(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int kind = 0; kind < 3; kind++) {
+            sheet s = make_sheet(axes, kind == 1, true);
+            if (kind == 2)
+                s.links = 12;
+            for (size_t i = 0; i < s.links; i++)
+                s.link[i].damping *= 1e4;
+            static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
+            print_scene(names[kind], &s, SPRING_LEAPFROG, 1, 1);
+        }
+}
+
 static void print_scenes(spring_method m)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
@@ -260,5 +275,6 @@ int main(void)
         if (spring_method_describe(m)->springs)
             print_accuracy(m);
     }
+    print_heavy_damping();
     return 0;
 }
