@@ -19,6 +19,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
 #include "particles.h"
+#include "stretch.h"
 #if SPRING_VECTOR < 64
 #include "unbanded.h"
 SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
@@ -50,6 +51,7 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
+    .stretched = any_stretched,
 };
 #endif
 

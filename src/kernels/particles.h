@@ -19,14 +19,18 @@ typedef struct coordinates {
     real drag;                /* [1/s] */
     bool dragged;             /* the scene has drag */
     implicit_factors damping; /* of an implicit kick; unset without drag */
+    const scalar *held;       /* [N] held forces; NULL: none */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* By force and gravity. No force moves a pinned particle, not even an infinite one. */
+/* By force, held force and gravity. No force moves a pinned particle, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
 {
-    const real free = c->inverse_mass * vec_load(m->force + c->at) + c->gravity;
+    real force = vec_load(m->force + c->at);
+    if (c->held != NULL)
+        force += vec_load(c->held + c->at);
+    const real free = c->inverse_mass * force + c->gravity;
     return select_real(c->inverse_mass > 0, free, splat(0));
 }
 
@@ -68,6 +72,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
                 .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
+                .held = p.held,
             };
             if (c.dragged)
                 c.damping = implicit_factors_of(m.kick * c.drag);

@@ -48,6 +48,7 @@ typedef struct scene_links {
     size_t bands;
     const scene_band *band;
     unbanded_links unbanded;
+    bool tension_only; /* links pull and never push */
 } scene_links;
 
 /* What the kernels of links write. */
@@ -62,6 +63,10 @@ typedef struct scene_forces {
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 
+/* Returns whether a link of the bands is longer than `stretch` times its rest length, cut links and links of rest length
+   0 excepted. May return true for a link that is shorter by 1e-5 of that. 0 <= stretch <= 1e9. */
+typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
+
 /* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
 typedef struct scene_particles {
     size_t count;
@@ -71,6 +76,7 @@ typedef struct scene_particles {
     size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
     const scalar *gravity;      /* a vector for each axis; for quads one vector */
     scalar drag;                /* [N s/m] */
+    const scalar *held;         /* [N] held forces, indexed like positions; NULL: the scene has none */
 } scene_particles;
 
 /* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
@@ -124,6 +130,7 @@ typedef struct scene_kernels {
     particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
+    stretch_kernel *stretched;            /* see above */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */

@@ -87,6 +87,7 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
         .mass_stride = each,
         .gravity = s->gravity_vectors[0],
         .drag = (scalar)s->drag,
+        .held = scene_has(s, ARRAY_HELD) ? scene_read_axis(s, ARRAY_HELD, 0) : NULL,
     };
 }
 
@@ -130,6 +131,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
             },
+        .tension_only = scene_tension_only(s),
     };
 }
 

@@ -8,3 +8,5 @@
 #include "state.c"
 #include "step.c"
 #include "steppers.c"
+#include "tear.c"
+#include "transform.c"

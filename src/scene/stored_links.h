@@ -64,6 +64,16 @@ static inline void scene_write_link(spring_scene *s, size_t index, const spring_
         occupied[at.slot] = (scalar)link->stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
 }
 
+/* The same for a scene in use, whose force and bounds are no longer known then. */
+static inline void scene_replace_link(spring_scene *s, size_t index, const spring_link *link)
+{
+    s->damped_links -= scene_link(s, index).damping > 0;
+    s->damped_links += (scalar)link->damping > 0;
+    scene_write_link(s, index, link);
+    s->known = NO_FORCE;
+    s->bounds_known = false;
+}
+
 /* ---------------------------------------------------------------------------------------------------- other values */
 
 static inline void scene_store_gravity(spring_scene *s, const double *gravity)
