@@ -57,8 +57,10 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
         acts[m] = joined[m];
-        if (tension_only) /* NaN is not slack, so that it is noticed */
-            acts[m] &= not_mask(damped ? (stretch <= 0) | (scale[m] <= 0) : scale[m] <= 0);
+        if (tension_only) /* NaN stays, so that it is noticed */
+            scale[m] = vec_not_negative(scale[m]);
+        if (tension_only && damped)
+            acts[m] &= not_mask(stretch <= 0);
     }
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {

@@ -26,8 +26,9 @@ SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, 
             const real delta = vec_load(at + band->offset) - vec_load(at);
             square += delta * delta;
         }
-        const real length2 = select_real(vec_load_mask(band->occupied + slot), square, splat(0)); /* a cut link has 0 */
-        longer |= (rest != 0) & not_mask(length2 < nearly * (bound * bound));
+        const mask beyond = (rest != 0) & not_mask(square < nearly * (bound * bound));
+        if (SPRING_UNLIKELY(any(beyond))) /* of links that were cut, too */
+            longer |= beyond & vec_load_mask(band->occupied + slot);
     }
     return any(longer);
 }

@@ -72,6 +72,13 @@ SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
 }
 
+/* Tension-only: a function of its own, since it is called for few links. */
+SPRING_NOINLINE void one_taut_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                   size_t stride, bool damped)
+{
+    one_quad_link(l, j, x, v, force, stride, damped, true);
+}
+
 /* From quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
 SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
                               size_t stride, bool damped, bool tension_only)
@@ -105,11 +112,16 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
                                                 quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
         if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
             for (size_t m = 0; m < some; m++)
-                one_quad_link(l, j + m, x, v, force, stride, damped, tension_only);
+                if (tension_only)
+                    one_taut_link(l, j + m, x, v, force, stride, damped);
+                else
+                    one_quad_link(l, j + m, x, v, force, stride, damped, false);
             continue;
         }
         if (tension_only)
-            scale = quad_where_positive(quad_where_positive(scale, scale), stretch);
+            scale = quad_where_positive(scale, scale);
+        if (tension_only && damped)
+            scale = quad_where_positive(scale, stretch);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
@@ -119,28 +131,10 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        one_quad_link(l, j, x, v, force, stride, damped, tension_only);
-}
-
-/* Tension-only links. Functions of their own, so that records and small scenes share them. */
-SPRING_NOINLINE void taut_links(const unbanded_links *l, const scalar *x, const scalar *v, scalar *force, size_t stride)
-{
-    quad_links(l, x, v, force, stride, false, true);
-}
-
-SPRING_NOINLINE void damped_taut_links(const unbanded_links *l, const scalar *x, const scalar *v, scalar *force,
-                                       size_t stride)
-{
-    quad_links(l, x, v, force, stride, true, true);
-}
-
-SPRING_INLINE void links_of_quads(const scene_links *s, const scalar *x, const scalar *v, scalar *force, size_t stride,
-                                  bool damped)
-{
-    if (!s->tension_only)
-        quad_links(&s->unbanded, x, v, force, stride, damped, false);
-    else
-        (damped ? damped_taut_links : taut_links)(&s->unbanded, x, v, force, stride);
+        if (tension_only)
+            one_taut_link(l, j, x, v, force, stride, damped);
+        else
+            one_quad_link(l, j, x, v, force, stride, damped, false);
 }
 
 /* Records: position, velocity if links are damped, and force of a particle in one piece of memory, for scenes with many
@@ -148,6 +142,17 @@ SPRING_INLINE void links_of_quads(const scene_links *s, const scalar *x, const s
 SPRING_INLINE size_t force_in_record(bool damped)
 {
     return (damped ? 2 : 1) * quad_size;
+}
+
+/* Tension-only links of records. Functions of their own, which do not slow down others. */
+SPRING_NOINLINE void taut_links(const unbanded_links *l, const scalar *x, scalar *force)
+{
+    quad_links(l, x, NULL, force, force_in_record(false) + quad_size, false, true);
+}
+
+SPRING_NOINLINE void damped_taut_links(const unbanded_links *l, const scalar *x, const scalar *v, scalar *force)
+{
+    quad_links(l, x, v, force, force_in_record(true) + quad_size, true, true);
 }
 
 SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
@@ -181,11 +186,17 @@ SPRING_INLINE void forces_of_records(const scene_links *s, scene_forces *out, ui
 SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped)
 {
     const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    scalar *const records = out->records;
     if (s->axes == 3)
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
-    links_of_quads(s, out->records, out->records + quad_size, out->records + at_force, stride, damped);
+    if (s->tension_only && damped)
+        damped_taut_links(&s->unbanded, records, records + quad_size, records + at_force);
+    else if (s->tension_only)
+        taut_links(&s->unbanded, records, records + at_force);
+    else
+        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, false);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
@@ -199,13 +210,13 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
        : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
                    : function(__VA_ARGS__, 3, false, false))
 
-/* The same of tension-only links. Few unbanded links are computed so: one function for both numbers of axes. */
+/* The same of tension-only links, of which few are computed here: one loop for all. */
 SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
-    if (s->damped)
-        all_unbanded(s, x, v, out, s->axes, true, true);
+    if (s->axes == 3)
+        all_unbanded(s, x, v, out, 3, s->damped, true);
     else
-        all_unbanded(s, x, v, out, s->axes, false, true);
+        all_unbanded(s, x, v, out, 2, s->damped, true);
 }
 
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
@@ -224,15 +235,25 @@ static void compute_record_forces(const scene_links *s, const scalar *x, const s
         all_records(s, x, v, out, false);
 }
 
+SPRING_NOINLINE void small_taut_links(const scene_links *s, const scalar *x, const scalar *v, scalar *force)
+{
+    if (s->damped)
+        quad_links(&s->unbanded, x, v, force, quad_size, true, true);
+    else
+        quad_links(&s->unbanded, x, v, force, quad_size, false, true);
+}
+
 /* The forces of a small scene, whose quantities are arrays of quads. */
 static void compute_quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(out->force + quad_size * i, quad_all(0));
-    if (s->damped)
-        links_of_quads(s, x, v, out->force, quad_size, true);
+    if (s->tension_only)
+        small_taut_links(s, x, v, out->force);
+    else if (s->damped)
+        quad_links(&s->unbanded, x, v, out->force, quad_size, true, false);
     else
-        links_of_quads(s, x, v, out->force, quad_size, false);
+        quad_links(&s->unbanded, x, v, out->force, quad_size, false, false);
 }
 
 #endif

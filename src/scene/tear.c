@@ -14,9 +14,16 @@ static double least_limit(const double *limit, size_t links)
     enum { some = 4 };
     double least[some] = {INFINITY, INFINITY, INFINITY, INFINITY};
     bool valid = true;
-    for (size_t i = 0; i < links; i++) {
+    for (size_t i = 0; i < links / some * some; i += some) {
+        SPRING_UNROLL
+        for (size_t k = 0; k < some; k++) {
+            valid &= limit[i + k] >= 0;
+            least[k] = limit[i + k] < least[k] ? limit[i + k] : least[k];
+        }
+    }
+    for (size_t i = links / some * some; i < links; i++) {
         valid &= limit[i] >= 0;
-        least[i % some] = limit[i] < least[i % some] ? limit[i] : least[i % some];
+        least[0] = fmin(limit[i], least[0]);
     }
     return valid ? fmin(fmin(least[0], least[1]), fmin(least[2], least[3])) : NAN;
 }
