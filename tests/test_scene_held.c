@@ -45,8 +45,9 @@ static void like_gravity(void)
                 CHECK(spring_scene_set(held, SPRING_FORCE, force, 0, 0, m.def.particles) == SPRING_OK, "held");
                 run_all_methods(falling, &all);
                 run_all_methods(held, &all);
-                check_close_states(held, falling, m.def.particles * axes, m.def.particles, 1000 * EPS,
-                                   "three roundings of an acceleration of 10 in each of 50 steps, and what they become");
+                check_close_states(
+                    held, falling, m.def.particles * axes, m.def.particles, 1000 * EPS,
+                    "three roundings of an acceleration of 10 in each of 50 steps, and what they become");
                 free(falling);
                 free(held);
             }
@@ -142,8 +143,7 @@ static void changed_every_frame(void)
 static void exact_motion(void)
 {
     const double start[] = {0.3, -0.2, 0.1}, mass = 1.7, dt = 0.01;
-    const spring_scene_def def = {
-        .flags = SPRING_SCENE_FORCES, .particles = 1, .position = start, .mass_all = mass};
+    const spring_scene_def def = {.flags = SPRING_SCENE_FORCES, .particles = 1, .position = start, .mass_all = mass};
     spring_scene *s = scene_of(&def);
     double x[3], v[3] = {0}, now[3], speed[3];
     memcpy(x, start, sizeof x);
@@ -262,8 +262,7 @@ static void failures_and_snapshots(void)
             if (!undo)
                 set_state(s, n, &y);
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1e-3, 5) == SPRING_OK &&
-                      spring_scene_advance(copy, SPRING_LEAPFROG, 1e-3, 5) == SPRING_OK &&
-                      same_bits(s, copy, n, 3),
+                      spring_scene_advance(copy, SPRING_LEAPFROG, 1e-3, 5) == SPRING_OK && same_bits(s, copy, n, 3),
                   "a snapshot goes on with them");
             free(copy);
             free(s);
@@ -301,8 +300,8 @@ static void pinned(void)
 static void rigid(double matrix[12], uint32_t axes)
 {
     const double t = random_uniform(-3, 3), c = cos(t), s = sin(t), turn[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
-    const double u = axes == 3 ? random_uniform(-3, 3) : 0, tilt[3][3] = {
-        {1, 0, 0}, {0, cos(u), -sin(u)}, {0, sin(u), cos(u)}};
+    const double u = axes == 3 ? random_uniform(-3, 3) : 0,
+                 tilt[3][3] = {{1, 0, 0}, {0, cos(u), -sin(u)}, {0, sin(u), cos(u)}};
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             matrix[4 * i + j] = turn[i][0] * tilt[0][j] + turn[i][1] * tilt[1][j] + turn[i][2] * tilt[2][j];

@@ -72,7 +72,8 @@ static void check_tear(const spring_scene *s, size_t bytes, double stretch, cons
         CHECK_CLOSE(spring_scene_energy(copy).elastic, elastic - lost, 1e-14 * elastic,
                     "the energy falls by that of the torn links; sums of the same numbers");
         CHECK(longer_links(copy, stretch, limit, got) == 0, "none is left");
-        CHECK(spring_scene_tear(copy, stretch, limit, NULL, 0, &torn) == SPRING_OK && torn == 0, "and none tears again");
+        CHECK(spring_scene_tear(copy, stretch, limit, NULL, 0, &torn) == SPRING_OK && torn == 0,
+              "and none tears again");
         CHECK(same_bits(s, copy, s->layout.particles, s->layout.axes), "no particle moves");
     }
     free(copy);
@@ -240,7 +241,9 @@ static void bad_links(void)
     const spring_link good = m.link[n - 1];
     for (size_t i = 0; i < n; i++)
         m.link[i].rest = 0.3;
-    const spring_link bad[] = {{good.a, good.a, 1, 1, 0}, {good.a, good.b, NAN, 1, 0}, {good.a, good.b, 1, -1, 0},
+    const spring_link bad[] = {{good.a, good.a, 1, 1, 0},
+                               {good.a, good.b, NAN, 1, 0},
+                               {good.a, good.b, 1, -1, 0},
                                {good.a, good.b, 1, 1, INFINITY}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         m.link[n - 1] = bad[i];
@@ -310,8 +313,8 @@ static void bad_components(void)
 {
     uint32_t got[3] = {7, 7, 7};
     const spring_link good = {0, 1, 1, 1, 0};
-    const spring_link bad[] = {{0, 3, 1, 1, 0}, {3, 0, 1, 1, 0}, {1, 1, 1, 1, 0}, {0, 1, 1, NAN, 0}, {0, 1, 1, 1, -1},
-                               {0, 1, 1, INFINITY, 0}};
+    const spring_link bad[] = {{0, 3, 1, 1, 0},   {3, 0, 1, 1, 0},  {1, 1, 1, 1, 0},
+                               {0, 1, 1, NAN, 0}, {0, 1, 1, 1, -1}, {0, 1, 1, INFINITY, 0}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         CHECK(spring_links_components(3, 2, (spring_link[]){good, bad[i]}, got) == 0 && got[0] == 7, "a bad link");
     CHECK(spring_links_components(3, 1, NULL, got) == 0 && spring_links_components(3, 1, &good, NULL) == 0 &&
@@ -323,14 +326,9 @@ static void bad_components(void)
 int main(void)
 {
     static const test tests[] = {
-        {"what is torn", tearing},
-        {"at the limit", at_the_limit},
-        {"the kept force", kept_force},
-        {"bad limits", bad_tears},
-        {"many links at once", many_links},
-        {"bad links", bad_links},
-        {"components", components},
-        {"bad components", bad_components},
+        {"what is torn", tearing},  {"at the limit", at_the_limit},     {"the kept force", kept_force},
+        {"bad limits", bad_tears},  {"many links at once", many_links}, {"bad links", bad_links},
+        {"components", components}, {"bad components", bad_components},
     };
     return RUN_TESTS("scene-tear", tests);
 }

@@ -14,8 +14,8 @@ static void build_net(model *m, const uint32_t count[3], uint32_t axes, unsigned
     use_all_methods(&m->def);
 }
 
-static const uint32_t shapes[][3] = {
-    {3, 1, 1}, {7, 1, 1}, {6, 2, 1}, {30, 1, 1}, {9, 7, 1}, {5, 4, 3}, {70, 4, 1}, {0, 0, 0}};
+static const uint32_t shapes[][3] = {{3, 1, 1}, {7, 1, 1}, {6, 2, 1},  {30, 1, 1},
+                                     {9, 7, 1}, {5, 4, 3}, {70, 4, 1}, {0, 0, 0}};
 
 static spring_scene *run_with(const scene_kernels *kernels, const spring_scene_def *def)
 {
@@ -101,7 +101,8 @@ static void tension_and_energy(void)
             for (size_t i = 0; i < m.def.links; i++) {
                 const link_force f = evaluate_link(&m.link[i], axes, y.x, y.v);
                 const double extension = f.length - (double)(scalar)m.link[i].rest;
-                const double size = m.link[i].stiffness * (f.length + m.link[i].rest) + m.link[i].damping * fabs(f.rate);
+                const double size =
+                    m.link[i].stiffness * (f.length + m.link[i].rest) + m.link[i].damping * fabs(f.rate);
                 CHECK_CLOSE(spring_scene_tension(s, i), extension > 0 && f.tension > 0 ? f.tension : 0,
                             8 * DBL_EPSILON * size, "the law of a tension-only link in double, a few roundings");
                 slack += extension <= 0;
@@ -219,7 +220,8 @@ static void thrown_rope(void)
     spring_scene_get(s, SPRING_POSITION, end, 0, n - 1, 1);
     const double t = spring_scene_time(s);
     CHECK_CLOSE(end[0], 13.1, 1e-4, "free flight");
-    CHECK_CLOSE(end[1], 6 * t - 9.81 * t * t / 2, sizeof(scalar) == 4 ? 5e-4 : 1e-4, "free flight; in float 3000 roundings");
+    CHECK_CLOSE(end[1], 6 * t - 9.81 * t * t / 2, sizeof(scalar) == 4 ? 5e-4 : 1e-4,
+                "free flight; in float 3000 roundings");
     free(s);
 }
 

@@ -542,8 +542,7 @@ SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, s
  * @return number of components; 0 for invalid input (NULL, an index that is too large, a link from a particle to itself,
  *         negative stiffness or damping, or not finite), where nothing is written
  */
-SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link,
-                                          uint32_t *component);
+SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link, uint32_t *component);
 
 /** @} */
 

@@ -77,8 +77,8 @@ static bool any_longer(const scene_kernels *kernels, const spring_scene *s, doub
     return s->layout.bands > 0 && kernels->stretched(&links, scene_state(s, SPRING_POSITION, 0), (scalar)stretch);
 }
 
-spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch,
-                                     const double *limit, uint32_t *torn, size_t room, size_t *count)
+spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch, const double *limit,
+                                     uint32_t *torn, size_t room, size_t *count)
 {
     if (s == NULL || (torn == NULL && room > 0))
         return SPRING_EINVAL;
