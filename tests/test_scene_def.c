@@ -50,7 +50,7 @@ static void refused(void)
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
 
     REFUSED(d->axes, 4, SPRING_EINVAL, "axes", 0);
-    REFUSED(d->flags, 8, SPRING_EINVAL, "flags", 0);
+    REFUSED(d->flags, 32, SPRING_EINVAL, "flags", 0);
     REFUSED(d->methods, 1u << SPRING_EXACT | 1, SPRING_EUNSUPPORTED, "methods", 0);
     REFUSED(d->methods, 1u << SPRING_METHOD_COUNT, SPRING_EINVAL, "methods", 0);
     REFUSED(d->particles, 0, SPRING_EINVAL, "particles", 0);

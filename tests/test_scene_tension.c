@@ -333,7 +333,7 @@ static void refused(void)
               "methods that need smooth forces");
     }
     def.methods = 0;
-    def.flags = 32;
+    def.flags = 64;
     CHECK(spring_scene_check(&def, &field, &index) == SPRING_EINVAL && strcmp(field, "flags") == 0, "an unknown flag");
 }
 
