@@ -197,6 +197,7 @@ static const cost particle_costs[] = {
     {"RK4 too: one more buffer and two sums", 10, 0},
     {"Euler alone: no predicted v", 5, 0},
     {"RK4 alone, without rollback", 7, 0},
+    {"held forces: once", 7, 0},
 };
 
 static void bytes_of_a_particle(void)
@@ -209,6 +210,7 @@ static void bytes_of_a_particle(void)
         {.methods = leapfrog | rk4},
         {.methods = euler},
         {.methods = rk4, .flags = SPRING_SCENE_NO_UNDO},
+        {.methods = leapfrog, .flags = SPRING_SCENE_FORCES},
     };
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t i = 0; i < sizeof defs / sizeof defs[0]; i++) {
