@@ -8,10 +8,10 @@
 #ifndef SPRINGSTEP_STRETCH_H
 #define SPRINGSTEP_STRETCH_H
 
+#include "../simd/real.h"
 #include "scene_kernels.h"
 
-SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, const scalar *x, real stretch,
-                                  uint32_t axes)
+SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, const scalar *x, real stretch)
 {
     const real nearly = splat((scalar)(1 - 0x1p-18)); /* 4e-6, more than the rounding errors also in float */
     const ptrdiff_t stride_c = band->coefficient_stride;
@@ -20,8 +20,8 @@ SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, 
         const ptrdiff_t slot = t - band->start;
         const real rest = vec_load(band->rest + slot * stride_c), bound = stretch * rest;
         real square = splat(0);
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++) {
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < s->axes; a++) {
             const scalar *const at = x + a * s->stride + t;
             const real delta = vec_load(at + band->offset) - vec_load(at);
             square += delta * delta;
@@ -37,9 +37,7 @@ static bool any_stretched(const scene_links *s, const scalar *x, scalar stretch)
 {
     bool longer = false;
     for (size_t i = 0; i < s->bands && !longer; i++)
-        longer = s->axes == 1   ? band_stretched(s, &s->band[i], x, splat(stretch), 1)
-                 : s->axes == 2 ? band_stretched(s, &s->band[i], x, splat(stretch), 2)
-                                : band_stretched(s, &s->band[i], x, splat(stretch), 3);
+        longer = band_stretched(s, &s->band[i], x, splat(stretch));
     return longer;
 }
 

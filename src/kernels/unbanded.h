@@ -87,7 +87,7 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
     const size_t ahead = 32; /* links, whose ends are prefetched: for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
-        if (j + ahead < fours) {
+        if (stride > quad_size && j + ahead < fours) { /* not in a small scene */
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_PREFETCH(x + stride * l->a[j + ahead + m]);
