@@ -19,7 +19,7 @@ typedef struct coordinates {
     real drag;                /* [1/s] */
     bool dragged;             /* the scene has drag */
     implicit_factors damping; /* of an implicit kick; unset without drag */
-    const scalar *held;       /* [N] held forces; NULL: none */
+    real held;                /* [N] held force */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
@@ -27,10 +27,7 @@ static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
 /* By force, held force and gravity. No force moves a pinned particle, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
 {
-    real force = vec_load(m->force + c->at);
-    if (c->held != NULL)
-        force += vec_load(c->held + c->at);
-    const real free = c->inverse_mass * force + c->gravity;
+    const real free = c->inverse_mass * (vec_load(m->force + c->at) + c->held) + c->gravity;
     return select_real(c->inverse_mass > 0, free, splat(0));
 }
 
@@ -60,6 +57,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
     for (uint32_t a = 0; a < p.axes; a++) {
         const scalar *const quad_gravity = p.gravity + a * padding;
         const real gravity = vec_load(quad_gravity);
+        const scalar *const held = p.held + a * p.stride * p.held_stride;
         for (size_t i = from; i < to; i += lanes) {
             real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
             if (SPRING_UNLIKELY(i + lanes > p.count)) /* padding lanes of the last vector keep their finite values */
@@ -72,7 +70,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
                 .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
-                .held = p.held,
+                .held = vec_load(held + i * p.held_stride),
             };
             if (c.dragged)
                 c.damping = implicit_factors_of(m.kick * c.drag);

@@ -76,7 +76,8 @@ typedef struct scene_particles {
     size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
     const scalar *gravity;      /* a vector for each axis; for quads one vector */
     scalar drag;                /* [N s/m] */
-    const scalar *held;         /* [N] held forces, indexed like positions; NULL: the scene has none */
+    const scalar *held;         /* [N] held forces */
+    size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
 /* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
