@@ -34,8 +34,9 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
                              const real *rest, const real *c, bool damped, bool tension_only)
 {
     const size_t together = links_together(axes);
-    real scale[most_together], rate[most_together];
-    mask acts[most_together];
+    real scale[most_together]; /* the squared length, then 1/length, then force/length */
+    real rate[most_together];
+    mask acts[most_together]; /* lanes whose link has a force */
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         real square = delta[m][0] * delta[m][0];
@@ -97,7 +98,8 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
-    const scalar *const stiffness = band->stiffness + slot * stride_c, *const length = band->rest + slot * stride_c,
+    const scalar *const stiffness = band->stiffness + slot * stride_c,
+                        *const rest_length = band->rest + slot * stride_c,
                         *const damping = damped ? band->damping + slot * stride_c : NULL;
     SPRING_PREFETCH(occupied + tile); /* so few cache lines that the hardware prefetcher does not see a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
@@ -112,7 +114,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
             const size_t i = j + m * lanes;
             const ptrdiff_t number = (ptrdiff_t)i * stride_c;
             k[m] = vec_load(stiffness + number);
-            rest[m] = vec_load(length + number);
+            rest[m] = vec_load(rest_length + number);
             c[m] = damped ? vec_load(damping + number) : splat(0);
             joined[m] = vec_load_mask(occupied + i);
             SPRING_UNROLL
@@ -236,7 +238,8 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
             vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
 }
 
-/* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. */
+/* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. `axis` is the number
+   of elements from one axis of a ring to the next, `t` the first slot of a tile. */
 SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
                              size_t to, uint32_t axes, bool damped)
 {

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernels of scenes, loops over links and over particles: their arguments and their table. */
+/* The kernels of scenes, loops over links and over particles: their arguments, their formulas and the type of their table,
+   which kernels.h fills. The field kick_drift is move_kick_drift() of particles.h, and so on; band_forces is
+   compute_band_forces() of bands.h. */
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
@@ -100,7 +102,7 @@ typedef struct scene_motion {
     scalar *x, *v;         /* written */
     bool ends_step;        /* begin with the implicit kick that ends the step before */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
-    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to */
+    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
@@ -122,13 +124,16 @@ typedef struct scene_kernels {
                                           needs the results of two stores has to wait for both */
     band_kernel *band_forces;          /* the forces of all bands */
     const unbanded_kernels *unbanded;
-    particle_kernel *kick_drift;    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted) */
-    particle_kernel *implicit_kick; /* v = v0 + kick a(v) */
+    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced by
+       the solution u of u = v0 + kick a(u). */
+    particle_kernel *kick_drift;
+    particle_kernel *implicit_kick;       /* v = v0 + kick a(v) */
     particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
     particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
     particle_kernel *next_stage;          /* the same, and these times weight are added to the sums */
-    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v)), and x from the velocities */
+    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v));
+                                             x = x0 + drift (sum_x + weight stage_v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
     stretch_kernel *stretched;            /* see above */

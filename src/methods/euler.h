@@ -18,7 +18,7 @@ SPRING_INLINE void euler_prepare(step_coefficients *c, spring_rates r, real h, b
 {
     c->omega2 = h * r.omega2;
     if (damped)
-        c->gamma = h * r.gamma + 0;
+        c->gamma = h * r.gamma + 0; /* + 0: no -0 for a negative step */
     if (loaded)
         c->accel = h * r.accel + 0;
 }

@@ -23,8 +23,8 @@
 typedef struct step_coefficients {
     real omega2, gamma, accel; /* the rates times the step; leapfrog: times half the step */
     implicit_factors damping;  /* of symplectic Euler and leapfrog */
-    real xx, xv, vx, vv;       /* RK4: correction of x and v, by x and v */
-    real x_load, v_load;       /* RK4: minus the correction by the load; subtracting a zero changes no bit */
+    real xx, xv, vx, vv;       /* Runge-Kutta methods: correction of x and v, by x and v */
+    real x_load, v_load;       /* minus the correction by the load; subtracting a zero changes no bit */
 } step_coefficients;
 
 /* kept: a force that the end of a step leaves to the start of the next, of methods that have a start(). */

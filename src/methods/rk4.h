@@ -38,7 +38,7 @@ SPRING_INLINE void rk4_prepare(step_coefficients *c, spring_rates r, real h, boo
     c->vx = -hw * F;
     c->vv = c->xx - G * F;
     if (damped)
-        c->gamma = G + 0;
+        c->gamma = G + 0; /* + 0: no -0 for a negative step */
     if (loaded) {
         c->accel = h * r.accel + 0;
         c->x_load = 0 - h * E * (h * r.accel);

@@ -66,7 +66,8 @@ typedef struct scene_layout {
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
 
-/* Bounds from which the stable steps follow; see stable_step.c. */
+/* Bounds from which the stable steps follow; see stable_step.c. Each motion u'' = -w u - g u' of the scene about rest has
+   w <= stiffness, g <= damping, and with drag g/w >= drag/stiffness_sum. */
 typedef struct scene_bounds {
     double stiffness;    /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle; 1/mass with a pin */
     double link_damping; /* [1/s]   the same of damping */

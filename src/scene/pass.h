@@ -201,8 +201,8 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
         call_back(s, x, v, t, out->force);
 }
 
-/* Evaluates the forces at x and v into the force array of the end of the step, at a fraction of the step. The end of a
-   step has the same time as the start of the next one, to the bit. */
+/* Evaluates the forces at x and v, at a fraction of the step, and stores them in force_at(s, s->to), the force array of
+   the end of the step. The end of a step has the same time as the start of the next one, to the bit. */
 static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     s->forces.force = force_at(s, s->to);
@@ -227,35 +227,36 @@ static inline bool move(const scene_step *s, particle_kernel *kernel, const scen
 
 /*
  * Moves all particles by `first`; evaluates the forces at the positions first->x and the velocities v, at a fraction of
- * the step; and, unless then is NULL, moves all particles by `second`, which uses these forces and leaves positions
+ * the step; and, unless second_kernel is NULL, moves all particles by `second`, which uses these forces and leaves positions
  * alone. Returns false if a result is not finite.
  *
  * The results are those of move(), evaluate() and move(). Where all links lie in bands and there is no callback, it is one
  * pass over memory: the forces on a chunk of particles are computed as soon as `first` has moved the particles that their
  * links reach, and `second` moves the chunk while it is in the cache.
  */
-static inline bool move_evaluate_move(scene_step *s, particle_kernel *kernel, const scene_motion *first,
-                                      const scalar *v, double fraction, particle_kernel *then,
+static inline bool move_evaluate_move(scene_step *s, particle_kernel *first_kernel, const scene_motion *first,
+                                      const scalar *v, double fraction, particle_kernel *second_kernel,
                                       const scene_motion *second)
 {
     const scene_layout *l = &s->scene->layout;
     if (l->small || l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
-        if (!move(s, kernel, first))
+        if (!move(s, first_kernel, first))
             return false;
         evaluate(s, first->x, v, fraction);
-        return then == NULL || move(s, then, second);
+        return second_kernel == NULL || move(s, second_kernel, second);
     }
     const size_t ahead = (l->band[l->bands - 1].offset + chunk - 1) / chunk * chunk;
     band_kernel *const forces = s->kernels->band_forces;
     s->forces.force = force_at(s, s->to);
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
-        if (i < l->particles && !kernel(&s->particles, first, i, i + chunk < l->particles ? i + chunk : l->particles))
+        if (i < l->particles &&
+            !first_kernel(&s->particles, first, i, i + chunk < l->particles ? i + chunk : l->particles))
             return false;
         if (i < ahead)
             continue;
         const size_t from = i - ahead, to = from + chunk < l->particles ? from + chunk : l->particles;
         forces(s->links, first->x, v, &s->forces, from, to);
-        if (then != NULL && !then(&s->particles, second, from, to))
+        if (second_kernel != NULL && !second_kernel(&s->particles, second, from, to))
             return false;
     }
     return true;

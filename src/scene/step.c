@@ -61,7 +61,8 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
     return SPRING_OK;
 }
 
-/* Takes n steps from step `before` of a run on. Returns the forces that are known at the end; finite: all steps were. */
+/* Takes n steps. A run is a sequence of calls with the same dt; `before` is the number of its steps before this call.
+   Returns the forces that are known at the end. *finite says whether every step gave finite numbers. */
 static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
                                     bool *finite)
 {
@@ -73,7 +74,7 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
         step->last = i + 1 == n;
         if (known == NO_FORCE || (known == PREDICTED_FORCE && !stepper->predicts)) {
             evaluate(step, x_at(step, step->from), v_at(step, step->from), 0);
-            step->force = force_at(step, step->to); /* the stored forces stay, for a rollback */
+            step->force = force_at(step, step->to); /* predicted forces stay in the other array, for a rollback */
         }
         const scene_outcome outcome = stepper->step(step);
         *finite = outcome.finite;

@@ -42,10 +42,11 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
 
 /* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
    particles, with the results of two.
-   Where forces depend on velocities by more than drag, they are evaluated at velocities v* that are predicted from the
-   forces at the start of the step: v* = v' + h/2 a(v*), v1 = v' + h/2 a(x1, v*), with implicit drag only. The next step
-   starts with these forces, so they are part of the state. The forces of a callback that uses velocities are not kept,
-   since what it reads may change between calls: there forces are evaluated twice a step and each kick is a pass. */
+   Where forces depend on velocities by more than drag, they are evaluated at predicted velocities v*. Let v' be the
+   velocity after the first half kick, by the force F0, and a(F, v) the acceleration by a force, gravity and the drag at v.
+   The prediction is v* = v' + h/2 a(F0, v*). The force F1 at x1 and v* gives v1 = v' + h/2 a(F1, v1). The next step starts
+   with F1, so F1 is part of the state. The forces of a callback that uses velocities are not kept, since what it reads
+   may change between calls: then forces are evaluated twice a step, and each kick is a pass. */
 static scene_outcome scene_leapfrog(scene_step *s)
 {
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);

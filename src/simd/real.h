@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * `real`, the type that formulas are written on: one number for a single spring, or a SIMD vector of springs.
+ * `real`, the type that formulas are written on: one number, or a SIMD vector of springs, links or coordinates.
  *
- * The including file defines SPRING_FLOAT for float instead of double, and SPRING_VECTOR for vectors of so many bytes. Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector.
- * Compilers without vector types of GNU C use one number.
+ * The including file defines SPRING_FLOAT for float instead of double, and SPRING_VECTOR as the size of a vector in bytes.
+ * Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector. Compilers without
+ * the vector types of GNU C use one number.
  */
 #ifndef SPRINGSTEP_REAL_H
 #define SPRINGSTEP_REAL_H

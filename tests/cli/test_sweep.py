@@ -18,6 +18,9 @@ from test_scene import SCENES
 from tools import PLAN, RUN, SCENE, SWEEP, column, in_little_memory, is_failure, parse, run, table
 
 FORCES = {row['method']: int(row['forces_per_step']) for row in TABLE}
+ORDERS = {row['method']: int(row['order']) for row in TABLE}
+
+
 def springs(periods):
     return ['--over', 'omega_dt=0.02:3:log:60', '--over', 'damping_ratio=0:2:50', f'periods={periods}', '--method', 'all']
 
@@ -486,8 +489,9 @@ def step_matrix(method, ratio, h):
         middle = [-h / 2, 1 - h / 2 * g]
         x = [1 + h * middle[0], h * middle[1]]
         return [x, [(m - h / 2 * y) / (1 + g * h / 2) for m, y in zip(middle, x)]]
+    assert FORCES[method] == ORDERS[method], 'as many stages as its order: a step is the exponential series to that power'
     m, term, total = [[0, h], [-h, -h * g]], [[1, 0], [0, 1]], [[1, 0], [0, 1]]
-    for k in range(1, 5):
+    for k in range(1, ORDERS[method] + 1):
         term = [[e / k for e in row] for row in product(term, m)]
         total = [[p + q for p, q in zip(*rows)] for rows in zip(total, term)]
     return total

@@ -176,7 +176,7 @@ class Scene:
     drag: [N s/m] >= 0, on every particle
     force: adds forces, see Force
     force_ignores_velocity: force uses no velocities, and is shown zeros: leapfrog is twice as fast
-    methods: names of those that will be used; None: all but "rk4" and "rkn8", which take more memory
+    methods: names of those that will be used; None: all except those that store stages
     editable: links, pins and masses may change
     undo: False: an advance that fails loses the state, and memory is saved
     tension_only: links pull and never push, as those of ropes and nets; for two or three axes
