@@ -97,7 +97,7 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 
 /** Links pull and never push: rope, net, sail. A link that is not longer than its rest length is slack: it has no tension
    and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so damping never pushes
-   either. For two or three axes. The order of the methods up to two stays across the change from slack to taut. */
+   either. Requires two or three axes. Leapfrog and RK4 have order 2 where a link becomes taut or slack. */
 #define SPRING_SCENE_TENSION_ONLY UINT32_C(8)
 
 /** Room for held forces, see SPRING_FORCE. */
@@ -206,7 +206,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
 
 /**
  * Returns a lower bound of the stability limit, from the stiffness of the links: below it, motion about rest does not
- * grow, if no link is compressed below half its rest length. Tension-only links may be compressed at will.
+ * grow, if no link is compressed below half its rest length. Tension-only links may be compressed further.
  *
  * L is the largest sum of (2/mass) stiffness over the links of a particle, with 1/mass for links whose other end is
  * pinned. G is the same sum of damping, plus drag/mass. K is the largest sum of 2 stiffness, counted

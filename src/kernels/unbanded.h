@@ -131,10 +131,10 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        if (tension_only)
+        if (tension_only && stride > quad_size)
             one_taut_link(l, j, x, v, force, stride, damped);
         else
-            one_quad_link(l, j, x, v, force, stride, damped, false);
+            one_quad_link(l, j, x, v, force, stride, damped, tension_only);
 }
 
 /* Records: position, velocity if links are damped, and force of a particle in one piece of memory, for scenes with many
