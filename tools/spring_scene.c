@@ -90,10 +90,10 @@ static const cli_option options[] = {
              "It falls from 1 m, at 9.81 m/s^2. MASS > 0, 0 <= T < H; 100 boxes at most."},
     {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D", .help = "of a poke, a drop, the box [s]"},
     {"tension-only", CLI_FLAG, .flag = &tension_only,
-     .help = "links pull and never push; not on one axis, that is not for the chain and flat water"},
+     .help = "links pull and never push; not for scenes with one axis"},
     {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
      .help = "cut links longer than STRETCH times their rest length, after each row\n"
-             "The number of links that have torn is told on standard error. Not on one axis."},
+             "The number of torn links is printed on standard error. Not for scenes with one axis."},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
@@ -147,8 +147,8 @@ static bool is_disturbed(void)
 static void refuse_on_one_axis(const preset_settings *s)
 {
     if (s->axes == 1 && (tension_only || tear > 0))
-        cli_fail(CLI_USAGE, "--%s is not for one axis, as this %s has", tension_only ? "tension-only" : "tear",
-                 preset_names[kind]);
+        cli_fail(CLI_USAGE, "--%s is not for scenes with one axis, such as this %s",
+                 tension_only ? "tension-only" : "tear", preset_names[kind]);
     if (tension_only && spring_method_describe((spring_method)method)->positions_only)
         cli_fail(CLI_USAGE, "--tension-only: \"%s\" requires smooth forces; --method should be another",
                  spring_method_name((spring_method)method));
