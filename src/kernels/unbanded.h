@@ -191,12 +191,12 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
-    if (s->tension_only && damped)
-        damped_taut_links(&s->unbanded, records, records + quad_size, records + at_force);
-    else if (s->tension_only)
-        taut_links(&s->unbanded, records, records + at_force);
-    else
+    if (!s->tension_only)
         quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, false);
+    else if (damped)
+        damped_taut_links(&s->unbanded, records, records + quad_size, records + at_force);
+    else
+        taut_links(&s->unbanded, records, records + at_force);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
@@ -248,12 +248,12 @@ static void compute_quad_forces(const scene_links *s, const scalar *x, const sca
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(out->force + quad_size * i, quad_all(0));
-    if (s->tension_only)
-        small_taut_links(s, x, v, out->force);
-    else if (s->damped)
+    if (s->damped && !s->tension_only)
         quad_links(&s->unbanded, x, v, out->force, quad_size, true, false);
-    else
+    else if (!s->tension_only)
         quad_links(&s->unbanded, x, v, out->force, quad_size, false, false);
+    else
+        small_taut_links(s, x, v, out->force);
 }
 
 #endif
