@@ -174,44 +174,43 @@ static void print_scenes(spring_method m)
 }
 
 /* Tension-only links, held forces, links that tear and are reeled in, and a scene that is moved as a whole. */
-#define SLACK_BITS(type)                                                                                               \
-    static uint64_t type##_slack_bits(sheet s, spring_method m)                                                        \
-    {                                                                                                                  \
-        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                             \
-        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                           \
-        double force[3 * particles], out[2][3 * particles] = {{0}};                                                    \
-        for (int i = 0; i < 3 * particles; i++)                                                                        \
-            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                                 \
-        const type##_def def = {                                                                                       \
-            .axes = s.axes,                                                                                            \
-            .flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE,                          \
-            .methods = 1u << m,                                                                                        \
-            .particles = particles,                                                                                    \
-            .links = s.links,                                                                                          \
-            .position = s.position,                                                                                    \
-            .mass_all = 0.3,                                                                                           \
-            .pinned = s.pinned,                                                                                        \
-            .link = s.link,                                                                                            \
-            .gravity = {0.3, -9.81, 0.1},                                                                              \
-            .drag = 0.07};                                                                                             \
-        type *scene;                                                                                                   \
-        size_t torn = 0;                                                                                               \
-        uint32_t list[most_links] = {0};                                                                               \
-        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                           \
-            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                                    \
-            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                        \
-            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                                       \
-            return 0;                                                                                                  \
-        for (size_t i = 0; i < s.links; i++)                                                                           \
-            s.link[i].rest *= 0.75;                                                                                    \
-        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK ||         \
-            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                          \
-            return 0;                                                                                                  \
-        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                                   \
-        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                                   \
-        const spring_scene_energies e = type##_energy(scene);                                                          \
-        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)};         \
-        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                              \
+#define SLACK_BITS(type)                                                                                          \
+    static uint64_t type##_slack_bits(sheet s, spring_method m)                                                   \
+    {                                                                                                             \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                        \
+        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                      \
+        double force[3 * particles], out[2][3 * particles] = {{0}};                                               \
+        for (int i = 0; i < 3 * particles; i++)                                                                   \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                            \
+        const type##_def def = {.axes = s.axes,                                                                   \
+                                .flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE, \
+                                .methods = 1u << m,                                                               \
+                                .particles = particles,                                                           \
+                                .links = s.links,                                                                 \
+                                .position = s.position,                                                           \
+                                .mass_all = 0.3,                                                                  \
+                                .pinned = s.pinned,                                                               \
+                                .link = s.link,                                                                   \
+                                .gravity = {0.3, -9.81, 0.1},                                                     \
+                                .drag = 0.07};                                                                    \
+        type *scene;                                                                                              \
+        size_t torn = 0;                                                                                          \
+        uint32_t list[most_links] = {0};                                                                          \
+        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                      \
+            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                               \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                   \
+            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                                  \
+            return 0;                                                                                             \
+        for (size_t i = 0; i < s.links; i++)                                                                      \
+            s.link[i].rest *= 0.75;                                                                               \
+        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK ||    \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                     \
+            return 0;                                                                                             \
+        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                              \
+        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                              \
+        const spring_scene_energies e = type##_energy(scene);                                                     \
+        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)};    \
+        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                         \
     }
 
 SLACK_BITS(spring_scene)
