@@ -54,6 +54,17 @@ SPRING_INLINE real vec_abs(real a)
     return (real)fabs((double)a);
 }
 
+SPRING_INLINE real vec_minus_abs(real a)
+{
+    return -vec_abs(a);
+}
+
+/* The smaller; b if a is NaN. */
+SPRING_INLINE real vec_min(real a, real b)
+{
+    return a < b ? a : b;
+}
+
 #ifndef SPRING_FLOAT
 SPRING_INLINE real_bits to_bits(real a)
 {

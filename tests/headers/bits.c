@@ -246,6 +246,68 @@ static void print_accuracy(spring_method m)
     printf("\n");
 }
 
+/* Springs that follow a target that moves: on their way, and where they land after the target has stopped. */
+static void print_follow(void)
+{
+    static const struct {
+        const char *name;
+        spring_params p;
+    } cases[] = {{"undamped", {1.3, 2.7, 0, 0}},   {"damped", {1.3, 270, 6, 0}},  {"loaded", {0.7, 270, 9, 0.9}},
+                 {"critical", {1, 400, 40, 0}},    {"heavy", {1.7, 30, 51, 0.2}}, {"dragged", {1.3, 0, 0.6, 0.9}},
+                 {"denormal", {1.3, 2.7, 0.06, 0}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double scale = i == 6 ? 1e-306 : 1;
+        spring_state s = {0.83 * scale, -0.59 * scale};
+        uint64_t hash = no_digest;
+        spring_status status = SPRING_OK;
+        for (int frame = 1; frame <= 6000 && status == SPRING_OK; frame++) {
+            const double moved = frame <= 120 ? frame / 64.0 : 1.875; /* no product: nothing to fuse here */
+            status = spring_follow(&s, &cases[i].p, moved * scale, frame <= 120 ? 60 * scale / 64 : 0, 1.0 / 60);
+            hash = digest(digest(hash, &s.x, 1), &s.v, 1);
+        }
+        printf("follow %s %s %016" PRIx64, cases[i].name, spring_status_string(status), hash);
+        print(s.x);
+        print(s.v);
+        printf("\n");
+    }
+}
+
+static void print_follow_batches(const char *name, bool damped, bool loaded, uint32_t shared)
+{
+    static double x[count], v[count], w[count], g[count], a[count], target[count];
+    static float xf[count], vf[count], wf[count], gf[count], af[count], targetf[count];
+    for (int i = 0; i < count; i++) {
+        xf[i] = (float)(x[i] = (i - 70) / 83.0);
+        vf[i] = (float)(v[i] = (30 - i) / 59.0);
+        wf[i] = (float)(w[i] = i % 17 == 5 ? 0 : (i % 7 + 3) * 64);
+        gf[i] = (float)(g[i] = i % 5 == 1 ? 0 : i % 5 == 2 ? 250 : (i % 11 + 1) * 2.5);
+        af[i] = (float)(a[i] = (i % 13 - 6) / 1.7);
+        targetf[i] = (float)(target[i] = (i % 29 - 14) / 0.3);
+    }
+    const spring_batch b = {count, x, v, w, damped ? g : NULL, loaded ? a : NULL, shared};
+    const spring_batchf bf = {count, xf, vf, wf, damped ? gf : NULL, loaded ? af : NULL, shared};
+    uint64_t hash = no_digest, hashf = no_digest;
+    for (int frame = 0; frame < 300; frame++) {
+        const double tolerance = frame < 200 ? 0 : 0.01;
+        size_t moving = 0, movingf = 0;
+        spring_batch_follow(&b, target, 1.0 / 60, tolerance, tolerance, &moving);
+        spring_batchf_follow(&bf, targetf, 1.0 / 60, tolerance, tolerance, &movingf);
+        hash = digest_bits(hash, moving, 4);
+        hashf = digest_bits(hashf, movingf, 4);
+        for (int i = 0; i < count; i++) {
+            hash = digest(digest(hash, &x[i], 1), &v[i], 1);
+            hashf = digestf(digestf(hashf, xf[i]), vf[i]);
+        }
+    }
+    printf("follow-batch %s %016" PRIx64 ", float %016" PRIx64 "\n", name, hash, hashf);
+}
+
+static void print_params(spring_params p)
+{
+    print(p.stiffness);
+    print(p.damping);
+}
+
 int main(void)
 {
     static const struct {
@@ -315,6 +377,21 @@ int main(void)
         if (spring_method_describe(m)->springs)
             print_accuracy(m);
     }
+
+    print_follow();
+    print_follow_batches("own", true, false, 0);
+    print_follow_batches("loaded", true, true, SPRING_SHARED_ACCEL);
+    print_follow_batches("undamped", false, true, SPRING_SHARED_OMEGA2);
+    print_follow_batches("same", true, false, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
+    print_follow_batches("same-loaded", true, true, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
+    printf("parameters");
+    print_params(spring_params_response(0.5, 0.75));
+    print_params(spring_params_bounce(0.5, 0.3));
+    print_params(spring_params_bounce(0.7, -0.3));
+    print_params(spring_params_settling(0.4, 1, 0.001));
+    print_params(spring_params_settling(0.4, 0.3, 0.01));
+    print_params(spring_params_settling(0.4, 3, 0.01));
+    printf("\n");
 
     for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
         const spring_method m = spring_method_at(j);
