@@ -187,6 +187,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
         [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
         [ARRAY_SUMS] = {number, l->particles, true},
+        [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
     };
     memcpy(row, rows, sizeof rows);
 }
