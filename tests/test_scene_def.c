@@ -50,7 +50,7 @@ static void refused(void)
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
 
     REFUSED(d->axes, 4, SPRING_EINVAL, "axes", 0);
-    REFUSED(d->flags, 8, SPRING_EINVAL, "flags", 0);
+    REFUSED(d->flags, 32, SPRING_EINVAL, "flags", 0);
     REFUSED(d->methods, 1u << SPRING_EXACT | 1, SPRING_EUNSUPPORTED, "methods", 0);
     REFUSED(d->methods, 1u << SPRING_METHOD_COUNT, SPRING_EINVAL, "methods", 0);
     REFUSED(d->particles, 0, SPRING_EINVAL, "particles", 0);
@@ -197,6 +197,7 @@ static const cost particle_costs[] = {
     {"RK4 too: one more buffer and two sums", 10, 0},
     {"Euler alone: no predicted v", 5, 0},
     {"RK4 alone, without rollback", 7, 0},
+    {"held forces: once", 7, 0},
 };
 
 static void bytes_of_a_particle(void)
@@ -209,6 +210,7 @@ static void bytes_of_a_particle(void)
         {.methods = leapfrog | rk4},
         {.methods = euler},
         {.methods = rk4, .flags = SPRING_SCENE_NO_UNDO},
+        {.methods = leapfrog, .flags = SPRING_SCENE_FORCES},
     };
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (size_t i = 0; i < sizeof defs / sizeof defs[0]; i++) {
@@ -313,13 +315,16 @@ static void bytes_of_a_link(void)
         cost cost;
     } cases[] = {
         {0, 0, 0, {"where it lies, and that it is there", 0, 4 + 1}},
-        {0, 0.7, 0, {"damping is shared, too", 0, 4 + 1}},
+        {0, 0.7, 0, {"damping is shared, too; its direction", 3, 4 + 1}},
         {1, 0, 0, {"its own stiffness and rest length", 2, 4 + 1}},
-        {1, 0.7, 0, {"and damping", 3, 4 + 1}},
-        {0, 0, SPRING_SCENE_EDITABLE, {"editable: its own stiffness, rest length and damping", 3, 4 + 1}},
+        {1, 0.7, 0, {"and damping, and its direction", 3 + 3, 4 + 1}},
+        {0,
+         0,
+         SPRING_SCENE_EDITABLE,
+         {"editable: its own stiffness, rest length, damping and direction", 3 + 3, 4 + 1}},
         {2, 0, 0, {"its ends, stiffness and rest length; where it lies is plain", 2, 8}},
-        {2, 0.7, 0, {"and damping", 3, 8}},
-        {2, 0, SPRING_SCENE_EDITABLE, {"the same when editable", 3, 8}},
+        {2, 0.7, 0, {"and damping, and its direction, in a quad", 3 + 4, 8}},
+        {2, 0, SPRING_SCENE_EDITABLE, {"the same when editable", 3 + 4, 8}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double want = cases[i].cost.numbers * sizeof(scalar) + cases[i].cost.bytes;

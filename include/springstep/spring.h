@@ -88,7 +88,9 @@ typedef enum spring_status {
     SPRING_EROUNDING, /**< the rounding mode is not round-to-nearest */
     SPRING_EFLUSHED,  /**< denormal numbers are flushed to zero */
     SPRING_EFUSED,    /**< a product and a sum are fused: they are rounded once instead of twice */
-    SPRING_EBITS      /**< the results of a short run are not bit-identical to the expected ones */
+    SPRING_EBITS,     /**< the results of a short run are not bit-identical to the expected ones */
+    /* returned for scenes: */
+    SPRING_EUNSTABLE /**< a particle would become faster than the max_speed of its scene, or not finite */
 } spring_status;
 
 /** @} */

@@ -19,6 +19,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
 #include "particles.h"
+#include "stretch.h"
 #if SPRING_VECTOR < 64
 #include "unbanded.h"
 SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
@@ -40,6 +41,7 @@ SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .small = &SMALL_TABLE,
     .band_forces = compute_band_forces,
+    .band_directions = compute_band_directions,
     .unbanded = &SPRING_UNBANDED_TABLE,
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
@@ -50,6 +52,9 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
+    .damping_term = move_damping_term,
+    .last_damping_term = move_last_damping_term,
+    .stretched = any_stretched,
     .kick_damped_drift = move_kick_damped_drift,
 };
 #endif

@@ -20,6 +20,13 @@ enum {
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
+/* Which terms of the law of a link are computed. */
+typedef enum link_terms {
+    STIFFNESS_TERM,             /* no link is damped, or damping is applied apart */
+    STIFFNESS_AND_DAMPING_TERM, /* of scene_band.damping and unbanded_links.damping */
+    DAMPING_TERM                /* alone, along frozen directions */
+} link_terms;
+
 /* A band: links whose upper end is `offset` particles after the lower one. A band has a slot for each particle of the
    tiles that hold lower ends. */
 typedef struct scene_band {
@@ -30,9 +37,13 @@ typedef struct scene_band {
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    size_t ring_start;            /* of its ring of forces among the rings of all bands */
-    ptrdiff_t ring;               /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
-    ptrdiff_t back;               /* offset modulo ring */
+    const scalar *direction; /* [(N s/m)^(1/2)] root of damping, times the unit vector from the lower to the upper end
+                                     at positions where it was frozen (on one axis 1); by axis and slot; 0 without a link.
+                                     NULL: the scene has none */
+    size_t direction_stride; /* from axis to axis */
+    size_t ring_start;       /* of its ring of forces among the rings of all bands */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
+    ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
 /* Links that lie in no band. */
@@ -40,16 +51,18 @@ typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
+    const scalar *direction;                  /* the same, a quad for each link */
 } unbanded_links;
 
 typedef struct scene_links {
     size_t particles;
     uint32_t axes;
-    bool damped;
+    link_terms terms;
     size_t stride; /* elements from one axis to the next */
     size_t bands;
     const scene_band *band;
     unbanded_links unbanded;
+    bool tension_only; /* links pull and never push */
 } scene_links;
 
 /* What the kernels of links write. */
@@ -59,10 +72,16 @@ typedef struct scene_forces {
     scalar *records; /* see unbanded.h; NULL: the scene has none */
 } scene_forces;
 
-/* Computes forces from positions, and from velocities if links are damped. band_forces: the forces of all bands on particles
+/* Computes forces from positions, and from velocities if `terms` has damping. band_forces: the forces of all bands on particles
    from ... to - 1, both multiples of tile or the end; v may be the array of forces. The others: of all unbanded links. */
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
+
+/* Computes scene_band.direction of all bands at positions x. direction: that of the first band. */
+typedef void direction_kernel(const scene_links *, const scalar *x, scalar *direction);
+/* Returns whether a link of the bands is longer than `stretch` times its rest length, cut links and links of rest length
+   0 excepted. May return true for a link that is shorter by 1e-5 of that. 0 <= stretch <= 1e9. */
+typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
 
 /* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
 typedef struct scene_particles {
@@ -73,6 +92,8 @@ typedef struct scene_particles {
     size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
     const scalar *gravity;      /* a vector for each axis; for quads one vector */
     scalar drag;                /* [N s/m] */
+    const scalar *held;         /* [N] held forces */
+    size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
 /* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
@@ -87,6 +108,12 @@ typedef struct scene_nystrom {
                                             e^(-drag kick/2) - 1 */
 } scene_nystrom;
 
+/* What a term of a Chebyshev series, applied to velocities, uses besides scene_motion. */
+typedef struct scene_chebyshev {
+    const scalar *before, *second_before; /* [m/s] the two terms before */
+    scalar coefficient, before_weight, second_weight;
+} scene_chebyshev;
+
 /* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
 typedef struct scene_motion {
     scalar kick, drift;    /* [s] how long forces act on v, and v on x */
@@ -94,15 +121,18 @@ typedef struct scene_motion {
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
     bool ends_step;        /* begin with the implicit kick that ends the step before */
+    scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; scalar_max: no limit */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
     const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
+    const scene_chebyshev *chebyshev;
     const scalar *span, *loss; /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
 } scene_motion;
 
-/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN. */
+/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN, or if
+   a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
 /* Unbanded links are computed on quads, so vectors of 64 bytes gain nothing over 32 (1 % on an AMD EPYC). */
@@ -117,6 +147,7 @@ typedef struct scene_kernels {
     const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
                                           needs the results of two stores has to wait for both */
     band_kernel *band_forces;          /* the forces of all bands */
+    direction_kernel *band_directions;
     const unbanded_kernels *unbanded;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced by
        the solution u of u = v0 + kick a(u). */
@@ -130,6 +161,10 @@ typedef struct scene_kernels {
                                              x = x0 + drift (sum_x + weight stage_v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
+    particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
+                                             + kick force/mass */
+    particle_kernel *last_damping_term;   /* the same, if no particle is pinned; pinned ones keep v0 */
+    stretch_kernel *stretched;            /* see above */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
 } scene_kernels;
 

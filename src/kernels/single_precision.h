@@ -28,6 +28,7 @@
 #define spring_scene_def          spring_scenef_def
 #define spring_scene_drive        spring_scenef_drive
 #define spring_scene_energy       spring_scenef_energy
+#define spring_scene_find_bounds  spring_scenef_find_bounds
 #define spring_scene_find_link    spring_scenef_find_link
 #define spring_scene_force_fn     spring_scenef_force_fn
 #define spring_scene_get          spring_scenef_get
@@ -44,11 +45,16 @@
 #define spring_scene_stable_step  spring_scenef_stable_step
 #define spring_scene_tension      spring_scenef_tension
 #define spring_scene_time         spring_scenef_time
+#define spring_links_soften       spring_linksf_soften
 #define spring_scene_v128         spring_scenef_v128
 #define spring_scene_v256         spring_scenef_v256
 #define spring_scene_v512         spring_scenef_v512
 #define spring_unbanded_v128      spring_unbandedf_v128
 #define spring_unbanded_v256      spring_unbandedf_v256
+#define spring_scene_set_links    spring_scenef_set_links
+#define spring_scene_tear         spring_scenef_tear
+#define spring_scene_tear_with    spring_scenef_tear_with
+#define spring_scene_transform    spring_scenef_transform
 #endif
 
 #endif

@@ -33,10 +33,14 @@ typedef enum scene_array {
     ARRAY_LINK_STIFFNESS, /* [N/m] */
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
-    ARRAY_SLOTS,    /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
-    ARRAY_RECORDS,  /* see kernels/unbanded.h */
-    ARRAY_CALLBACK, /* a small scene: positions, velocities and forces as a callback sees them, by axis */
-    ARRAY_SUMS,     /* work space of the stable step, by particle */
+    ARRAY_SLOTS,   /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
+    ARRAY_RECORDS, /* see kernels/unbanded.h */
+    ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
+    ARRAY_LINK_DIRECTIONS,
+    ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
+    ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
+    ARRAY_SUMS,          /* work space of the stable step, by particle */
+    ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COUNT
 } scene_array;
 
@@ -79,8 +83,9 @@ typedef struct scene_bounds {
 /* The forces that are stored for the state. */
 typedef enum known_force {
     NO_FORCE,
-    FORCE,          /* at its positions and velocities */
-    PREDICTED_FORCE /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+    FORCE,           /* at its positions and velocities */
+    PREDICTED_FORCE, /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+    ELASTIC_FORCE    /* at its positions, without link damping */
 } known_force;
 
 struct spring_scene {
@@ -88,6 +93,7 @@ struct spring_scene {
     spring_scene_force_fn *force;
     void *user;
     double mass_all, drag, gravity[3];
+    scalar max_speed;                    /* [m/s] scalar_max: no limit */
     scalar gravity_vectors[3][padding];  /* by axis; in a small scene the first holds quads */
     scalar inverse_mass_vector[padding]; /* for scenes without ARRAY_INVERSE_MASS */
     double t0, dt;                       /* time is t0 + steps dt */
@@ -100,9 +106,16 @@ struct spring_scene {
     scene_bounds bounds;
 };
 
+/* The bounds for the present links and masses. */
+SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
+
 /* spring_scene_advance() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m,
                                                         double dt, uint64_t n);
+
+/* spring_scene_tear() with a given instruction set, for tests. */
+SPRING_INTERNAL spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch,
+                                                     const double *limit, uint32_t *torn, size_t room, size_t *count);
 
 /* -------------------------------------------------------------------------------------------------- access to arrays */
 
@@ -155,6 +168,8 @@ static inline scene_array forces_in(uint32_t buffer)
 /* The array that holds a quantity of the state. */
 static inline scene_array state_array(const spring_scene *s, spring_quantity q)
 {
+    if (q == SPRING_FORCE)
+        return ARRAY_HELD;
     return q == SPRING_POSITION ? positions_in(s->buffer) : velocities_in(s->buffer);
 }
 
@@ -178,6 +193,11 @@ static inline double inverse_mass_at(const spring_scene *s, size_t i)
 static inline bool scene_callback_uses_velocity(const spring_scene *s)
 {
     return s->force != NULL && (s->layout.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+}
+
+static inline bool scene_tension_only(const spring_scene *s)
+{
+    return (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
 }
 
 /* Whether forces other than drag depend on velocities. */

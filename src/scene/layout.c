@@ -155,7 +155,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool damped = editable || has_damped_links(def);
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
-    const bool predicts = needs.predicts && velocity_used;
+    const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
     const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
@@ -183,8 +183,12 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
+        [ARRAY_BAND_DIRECTIONS] = {number, l->axes * l->band_slots, series && l->bands > 0},
+        [ARRAY_LINK_DIRECTIONS] = {number, quad_size * l->unbanded, series && l->unbanded > 0},
+        [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
         [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
         [ARRAY_SUMS] = {number, l->particles, true},
+        [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
     };
     memcpy(row, rows, sizeof rows);
 }
@@ -353,6 +357,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
+        .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : scalar_max,
     };
     s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
     spread(s->inverse_mass_vector);

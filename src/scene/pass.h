@@ -7,6 +7,15 @@
 
 #include <string.h>
 
+/* See chebyshev.h. */
+typedef struct chebyshev_series {
+    unsigned terms; /* 0: links are damped explicitly */
+    double rho;
+    double last, beyond_last; /* coefficients of the last term, and of the first one that is left out */
+    double more;              /* what is added to the last one */
+    double kick;              /* [s] how long the forces of damping act in one application of Y */
+} chebyshev_series;
+
 /* One step, from the state in one buffer to the state in another, or the same, buffer. */
 struct scene_step {
     const scene_kernels *kernels;
@@ -19,6 +28,9 @@ struct scene_step {
     const scalar *force; /* [N] at the start */
     scalar h;            /* [s] dt in the precision of the scene */
     double t0, dt, done; /* the step starts at the time t0 + done dt */
+    known_force known;   /* the forces at the start */
+    bool predicts;       /* see scene_stepper */
+    chebyshev_series damping;
 };
 
 static inline scalar *x_at(const scene_step *s, uint32_t buffer)
@@ -58,6 +70,12 @@ static inline scalar *predicted_velocities(const scene_step *s)
     return scene_has(s->scene, ARRAY_PREDICTED) ? scene_axis(s->scene, ARRAY_PREDICTED, 0) : force_at(s, s->to);
 }
 
+/* Array i of ARRAY_DAMPING_TERMS: the forces of damping, and two terms. */
+static inline scalar *damping_storage(const scene_step *s, unsigned i)
+{
+    return scene_axis(s->scene, ARRAY_DAMPING_TERMS, 0) + i * s->scene->layout.quantity;
+}
+
 /* A motion over the whole step, from the state at its start to the state at its end. */
 static inline scene_motion whole_step(const scene_step *s)
 {
@@ -70,15 +88,20 @@ static inline scene_motion whole_step(const scene_step *s)
         .x = x_at(s, s->to),
         .v = v_at(s, s->to),
         .stage_v = v_at(s, s->from),
+        .max_speed = s->scene->max_speed,
     };
 }
 
 /* ----------------------------------------------------------------------------------------------------- preparation */
 
+/* Added to a force, -0 changes no bit, while 0 would change -0. */
+static const scalar nothing_held[padding] = {-0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0,
+                                             -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0};
+
 static inline scene_particles scene_prepare_particles(const spring_scene *s)
 {
     const scene_layout *l = &s->layout;
-    const bool each = scene_has(s, ARRAY_INVERSE_MASS);
+    const bool each = scene_has(s, ARRAY_INVERSE_MASS), holds = scene_has(s, ARRAY_HELD);
     return (scene_particles){
         .count = l->small ? quad_size * l->particles : l->particles,
         .axes = l->small ? 1 : l->axes,
@@ -87,6 +110,8 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
         .mass_stride = each,
         .gravity = s->gravity_vectors[0],
         .drag = (scalar)s->drag,
+        .held = holds ? scene_read_axis(s, ARRAY_HELD, 0) : nothing_held,
+        .held_stride = holds,
     };
 }
 
@@ -97,7 +122,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
     const bool damped = s->damped_links > 0;
     const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
     const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
-    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING);
+    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING), *direction = scene_read(s, ARRAY_BAND_DIRECTIONS);
     for (uint32_t i = 0; i < l->bands; i++) {
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
@@ -109,6 +134,8 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
+            .direction = direction != NULL ? direction + b->slots : NULL,
+            .direction_stride = l->band_slots,
             .ring_start = b->ring_start,
             .ring = (ptrdiff_t)b->ring,
             .back = (ptrdiff_t)b->back,
@@ -117,7 +144,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
     return (scene_links){
         .particles = l->particles,
         .axes = l->axes,
-        .damped = damped,
+        .terms = damped ? STIFFNESS_AND_DAMPING_TERM : STIFFNESS_TERM,
         .stride = l->stride,
         .bands = l->bands,
         .band = band,
@@ -129,7 +156,9 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
                 .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
+                .direction = scene_read(s, ARRAY_LINK_DIRECTIONS),
             },
+        .tension_only = scene_tension_only(s),
     };
 }
 
@@ -174,9 +203,9 @@ static inline void call_back(const spring_scene *s, const scalar *x, const scala
     s->force(s->user, t, s->layout.particles, position, velocity, force);
 }
 
-/* Computes out->force, the forces of links and callback at time t, at positions x and velocities v. */
-static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s, const scene_links *links,
-                                  const scalar *x, const scalar *v, double t, scene_forces *out)
+/* Computes out->force, the forces of links at positions x and velocities v. */
+static inline void evaluate_links(const scene_kernels *kernels, const spring_scene *s, const scene_links *links,
+                                  const scalar *x, const scalar *v, scene_forces *out)
 {
     const scene_layout *l = &s->layout;
     if (l->small)
@@ -188,7 +217,14 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
             memset(out->force + a * l->stride, 0, l->particles * sizeof *out->force);
     if (!l->small && l->unbanded > 0)
         (out->records != NULL ? kernels->unbanded->record_forces : kernels->unbanded->forces)(links, x, v, out);
-    if (s->force != NULL && l->small)
+}
+
+/* The same, with the forces of the callback at time t. */
+static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s, const scene_links *links,
+                                  const scalar *x, const scalar *v, double t, scene_forces *out)
+{
+    evaluate_links(kernels, s, links, x, v, out);
+    if (s->force != NULL && s->layout.small)
         call_back_small(s, x, v, t, out->force);
     else if (s->force != NULL)
         call_back(s, x, v, t, out->force);
@@ -200,6 +236,17 @@ static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, dou
 {
     s->forces.force = force_at(s, s->to);
     scene_evaluate(s->kernels, s->scene, s->links, x, v, s->t0 + (s->done + fraction) * s->dt, &s->forces);
+}
+
+/* Sets s->force: the forces at the start of the step, at velocities v. They are evaluated unless they are known. */
+static inline void find_start_force(scene_step *s, const scalar *v)
+{
+    s->force = force_at(s, s->from);
+    if (s->damping.terms > 0 ? s->known == ELASTIC_FORCE
+                             : s->known == FORCE || (s->known == PREDICTED_FORCE && s->predicts))
+        return;
+    evaluate(s, x_at(s, s->from), v, 0);
+    s->force = force_at(s, s->to); /* predicted forces stay in the other array, for a rollback */
 }
 
 /* ------------------------------------------------------------------------------------------------------------ motion */

@@ -103,13 +103,18 @@ static scene_bounds bounds_of(spring_scene *s)
     };
 }
 
-double spring_scene_stable_step(spring_scene *s, spring_method m)
+const scene_bounds *spring_scene_find_bounds(spring_scene *s)
 {
-    if (s == NULL || spring_method_describe(m) == NULL || spring_scene_steppers[m].stable_step == NULL)
-        return NAN;
     if (!s->bounds_known) {
         s->bounds = bounds_of(s);
         s->bounds_known = true;
     }
-    return spring_scene_steppers[m].stable_step(&s->bounds);
+    return &s->bounds;
+}
+
+double spring_scene_stable_step(spring_scene *s, spring_method m)
+{
+    if (s == NULL || spring_method_describe(m) == NULL || spring_scene_steppers[m].stable_step == NULL)
+        return NAN;
+    return spring_scene_steppers[m].stable_step(spring_scene_find_bounds(s));
 }

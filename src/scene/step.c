@@ -6,7 +6,7 @@
  *           further steps stay in that one. It becomes the state when the call succeeds, so rolling back copies nothing.
  *           Without rollback there is one buffer.
  */
-#include "pass.h"
+#include "chebyshev.h"
 #include "../spring/roots.h"
 
 static const scene_kernels *best_scene_kernels(void)
@@ -66,24 +66,30 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
 static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
                                     bool *finite)
 {
-    known_force known = step->scene->known;
+    step->known = step->scene->known;
     for (uint64_t i = 0; i < n; i++) {
         step->done = (double)(before + i);
-        step->force = force_at(step, step->from);
         step->first = i == 0;
         step->last = i + 1 == n;
-        if (known == NO_FORCE || (known == PREDICTED_FORCE && !stepper->predicts)) {
-            evaluate(step, x_at(step, step->from), v_at(step, step->from), 0);
-            step->force = force_at(step, step->to); /* predicted forces stay in the other array, for a rollback */
-        }
         const scene_outcome outcome = stepper->step(step);
         *finite = outcome.finite;
         if (!outcome.finite)
             return NO_FORCE;
-        known = outcome.known;
+        step->known = outcome.known;
         step->from = step->to;
     }
-    return known;
+    return step->known;
+}
+
+/* The series by which links are damped once a step, beyond the limit of explicit damping. */
+static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
+{
+    if (s->damped_links == 0 || stepper->explicit_limit == NULL || dt < 0)
+        return (chebyshev_series){.terms = 0};
+    const scene_bounds *bounds = spring_scene_find_bounds(s);
+    if (dt <= stepper->explicit_limit(bounds))
+        return (chebyshev_series){.terms = 0};
+    return chebyshev_for(dt, bounds->link_damping);
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
@@ -102,7 +108,10 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
-    const scene_links links = scene_prepare_links(s, band);
+    scene_links links = scene_prepare_links(s, band);
+    const chebyshev_series damping = series_of(s, &spring_scene_steppers[m], dt);
+    if (damping.terms > 0)
+        links.terms = STIFFNESS_TERM;
     scene_step step = {.kernels = s->layout.small ? kernels->small : kernels,
                        .scene = s,
                        .links = &links,
@@ -112,7 +121,9 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .to = rollback ? 1 - s->buffer : s->buffer,
                        .h = (scalar)dt,
                        .t0 = t0,
-                       .dt = dt};
+                       .dt = dt,
+                       .predicts = spring_scene_steppers[m].predicts,
+                       .damping = damping};
     bool finite = true;
     const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
     if (!finite) {
@@ -120,7 +131,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
             invalidate(s);
         if (s->known != PREDICTED_FORCE) /* the stored forces may be overwritten, or not finite themselves */
             s->known = NO_FORCE;
-        return SPRING_ENONFINITE;
+        return s->max_speed < scalar_max ? SPRING_EUNSTABLE : SPRING_ENONFINITE;
     }
     s->known = known;
     s->buffer = step.to;
@@ -165,7 +176,8 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         double speed = 0, acceleration = 0;
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
-            const double force = (double)all[a * s->layout.stride + stride * i] - s->drag * v;
+            const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[stride * i] : 0;
+            const double force = (double)all[a * s->layout.stride + stride * i] + held - s->drag * v;
             const double accel = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed = spring_hypot(speed, fabs(v));
             acceleration = spring_hypot(acceleration, fabs(accel));

@@ -5,7 +5,7 @@
  * The formulas are those of the files in methods/, with the acceleration a(x, v) of a particle by its links, gravity, drag
  * and the callback. The stable steps follow from bounds on the sums over the links of a particle (stable_step.c).
  */
-#include "pass.h"
+#include "chebyshev.h"
 #include "../methods/rkn8_tableau.h"
 #include "../methods/srkn6_coefficients.h"
 #include "../spring/propagator.h"
@@ -14,6 +14,7 @@
 /* x1 = x + h v;  v1 = v + h a(x, v) */
 static scene_outcome scene_euler(scene_step *s)
 {
+    find_start_force(s, v_at(s, s->from));
     const scene_motion m = whole_step(s);
     return (scene_outcome){.finite = move(s, s->kernels->stage, &m)};
 }
@@ -26,6 +27,7 @@ static double scene_euler_limit(const scene_bounds *b)
 /* v1 = v + h a(x, v1), with implicit drag and explicit damping of links;  x1 = x + h v1 */
 static scene_outcome scene_symplectic_euler(scene_step *s)
 {
+    find_start_force(s, v_at(s, s->from));
     const scene_motion m = whole_step(s);
     return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
 }
@@ -41,6 +43,40 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
+/* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each half
+   is kick, drift, evaluate, implicit kick, as in scene_leapfrog(), and so is the way to treat callbacks: the forces of one
+   that uses velocities are not kept, and are evaluated at predicted velocities. */
+static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
+{
+    const bool keeps = !scene_callback_uses_velocity(s->scene);
+    find_start_force(s, v_at(s, s->from));
+    scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
+    kick_drift.kick = last_kick.kick = s->h / 4;
+    kick_drift.drift = s->h / 2;
+    kick_drift.ends_step = keeps && !s->first;
+    kick_drift.predicted = keeps ? NULL : predicted_velocities(s);
+    last_kick.v0 = kick_drift.v;
+    last_kick.force = force_at(s, s->to);
+    last_kick.max_speed = scalar_max; /* not yet the end of the step */
+    const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
+    particle_kernel *const implicit_kick = s->kernels->implicit_kick;
+    if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||
+        !damp_links(s, kick_drift.x, kick_drift.v))
+        return (scene_outcome){.finite = false};
+    if (!keeps)
+        evaluate(s, kick_drift.x, kick_drift.v, 0.5);
+    kick_drift.x0 = kick_drift.x;
+    kick_drift.v0 = kick_drift.v;
+    kick_drift.force = last_kick.force;
+    kick_drift.ends_step = false;
+    last_kick.max_speed = s->scene->max_speed;
+    return (scene_outcome){
+        .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1,
+                                     keeps && !s->last ? NULL : implicit_kick, &last_kick),
+        .known = keeps ? ELASTIC_FORCE : NO_FORCE,
+    };
+}
+
 /* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
    particles, with the results of two.
    Where forces depend on velocities by more than drag, they are evaluated at predicted velocities v*. Let v' be the
@@ -50,7 +86,10 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
    may change between calls: then forces are evaluated twice a step, and each kick is a pass. */
 static scene_outcome scene_leapfrog(scene_step *s)
 {
+    if (s->damping.terms > 0)
+        return scene_leapfrog_with_heavy_damping(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    find_start_force(s, v_at(s, s->from));
     scene_motion kick_drift = whole_step(s), last_kick = whole_step(s);
     kick_drift.kick = last_kick.kick = s->h / 2;
     kick_drift.ends_step = keeps && !s->first;
@@ -67,17 +106,22 @@ static scene_outcome scene_leapfrog(scene_step *s)
     };
 }
 
-/* With link damping c: h^2 k/4 + h c < 1. */
 static double scene_leapfrog_limit(const scene_bounds *b)
 {
-    return b->link_damping > 0 ? 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)))
-                               : 2 / spring_sqrt(b->stiffness);
+    return 2 / spring_sqrt(b->stiffness);
+}
+
+/* With explicit damping c of links: h^2 k/4 + h c < 1. */
+static double scene_leapfrog_explicit_limit(const scene_bounds *b)
+{
+    return 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)));
 }
 
 /* y1 = y + h/6 (k1 + 2 k2 + 2 k3 + k4) */
 static scene_outcome scene_rk4(scene_step *s)
 {
     static const double fraction[] = {0.5, 0.5, 1}; /* of the step, at the next stage */
+    find_start_force(s, v_at(s, s->from));
     scene_motion end = whole_step(s), stage = whole_step(s);
     stage.x = stage_storage(s, 0);
     stage.v = stage_storage(s, 1);
@@ -132,6 +176,7 @@ static scene_outcome scene_rkn8(scene_step *s)
     const bool dragged = s->particles.drag != 0;
     if (s->first && dragged)
         compute_rkn8_factors(s);
+    find_start_force(s, v_at(s, s->from));
     scene_motion end = whole_step(s), stage = whole_step(s);
     scene_nystrom n = {.square = s->h * s->h,
                        .accel = stage_storage(s, 0),
@@ -188,6 +233,7 @@ static scene_outcome scene_srkn6(scene_step *s)
     const bool dragged = (scalar)s->scene->drag != 0;
     if (s->first && dragged)
         compute_srkn6_factors(s);
+    find_start_force(s, v_at(s, s->from));
     s->particles.drag = 0;
     particle_kernel *const kick_drift = dragged ? s->kernels->kick_damped_drift : s->kernels->kick_drift;
     scene_motion m = whole_step(s), last_kick = whole_step(s);
@@ -220,7 +266,10 @@ static double scene_srkn6_limit(const scene_bounds *b)
 SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
     [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
     [SPRING_SYMPLECTIC_EULER] = {.step = scene_symplectic_euler, .stable_step = scene_symplectic_euler_limit},
-    [SPRING_LEAPFROG] = {.step = scene_leapfrog, .stable_step = scene_leapfrog_limit, .predicts = true},
+    [SPRING_LEAPFROG] = {.step = scene_leapfrog,
+                         .stable_step = scene_leapfrog_limit,
+                         .predicts = true,
+                         .explicit_limit = scene_leapfrog_explicit_limit},
     [SPRING_RK4] = {.step = scene_rk4, .stable_step = scene_rk4_limit, .stages = 4},
     [SPRING_RKN8] = {.step = scene_rkn8,
                      .stable_step = scene_rkn8_limit,

@@ -3,14 +3,17 @@
 #ifndef SPRINGSTEP_SCALAR_H
 #define SPRINGSTEP_SCALAR_H
 
+#include <float.h>
 #include <stdint.h>
 
 #ifdef SPRING_FLOAT
 typedef float scalar;
 typedef int32_t scalar_bits;
+#define scalar_max FLT_MAX
 #else
 typedef double scalar;
 typedef int64_t scalar_bits;
+#define scalar_max DBL_MAX
 #endif
 
 enum { quad_size = 4 }; /* numbers of a quad, see quad.h */

@@ -192,6 +192,8 @@ const char *spring_status_string(spring_status s)
         return "products and sums are fused";
     case SPRING_EBITS:
         return "results are not bit-identical to the expected ones";
+    case SPRING_EUNSTABLE:
+        return "a particle is faster than max_speed";
     }
     return "unknown status";
 }

@@ -161,6 +161,21 @@ static void print_scene(const char *name, const sheet *s, spring_method m, doubl
            spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
 }
 
+/* Link damping far beyond the limit of explicit damping, in scenes with bands, without, and small ones. */
+static void print_heavy_damping(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int kind = 0; kind < 3; kind++) {
+            sheet s = make_sheet(axes, kind == 1, true);
+            if (kind == 2)
+                s.links = 12;
+            for (size_t i = 0; i < s.links; i++)
+                s.link[i].damping *= 1e4;
+            static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
+            print_scene(names[kind], &s, SPRING_LEAPFROG, 1, 1);
+        }
+}
+
 static void print_scenes(spring_method m)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
@@ -171,6 +186,61 @@ static void print_scenes(spring_method m)
     const sheet height_field =
         make_sheet(1, false, false); /* is linear, so its motion is the same, except for rounding */
     print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
+}
+
+/* Tension-only links, held forces, links that tear and are reeled in, and a scene that is moved as a whole. */
+#define SLACK_BITS(type)                                                                                          \
+    static uint64_t type##_slack_bits(sheet s, spring_method m)                                                   \
+    {                                                                                                             \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                        \
+        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                      \
+        double force[3 * particles], out[2][3 * particles] = {{0}};                                               \
+        for (int i = 0; i < 3 * particles; i++)                                                                   \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                            \
+        const type##_def def = {.axes = s.axes,                                                                   \
+                                .flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE, \
+                                .methods = 1u << m,                                                               \
+                                .particles = particles,                                                           \
+                                .links = s.links,                                                                 \
+                                .position = s.position,                                                           \
+                                .mass_all = 0.3,                                                                  \
+                                .pinned = s.pinned,                                                               \
+                                .link = s.link,                                                                   \
+                                .gravity = {0.3, -9.81, 0.1},                                                     \
+                                .drag = 0.07};                                                                    \
+        type *scene;                                                                                              \
+        size_t torn = 0;                                                                                          \
+        uint32_t list[most_links] = {0};                                                                          \
+        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                      \
+            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                               \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                   \
+            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                                  \
+            return 0;                                                                                             \
+        for (size_t i = 0; i < s.links; i++)                                                                      \
+            s.link[i].rest *= 0.75;                                                                               \
+        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK ||    \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                     \
+            return 0;                                                                                             \
+        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                              \
+        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                              \
+        const spring_scene_energies e = type##_energy(scene);                                                     \
+        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)};    \
+        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                         \
+    }
+
+SLACK_BITS(spring_scene)
+SLACK_BITS(spring_scenef)
+
+static void print_slack_scenes(spring_method m)
+{
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (int jumbled = 0; jumbled < 2; jumbled++)
+            for (int damped = 0; damped < 2; damped++) {
+                const sheet s = make_sheet(axes, jumbled, damped);
+                printf("slack-%s%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", jumbled ? "list" : "rows",
+                       damped ? "-damped" : "", axes, spring_method_name(m), spring_scene_slack_bits(s, m),
+                       spring_scenef_slack_bits(s, m));
+            }
 }
 
 /* Few steps, many that oscillate or do not, and a few periods of many. */
@@ -337,5 +407,12 @@ int main(void)
     print_params(spring_params_settling(0.4, 0.3, 0.01));
     print_params(spring_params_settling(0.4, 3, 0.01));
     printf("\n");
+
+    for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
+        const spring_method m = spring_method_at(j);
+        if (spring_method_describe(m)->scenes && !spring_method_describe(m)->positions_only)
+            print_slack_scenes(m);
+    }
+    print_heavy_damping();
     return 0;
 }

@@ -68,7 +68,7 @@ AT(spring_link, rest, 8, 8);
 AT(spring_link, stiffness, 16, 16);
 AT(spring_link, damping, 24, 24);
 
-SIZE(spring_scene_def, 128, 88);
+SIZE(spring_scene_def, 136, 96);
 AT(spring_scene_def, axes, 0, 0);
 AT(spring_scene_def, flags, 4, 4);
 AT(spring_scene_def, methods, 8, 8);
@@ -84,13 +84,14 @@ AT(spring_scene_def, gravity, 80, 48);
 AT(spring_scene_def, drag, 104, 72);
 AT(spring_scene_def, force, 112, 80);
 AT(spring_scene_def, user, 120, 84);
+AT(spring_scene_def, max_speed, 128, 88);
 
 SIZE(spring_scene_energies, 24, 24);
 AT(spring_scene_energies, kinetic, 0, 0);
 AT(spring_scene_energies, elastic, 8, 8);
 AT(spring_scene_energies, gravity, 16, 16);
 
-SIZE(spring_scenef_def, 128, 88);
+SIZE(spring_scenef_def, 136, 96);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
@@ -106,6 +107,7 @@ AT(spring_scenef_def, gravity, 80, 48);
 AT(spring_scenef_def, drag, 104, 72);
 AT(spring_scenef_def, force, 112, 80);
 AT(spring_scenef_def, user, 120, 84);
+AT(spring_scenef_def, max_speed, 128, 88);
 
 SIZE(spring_grid, 72, 72);
 AT(spring_grid, count, 0, 0);
@@ -152,9 +154,11 @@ VALUE(SPRING_EROUNDING, 8);
 VALUE(SPRING_EFLUSHED, 9);
 VALUE(SPRING_EFUSED, 10);
 VALUE(SPRING_EBITS, 11);
+VALUE(SPRING_EUNSTABLE, 12);
 
 VALUE(SPRING_POSITION, 0);
 VALUE(SPRING_VELOCITY, 1);
+VALUE(SPRING_FORCE, 2);
 
 VALUE(SPRING_CHECK_INTERVAL, 4096);
 
@@ -167,6 +171,8 @@ VALUE(SPRING_SCENE_ALIGN, 64);
 VALUE(SPRING_SCENE_EDITABLE, 1);
 VALUE(SPRING_SCENE_NO_UNDO, 2);
 VALUE(SPRING_SCENE_FORCE_IGNORES_VELOCITY, 4);
+VALUE(SPRING_SCENE_TENSION_ONLY, 8);
+VALUE(SPRING_SCENE_FORCES, 16);
 
 VALUE(SPRING_GRID_STRUCTURAL, 1);
 VALUE(SPRING_GRID_SHEAR, 2);

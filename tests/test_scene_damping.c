@@ -1,0 +1,690 @@
+/* SPDX-License-Identifier: MIT */
+/* Leapfrog with heavy link damping: the series, its order, its errors, stability, bits. max_speed, and softened links. */
+#include <stdio.h>
+
+#include "test_scene.h"
+#include "scene/chebyshev.h"
+
+/* --------------------------------------------------------------------------------------------------------- the series */
+
+/* P(z) by the sum of c_k cos(k acos y), y = 1 + z/rho, independent of the recurrence that applies it. */
+static double series_at(const chebyshev_series *p, double y)
+{
+    double above = p->beyond_last, c = p->last, sum = 0;
+    for (unsigned k = p->terms; k > 0; bessel_step(p->rho, k--, &above, &c))
+        sum += (c + (k == p->terms ? p->more : 0)) * cos(k * acos(y));
+    return sum + c / 2;
+}
+
+static void series(void)
+{
+    const double reach[] = {1e-9, 0.01, 0.1, 1, 2, 3, 4, 6, 6.25, 10, 30, 100, 1e3, 1e5}; /* of t G */
+    unsigned fewer = 0;
+    for (size_t i = 0; i < sizeof reach / sizeof reach[0]; i++) {
+        const chebyshev_series p = chebyshev_for(reach[i] / 7, 7);
+        const int points = 1000;
+        double largest = 0, error = 0;
+        CHECK(p.terms >= fewer && p.more >= 0 && p.last >= 0, "more terms for more damping, all of them positive");
+        CHECK(p.rho * 2 >= reach[i], "the spectrum lies in the interval");
+        fewer = p.terms;
+        for (int j = 0; j <= points; j++) {
+            const double y = 1 - 2.0 * j / points, value = series_at(&p, y), z = p.rho * (y - 1);
+            largest = fmax(largest, fabs(value));
+            error = fmax(error, fabs(value - exp(z)));
+        }
+        CHECK_BELOW(largest, 1 + p.terms * DBL_EPSILON, "a sum of positive numbers times cosines, and 1 for z = 0");
+        CHECK_BELOW(error, 0.15, "as chebyshev.h says; largest at rho = 3.13, the largest for three terms");
+        const double h = 1e-6, slope = (1 - series_at(&p, 1 - h)) / h / p.rho;
+        CHECK_CLOSE(slope, 1, 2e-10 / p.rho / h + p.rho * h, "rounding, and the second derivative, of a quotient");
+        CHECK_CLOSE(p.kick * p.rho, reach[i] / 7, 4 * DBL_EPSILON * reach[i], "damping for the whole time");
+    }
+}
+
+/* For small t the error is that of a second-order method, which falls with t^3. */
+static void series_order(void)
+{
+    double before = 0;
+    for (double reach = 0.4; reach > 0.01; reach /= 2) {
+        const chebyshev_series p = chebyshev_for(reach, 1);
+        const double error = fabs(series_at(&p, 1 - reach / p.rho) - exp(-reach));
+        if (before > 0)
+            CHECK_BELOW(error, before / 7, "at least t^3, that is, a factor of 8, up to the next power");
+        before = error;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- errors and energy */
+
+typedef enum motion { FROM_REST, IN_MOTION } motion;
+
+/* A horizontal cloth that is pinned at two corners, or a rope with a heavy end, 1 m long; its stiffness and damping in units of a frame:
+   sqrt(L) = stiff/frame, damping = damped mass/frame. */
+static const double frame = 1.0 / 60;
+
+static void build_stiff(model *m, uint32_t side, bool rope, double stiff, double damped, motion how)
+{
+    const spring_grid g = {.count = {side, rope ? 1 : side},
+                           .spacing = 1.0 / (side - 1),
+                           .families = rope ? SPRING_GRID_STRUCTURAL : 7,
+                           .stiffness = 1};
+    size_t particles, links;
+    spring_grid_size(&g, &particles, &links);
+    CHECK(particles <= most && links <= most_links, "fits into a model");
+    spring_grid_fill(&g, m->position, m->pinned, m->link);
+    memset(m->velocity, 0, sizeof m->velocity);
+    for (size_t i = 0; i < particles; i++) {
+        m->mass[i] = rope ? 1.0 / 32 : 1.0 / (double)particles;
+        m->pinned[i] = i == 0 || (!rope && i == side - 1);
+        m->position[3 * i + 2] += m->pinned[i] ? 0 : 0.02 * g.spacing * random_uniform(-0.5, 0.5);
+        for (int a = 0; a < 3 && how == IN_MOTION && !m->pinned[i]; a++)
+            m->velocity[3 * i + (size_t)a] = 0.4 * sin(3 * m->position[3 * i] + 2 * m->position[3 * i + 1] + a);
+    }
+    const double mass = m->mass[0];
+    if (rope)
+        m->mass[particles - 1] *= 100;
+    m->def = (spring_scene_def){.particles = particles,
+                                .links = links,
+                                .position = m->position,
+                                .velocity = m->velocity,
+                                .mass = m->mass,
+                                .pinned = m->pinned,
+                                .link = m->link,
+                                .gravity = {0, 0, -9.81},
+                                .methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4};
+    spring_scene *s = scene_of(&m->def);
+    const double limit = spring_scene_stable_step(s, SPRING_LEAPFROG); /* 2/sqrt(L) at stiffness 1 */
+    free(s);
+    for (size_t j = 0; j < links; j++) {
+        m->link[j].stiffness = pow(stiff / frame * limit / 2, 2);
+        m->link[j].damping = damped * mass / frame;
+    }
+}
+
+static double total_energy(const spring_scene *s)
+{
+    const spring_scene_energies e = spring_scene_energy(s);
+    return e.kinetic + e.elastic + e.gravity;
+}
+
+#ifndef SPRING_FLOAT
+
+static double distance_between(const spring_scene *s, const spring_scene *other, size_t particles, spring_quantity q)
+{
+    static double a[3 * most], b[3 * most];
+    double square = 0;
+    spring_scene_get(s, q, a, 0, 0, particles);
+    spring_scene_get(other, q, b, 0, 0, particles);
+    for (size_t i = 0; i < 3 * particles; i++)
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(square / (double)particles);
+}
+
+/* RMS error of positions after a quarter of a second. */
+static double error_after(const model *m, int steps_per_frame)
+{
+    const int frames = 15;
+    spring_scene *s = scene_of(&m->def), *reference = scene_of(&m->def);
+    const uint64_t fine = (uint64_t)ceil(frames * frame / (0.9 * spring_scene_stable_step(reference, SPRING_RK4)));
+    const uint64_t steps = fine < 1500 ? 1500 : fine;
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, frame / steps_per_frame, (uint64_t)(frames * steps_per_frame)) ==
+              SPRING_OK,
+          "stable");
+    CHECK(spring_scene_advance(reference, SPRING_RK4, frames * frame / (double)steps, steps) == SPRING_OK,
+          "the reference, too");
+    const double error = distance_between(s, reference, m->def.particles, SPRING_POSITION);
+    free(s);
+    free(reference);
+    return error;
+}
+
+/* The scenes S1 (here a smaller cloth) and S2 of the study of stiff scenes, at two thirds of the stable number of steps and
+   at that number. The bounds are those of the best splitting that the study measured. */
+static void errors(void)
+{
+    static model m;
+    static const struct {
+        double damped, cloth[2], rope;
+    } bound[] = {{10, {2e-5, 8e-5}, 1e-5}, {100, {1e-5, 2.5e-5}, 1e-5}, {1000, {1.2e-4, 7.5e-4}, 1e-5}};
+    for (size_t i = 0; i < sizeof bound / sizeof bound[0]; i++)
+        for (int how = FROM_REST; how <= IN_MOTION; how++) {
+            build_stiff(&m, 20, false, 50, bound[i].damped, (motion)how);
+            const double cloth = error_after(&m, 17);
+            build_stiff(&m, 32, true, 50, bound[i].damped, (motion)how);
+            const double rope = error_after(&m, 25);
+            printf("# damping %g mass/frame, %s: cloth %.1e m, rope %.1e m\n", bound[i].damped,
+                   how == FROM_REST ? "from rest" : "in motion", cloth, rope);
+            CHECK_BELOW(cloth, bound[i].cloth[how], "measured for the best splitting");
+            CHECK_BELOW(rope, bound[i].rope, "measured for the best splitting");
+        }
+}
+
+/* The slope of the errors of position and velocity between steps of dt and dt/4, with the series at every step: a limit
+   of explicit damping of 0 makes leapfrog use it. */
+static void slopes(const model *m, double dt, int steps, double slope[2])
+{
+    double error[2][2];
+    for (int finer = 0; finer < 2; finer++) {
+        const int parts = finer ? 4 : 1;
+        spring_scene *s = scene_of(&m->def), *reference = scene_of(&m->def);
+        spring_scene_stable_step(s, SPRING_LEAPFROG);
+        s->bounds.damping = INFINITY;
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt / parts, (uint64_t)(steps * parts)) == SPRING_OK &&
+                  spring_scene_advance(reference, SPRING_RK4, dt / 100, (uint64_t)(100 * steps)) == SPRING_OK,
+              "stable");
+        error[finer][0] = distance_between(s, reference, m->def.particles, SPRING_POSITION);
+        error[finer][1] = distance_between(s, reference, m->def.particles, SPRING_VELOCITY);
+        free(s);
+        free(reference);
+    }
+    for (int q = 0; q < 2; q++)
+        slope[q] = log2(error[0][q] / error[1][q]) / 2;
+}
+
+/* Damping slow enough for second order, and so fast that the order falls. */
+static void order(void)
+{
+    static model m;
+    static const struct {
+        double reach, least; /* of dt G; the least slope */
+    } cases[] = {{0.25, 1.9}, {1, 1.9}, {3, 1.6}, {10, 0.5}, {100, 0.5}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        double slope[2];
+        build_stiff(&m, 6, false, 10, 1, IN_MOTION);
+        spring_scene *s = scene_of(&m.def);
+        const double dt = 0.02 * 2 / sqrt(spring_scene_find_bounds(s)->stiffness);
+        const double more = cases[i].reach / (dt * spring_scene_find_bounds(s)->link_damping);
+        free(s);
+        for (size_t j = 0; j < m.def.links; j++)
+            m.link[j].damping *= more;
+        slopes(&m, dt, 40, slope);
+        printf("# dt G = %g: slope of the error of position %.2f, of velocity %.2f\n", cases[i].reach, slope[0],
+               slope[1]);
+        CHECK(slope[0] >= cases[i].least && slope[1] >= cases[i].least, "second order below dt G = 3, first beyond");
+    }
+}
+
+#endif
+
+/* At the stable step: the energy never rises above what it was, and falls from second to second. */
+static void energy_falls(void)
+{
+    static model m;
+    for (double damped = 10; damped <= 1000; damped *= 10)
+        for (int rope = 0; rope < 2; rope++) {
+            build_stiff(&m, rope ? 32 : 12, rope, 50, damped, FROM_REST);
+            spring_scene *s = scene_of(&m.def);
+            const double first = total_energy(s), weight = 9.81 * (rope ? 4 : 1);
+            const int steps = (int)ceil(frame / spring_scene_stable_step(s, SPRING_LEAPFROG));
+            double before = first;
+            const double rounding = sizeof(scalar) == 4 ? 1e-4 : 1e-9;
+            for (int second = 0; second < 10; second++) {
+                CHECK(spring_scene_advance(s, SPRING_LEAPFROG, frame / steps, (uint64_t)(60 * steps)) == SPRING_OK,
+                      "stable");
+                const double now = total_energy(s);
+                CHECK(now <= first + 0.001 * weight, "never more than at the start");
+                CHECK(now <= before + (second < 5 ? 0 : rounding) + rounding * weight,
+                      "and less from second to second");
+                before = now;
+            }
+            free(s);
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------------- stability */
+
+static double largest_speed(const spring_scene *s, size_t particles)
+{
+    static double v[3 * most];
+    double largest = 0;
+    spring_scene_get(s, SPRING_VELOCITY, v, s->layout.axes, 0, particles);
+    for (size_t i = 0; i < particles * s->layout.axes; i++)
+        largest = fmax(largest, fabs(v[i]));
+    return largest;
+}
+
+/* A random scene, small or large, of any layout, with masses, stiffness and damping over six decades. */
+static void build_wild(model *m, unsigned number)
+{
+    static const uint32_t grids[][3] = {{4, 3, 1}, {3, 1, 1}, {9, 7, 1}, {3, 3, 3}, {40, 1, 1}};
+    build(m, grids[number % 5], 1 + number / 5 % 3, (number * 37) % feature_masks | MASSES | DAMPED);
+    for (size_t i = 0; i < m->def.particles; i++)
+        m->mass[i] = random_log(1e-3, 1e3);
+    for (size_t i = 0; i < m->def.links; i++) {
+        m->link[i].stiffness = random_log(1e-3, 1e3);
+        m->link[i].damping = random_bits() % 4 ? random_log(1e-3, 1e3) : 0;
+        m->link[i].rest = m->def.axes == 1 ? 0 : 0.5 * m->link[i].rest;
+    }
+    for (size_t i = 0; i < 3 * m->def.particles; i++)
+        m->velocity[i] *= 1e-3;
+    m->def.methods = 1u << SPRING_LEAPFROG;
+}
+
+/* The largest speed after the first tenth of a run at 0.95 of the stable step; pins move to and fro. */
+static double speed_of_run(const model *m, int steps)
+{
+    spring_scene *s = scene_of(&m->def);
+    const double dt = 0.95 * fmin(spring_scene_stable_step(s, SPRING_LEAPFROG), 1e6);
+    double largest = 0;
+    for (int i = 0; i < steps; i += 100) {
+        if (spring_scene_advance(s, SPRING_LEAPFROG, dt, 100) != SPRING_OK)
+            largest = INFINITY;
+        largest = fmax(largest, largest_speed(s, m->def.particles));
+    }
+    free(s);
+    return largest;
+}
+
+/* SPRINGSTEP_SCENES=3000 SPRINGSTEP_STEPS=10000 in the environment: more of them, for longer. */
+static void stable_at_any_damping(void)
+{
+    static model m;
+    const char *scenes = getenv("SPRINGSTEP_SCENES"), *steps = getenv("SPRINGSTEP_STEPS");
+    unsigned heavy = 0;
+    for (unsigned number = 0; number < (scenes != NULL ? (unsigned)atoi(scenes) : 60); number++) {
+        build_wild(&m, number);
+        const int length = steps != NULL ? atoi(steps) : 500;
+        const double damped = speed_of_run(&m, length);
+        spring_scene *s = scene_of(&m.def);
+        const double stable = spring_scene_stable_step(s, SPRING_LEAPFROG);
+        heavy += stable < INFINITY && stable * s->bounds.damping > 2;
+        free(s);
+        for (size_t i = 0; i < m.def.links; i++)
+            m.link[i].damping = 0;
+        const double undamped = speed_of_run(&m, length);
+        CHECK_BELOW(damped, 2 * undamped, "damping adds no energy: not faster than the same scene without it");
+    }
+    CHECK(heavy > 30, "most of these scenes use the series");
+}
+
+/* ----------------------------------------------------------------------------------------------------------- bits */
+
+/* Beyond the limit of explicit damping, and below the stable step. */
+static spring_scene *heavy_scene(model *m, const uint32_t grid[3], uint32_t axes, unsigned features, double *dt)
+{
+    build(m, grid, axes, features | DAMPED);
+    for (size_t i = 0; i < m->def.links; i++)
+        m->link[i].damping *= 40;
+    m->def.methods = 1u << SPRING_LEAPFROG;
+    spring_scene *s = scene_of(&m->def);
+    *dt = fmin(0.4 * spring_scene_stable_step(s, SPRING_LEAPFROG), 1);
+    return s;
+}
+
+static const uint32_t grids[][3] = {{3, 1, 1}, {2, 2, 1}, {9, 7, 1}, {4, 3, 3}, {70, 1, 1}};
+enum { grid_count = sizeof grids / sizeof grids[0] };
+
+static void same_bits_by_any_kernel(void)
+{
+    static model m;
+    for (unsigned features = 0; features < feature_masks; features += 13)
+        for (uint32_t axes = 1; axes <= 3; axes++) {
+            double dt;
+            spring_scene *one = heavy_scene(&m, grids[features % grid_count], axes, features, &dt);
+            spring_scene_advance_with(kernels_of(0), one, SPRING_LEAPFROG, dt, 7);
+            for (int k = 1; k < kernel_count; k++) {
+                if (kernels_of(k) == NULL)
+                    continue;
+                spring_scene *other = scene_of(&m.def);
+                CHECK(spring_scene_advance_with(kernels_of(k), other, SPRING_LEAPFROG, dt, 7) == SPRING_OK, "stable");
+                CHECK(same_bits(one, other, m.def.particles, axes), "with vectors of any length");
+                free(other);
+            }
+            free(one);
+        }
+}
+
+static void use_velocity(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                         scalar *const force[3])
+{
+    (void)user, (void)x;
+    for (size_t i = 0; i < particles; i++)
+        force[0][i] += (scalar)(0.3 * t) - (scalar)0.2 * v[0][i];
+}
+
+/* n steps are n calls; a snapshot continues as the scene does; a change of method or of dt finds its forces anew. */
+static void calls_and_snapshots(void)
+{
+    static model m;
+    for (unsigned features = 0; features < feature_masks; features += 17)
+        for (int called = 0; called < 2; called++) {
+            double dt;
+            free(heavy_scene(&m, grids[features % grid_count], 1 + features % 3, features, &dt));
+            m.def.force = called ? use_velocity : NULL;
+            spring_scene *at_once = scene_of(&m.def), *in_turn = scene_of(&m.def);
+            size_t bytes = 0;
+            spring_scene_bytes(&m.def, &bytes);
+            void *snapshot = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+            CHECK(spring_scene_advance(at_once, SPRING_LEAPFROG, dt, 9) == SPRING_OK, "stable");
+            for (int i = 0; i < 9; i++) {
+                if (i == 5)
+                    memcpy(snapshot, in_turn, bytes);
+                spring_scene_advance(in_turn, SPRING_LEAPFROG, dt, 1);
+            }
+            CHECK(same_bits(at_once, in_turn, m.def.particles, m.def.axes), "9 steps are 9 calls");
+            spring_scene_advance(snapshot, SPRING_LEAPFROG, dt, 4);
+            CHECK(same_bits(at_once, snapshot, m.def.particles, m.def.axes), "and 5 calls and one");
+            /* steps of explicit damping, and of the series again, from a scene that knows nothing yet */
+            static state y;
+            const double shorter = 1e-3 * dt;
+            spring_scene_advance(at_once, SPRING_LEAPFROG, shorter, 2);
+            get_state(in_turn, m.def.particles, &y);
+            spring_scene *fresh = scene_of(&m.def);
+            set_state(fresh, m.def.particles, &y);
+            if (!called)
+                spring_scene_advance(fresh, SPRING_LEAPFROG, shorter, 2);
+            CHECK(called || same_bits(at_once, fresh, m.def.particles, m.def.axes), "forces with damping, found anew");
+            spring_scene_at_rest(at_once, 0, 0);
+            spring_scene_advance(at_once, SPRING_LEAPFROG, dt, 2);
+            spring_scene_advance(fresh, SPRING_LEAPFROG, dt, 2);
+            CHECK(called || same_bits(at_once, fresh, m.def.particles, m.def.axes), "and without");
+            free(at_once), free(in_turn), free(snapshot), free(fresh);
+        }
+}
+
+static void explode(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                    scalar *const force[3])
+{
+    (void)particles, (void)x, (void)v;
+    if (t > *(const double *)user)
+        force[0][0] = INFINITY;
+}
+
+static void all_or_nothing(void)
+{
+    static model m;
+    for (unsigned features = 0; features < feature_masks; features += 61) {
+        double dt, when;
+        free(heavy_scene(&m, grids[features % grid_count], 2, features & ~(unsigned)PINNED, &dt));
+        when = 3.2 * dt;
+        m.def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+        spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
+        spring_scene_set_force(s, explode, &when);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 2) == SPRING_OK, "not yet");
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 5) == SPRING_ENONFINITE, "the force is infinite");
+        spring_scene_advance(other, SPRING_LEAPFROG, dt, 2);
+        CHECK(same_bits(s, other, m.def.particles, 2), "as it was");
+        spring_scene_set_force(s, NULL, NULL);
+        spring_scene_advance(s, SPRING_LEAPFROG, dt, 3);
+        spring_scene_advance(other, SPRING_LEAPFROG, dt, 3);
+        CHECK(same_bits(s, other, m.def.particles, 2), "and continues");
+        free(s);
+        free(other);
+    }
+}
+
+static void momentum(void)
+{
+    static model m;
+    for (unsigned features = 0; features < feature_masks; features += 19) {
+        double dt, p[2][3] = {{0}}, size = 0;
+        const unsigned without = PINNED | DRAG | GRAVITY;
+        const uint32_t axes = 1 + features % 3;
+        spring_scene *s = heavy_scene(&m, grids[features % grid_count], axes, features & ~without, &dt);
+        static state y;
+        const int steps = 20;
+        for (int end = 0; end < 2; end++) {
+            get_state(s, m.def.particles, &y);
+            for (size_t i = 0; i < m.def.particles * axes; i++) {
+                p[end][i % axes] += mass_in(&m.def, i / axes) * y.v[i];
+                size += mass_in(&m.def, i / axes) * (fabs(y.v[i]) + 2);
+            }
+            spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)steps);
+        }
+        const chebyshev_series series = chebyshev_for(dt, s->bounds.link_damping);
+        CHECK(series.terms >= 3, "the series");
+        for (uint32_t a = 0; a < axes; a++)
+            CHECK_CLOSE(p[1][a], p[0][a], steps * (20 + series.terms * sqrt(series.terms)) * EPS * size,
+                        "rounding errors of the terms, which the recurrence adds up, each as large as those after it");
+        free(s);
+    }
+}
+
+/* Pins keep their velocities to the bit, and links see them. */
+static void pins(void)
+{
+    static model m;
+    double dt;
+    spring_scene *s = heavy_scene(&m, grids[2], 3, PINNED | MASSES, &dt);
+    static state before, after;
+    get_state(s, m.def.particles, &before);
+    spring_scene_advance(s, SPRING_LEAPFROG, dt, 20);
+    get_state(s, m.def.particles, &after);
+    for (size_t i = 0; i < 3 * m.def.particles; i++)
+        if (m.pinned[i / 3])
+            CHECK_BITS(after.v[i], before.v[i], "it is pinned");
+    free(s);
+    /* a pin drags a particle through a damper: after a long time it moves with the pin */
+    const double x[] = {0, 1}, v[] = {0.7, 0}, mass[] = {1, 1.3};
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 1, 0, 130};
+    const spring_scene_def def = {.axes = 1,
+                                  .particles = 2,
+                                  .links = 1,
+                                  .position = x,
+                                  .velocity = v,
+                                  .mass = mass,
+                                  .pinned = pinned,
+                                  .link = &link};
+    spring_scene *dragged = scene_of(&def);
+    double speed = 0;
+    spring_scene_advance(dragged, SPRING_LEAPFROG, 0.1, 20);
+    spring_scene_get(dragged, SPRING_VELOCITY, &speed, 0, 1, 1);
+    CHECK_CLOSE(speed, 0.7, 1e-6, "0.1 to the 20th at most, and rounding in float");
+    free(dragged);
+}
+
+/* So much damping that the number of terms is bounded: stable all the same. */
+static void beyond_the_largest_number_of_terms(void)
+{
+    const double x[] = {0, 0, 1.1, 0}, v[] = {0.2, -0.1, 0, 0.3};
+    for (double damping = 1e3; damping < 1e25; damping *= 1e7) {
+        const spring_link link = {0, 1, 1, 30, damping};
+        const spring_scene_def def = {
+            .axes = 2, .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = 1.3, .link = &link};
+        spring_scene *s = scene_of(&def);
+        CHECK_CLOSE(spring_scene_stable_step(s, SPRING_LEAPFROG), 2 / sqrt(2 * 30 / 1.3), 8 * EPS,
+                    "the stable step does not depend on damping");
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 50) == SPRING_OK && total_energy(s) < 0.3,
+              "no more than at the start, 0.24 J");
+        free(s);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- max_speed */
+
+static void too_fast_scene(model *m, unsigned features, spring_method method, double max_speed)
+{
+    build(m, grids[features % grid_count], 2, features & ~(unsigned)(DAMPED | DRAG));
+    m->def.methods = 1u << method;
+    m->def.max_speed = max_speed;
+}
+
+/* A step too long: the call in which the scene first gets too fast fails, in the step where it does, and changes nothing.
+   With half the step, from there, it continues. */
+static void too_fast(void)
+{
+    static model m;
+    build(&m, grids[0], 2, 0);
+    const method_list methods = methods_of(m.def);
+    for (const spring_method *method = methods.at; *method != no_method; method++)
+        for (unsigned features = 0; features < feature_masks; features += 93) {
+            const double limit = 30;
+            too_fast_scene(&m, features, *method, limit);
+            spring_scene *s = scene_of(&m.def);
+            m.def.max_speed = 0;
+            spring_scene *unlimited = scene_of(&m.def);
+            const double own = spring_scene_stable_step(s, *method);
+            const double dt = own > 0 ? 2 * own : spring_scene_stable_step(s, SPRING_LEAPFROG);
+            int steps = 0;
+            spring_status status = SPRING_OK;
+            static state before, after;
+            while (status == SPRING_OK && steps < 10000) {
+                get_state(s, m.def.particles, &before);
+                status = spring_scene_advance(s, *method, dt, 1);
+                steps++;
+                spring_scene_advance(unlimited, *method, dt, 1);
+                static double v[3 * most];
+                double fastest = 0;
+                spring_scene_get(unlimited, SPRING_VELOCITY, v, 2, 0, m.def.particles);
+                for (size_t i = 0; i < 2 * m.def.particles; i++)
+                    if (!pinned_in(&m.def, i / 2))
+                        fastest = fmax(fastest, isnan(v[i]) ? INFINITY : fabs(v[i]));
+                CHECK((status == SPRING_OK) == (fastest <= limit), "the step after which it is too fast fails");
+            }
+            CHECK(status == SPRING_EUNSTABLE, "and says so");
+            get_state(s, m.def.particles, &after);
+            CHECK(memcmp(before.x, after.x, 2 * m.def.particles * sizeof(double)) == 0 &&
+                      memcmp(before.v, after.v, 2 * m.def.particles * sizeof(double)) == 0,
+                  "unchanged to the bit");
+            spring_scene *at_once = scene_of(&m.def);
+            free(at_once);
+            m.def.max_speed = limit;
+            at_once = scene_of(&m.def);
+            CHECK(spring_scene_advance(at_once, *method, dt, (uint64_t)steps) == SPRING_EUNSTABLE &&
+                      (steps == 1 || spring_scene_advance(at_once, *method, dt, (uint64_t)steps - 1) == SPRING_OK),
+                  "in one call as in many");
+            free(s), free(unlimited), free(at_once);
+        }
+}
+
+static void speed_limit_of_pins_and_input(void)
+{
+    const double x[] = {0, 1}, v[] = {100, 0};
+    const uint8_t pinned[] = {1, 0};
+    spring_scene_def def = {
+        .axes = 1, .particles = 2, .position = x, .velocity = v, .pinned = pinned, .max_speed = 0.5};
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.1, 3) == SPRING_OK,
+          "pinned particles may be as fast as they like");
+    free(s);
+    const double bad[] = {-1, NAN, INFINITY};
+    for (size_t i = 0; i < 3; i++) {
+        const char *field = NULL;
+        def.max_speed = bad[i];
+        CHECK(spring_scene_check(&def, &field, NULL) == SPRING_EINVAL && strcmp(field, "max_speed") == 0,
+              "it is named");
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- softened links */
+
+static void soften(void)
+{
+    static model m, before;
+    for (unsigned number = 0; number < 300; number++) {
+        build_wild(&m, number);
+        before = m;
+        spring_scene *s = scene_of(&m.def);
+        const double stable = spring_scene_stable_step(s, SPRING_LEAPFROG);
+        free(s);
+        if (!(stable < INFINITY))
+            continue;
+        const double fraction = random_uniform(0.1, 1), dt = random_log(0.1, 30) * stable;
+        CHECK(spring_links_soften(&m.def, dt, fraction, m.link) == SPRING_OK, "a valid definition");
+        bool lowered = false;
+        for (size_t i = 0; i < m.def.links; i++) {
+            const spring_link *now = &m.link[i], *was = &before.link[i];
+            CHECK(now->stiffness <= was->stiffness && now->stiffness > 0 && now->damping == was->damping &&
+                      now->rest == was->rest && now->a == was->a && now->b == was->b,
+                  "lower stiffness, and nothing else");
+            lowered = lowered || now->stiffness < was->stiffness;
+        }
+        s = scene_of(&m.def);
+        const double now = spring_scene_stable_step(s, SPRING_LEAPFROG);
+        free(s);
+        CHECK(dt <= fraction * now, "stable");
+        CHECK(!lowered || now <= 1.4 * dt / fraction, "and no softer than needed");
+        CHECK(lowered || now == stable, "nothing to do");
+        CHECK(lowered == (dt > fraction * stable) || fabs(dt / (fraction * stable) - 1) < 1e-3, "only where needed");
+    }
+}
+
+static void soften_bad_input(void)
+{
+    static model m, before;
+    build(&m, grids[2], 3, 0);
+    before = m;
+    const struct {
+        double dt, fraction;
+    } bad[] = {{0, 0.5}, {-1, 0.5}, {NAN, 0.5}, {INFINITY, 0.5}, {0.1, 0}, {0.1, 1.1}, {0.1, -1}, {0.1, NAN}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        CHECK(spring_links_soften(&m.def, bad[i].dt, bad[i].fraction, m.link) == SPRING_EINVAL, "bad input");
+    CHECK(spring_links_soften(&m.def, 0.1, 0.5, NULL) == SPRING_EINVAL, "nowhere to write");
+    CHECK(spring_links_soften(NULL, 0.1, 0.5, m.link) == SPRING_EINVAL, "no definition");
+    m.def.particles = 0;
+    CHECK(spring_links_soften(&m.def, 0.1, 0.5, m.link) == SPRING_EINVAL, "a bad definition");
+    CHECK(memcmp(m.link, before.link, sizeof m.link) == 0, "nothing is written");
+}
+
+/* How far 200 random softened scenes get from the places of their pins, which teleport, in 60 frames of 17 and 100 ms, in
+   radii of the sphere that holds these places. Nothing is damped, so what the pins do to a scene stays in it. */
+static double farthest_of_softened(double fraction)
+{
+    static model m;
+    double worst = 0;
+    for (unsigned number = 0; number < 200; number++) {
+        const bool rope = number % 2;
+        const double long_frame = number % 4 < 2 ? 0.0166666 : 0.1, jump = 0.5;
+        build_stiff(&m, rope ? 32 : 12, rope, random_log(10, 1000), 0, FROM_REST);
+        for (size_t i = 0; i < m.def.particles; i++)
+            m.mass[i] *= random_log(1, 1000);
+        for (size_t i = 0; i < m.def.links; i++)
+            m.link[i].stiffness *= random_log(0.03, 30);
+        m.def.gravity[2] = 0;
+        const double center = rope ? 0 : 0.5; /* of the places of the pins, along x */
+        CHECK(spring_links_soften(&m.def, long_frame, fraction, m.link) == SPRING_OK, "a valid definition");
+        spring_scene *s = scene_of(&m.def);
+        double radius = 0, farthest = 0;
+        for (int i = 0; i < 60; i++) {
+            for (size_t p = 0; p < m.def.particles; p++)
+                if (m.pinned[p]) {
+                    double to[3];
+                    for (size_t a = 0; a < 3; a++)
+                        to[a] = m.position[3 * p + a] + jump * random_uniform(-1, 1);
+                    radius = fmax(radius, hypot(hypot(to[0] - center, to[1]), to[2]));
+                    spring_scene_drive(s, p, to, long_frame);
+                }
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, long_frame, 1) == SPRING_OK, "it does not run away");
+            static state y;
+            get_state(s, m.def.particles, &y);
+            for (size_t p = 0; p < m.def.particles; p++)
+                farthest = fmax(farthest, hypot(hypot(y.x[3 * p] - center, y.x[3 * p + 1]), y.x[3 * p + 2]));
+        }
+        worst = fmax(worst, farthest / radius - 1);
+        free(s);
+    }
+    return worst;
+}
+
+static void softened_scenes_stay(void)
+{
+    CHECK_BELOW(farthest_of_softened(0.3), 10, "at a step well below the limit they stay near the pins");
+    CHECK_BELOW(farthest_of_softened(0.95), 100,
+                "near the limit steps are in resonance with pins, but nothing runs away");
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"the series", series},
+        {"order of the series", series_order},
+#ifndef SPRING_FLOAT
+        {"errors", errors},
+        {"order", order},
+#endif
+        {"energy falls", energy_falls},
+        {"stable at any damping", stable_at_any_damping},
+        {"kernels", same_bits_by_any_kernel},
+        {"calls and snapshots", calls_and_snapshots},
+        {"all or nothing", all_or_nothing},
+        {"momentum", momentum},
+        {"pins", pins},
+        {"more damping than terms", beyond_the_largest_number_of_terms},
+        {"max_speed", too_fast},
+        {"max_speed of pins, bad input", speed_limit_of_pins_and_input},
+        {"soften", soften},
+        {"soften: bad input", soften_bad_input},
+        {"softened scenes", softened_scenes_stay},
+    };
+    return RUN_TESTS("scene_damping", tests);
+}
