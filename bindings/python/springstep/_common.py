@@ -50,6 +50,10 @@ class NonFiniteError(SpringError, ArithmeticError):
     """The state would have become infinite or NaN: the step is unstable, or numbers are too large."""
 
 
+class UnstableError(NonFiniteError):
+    """A particle would have become faster than the max_speed of its scene, or not finite."""
+
+
 class UnsupportedError(SpringError):
     """Not supported for this kind of system, or not enabled when it was made."""
 
@@ -58,6 +62,7 @@ _CLASSES = {
     lib.SPRING_EINVAL: InvalidError,
     lib.SPRING_ERANGE: RangeError,
     lib.SPRING_ENONFINITE: NonFiniteError,
+    lib.SPRING_EUNSTABLE: UnstableError,
     lib.SPRING_EUNSUPPORTED: UnsupportedError,
     lib.SPRING_EDISABLED: UnsupportedError,
 }

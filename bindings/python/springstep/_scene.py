@@ -179,6 +179,7 @@ class Scene:
     methods: names of those that will be used; None: all except those that store stages or drag factors
     editable: links, pins and masses may change
     undo: False: an advance that fails loses the state, and memory is saved
+    max_speed: [m/s] a step after which a free particle is faster along an axis fails; 0: no limit
     tension_only: links pull and never push, as those of ropes and nets; for two or three axes
     held_forces: there is room for forces that are held until they are changed, see set_held_force()
     dtype: float64 or float32: what the scene computes in
@@ -191,7 +192,8 @@ class Scene:
                  mass: ArrayLike = 1.0, pinned: ArrayLike | None = None, gravity: ArrayLike | None = None,
                  drag: float = 0.0, force: Force | None = None, force_ignores_velocity: bool = False,
                  methods: Iterable[str] | None = None, editable: bool = False, undo: bool = True,
-                 dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False):
+                 dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False,
+                 max_speed: float = 0.0):
         self._dtype = np.dtype(dtype)
         if self._dtype not in _PREFIXES:
             raise TypeError("dtype: not float64 or float32")
@@ -217,7 +219,7 @@ class Scene:
 
         given = {"position": positions, "link": joined}
         definition = ffi.new(f"{self._prefix}_def *", {
-            "axes": self._axes, "particles": self._particles, "links": self._links, "drag": drag,
+            "axes": self._axes, "particles": self._particles, "links": self._links, "drag": drag, "max_speed": max_speed,
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
         for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),

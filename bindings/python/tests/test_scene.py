@@ -693,3 +693,17 @@ def test_transform(dtype):
         flat.transform([[1, 0, np.nan], [0, 2, 6]])
     with pytest.raises(ValueError, match="matrix"):
         flat.transform(np.eye(3))
+
+
+def test_a_scene_that_explodes_is_noticed_in_time():
+    scene = rope(max_speed=20.0)
+    step = 3 * scene.stable_step()
+    before = None
+    with pytest.raises(springstep.UnstableError):
+        for _ in range(10_000):
+            before = scene.position(), scene.time
+            scene.advance(step, 1)
+    assert (scene.position() == before[0]).all() and scene.time == before[1]
+    assert np.abs(scene.velocity()).max() <= 20
+    with pytest.raises(springstep.InvalidError, match="max_speed"):
+        rope(max_speed=-1.0)
