@@ -110,7 +110,9 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     const real v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly(m, c, start, free) : start;
     const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free), x = vec_load(m->x0 + c->at) + m->drift * v;
     store_state(m, c, x, v);
-    const mask wrong = (variant & ENDS_STEP) != 0 ? not_finite(x) | too_fast(m, c, v0) : not_finite(x);
+    mask wrong = not_finite(x); /* as it is if v0 or v is not finite */
+    if ((variant & ENDS_STEP) != 0)
+        wrong |= (vec_abs(v0) > m->max_speed) & (c->inverse_mass > 0);
     if ((variant & PREDICTS) == 0)
         return wrong;
     const real predicted = kicked_implicitly(m, c, v, free);
