@@ -81,10 +81,10 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
     return step->known;
 }
 
-/* The series by which links are damped once a step, beyond the limit of explicit damping. */
+/* The series by which links are damped once a step, beyond the limit of explicit damping. Negative steps are below it. */
 static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
 {
-    if (s->damped_links == 0 || stepper->explicit_limit == NULL || dt < 0)
+    if (s->damped_links == 0 || stepper->explicit_limit == NULL)
         return (chebyshev_series){.terms = 0};
     const scene_bounds *bounds = spring_scene_find_bounds(s);
     if (dt <= stepper->explicit_limit(bounds))
