@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The stiffness with which a scene hangs by at most a given stretch; see plan.h.
+ *
+ * Method    For a trial stiffness, leapfrog runs with drag until all forces balance, from the positions where the last trial
+ *           came to rest. The drag damps a pendulum as long as the scene critically. The largest stretch of the settled scene
+ *           is close to a power of the stiffness (-1 for a rope, -2/3 for a net that two corners hold taut), so the
+ *           next trial follows from the secant through the logarithms of the last two.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "plan.h"
+#include "scenes/start.h"
+
+static const double fraction = 0.5;      /* of the stable step, as scene.h recommends */
+static const double rest_share = 1e-5;   /* of gravity: the largest acceleration of a scene at rest */
+static const double window = 1e-3;       /* the stretch is at most that share smaller than asked for */
+static const double most_work = 2e10;    /* steps times particles and links of a trial: half a minute */
+static const double most_measured = 1e8; /* the same of a run whose time is measured */
+
+typedef struct hanging {
+    preset *scene;
+    double gravity;   /* [m/s^2] */
+    double up[3];     /* against gravity */
+    double drag_rate; /* [1/s] drag/mass while the scene settles */
+} hanging;
+
+static double height_of(const hanging *h, size_t particle)
+{
+    const uint32_t axes = h->scene->def.axes;
+    double height = 0;
+    for (uint32_t a = 0; a < axes; a++)
+        height += h->up[a] * h->scene->position[particle * axes + a];
+    return height;
+}
+
+static double length_of(const preset *scene, const spring_link *link)
+{
+    const uint32_t axes = scene->def.axes;
+    double length = 0;
+    for (uint32_t a = 0; a < axes; a++)
+        length = hypot(length, scene->position[link->b * axes + a] - scene->position[link->a * axes + a]);
+    return length;
+}
+
+/* ------------------------------------------------------------------------------------------------ what the scene is */
+
+static uint32_t root_of(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Every particle should be linked to a pinned one, if not directly. Otherwise it would fall for ever. */
+static void check_pins(const preset *scene)
+{
+    const size_t particles = scene->def.particles;
+    uint32_t *parent = malloc((particles + 1) * sizeof *parent);
+    if (parent == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    const uint32_t pins = (uint32_t)particles;
+    for (uint32_t i = 0; i <= pins; i++)
+        parent[i] = i < pins && scene->pinned[i] ? pins : i;
+    for (size_t i = 0; i < scene->def.links; i++)
+        parent[root_of(parent, scene->link[i].a)] = root_of(parent, scene->link[i].b);
+    for (uint32_t i = 0; i < pins; i++)
+        if (root_of(parent, i) != root_of(parent, pins))
+            cli_fail(CLI_USAGE,
+                     "--sag: the vertex at \"%g %g %g\" hangs on no pin; all parts of a mesh should be joined to its "
+                     "highest vertices, which are pinned",
+                     scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
+    free(parent);
+}
+
+/* [m] Of the box around all particles that are not unlinked. */
+static double diagonal_of(const preset *scene)
+{
+    const uint32_t axes = scene->def.axes;
+    double diagonal = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < scene->def.links; i++) {
+            const double ends[2] = {scene->position[scene->link[i].a * axes + a],
+                                    scene->position[scene->link[i].b * axes + a]};
+            low = fmin(low, fmin(ends[0], ends[1]));
+            high = fmax(high, fmax(ends[0], ends[1]));
+        }
+        diagonal = hypot(diagonal, high - low);
+    }
+    return diagonal;
+}
+
+static hanging examine(preset *scene)
+{
+    hanging h = {.scene = scene};
+    for (uint32_t a = 0; a < scene->def.axes; a++)
+        h.gravity = hypot(h.gravity, scene->def.gravity[a]);
+    if (!(h.gravity > 0))
+        cli_fail(CLI_USAGE, "--sag: gravity is \"%g\" m/s^2 in this scene; it should be a rope, cloth, jelly or mesh",
+                 h.gravity);
+    for (uint32_t a = 0; a < scene->def.axes; a++)
+        h.up[a] = -scene->def.gravity[a] / h.gravity;
+    check_pins(scene);
+    h.drag_rate = 2 * sqrt(h.gravity / diagonal_of(scene));
+    return h;
+}
+
+/* Links whose ends are both pinned do not count, nor those that have no length. */
+static bool counts(const preset *scene, const spring_link *link)
+{
+    return link->rest > 0 && !(scene->pinned[link->a] && scene->pinned[link->b]);
+}
+
+/* The stiffness with which the links at the pins would carry all, if they all pulled straight up. */
+static double first_trial(const hanging *h, double sag)
+{
+    const preset *scene = h->scene;
+    double weight = 0, rest = 0;
+    for (size_t i = 0; i < scene->def.particles; i++)
+        weight += scene->pinned[i] ? 0 : scene->def.mass_all * h->gravity;
+    for (size_t i = 0; i < scene->def.links; i++)
+        if (scene->pinned[scene->link[i].a] != scene->pinned[scene->link[i].b])
+            rest += scene->link[i].rest;
+    return weight / (sag * rest);
+}
+
+/* ------------------------------------------------------------------------------------------------------- settled scenes */
+
+static void set_links(preset *scene, double stiffness, double damping)
+{
+    for (size_t i = 0; i < scene->def.links; i++) {
+        scene->link[i].stiffness = stiffness;
+        scene->link[i].damping = damping;
+    }
+}
+
+static _Noreturn void refuse_sag(double sag, double stiffness, const char *why)
+{
+    cli_fail(CLI_FAILED, "--sag: \"%g\" cannot be reached: with links of %.3g N/m this scene %s; try another sag", sag,
+             stiffness, why);
+}
+
+/* Moves the scene to where it comes to rest. Drag alone damps it: damped links would only slow it down. */
+static void settle(const hanging *h, double sag, double stiffness)
+{
+    preset *scene = h->scene;
+    const double drag = scene->def.drag, tolerance = rest_share * h->gravity;
+    set_links(scene, stiffness, 0);
+    scene->def.drag = h->drag_rate * scene->def.mass_all;
+    size_t bytes;
+    spring_scene *moving = start_scene(scene, SPRING_LEAPFROG, &bytes);
+    const double dt = fraction * spring_scene_stable_step(moving, SPRING_LEAPFROG);
+    const double each = (double)(scene->def.particles + scene->def.links), some = ceil(1 / (h->drag_rate * dt));
+    double work = 0;
+    do {
+        work += some * each;
+        if (!(work <= most_work))
+            refuse_sag(sag, stiffness, "does not come to rest in a reasonable time");
+        if (spring_scene_advance(moving, SPRING_LEAPFROG, dt, (uint64_t)some) != SPRING_OK)
+            refuse_sag(sag, stiffness, "is not stable");
+    } while (!spring_scene_at_rest(moving, tolerance / h->drag_rate, tolerance));
+    spring_scene_get(moving, SPRING_POSITION, scene->position, 0, 0, scene->def.particles);
+    free(moving);
+    scene->def.drag = drag;
+}
+
+/* Is the scene above its pins, as far as it is linked to them? */
+static bool stands(const hanging *h)
+{
+    const preset *scene = h->scene;
+    double above = 0;
+    for (size_t i = 0; i < scene->def.links; i++) {
+        const spring_link *link = &scene->link[i];
+        const int to_free = (scene->pinned[link->a] != 0) - (scene->pinned[link->b] != 0); /* 0: both ends are free */
+        above += to_free * (height_of(h, link->b) - height_of(h, link->a));
+    }
+    return above > 0;
+}
+
+static double largest_stretch(const hanging *h)
+{
+    const preset *scene = h->scene;
+    const double sign = stands(h) ? -1 : 1;
+    double most = 0;
+    for (size_t i = 0; i < scene->def.links; i++) {
+        const spring_link *link = &scene->link[i];
+        if (counts(scene, link))
+            most = fmax(most, sign * (length_of(scene, link) / link->rest - 1));
+    }
+    return most;
+}
+
+static double settled_height(const hanging *h)
+{
+    const preset *scene = h->scene;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < scene->def.links; i++) {
+        const double a = height_of(h, scene->link[i].a), b = height_of(h, scene->link[i].b);
+        low = fmin(low, fmin(a, b));
+        high = fmax(high, fmax(a, b));
+    }
+    return high - low;
+}
+
+/* --------------------------------------------------------------------------------------------------------- the search */
+
+/* Leaves the scene settled with the stiffness that is returned. */
+static double search(const hanging *h, double sag, double *stretch)
+{
+    enum { most_trials = 30 };
+    const double aim = sag * (1 - window / 2), flattest = 0.3, steepest = 2;
+    double stiffness = first_trial(h, sag), power = 1, last_stiffness = NAN, last_stretch = NAN;
+    for (int trial = 0; trial < most_trials; trial++) {
+        settle(h, sag, stiffness);
+        *stretch = largest_stretch(h);
+        if (*stretch <= sag && *stretch >= sag * (1 - window))
+            return stiffness;
+        if (!(*stretch > 0))
+            refuse_sag(sag, stiffness, "does not stretch");
+        if (trial > 0)
+            power = fmin(fmax(log(last_stretch / *stretch) / log(stiffness / last_stiffness), flattest), steepest);
+        last_stiffness = stiffness;
+        last_stretch = *stretch;
+        stiffness *= pow(*stretch / aim, 1 / power);
+        cli_progress((trial + 1.0) / most_trials);
+    }
+    refuse_sag(sag, last_stiffness, "stretches more, and with slightly more less");
+}
+
+plan_sag plan_stiffness(preset *scene, double sag, double damping)
+{
+    const hanging h = examine(scene);
+    plan_sag plan;
+    plan.stiffness = search(&h, sag, &plan.stretch);
+    plan.height = settled_height(&h);
+    set_links(scene, plan.stiffness, damping);
+    size_t bytes;
+    spring_scene *settled = start_scene(scene, SPRING_LEAPFROG, &bytes);
+    plan.stable_step = spring_scene_stable_step(settled, SPRING_LEAPFROG);
+    free(settled);
+    plan.substeps = ceil(plan_frame / (fraction * plan.stable_step));
+    const double work = plan.substeps * (double)(scene->def.particles + scene->def.links);
+    const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * plan.substeps;
+    plan.time = plan_time(scene, SPRING_LEAPFROG, plan_frame / plan.substeps, (uint64_t)steps) / frames;
+    return plan;
+}
