@@ -41,19 +41,23 @@ double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps
 
 static const double plan_frame = 1.0 / 60; /* [s] */
 
+/* What is at most as long as asked for. */
+typedef enum plan_limit { PLAN_SCENE, PLAN_LINK, plan_limits } plan_limit;
+
 /* A scene that is stiff enough, and its steps by leapfrog. */
 typedef struct plan_sag {
-    double stiffness;   /* [N/m] of every link */
-    double stretch;     /* the largest of a link in the settled scene, 0 to sag */
-    double height;      /* [m] of the settled scene along gravity */
+    double stiffness;   /* [N/m] of every link; NaN: the height of the scene depends on more than how links stretch */
+    double stretch[2];  /* by limit: of the scene and of the link that is stretched most */
     double stable_step; /* [s] */
     double substeps;    /* steps in a frame, at most half of the stable step each */
     double time;        /* [s] of a frame */
 } plan_sag;
 
-/** The stretch of a link is length/rest - 1; in a scene that stands on its pins, 1 - length/rest counts instead. Links get the
-    given damping, and the scene is left settled. Exits with a message if the scene has no gravity, if a part of it is
-    not linked to a pin, or if there is no such stiffness. */
-plan_sag plan_stiffness(preset *scene, double sag, double damping);
+/** Finds the least stiffness with which a settled scene is stretched by at most `sag`, and another one for its links.
+
+    The stretch of a link is length/rest - 1, that of a scene is height/(height with unstretchable links) - 1. In a scene that
+    stands on its pins both count with the opposite sign. Links get the given damping. Exits with a message if the scene has
+    no gravity, if a part of it is not linked to a pin, or if there is no such stiffness. */
+void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan_limits]);
 
 #endif

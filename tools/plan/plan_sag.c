@@ -3,9 +3,10 @@
  * The stiffness with which a scene hangs by at most a given stretch; see plan.h.
  *
  * Method    For a trial stiffness, leapfrog runs with drag until all forces balance, from the positions where the last trial
- *           came to rest. The drag damps a pendulum as long as the scene critically. The largest stretch of the settled scene
- *           is close to a power of the stiffness (-1 for a rope, -2/3 for a net that two corners hold taut), so the
- *           next trial follows from the secant through the logarithms of the last two.
+ *           came to rest. The drag damps a pendulum as long as the scene critically. The stretch of the settled scene is close
+ *           to a power of the stiffness (-1 for a rope, -2/3 for a net that two corners hold taut), so the next
+ *           trial follows from the secant through the logarithms of the last two. The height with unstretchable links is
+ *           extrapolated from two stiff scenes: to first order, height - that height is proportional to 1/stiffness.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -25,6 +26,8 @@ typedef struct hanging {
     double gravity;   /* [m/s^2] */
     double up[3];     /* against gravity */
     double drag_rate; /* [1/s] drag/mass while the scene settles */
+    bool stands;      /* on its pins */
+    double height;    /* [m] with unstretchable links, once it is known */
 } hanging;
 
 static double height_of(const hanging *h, size_t particle)
@@ -93,17 +96,33 @@ static double diagonal_of(const preset *scene)
     return diagonal;
 }
 
+/* Is the scene above its pins, as far as it is linked to them? */
+static bool is_above_pins(const hanging *h)
+{
+    const preset *scene = h->scene;
+    double above = 0;
+    for (size_t i = 0; i < scene->def.links; i++) {
+        const spring_link *link = &scene->link[i];
+        const int to_free = (scene->pinned[link->a] != 0) - (scene->pinned[link->b] != 0); /* 0: both ends are free */
+        above += to_free * (height_of(h, link->b) - height_of(h, link->a));
+    }
+    return above > 0;
+}
+
 static hanging examine(preset *scene)
 {
     hanging h = {.scene = scene};
     for (uint32_t a = 0; a < scene->def.axes; a++)
         h.gravity = hypot(h.gravity, scene->def.gravity[a]);
     if (!(h.gravity > 0))
-        cli_fail(CLI_USAGE, "--sag: gravity is \"%g\" m/s^2 in this scene; it should be a rope, cloth, jelly or mesh",
+        cli_fail(CLI_USAGE,
+                 "--sag: the gravity of this scene is \"%g\" m/s^2; it should not be 0, as in rope, cloth, jelly and "
+                 "meshes",
                  h.gravity);
     for (uint32_t a = 0; a < scene->def.axes; a++)
         h.up[a] = -scene->def.gravity[a] / h.gravity;
     check_pins(scene);
+    h.stands = is_above_pins(&h);
     h.drag_rate = 2 * sqrt(h.gravity / diagonal_of(scene));
     return h;
 }
@@ -114,17 +133,19 @@ static bool counts(const preset *scene, const spring_link *link)
     return link->rest > 0 && !(scene->pinned[link->a] && scene->pinned[link->b]);
 }
 
-/* The stiffness with which the links at the pins would carry all, if they all pulled straight up. */
+/* The stiffness with which the links at the pins would carry all, if they all pulled straight up; more for a scene that could
+   collapse. */
 static double first_trial(const hanging *h, double sag)
 {
     const preset *scene = h->scene;
+    const double margin = h->stands ? 10 : 1;
     double weight = 0, rest = 0;
     for (size_t i = 0; i < scene->def.particles; i++)
         weight += scene->pinned[i] ? 0 : scene->def.mass_all * h->gravity;
     for (size_t i = 0; i < scene->def.links; i++)
         if (scene->pinned[scene->link[i].a] != scene->pinned[scene->link[i].b])
             rest += scene->link[i].rest;
-    return weight / (sag * rest);
+    return margin * weight / (sag * rest);
 }
 
 /* ------------------------------------------------------------------------------------------------------- settled scenes */
@@ -167,23 +188,10 @@ static void settle(const hanging *h, double sag, double stiffness)
     scene->def.drag = drag;
 }
 
-/* Is the scene above its pins, as far as it is linked to them? */
-static bool stands(const hanging *h)
+static double stretch_of_links(const hanging *h)
 {
     const preset *scene = h->scene;
-    double above = 0;
-    for (size_t i = 0; i < scene->def.links; i++) {
-        const spring_link *link = &scene->link[i];
-        const int to_free = (scene->pinned[link->a] != 0) - (scene->pinned[link->b] != 0); /* 0: both ends are free */
-        above += to_free * (height_of(h, link->b) - height_of(h, link->a));
-    }
-    return above > 0;
-}
-
-static double largest_stretch(const hanging *h)
-{
-    const preset *scene = h->scene;
-    const double sign = stands(h) ? -1 : 1;
+    const double sign = h->stands ? -1 : 1;
     double most = 0;
     for (size_t i = 0; i < scene->def.links; i++) {
         const spring_link *link = &scene->link[i];
@@ -205,45 +213,70 @@ static double settled_height(const hanging *h)
     return high - low;
 }
 
+static double stretch_of_scene(const hanging *h)
+{
+    const double stretch = settled_height(h) / h->height - 1;
+    return h->stands ? -stretch : stretch;
+}
+
 /* --------------------------------------------------------------------------------------------------------- the search */
 
-/* Leaves the scene settled with the stiffness that is returned. */
-static double search(const hanging *h, double sag, double *stretch)
+/* Returns the stiffness, and leaves the scene settled with it. */
+static double search(const hanging *h, double sag, double first, double stretch_of(const hanging *))
 {
     enum { most_trials = 30 };
     const double aim = sag * (1 - window / 2), flattest = 0.3, steepest = 2;
-    double stiffness = first_trial(h, sag), power = 1, last_stiffness = NAN, last_stretch = NAN;
+    double stiffness = first, power = 1, last_stiffness = NAN, last_stretch = NAN;
     for (int trial = 0; trial < most_trials; trial++) {
         settle(h, sag, stiffness);
-        *stretch = largest_stretch(h);
-        if (*stretch <= sag && *stretch >= sag * (1 - window))
+        const double stretch = stretch_of(h);
+        if (stretch <= sag && stretch >= sag * (1 - window))
             return stiffness;
-        if (!(*stretch > 0))
-            refuse_sag(sag, stiffness, "does not stretch");
+        if (!(stretch > 0))
+            refuse_sag(sag, stiffness, "is not stretched");
         if (trial > 0)
-            power = fmin(fmax(log(last_stretch / *stretch) / log(stiffness / last_stiffness), flattest), steepest);
+            power = fmin(fmax(log(last_stretch / stretch) / log(stiffness / last_stiffness), flattest), steepest);
         last_stiffness = stiffness;
-        last_stretch = *stretch;
-        stiffness *= pow(*stretch / aim, 1 / power);
-        cli_progress((trial + 1.0) / most_trials);
+        last_stretch = stretch;
+        stiffness *= pow(stretch / aim, 1 / power);
     }
-    refuse_sag(sag, last_stiffness, "stretches more, and with slightly more less");
+    refuse_sag(sag, last_stiffness, "is stretched by another share, and so with every stiffness near it");
 }
 
-plan_sag plan_stiffness(preset *scene, double sag, double damping)
+/* What there is to know of the scene, which is settled with the stiffness. */
+static void describe(const hanging *h, double sag, double damping, plan_sag *plan)
 {
-    const hanging h = examine(scene);
-    plan_sag plan;
-    plan.stiffness = search(&h, sag, &plan.stretch);
-    plan.height = settled_height(&h);
-    set_links(scene, plan.stiffness, damping);
+    preset *scene = h->scene;
+    const double least = 0.5; /* length over rest length, below which the stable step is not known */
+    plan->stretch[PLAN_LINK] = stretch_of_links(h);
+    plan->stretch[PLAN_SCENE] = stretch_of_scene(h);
+    if (h->stands && (plan->stretch[PLAN_LINK] > 1 - least || !is_above_pins(h)))
+        refuse_sag(sag, plan->stiffness, "collapses");
+    set_links(scene, plan->stiffness, damping);
     size_t bytes;
     spring_scene *settled = start_scene(scene, SPRING_LEAPFROG, &bytes);
-    plan.stable_step = spring_scene_stable_step(settled, SPRING_LEAPFROG);
+    plan->stable_step = spring_scene_stable_step(settled, SPRING_LEAPFROG);
     free(settled);
-    plan.substeps = ceil(plan_frame / (fraction * plan.stable_step));
-    const double work = plan.substeps * (double)(scene->def.particles + scene->def.links);
-    const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * plan.substeps;
-    plan.time = plan_time(scene, SPRING_LEAPFROG, plan_frame / plan.substeps, (uint64_t)steps) / frames;
-    return plan;
+    plan->substeps = ceil(plan_frame / (fraction * plan->stable_step));
+    const double work = plan->substeps * (double)(scene->def.particles + scene->def.links);
+    const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * plan->substeps;
+    plan->time = plan_time(scene, SPRING_LEAPFROG, plan_frame / plan->substeps, (uint64_t)steps) / frames;
+}
+
+void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan_limits])
+{
+    hanging h = examine(scene);
+    plan_sag *links = &row[PLAN_LINK], *whole = &row[PLAN_SCENE];
+    *links = (plan_sag){.stiffness = search(&h, sag, first_trial(&h, sag), stretch_of_links)};
+    const double height = settled_height(&h);
+    settle(&h, sag, 2 * links->stiffness);
+    h.height = 2 * settled_height(&h) - height;
+    settle(&h, sag, links->stiffness);
+    describe(&h, sag, damping, links);
+    *whole = (plan_sag){.stiffness = NAN};
+    const double share = links->stretch[PLAN_SCENE] / sag;
+    if (!(share > 0 && share <= 1)) /* a way along links cannot stretch more than each of them */
+        return;
+    whole->stiffness = search(&h, sag, share * links->stiffness, stretch_of_scene);
+    describe(&h, sag, damping, whole);
 }

@@ -41,15 +41,14 @@ static const cli_option options[] = {
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
     {"mesh", CLI_INPUT, .file = &mesh, .value = "FILE",
-     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness\n"
+     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness or --sag\n"
              "A particle a vertex, a link along each edge and across each face of four corners; the highest\n"
              "vertices are held, gravity pulls at the others, as in\n"
              "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
     {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
-     .help = "the stiffness with which --scene or --mesh stretches by at most S\n"
-             "under its own weight, from 1e-6 to 1: no link of the scene at rest is longer than 1 + S of its rest\n"
-             "length. With it, the steps for that stiffness, as in\n"
+     .help = "the stiffness with which --scene or --mesh hangs by at most S longer\n"
+             "under its own weight, from 1e-4 to 1, and the steps for that stiffness, as in\n"
              "spring-plan --sag 0.02 --scene cloth"},
     {"presets", CLI_FLAG, .flag = &presets,
      .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
@@ -60,7 +59,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-plan",
-    .summary = "Which method, and which step, for an error that is small enough.",
+    .summary = "Which method, and which step, for an error that is small enough; how stiff links should be.",
     .details =
         "A spring is given by --stiffness, or by --hertz, a scene by --scene, or by --mesh.\n\n"
         "Of a spring the error is the largest at any of the first 65536 steps, and at no more of those after\n"
@@ -70,21 +69,24 @@ static const cli_program program = {
         "extrapolated from two runs of the method of highest order, which are made finer until the uncertainty\n"
         "is a twentieth of the error, or the runs take too long; predicted is what the error of a coarser step\n"
         "and the order lead to. Steps are whole numbers a frame.\n\n"
-        "With --sag, the scene is left to hang until it is at rest, and the stiffness of all links is chosen so\n"
-        "that the largest stretch of a link, length/rest length - 1, is S, or at most 0.1 % of S less. Then no\n"
-        "rope, seam or diagonal of the scene is stretched by more than S, however its links share the weight.\n"
-        "The scene as a whole is stretched less: links near pins carry the weight of all below them. In jelly,\n"
-        "which stands on its pins, the largest compression counts instead, 1 - length/rest length.",
+        "With --sag, the scene is left to hang until it is at rest. All links get the same stiffness, the least\n"
+        "with which the scene is at most S longer along gravity than with links that do not stretch. A second row\n"
+        "has the stiffness with which no link is longer than (1 + S) times its rest length. It is larger, since\n"
+        "links near pins carry the weight of all below them: a rope needs twice the stiffness, a cloth that\n"
+        "hangs by two corners many times as much. In jelly, which stands on its pins, compression counts\n"
+        "instead.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
-    .meaning = "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
-               "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
-               "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
-               "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n\n"
-               "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
-               "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
-               "With --sag, one row: stiffness_N_per_m, largest_stretch (of a link at rest, at most S), height_m (of\n"
-               "the scene at rest), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for a frame of\n"
-               "1/60 s that are at most half of the stable step), dt_s and time_per_frame_s (on this machine).",
+    .meaning =
+        "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
+        "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
+        "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
+        "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n\n"
+        "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
+        "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
+        "With --sag: limit (scene or link: what is stretched by at most S; by 0.1 % less at the least),\n"
+        "stiffness_N_per_m, scene_stretch and link_stretch (at rest, of the scene and of its most stretched\n"
+        "link), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
+        "the stable step), dt_s, and time_per_frame_s (on this machine).",
     .shown = {"dt_s", "measured_error"},
     .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
                  "--sag 0.02 --scene rope -o stiffness.tsv"},
@@ -124,8 +126,8 @@ static void check_error(void)
 
 static void check_sag(void)
 {
-    if (!(sag >= 1e-6 && sag <= 1)) /* positions round to 1e-16, and beyond 1 scenes collapse */
-        refuse("sag", sag, "should be a stretch from 1e-6 to 1, such as 0.02 for 2 %");
+    if (!(sag >= 1e-4 && sag <= 1)) /* less takes minutes, and is proportional to 1/stiffness */
+        refuse("sag", sag, "should be a stretch from 1e-4 to 1, such as 0.02 for 2 %");
     if (kind < 0 && mesh == NULL)
         refuse("sag", sag, "is of a scene; it goes with --scene or --mesh");
     refuse("error", error, "is not for --sag");
@@ -351,17 +353,26 @@ static void write_spring(void)
 
 static void write_sag(cli_table *table, preset *scene)
 {
-    const plan_sag p = plan_stiffness(scene, sag, or_else(damping, 0));
-    const double dt = plan_frame / p.substeps;
-    cli_comment(
-        table,
-        "plan: for links that stretch by at most %g take a stiffness of %.4g N/m and leapfrog in %.0f step%s of "
-        "%.4g s a frame, %.3g s a frame on this machine.",
-        sag, p.stiffness, p.substeps, p.substeps == 1 ? "" : "s", dt, p.time);
-    cli_columns(table,
-                "stiffness_N_per_m largest_stretch height_m stable_step_s steps_per_frame dt_s time_per_frame_s");
-    cli_row(table, "%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g", p.stiffness, p.stretch, p.height, p.stable_step,
-            p.substeps, dt, p.time);
+    static const char *const what[] = {[PLAN_SCENE] = "scene", [PLAN_LINK] = "link"};
+    plan_sag row[plan_limits];
+    plan_stiffness(scene, sag, or_else(damping, 0), row);
+    for (int i = 0; i < plan_limits; i++)
+        if (isnan(row[i].stiffness))
+            cli_comment(table,
+                        "plan: the height of this scene depends on more than how its links stretch: no row for it.");
+        else
+            cli_comment(
+                table,
+                "plan: for a %s that is stretched by at most %g take a stiffness of %.4g N/m, and leapfrog in %.0f "
+                "step%s a frame, %.3g s on this machine.",
+                what[i], sag, row[i].stiffness, row[i].substeps, row[i].substeps == 1 ? "" : "s", row[i].time);
+    cli_columns(table, "limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s "
+                       "time_per_frame_s");
+    for (int i = 0; i < plan_limits; i++)
+        if (!isnan(row[i].stiffness))
+            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g", what[i], row[i].stiffness,
+                    row[i].stretch[PLAN_SCENE], row[i].stretch[PLAN_LINK], row[i].stable_step, row[i].substeps,
+                    plan_frame / row[i].substeps, row[i].time);
 }
 
 static void write_scene(void)
