@@ -18,6 +18,7 @@
 static const double fraction = 0.5;      /* of the stable step, as scene.h recommends */
 static const double rest_share = 1e-5;   /* of gravity: the largest acceleration of a scene at rest */
 static const double window = 1e-3;       /* the stretch is at most that share smaller than asked for */
+static const double accuracy = 1e-2;     /* of a stretch by an extrapolated height, and more */
 static const double most_work = 2e10;    /* steps times particles and links of a trial: half a minute */
 static const double most_measured = 1e8; /* the same of a run whose time is measured */
 
@@ -213,13 +214,24 @@ static double settled_height(const hanging *h)
     return high - low;
 }
 
+static double stretch_of_height(const hanging *h, double height)
+{
+    return (h->stands ? -1 : 1) * (height / h->height - 1);
+}
+
 static double stretch_of_scene(const hanging *h)
 {
-    const double stretch = settled_height(h) / h->height - 1;
-    return h->stands ? -stretch : stretch;
+    return stretch_of_height(h, settled_height(h));
 }
 
 /* --------------------------------------------------------------------------------------------------------- the search */
+
+static void check_shape(const hanging *h, double sag, double stiffness)
+{
+    const double most = 0.5; /* beyond it spring_scene_stable_step() is no bound */
+    if (h->stands && (stretch_of_links(h) > most || !is_above_pins(h)))
+        refuse_sag(sag, stiffness, "collapses");
+}
 
 /* Returns the stiffness, and leaves the scene settled with it. */
 static double search(const hanging *h, double sag, double first, double stretch_of(const hanging *))
@@ -230,8 +242,10 @@ static double search(const hanging *h, double sag, double first, double stretch_
     for (int trial = 0; trial < most_trials; trial++) {
         settle(h, sag, stiffness);
         const double stretch = stretch_of(h);
-        if (stretch <= sag && stretch >= sag * (1 - window))
+        if (stretch <= sag && stretch >= sag * (1 - window)) {
+            check_shape(h, sag, stiffness);
             return stiffness;
+        }
         if (!(stretch > 0))
             refuse_sag(sag, stiffness, "is not stretched");
         if (trial > 0)
@@ -243,15 +257,9 @@ static double search(const hanging *h, double sag, double first, double stretch_
     refuse_sag(sag, last_stiffness, "is stretched by another share, and so with every stiffness near it");
 }
 
-/* What there is to know of the scene, which is settled with the stiffness. */
-static void describe(const hanging *h, double sag, double damping, plan_sag *plan)
+/* The steps for a stiffness. */
+static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
-    preset *scene = h->scene;
-    const double least = 0.5; /* length over rest length, below which the stable step is not known */
-    plan->stretch[PLAN_LINK] = stretch_of_links(h);
-    plan->stretch[PLAN_SCENE] = stretch_of_scene(h);
-    if (h->stands && (plan->stretch[PLAN_LINK] > 1 - least || !is_above_pins(h)))
-        refuse_sag(sag, plan->stiffness, "collapses");
     set_links(scene, plan->stiffness, damping);
     size_t bytes;
     spring_scene *settled = start_scene(scene, SPRING_LEAPFROG, &bytes);
@@ -267,16 +275,19 @@ void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan
 {
     hanging h = examine(scene);
     plan_sag *links = &row[PLAN_LINK], *whole = &row[PLAN_SCENE];
-    *links = (plan_sag){.stiffness = search(&h, sag, first_trial(&h, sag), stretch_of_links)};
+    *links = *whole = (plan_sag){.stiffness = NAN};
+    links->stiffness = search(&h, sag, first_trial(&h, sag), stretch_of_links);
+    links->stretch[PLAN_LINK] = stretch_of_links(&h);
     const double height = settled_height(&h);
     settle(&h, sag, 2 * links->stiffness);
     h.height = 2 * settled_height(&h) - height;
-    settle(&h, sag, links->stiffness);
-    describe(&h, sag, damping, links);
-    *whole = (plan_sag){.stiffness = NAN};
+    links->stretch[PLAN_SCENE] = stretch_of_height(&h, height);
+    add_steps(scene, damping, links);
     const double share = links->stretch[PLAN_SCENE] / sag;
-    if (!(share > 0 && share <= 1)) /* a way along links cannot stretch more than each of them */
+    if (!(share > 0 && share <= 1 + accuracy)) /* a straight row of links cannot stretch more than each of them */
         return;
     whole->stiffness = search(&h, sag, share * links->stiffness, stretch_of_scene);
-    describe(&h, sag, damping, whole);
+    whole->stretch[PLAN_LINK] = stretch_of_links(&h);
+    whole->stretch[PLAN_SCENE] = stretch_of_scene(&h);
+    add_steps(scene, damping, whole);
 }

@@ -64,9 +64,11 @@ static const cli_program program = {
                "makes it.",
     .columns = "omega_dt method error energy_error status",
     .meaning = "The first columns are the parameters of the axes, here omega_dt.\n\n"
-               "error: against the exact solution, from the worst start; of a scene against RK4 in steps of a\n"
-               "sixteenth of leapfrog's stable step, over the motion; that is itself right to 1e-9 for slow motion,\n"
-               "a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
+               "error: against the exact solution, from the worst start; of a scene against RK4 in steps of at\n"
+               "most a sixteenth of its stable step and of leapfrog's, over the motion; that is itself right to 1e-9\n"
+               "for slow motion, a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
+               "force_evaluations: one per step for leapfrog in scenes; if links are so heavily damped that leapfrog\n"
+               "uses Chebyshev polynomials, a step takes two, and evaluations of damping, which are not counted.\n\n"
                "energy_error: the largest, with its sign, over the energy at the start; of a scene over its largest\n"
                "kinetic energy. settling_time_s: until it stays below 1 % of the start; a scene below 1 % of its\n"
                "largest speed.\n\n"
