@@ -799,7 +799,8 @@ static void exact_near_double(void)
         static place p;
         const spring_batch b = lay_out(&p, &s, 1, (features){SHARED, SHARED, EACH});
         const spring_params one = params_of(s);
-        const spring_propagator y = spring_propagator_of(&one, (double)step * (double)n, true);
+        const spring_quotients r = spring_quotients_of(one.stiffness, one.damping, one.mass);
+        const spring_propagator y = spring_propagator_of(&r, (double)step * (double)n, true);
         spring_state want;
         CHECK(advance(&b, SPRING_EXACT, step, n) == SPRING_OK &&
                   advance_in_double(&want, s, SPRING_EXACT, step, n) == SPRING_OK,

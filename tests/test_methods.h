@@ -47,7 +47,7 @@ static inline const spring_method *steppers(void)
 /* Does a scene keep the force at the end of a step of it for the next? */
 static inline bool keeps_force(spring_method m)
 {
-    return m == SPRING_LEAPFROG || m == SPRING_RKN8;
+    return m == SPRING_LEAPFROG || m == SPRING_RKN8 || m == SPRING_SRKN6;
 }
 
 /* Without damping no step of it is stable, as with Euler's method. */

@@ -1,48 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* RKN8 on one spring in a scene, whose mass is a power of two so that w and g are what the references work from:
    rounding, order and error constant, energy, stable step. What is true of every method tests of scenes ask. */
-#include <math.h>
-#include <stdlib.h>
-
 #include <springstep/batch.h>
-#include <springstep/scene.h>
 
-#include "check.h"
-#include "harness/reference.h"
+#include "spring_in_scene.h"
 
-/* n steps of dt from a state. */
 static spring_state advanced(spring_params p, double dt, uint64_t n, spring_state from)
 {
-    const double position[] = {0, from.x}, velocity[] = {0, from.v};
-    const uint8_t pinned[] = {1, 0};
-    const spring_link link = {0, 1, 0, p.stiffness, 0};
-    const spring_scene_def def = {.axes = 1,
-                                  .methods = 1u << SPRING_RKN8,
-                                  .particles = 2,
-                                  .links = 1,
-                                  .position = position,
-                                  .velocity = velocity,
-                                  .mass_all = p.mass,
-                                  .pinned = pinned,
-                                  .link = &link,
-                                  .gravity = {p.load / p.mass},
-                                  .drag = p.damping};
-    size_t bytes = 0;
-    spring_scene *s;
-    spring_state end = {NAN, NAN};
-    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "a valid definition");
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
-    CHECK(spring_scene_init(memory, bytes, &def, &s) == SPRING_OK, "a valid definition");
-    CHECK(spring_scene_advance(s, SPRING_RKN8, dt, n) == SPRING_OK, "finite numbers");
-    spring_scene_get(s, SPRING_POSITION, &end.x, 0, 1, 1);
-    spring_scene_get(s, SPRING_VELOCITY, &end.v, 0, 1, 1);
-    free(memory);
-    return end;
-}
-
-static double omega_of(const spring_params *p)
-{
-    return sqrt(p->stiffness / p->mass);
+    return advance_in_scene(SPRING_RKN8, p, dt, n, from);
 }
 
 /* Against the same method in exact arithmetic: springs of all sizes, steps up to just below the stable one, and
@@ -50,40 +15,21 @@ static double omega_of(const spring_params *p)
 static void against_iterate(void)
 {
     for (int i = 0; i < 400; i++) {
-        spring_params p = {.mass = ldexp(1, (int)(random_bits() % 12) - 6), .stiffness = random_log(1e-3, 1e3)};
+        const spring_params p = random_spring(i);
         const double omega = omega_of(&p);
-        if (i % 2 != 0)
-            p.damping = p.mass * omega * random_log(1e-4, 5);
-        if (i % 4 >= 2)
-            p.load = p.stiffness * random_uniform(-2, 2);
         const spring_state start = {random_uniform(-1, 1), omega * random_uniform(-1, 1)};
         const uint64_t n = 1 + random_bits() % 300;
         const double z = i % 5 == 0 ? 3.13 : random_log(1e-3, 3.1);
         const double forward = z / omega,
                      back = -fmin(z, 0.01) / (omega + p.damping / p.mass); /* where drag is growth */
         const double dt = i % 7 == 0 ? back : forward;
-        double rounded, truncated;
-        reference ref;
-        reference_init(&ref);
-        reference_start(&ref, &p, start);
-        reference_bounds *bounds = reference_bounds_new(&p, start);
-        reference_bounds_add(bounds, &p, SPRING_RKN8, dt, n);
-        reference_bounds_end(bounds, &rounded, &truncated);
-        reference_iterate(&ref, &p, SPRING_RKN8, dt, n);
-        CHECK_BELOW(reference_distance(&ref, advanced(p, dt, n, start)), rounded, "rounding of n steps, reference.h");
-        reference_clear(&ref);
+        CHECK_BELOW(rounding_of_steps(SPRING_RKN8, p, dt, n, start), 1, "rounding of n steps, reference.h");
     }
 }
 
 static double error_of(spring_params p, double duration, uint64_t n, spring_state start)
 {
-    reference exact;
-    reference_init(&exact);
-    reference_start(&exact, &p, start);
-    reference_exact(&exact, &p, duration);
-    const double error = reference_distance(&exact, advanced(p, duration / (double)n, n, start));
-    reference_clear(&exact);
-    return error;
+    return error_in_scene(SPRING_RKN8, p, duration, n, start);
 }
 
 /* With and without drag and load, by steps of z = 0.7 and less. */
@@ -139,13 +85,9 @@ static void energy_law(void)
 /* |eigenvalues| of a step at h omega = z, damping ratio `ratio`: is none above 1? */
 static bool stable(double z, double ratio)
 {
-    spring_params p = {.mass = 0.5, .stiffness = 2.7};
-    const double omega = omega_of(&p), rounding = 1e-14;
-    p.damping = 2 * ratio * p.mass * omega;
-    const spring_state a = advanced(p, z / omega, 1, (spring_state){1, 0}),
-                       b = advanced(p, z / omega, 1, (spring_state){0, omega});
-    const double trace = a.x + b.v / omega, det = (a.x * b.v - a.v * b.x) / omega;
-    return fabs(det) <= 1 + rounding && fabs(trace) <= 1 + det + rounding;
+    const double rounding = 1e-14;
+    const step_invariants step = invariants_of_step(SPRING_RKN8, z, ratio);
+    return fabs(step.det) <= 1 + rounding && fabs(step.trace) <= 1 + step.det + rounding;
 }
 
 /* Without drag up to 3.1402, where two eigenvalues meet at -1; with drag up to that and, as a scene has it, to g h =

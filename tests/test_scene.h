@@ -254,6 +254,8 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         const link_force f = evaluate_link(link, axes, x, v);
+        if ((def->flags & SPRING_SCENE_TENSION_ONLY) != 0 && (f.length <= (double)(scalar)link->rest || f.tension <= 0))
+            continue;
         for (uint32_t a = 0; a < axes; a++) {
             force[link->a * axes + a] += f.force[a];
             force[link->b * axes + a] -= f.force[a];

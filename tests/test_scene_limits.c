@@ -56,6 +56,7 @@ static void formulas(void)
                 [SPRING_RK4] = 2.61 / fmax(sqrt(all.L), all.G),
                 [SPRING_SYMPLECTIC_EULER] = p > 0 ? 4 / (p + root) : (root - p) / all.L,
                 [SPRING_RKN8] = fmin(3.14 / sqrt(all.L), 20 * damping),
+                [SPRING_SRKN6] = fmin(9.07 / sqrt(all.L), 10 * damping),
             };
             for (int i = 0; i < SPRING_METHOD_COUNT; i++)
                 if (spring_method_describe((spring_method)i)->scenes)

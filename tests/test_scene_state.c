@@ -535,7 +535,7 @@ static void bad_ranges(void)
         {SPRING_VELOCITY, false, 3, n, 0, SPRING_OK},
         {SPRING_POSITION, false, 2, 0, 1, SPRING_EINVAL},
         {SPRING_POSITION, true, 0, 0, 1, SPRING_EINVAL},
-        {(spring_quantity)2, false, 0, 0, 1, SPRING_EINVAL},
+        {(spring_quantity)3, false, 0, 0, 1, SPRING_EINVAL},
         {SPRING_POSITION, false, 0, 1, n, SPRING_ERANGE},
         {SPRING_POSITION, false, 0, n + 1, 0, SPRING_ERANGE},
         {SPRING_POSITION, false, 0, n, 1, SPRING_ERANGE},

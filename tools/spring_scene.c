@@ -27,6 +27,8 @@ enum { MOST_DISTURBANCES = 100 }; /* of a kind, on one command line */
 static uint64_t seed = 1, steps_per_frame, pokes, boxes;
 static run_length length = {.duration = 5};
 static double frame_rate = 60, fps = 60, disturbance_time = disturbance_duration, rain;
+static double tear; /* length over rest length; 0: links do not tear */
+static bool tension_only;
 static double poke[MOST_DISTURBANCES][5], box[MOST_DISTURBANCES][2]; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
 static bool hash_alone;
@@ -88,6 +90,11 @@ static const cli_option options[] = {
      .help = "a box of MASS [kg] hits the middle at time T [s]; repeatable\n"
              "It falls from 1 m, at 9.81 m/s^2. MASS > 0, 0 <= T < H; 100 boxes at most."},
     {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D", .help = "of a poke, a drop, the box [s]"},
+    {"tension-only", CLI_FLAG, .flag = &tension_only,
+     .help = "links pull and never push; not for scenes with one axis"},
+    {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
+     .help = "cut links longer than STRETCH times their rest length, after each row\n"
+             "The number of torn links is printed on standard error. Not for scenes with one axis."},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
@@ -135,6 +142,17 @@ static void refuse_what_it_lacks(const char *option, double value, double usual)
 static bool is_disturbed(void)
 {
     return pokes > 0 || boxes > 0 || rain > 0 || kind == PRESET_WATER;
+}
+
+/* On one axis links have a direction rather than a length. */
+static void refuse_on_one_axis(const preset_settings *s)
+{
+    if (s->axes == 1 && (tension_only || tear > 0))
+        cli_fail(CLI_USAGE, "--%s is not for scenes with one axis, such as this %s",
+                 tension_only ? "tension-only" : "tear", preset_names[kind]);
+    if (tension_only && spring_method_describe((spring_method)method)->positions_only)
+        cli_fail(CLI_USAGE, "--tension-only: \"%s\" requires smooth forces; --method should be another",
+                 spring_method_name((spring_method)method));
 }
 
 /* What has no effect is a mistake. */
@@ -303,6 +321,7 @@ typedef struct view { /* a scene, and what is shown of it */
     cli_table *output, *positions;
     double *xyz;    /* [particles*3] */
     double lost_at; /* [s] when its energy overflowed */
+    size_t torn;    /* links */
 } view;
 
 static void write_row(view *v)
@@ -344,6 +363,14 @@ static bool advance(view *v, uint64_t n)
     return true;
 }
 
+static void tear_links(view *v)
+{
+    size_t count = 0;
+    if (spring_scene_tear(v->scene, tear, NULL, NULL, 0, &count) != SPRING_OK)
+        cli_fail(CLI_FAILED, "the links of this scene cannot tear");
+    v->torn += count;
+}
+
 /* Returns whether the scene survived. */
 static bool run(view *v, uint64_t frame_count)
 {
@@ -360,6 +387,8 @@ static bool run(view *v, uint64_t frame_count)
             write_row(v);
         if (!end)
             write_pictures(v, frame);
+        if (tear > 0)
+            tear_links(v);
         step = next;
     }
     return true;
@@ -456,8 +485,10 @@ int main(int argc, char **argv)
     choose_length();
     check_frames();
     const preset_settings settings = chosen_settings();
+    refuse_on_one_axis(&settings);
     preset r;
     start_preset(&r, &settings);
+    r.def.flags |= (tension_only ? SPRING_SCENE_TENSION_ONLY : 0) | (tear > 0 ? SPRING_SCENE_EDITABLE : 0);
     disturbances *p = chosen_disturbances(&r, &settings);
     size_t bytes;
     spring_scene *scene = start_scene(&r, (spring_method)method, &bytes);
@@ -470,6 +501,8 @@ int main(int argc, char **argv)
     if (hash_alone)
         cli_row(v.output, "%016" PRIx64, scene_run_hash(scene, r.def.particles, r.def.axes));
     cli_finish();
+    if (tear > 0)
+        cli_warn("%zu of %zu links have torn", v.torn, r.def.links);
     if (!survived)
         cli_warn("the scene blows up: its energy overflows at t = %.17g s", v.lost_at);
     free(v.xyz);

@@ -243,6 +243,23 @@ holds("the program in docs/lua.md runs", function()
   assert(said:find("^the end is at 1%.%d%d m, %-0%.%d%d m$"), said) -- of a rope of 1.9 m that has begun to fall
 end)
 
+holds("a rope that is torn, pushed and moved", function()
+  local scene, bytes = cloth("spring_scene", function(def)
+    def.flags = spring.SPRING_SCENE_EDITABLE + spring.SPRING_SCENE_TENSION_ONLY + spring.SPRING_SCENE_FORCES
+  end)
+  local force, count = ffi.new("double[3]", 0, 0, 1), ffi.new("size_t[1]", 9)
+  spring.must(spring.spring_scene_set(scene, spring.SPRING_FORCE, force, 0, 1, 1), "hold")
+  spring.must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, 1e-3, 10), "advance")
+  spring.must(spring.spring_scene_tear(scene, 0, nil, nil, 0, count), "tear")
+  assert(count[0] > 0)
+  local matrix = ffi.new("double[12]", 1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0)
+  local before, after = ffi.new("double[3]"), ffi.new("double[3]")
+  spring.must(spring.spring_scene_get(scene, spring.SPRING_POSITION, before, 0, 3, 1), "get")
+  spring.must(spring.spring_scene_transform(scene, matrix), "move")
+  spring.must(spring.spring_scene_get(scene, spring.SPRING_POSITION, after, 0, 3, 1), "get")
+  same(after[0], before[0] + 5, "x")
+end)
+
 -- --- what is refused
 
 holds("a scene in float, and a wrong mass in it", function()

@@ -1,71 +1,66 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A value on a screen that follows a goal. The goal jumps, frames are of any length, steps are fixed, what is drawn lies
- * between the last two of them, and a value that has settled costs nothing.
+ * A value on a screen follows a target. The target jumps, once while the value is still moving; frames are of any length;
+ * and a value that has settled costs nothing.
  *
  *     cc -std=c11 ui_value.c -lspringstep -lm -o ui_value
- *
- * The goal goes into the load, stiffness * goal. Then x is the value itself, and nothing jumps with the goal. (With
- * x = value - goal the two states between which is drawn would be measured from two goals.)
  */
-#include <springstep/clock.h>
+#include <math.h>
 #include <springstep/spring.h>
 #include <stdbool.h>
 #include <stdio.h>
 
 typedef struct ui_value {
     spring_params spring;
-    spring_state previous, current; /* after the last step but one, after the last */
-    spring_clock clock;
+    spring_state state; /* the value and its velocity */
+    double target;
     bool asleep;
 } ui_value;
 
-static const double dt = 1.0 / 240;                      /* [s] of a step */
-static const double near_enough = 0.05, slow_enough = 1; /* a twentieth of a pixel, a pixel a second */
+static const double near_enough = 0.05, slow_enough = 1; /* a twentieth of a pixel, a pixel per second */
 
-static void set_goal(ui_value *u, double goal)
+static void set_target(ui_value *u, double target)
 {
-    u->spring.load = u->spring.stiffness * goal;
+    u->target = target; /* the state stays as it is, so neither the value nor its velocity jumps */
     u->asleep = false;
 }
 
-/* Take what a frame brings; returns what is to be drawn. */
+/* Advances by a frame. Returns the value to draw. */
 static double frame(ui_value *u, double frame_time)
 {
-    double alpha;
     if (u->asleep)
-        return u->current.x;
-    for (uint64_t n = spring_clock_tick(&u->clock, frame_time, dt, 32, &alpha); n > 0; n--) {
-        u->previous = u->current;
-        spring_step_leapfrog(&u->current, &u->spring, dt);
-    }
-    if (spring_at_rest(&u->current, &u->spring, near_enough, slow_enough)) {
-        u->current = (spring_state){u->spring.load / u->spring.stiffness, 0};
-        u->previous = u->current;
-        u->clock = (spring_clock){0};
+        return u->state.x;
+    spring_follow(&u->state, &u->spring, u->target, 0, frame_time);
+    if (fabs(u->state.x - u->target) <= near_enough && fabs(u->state.v) <= slow_enough) {
+        u->state = (spring_state){u->target, 0};
         u->asleep = true;
-        return u->current.x;
     }
-    return u->previous.x + alpha * (u->current.x - u->previous.x);
+    return u->state.x;
+}
+
+/* The time until the value stays near its target. */
+static double time_left(const ui_value *u)
+{
+    const spring_state from_target = {u->state.x - u->target, u->state.v};
+    return spring_settling_time(&from_target, &u->spring, near_enough);
 }
 
 int main(void)
 {
-    ui_value u = {.spring = spring_params_half_life(0.05, 0.7)}; /* swings over by a twentieth */
-    if (!spring_params_valid(&u.spring) || !(dt < spring_stable_step(&u.spring, SPRING_LEAPFROG)))
+    ui_value u = {.spring = spring_params_bounce(0.3, 0.3)}; /* overshoots by 5 % */
+    if (!spring_params_valid(&u.spring))
         return 1;
-    double t = 0, goal = 0;
-    set_goal(&u, goal);
+    double t = 0;
     for (int i = 0; i < 150; i++) {
-        if (i == 10 || i == 30) { /* a click, and one while the value is still on its way */
-            goal = i == 10 ? 100 : 40;
-            set_goal(&u, goal);
-            printf("goal %.0f  drawn %.5f, within %.2f of it in %.3f s\n", goal, frame(&u, 0), near_enough,
-                   spring_settling_time(&u.current, &u.spring, near_enough));
+        if (i == 10 || i == 30) {
+            set_target(&u, i == 10 ? 100 : 40);
+            printf("target %.0f  drawn %.5f, within %.2f of it in %.3f s\n", u.target, u.state.x, near_enough,
+                   time_left(&u));
         }
-        const double frame_time = i % 7 == 3 ? 1.0 / 25 : 1.0 / 60; /* now and then one takes longer */
+        const double frame_time = i % 7 == 3 ? 1.0 / 25 : 1.0 / 60; /* some frames take longer */
+        const double drawn = frame(&u, frame_time);
         t += frame_time;
-        printf("%.4f s  goal %5.1f  drawn %9.5f%s\n", t, goal, frame(&u, frame_time), u.asleep ? "  asleep" : "");
+        printf("%.4f s  target %5.1f  drawn %9.5f%s\n", t, u.target, drawn, u.asleep ? "  asleep" : "");
     }
     return 0;
 }

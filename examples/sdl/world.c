@@ -115,8 +115,8 @@ static void get_positions(const world *w, vec3 *out)
 
 /* ------------------------------------------------------------------------------------------------- making, freeing */
 
-/* Every method that scenes offer, so that the user may change it while all moves on. RKN8 is not for damped links: the
-   links are made without damping, world_set_damping() comes later. */
+/* Every method that scenes offer, so that the user may change it while all moves on. RKN8 and SRKN6 are not for damped
+   links: the links are made without damping, world_set_damping() comes later. */
 static uint32_t all_methods(void)
 {
     uint32_t methods = 0;

@@ -117,6 +117,41 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
                                                       uint8_t *failed);
 
 /**
+ * Advances every spring of a batch that follows a target of its own, by its exact solution, and counts the springs that
+ * still move.
+ *
+ *     x[i]'' = accel[i] - omega2[i] (x[i] - target[i]) - gamma[i] x[i]'
+ *
+ * Spring i is advanced like the single spring {1, omega2[i], gamma[i], accel[i]} by spring_follow() with a target
+ * velocity of 0, and lands by the same rule. In double precision the result is bit-identical. Its rest position is
+ * target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring within x_tol of its rest
+ * position whose speed is at most v_tol is placed at its rest position with v = 0. Without stiffness, a spring with a
+ * load never rests, and one without load rests on its target only.
+ *
+ * Coefficients are shared as in spring_batch_advance(). Springs fail one by one as there, also for a target that is not
+ * finite. With dt = 0 nothing moves, and springs are counted as they are. With a count of 0 nothing happens.
+ *
+ * @param[in,out] b       batch
+ * @param[in]     target  [count] targets [m]; must not overlap x or v
+ * @param[in]     dt      finite time step [s]; a negative step integrates backwards
+ * @param[in]     x_tol   >= 0 [m]
+ * @param[in]     v_tol   >= 0 [m/s]
+ * @param[out]    moving  number of springs that are not at rest on their target; springs that failed are counted. NULL:
+ *                        not needed. Not written if nothing changed because of an error of the whole batch.
+ * @return as spring_batch_advance(); SPRING_EINVAL, nothing changed, also if target is NULL or overlaps x or v, or a
+ *         tolerance is negative or NaN
+ * @par Threads   re-entrant; allocates nothing and keeps no state; disjoint ranges of a batch may be advanced
+ *                concurrently
+ */
+SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double *target, double dt, double x_tol,
+                                             double v_tol, size_t *moving);
+
+/** The single-precision version. Springs land with the ulp of float, and FLT_MIN for DBL_MIN. Rest positions are computed
+   in float and tolerances are rounded to float; dt is not rounded. */
+SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
+                                              double v_tol, size_t *moving);
+
+/**
  * Returns the stability limit of a batch: the smallest spring_stable_step() of its springs [s].
  *
  * It visits every spring that has its own parameters, and computes square roots. Call it when parameters change, not

@@ -40,7 +40,7 @@ extern "C" {
 
 /** The state of a spring. It is two numbers, so it is easy to copy, to send and to roll back. */
 typedef struct spring_state {
-    double x; /**< [m]   displacement from the unloaded rest position; for a target, set load = stiffness * target */
+    double x; /**< [m]   displacement from the unloaded rest position; the value itself with spring_follow() */
     double v; /**< [m/s] velocity, at the same time as x */
 } spring_state;
 
@@ -62,12 +62,13 @@ typedef enum spring_method {
     SPRING_RK4,      /**< order 4; the smallest error for short runs; slowly loses energy */
     SPRING_EXACT,    /**< the exact solution; for one linear spring, no stepper is better */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
-    SPRING_RKN8              /**< order 8; scenes without damped links: many significant digits of a smooth motion */
+    SPRING_RKN8,             /**< order 8; scenes without damped links: many significant digits of a smooth motion */
+    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links: long runs with 3 to 6 digits */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is
    compared with a spring_method. */
-#define SPRING_METHOD_COUNT 6
+#define SPRING_METHOD_COUNT 7
 
 /** A state that is no longer finite is detected after at most this many steps. */
 enum { SPRING_CHECK_INTERVAL = 4096 };
@@ -215,6 +216,43 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
 SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p, spring_method m, double dt,
                                         uint64_t n);
 
+/**
+ * Advances one spring that follows a target, by its exact solution. The step may be of any length.
+ *
+ *     mass x'' = load - stiffness (x - T) - damping (x' - T')
+ *
+ * The target T moves at the constant velocity T' = target_velocity during the step, and reaches `target` at its end. So
+ * a target at constant velocity is followed without lag, and independently of the frame rate. For a target that jumps,
+ * or whose velocity you do not know, pass target_velocity = 0. A new target keeps x and v.
+ *
+ * The rest position is target + load/stiffness, and exactly `target` without load. A damped spring reaches it: it is
+ * placed at rest there, x = rest position and v = target_velocity, as soon as rounding could keep it from coming closer.
+ * That is if dt > 0 and
+ *
+ *     hypot(x - rest position, (v - T')/omega) min(1, slow dt) <= 9/8 ulp + DBL_MIN
+ *
+ * where slow is the decay rate of the slowest mode, and the ulp is that of x or of the rest position, whichever is
+ * larger. Without stiffness, damping brings the velocity to T', and the position of the target has no effect.
+ *
+ * @param[in,out] s                state; unchanged unless SPRING_OK is returned
+ * @param[in]     p                parameters
+ * @param[in]     target           target at the end of the step [m], finite
+ * @param[in]     target_velocity  velocity of the target during the step [m/s], finite
+ * @param[in]     dt               finite time step [s]; a negative step integrates backwards; 0 changes nothing
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE
+ * @par Accuracy  With y = x - rest position and u = v - T' before the step, the error of (x, v/omega) is at most the sum
+ *                of
+ *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(y, u/omega)| + DBL_MIN (1 + 1/omega)
+ *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
+ *                    9/8 ulp/min(1, slow dt), if the spring is placed on its target
+ *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness, the
+ *                error is that of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
+ * @par Source    src/spring/follow_formula.h derives the condition
+ * @par Threads   re-entrant; allocates nothing and keeps no state
+ */
+SPRING_API spring_status spring_follow(spring_state *s, const spring_params *p, double target, double target_velocity,
+                                       double dt);
+
 /** @} */
 
 /** @defgroup questions Energy, steps, parameters, rest
@@ -288,6 +326,40 @@ SPRING_API spring_params spring_params_hertz(double hertz, double damping_ratio)
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
  */
 SPRING_API spring_params spring_params_half_life(double half_life, double damping_ratio);
+
+/**
+ * Makes parameters from a response and a damping fraction, as SwiftUI has them, for mass 1 kg.
+ *
+ * @param[in] response          period of the undamped spring > 0 [s]; omega = 2 pi/response
+ * @param[in] damping_fraction  damping ratio >= 0; 1 is critical
+ * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
+ */
+SPRING_API spring_params spring_params_response(double response, double damping_fraction);
+
+/**
+ * Makes parameters from a duration and a bounce, as SwiftUI has them, for mass 1 kg.
+ *
+ * The damping ratio is 1 - bounce, and 1/(1 + bounce) for a negative bounce. A bounce of 0 is critical damping, 1 is no
+ * damping. The spring is not at rest after `duration`; see spring_params_settling().
+ *
+ * @param[in] duration  period of the undamped spring > 0 [s]; omega = 2 pi/duration
+ * @param[in] bounce    -1 < bounce <= 1
+ * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
+ */
+SPRING_API spring_params spring_params_bounce(double duration, double bounce);
+
+/**
+ * Makes parameters from a settling time and a damping ratio, for mass 1 kg.
+ *
+ * A spring that is released at rest at distance 1 from its target stays within `tolerance` of it from `time` on.
+ *
+ * @param[in] time           settling time > 0 [s]
+ * @param[in] damping_ratio  > 0; 1 is critical
+ * @param[in] tolerance      0 < tolerance < 1, relative to the start; 0.001 looks settled
+ * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
+ * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/test_follow.c)
+ */
+SPRING_API spring_params spring_params_settling(double time, double damping_ratio, double tolerance);
 
 /**
  * Returns whether the spring is within x_tol [m] of its rest position load/stiffness and its speed is at most

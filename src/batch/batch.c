@@ -68,14 +68,19 @@ static spring_params spring_at(const spring_batch *b, size_t i)
     };
 }
 
-/* Why some springs kept their state: their state or parameters are not valid, or the result would not be finite. */
-static spring_status reason(const spring_batch *b)
+static bool spring_valid(const spring_batch *b, const scalar *target, size_t i)
 {
-    for (size_t i = 0; i < b->count; i++) {
-        const spring_params p = spring_at(b, i);
-        if (!spring_finite(b->x[i]) || !spring_finite(b->v[i]) || !spring_params_valid(&p))
+    const spring_params p = spring_at(b, i);
+    return spring_finite(b->x[i]) && spring_finite(b->v[i]) && spring_params_valid(&p) &&
+           (target == NULL || spring_finite(target[i]));
+}
+
+/* Why some springs kept their state: their state or parameters are not valid, or the result would not be finite. */
+static spring_status reason(const spring_batch *b, const scalar *target)
+{
+    for (size_t i = 0; i < b->count; i++)
+        if (!spring_valid(b, target, i))
             return SPRING_EINVAL;
-    }
     return SPRING_ENONFINITE;
 }
 
@@ -98,7 +103,7 @@ static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t si
 static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
 {
     scalar x[largest_group], v[largest_group];
-    scalar omega2[largest_group], gamma[largest_group], accel[largest_group];
+    scalar omega2[largest_group], gamma[largest_group], accel[largest_group], target[largest_group];
     const size_t size = kernels->group_size, count = b->count - first;
     batch_run tail = *all;
     tail.count = size;
@@ -110,6 +115,9 @@ static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, co
         tail.gamma.first = filled_up(gamma, b->gamma + first, count, size);
     if (tail.accel.stride > 0)
         tail.accel.first = filled_up(accel, b->accel + first, count, size);
+    if (tail.target != NULL)
+        tail.target = filled_up(target, all->target + first, count, size);
+    tail.landing.counted = count;
     const bool done = kernels->advance(&tail);
     memcpy(b->x + first, x, count * sizeof *x);
     memcpy(b->v + first, v, count * sizeof *v);
@@ -132,6 +140,7 @@ static bool advance_all(const batch_kernels *kernels, const spring_batch *b, bat
 {
     scalar omega2[largest_vector], gamma[largest_vector], accel[largest_vector];
     run.count = b->count - b->count % kernels->group_size;
+    run.landing.counted = run.count;
     run.x = b->x;
     run.v = b->v;
     run.omega2 = array_of(b, b->omega2, SPRING_SHARED_OMEGA2, omega2);
@@ -152,6 +161,19 @@ static spring_status check_batch(const spring_batch *b, spring_method m, double 
     return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
 }
 
+/* Whether all springs have the same propagator. */
+static bool same_propagator(const spring_batch *b)
+{
+    return is_shared(b, SPRING_SHARED_OMEGA2) && (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA));
+}
+
+static spring_propagator propagator_of(const spring_batch *b, double t, bool loaded)
+{
+    const spring_params p = spring_at(b, 0);
+    const spring_quotients r = spring_quotients_of(p.stiffness, p.damping, p.mass);
+    return spring_propagator_of(&r, t, loaded);
+}
+
 /* The step is rounded to the precision of the batch once, here. */
 spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m,
                                         double step, uint64_t n)
@@ -160,20 +182,67 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     const scalar dt = (scalar)step;
     if (status != SPRING_OK || b->count == 0 || n == 0 || dt == 0)
         return status;
-    const bool damped = b->gamma != NULL, loaded = b->accel != NULL;
-    batch_run run = {.method = m, .dt = dt, .n = n};
+    batch_run run = {.method = m, .dt = dt, .n = n, .t = (double)dt * (double)n};
     spring_propagator propagator;
-    if (m == SPRING_EXACT && is_shared(b, SPRING_SHARED_OMEGA2) && (!damped || is_shared(b, SPRING_SHARED_GAMMA))) {
-        const spring_params p = spring_at(b, 0);
-        propagator = spring_propagator_of(&p, (double)dt * (double)n, loaded);
+    if (m == SPRING_EXACT && same_propagator(b)) {
+        propagator = propagator_of(b, run.t, b->accel != NULL);
         run.propagator = &propagator;
     }
-    return advance_all(kernels, b, run) ? SPRING_OK : reason(b);
+    return advance_all(kernels, b, run) ? SPRING_OK : reason(b, NULL);
 }
 
 spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n)
 {
     return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
+}
+
+/* The number of springs that do not rest on their target. */
+static size_t count_moving(const spring_batch *b, const scalar *target, const exact_landing *landing)
+{
+    size_t moving = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const scalar a = element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL));
+        const scalar w = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2));
+        const scalar rest = a != 0 ? target[i] + a / w : target[i], distance = b->x[i] - rest;
+        const bool settled = fabs((double)distance) <= landing->x_tol && fabs((double)b->v[i]) <= landing->v_tol;
+        moving += !(settled && spring_valid(b, target, i));
+    }
+    return moving;
+}
+
+/* As tests call it. In single precision tolerances are rounded once, here. */
+spring_status spring_batch_follow_with(const batch_kernels *kernels, const spring_batch *b, const scalar *target,
+                                       double dt, double x_tol, double v_tol, size_t *moving)
+{
+    if (b == NULL || !batch_valid(b) || !spring_finite(dt) || !(x_tol >= 0) || !(v_tol >= 0) ||
+        (b->count > 0 &&
+         (target == NULL || overlap(b->x, b->count, target, b->count) || overlap(b->v, b->count, target, b->count))))
+        return SPRING_EINVAL;
+    size_t count = 0;
+    spring_status status = SPRING_OK;
+    const double largest = sizeof(scalar) == sizeof(float) ? FLT_MAX : DBL_MAX; /* infinity is at no distance */
+    const exact_landing landing = {
+        .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = &count};
+    if (b->count > 0 && dt == 0)
+        count = count_moving(b, target, &landing);
+    if (b->count > 0 && dt != 0) {
+        batch_run run = {.method = SPRING_EXACT, .t = dt, .target = target, .landing = landing};
+        spring_propagator propagator;
+        if (same_propagator(b) && *b->omega2 > 0) {
+            propagator = propagator_of(b, dt, false);
+            run.propagator = &propagator;
+        }
+        status = advance_all(kernels, b, run) ? SPRING_OK : reason(b, target);
+    }
+    if (moving != NULL)
+        *moving = count;
+    return status;
+}
+
+spring_status spring_batch_follow(const spring_batch *b, const scalar *target, double dt, double x_tol, double v_tol,
+                                  size_t *moving)
+{
+    return spring_batch_follow_with(best_batch_kernels(), b, target, dt, x_tol, v_tol, moving);
 }
 
 static const scalar *from_spring(const spring_batch *b, const scalar *parameter, uint32_t bit, size_t first)

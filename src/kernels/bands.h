@@ -9,7 +9,8 @@
  *           conserved to rounding error; and the order of additions does not depend on the vector width. A tile reads
  *           no position and no velocity of the tiles before it.
  * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2); no force where both ends are at one
- *           point. On one axis k (delta - rest) + c (relative velocity).
+ *           point. On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force where it is not
+ *           longer than its rest length, or where it would push.
  * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
  */
 #ifndef SPRINGSTEP_BANDS_H
@@ -30,11 +31,12 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 /* Replaces the vectors from the lower to the upper ends of links by the forces on the lower ends. Slots without a link get
    0 by selection, not by multiplication: their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
-                             const real *rest, const real *c, bool damped)
+                             const real *rest, const real *c, bool damped, bool tension_only)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
     real rate[most_together];
+    mask acts[most_together]; /* lanes whose link has a force */
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         real square = delta[m][0] * delta[m][0];
@@ -51,15 +53,21 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         const real inverse = scale[m];
-        scale[m] = k[m] * (1 - rest[m] * inverse);
+        const real stretch = 1 - rest[m] * inverse;
+        scale[m] = k[m] * stretch;
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
+        acts[m] = joined[m];
+        if (tension_only) /* NaN stays, so that it is noticed */
+            scale[m] = vec_not_negative(scale[m]);
+        if (tension_only && damped)
+            acts[m] &= not_mask(stretch <= 0);
     }
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++)
-            delta[m][a] = select_real(joined[m], scale[m] * delta[m][a], splat(0));
+            delta[m][a] = select_real(acts[m], scale[m] * delta[m][a], splat(0));
     }
 }
 
@@ -84,7 +92,8 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
 /* Computes the forces of a band in `slots` slots from t on; those along axis a are stored at force + a * axis. shared: all
    slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared)
+                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared,
+                               bool tension_only)
 {
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
@@ -119,7 +128,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
-            to_forces(axes, delta, relative, joined, k, rest, c, damped);
+            to_forces(axes, delta, relative, joined, k, rest, c, damped, tension_only);
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
@@ -168,9 +177,44 @@ SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, cons
         tile_damping_forces(band, v, stride, t, slots, force, axis, axes);
     else if (axes == 1 &&
              band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true);
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true, false);
     else
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false);
+        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false, false);
+}
+
+/* Tension-only links. Functions of their own, so that the loop over tiles exists once. */
+typedef void taut_kernel(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
+                         size_t slots, scalar *force, size_t axis);
+
+SPRING_NOINLINE void taut_forces_on_2_axes(const scene_band *band, const scalar *x, const scalar *v, size_t stride,
+                                           ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(band, x, v, stride, t, slots, force, axis, 2, false, false, true);
+}
+
+SPRING_NOINLINE void damped_taut_forces_on_2_axes(const scene_band *band, const scalar *x, const scalar *v,
+                                                  size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(band, x, v, stride, t, slots, force, axis, 2, true, false, true);
+}
+
+SPRING_NOINLINE void taut_forces_on_3_axes(const scene_band *band, const scalar *x, const scalar *v, size_t stride,
+                                           ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(band, x, v, stride, t, slots, force, axis, 3, false, false, true);
+}
+
+SPRING_NOINLINE void damped_taut_forces_on_3_axes(const scene_band *band, const scalar *x, const scalar *v,
+                                                  size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(band, x, v, stride, t, slots, force, axis, 3, true, false, true);
+}
+
+SPRING_INLINE taut_kernel *taut_forces(uint32_t axes, bool damped)
+{
+    if (axes == 2)
+        return damped ? damped_taut_forces_on_2_axes : taut_forces_on_2_axes;
+    return damped ? damped_taut_forces_on_3_axes : taut_forces_on_3_axes;
 }
 
 /* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
@@ -250,7 +294,11 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
             if (t >= band->start && t < band->end) {
-                one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, terms);
+                if (axes > 1 && terms != DAMPING_TERM && SPRING_UNLIKELY(s->tension_only))
+                    taut_forces(axes, terms == STIFFNESS_AND_DAMPING_TERM)(band, x, v, s->stride, t, count, force,
+                                                                           axis);
+                else
+                    one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, terms);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
@@ -304,7 +352,7 @@ SPRING_INLINE void all_band_directions(const scene_links *s, const scalar *x, sc
         scalar *const of_band = direction + (band->direction - s->band[0].direction);
         for (size_t j = 0; j < (size_t)(band->end - band->start); j += lanes) {
             const mask joined = vec_load_mask(band->occupied + j);
-            const real root = vec_sqrt(vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride));
+            real root = vec_sqrt(vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride));
             real delta[3], inverse = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
@@ -314,6 +362,10 @@ SPRING_INLINE void all_band_directions(const scene_links *s, const scalar *x, sc
             }
             if (axes > 1)
                 vec_inverse_sqrt(&inverse, &joined, 1);
+            if (s->tension_only) { /* a slack link is not damped */
+                const real rest = vec_load(band->rest + (ptrdiff_t)j * band->coefficient_stride);
+                root = select_real(rest * inverse < 1, root, splat(0));
+            }
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++)
                 vec_store(of_band + a * band->direction_stride + j,

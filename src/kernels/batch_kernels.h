@@ -25,6 +25,9 @@ typedef struct batch_run {
     batch_array omega2, gamma, accel;
     scalar dt;
     uint64_t n;
+    double t;                            /* exact solution: n dt */
+    const scalar *target;                /* exact solution: NULL, or a target for each spring */
+    exact_landing landing;               /* of springs with targets */
     const spring_propagator *propagator; /* exact solution of springs with equal parameters; NULL: they differ */
 } batch_run;
 
@@ -41,5 +44,10 @@ SPRING_INTERNAL const batch_kernels spring_batch_v256, spring_batch_v512;
 /* spring_batch_advance() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b,
                                                         spring_method m, double step, uint64_t n);
+
+/* spring_batch_follow() with a given instruction set, for tests. */
+SPRING_INTERNAL spring_status spring_batch_follow_with(const batch_kernels *kernels, const spring_batch *b,
+                                                       const scalar *target, double dt, double x_tol, double v_tol,
+                                                       size_t *moving);
 
 #endif

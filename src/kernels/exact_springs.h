@@ -5,16 +5,8 @@
 #define SPRINGSTEP_EXACT_SPRINGS_H
 
 #include "../spring/exact_formula.h"
+#include "follow_springs.h"
 #include "spring_group.h"
-
-/* Coefficients that are equal for all springs, computed once in double. */
-SPRING_INLINE exact_coefficients exact_prepare(const spring_propagator *y)
-{
-    return (exact_coefficients){
-        splat((scalar)y->half), splat((scalar)y->F),  splat((scalar)y->G),
-        splat((scalar)y->H),    splat((scalar)y->wH), splat((scalar)y->P),
-    };
-}
 
 SPRING_INLINE bool advance_alike(const batch_run *b, bool loaded)
 {
@@ -35,11 +27,6 @@ SPRING_INLINE bool advance_alike(const batch_run *b, bool loaded)
 }
 
 #ifndef SPRING_FLOAT
-SPRING_INLINE real exact_load(const void *array, size_t i, bool single)
-{
-    return single ? vec_load_float((const float *)array + i) : vec_load((const double *)array + i);
-}
-
 SPRING_INLINE void exact_store(void *array, size_t i, real a, bool single)
 {
     if (single)
@@ -81,9 +68,13 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
     for (size_t i = 0; i < b.count; i += lanes) {
         const real w = exact_rate(b.omega2, i, b.single), g = damped ? exact_rate(b.gamma, i, b.single) : splat(0);
         const real a = loaded ? exact_load(b.accel.first, i * b.accel.stride, b.single) : splat(0);
-        const exact_coefficients c = exact_coefficients_of(w, g / 2, splat(0), splat(b.t), loaded);
+        const bool shifted = b.target != NULL && !any(not_mask(w > 0)); /* a load only shifts the rest position */
+        const exact_coefficients c = exact_coefficients_of(w, g / 2, splat(0), splat(b.t), loaded && !shifted);
         real x = exact_load(b.x, i, b.single), v = exact_load(b.v, i, b.single);
-        exact_step(&x, &v, a, &c, loaded);
+        if (b.target != NULL)
+            follow_each(&b, i, &x, &v, w, a, &c, loaded);
+        else
+            exact_step(&x, &v, a, &c, loaded);
         if (SPRING_UNLIKELY(any(not_mask((vec_abs(x) < beyond) & (vec_abs(v) < beyond))))) {
             double x1[lanes], v1[lanes];
             memcpy(x1, &x, sizeof x);
@@ -100,6 +91,8 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 
 static bool advance_exactly(const batch_run *b)
 {
+    if (b->propagator != NULL && b->target != NULL)
+        return SPRING_BY_FEATURES(b->accel.first != NULL, b->propagator->half == 1, follow_alike, b);
     if (b->propagator != NULL)
         return b->accel.first != NULL ? advance_alike(b, true) : advance_alike(b, false);
     const exact_run each = {
@@ -110,7 +103,9 @@ static bool advance_exactly(const batch_run *b)
         .omega2 = {b->omega2.first, b->omega2.stride},
         .gamma = {b->gamma.first, b->gamma.stride},
         .accel = {b->accel.first, b->accel.stride},
-        .t = (double)b->dt * (double)b->n,
+        .target = b->target,
+        .landing = b->landing,
+        .t = b->t,
     };
     return SPRING_EXACT_KERNEL(&each);
 }

@@ -19,6 +19,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
 #include "particles.h"
+#include "stretch.h"
 #if SPRING_VECTOR < 64
 #include "unbanded.h"
 SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
@@ -53,6 +54,8 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .nystrom_end = move_nystrom_end,
     .damping_term = move_damping_term,
     .last_damping_term = move_last_damping_term,
+    .stretched = any_stretched,
+    .kick_damped_drift = move_kick_damped_drift,
 };
 #endif
 

@@ -19,14 +19,17 @@ typedef struct coordinates {
     real drag;                /* [1/s] */
     bool dragged;             /* the scene has drag */
     implicit_factors damping; /* of an implicit kick; unset without drag */
+    bool holds;               /* there may be held forces; a constant */
+    real held;                /* [N] held force */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* By force and gravity. No force moves a pinned particle, not even an infinite one. */
+/* By force, held force and gravity. No force moves a pinned particle, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
 {
-    const real free = c->inverse_mass * vec_load(m->force + c->at) + c->gravity;
+    const real force = c->holds ? vec_load(m->force + c->at) + c->held : vec_load(m->force + c->at);
+    const real free = c->inverse_mass * force + c->gravity;
     return select_real(c->inverse_mass > 0, free, splat(0));
 }
 
@@ -58,9 +61,9 @@ SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x
 /* Moves one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
 typedef mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
 
-/* The loop of all kernels. */
+/* The loop of all kernels. holds is a constant; with true, a scene without held forces adds -0, which changes no bit. */
 SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
-                                   particle_update *update, unsigned variant)
+                                   particle_update *update, unsigned variant, bool holds)
 {
     const scene_particles p = *particles; /* local copies, so that stores cannot alias their fields */
     const scene_motion m = *motion;
@@ -68,6 +71,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
     for (uint32_t a = 0; a < p.axes; a++) {
         const scalar *const quad_gravity = p.gravity + a * padding;
         const real gravity = vec_load(quad_gravity);
+        const scalar *const held = p.held + a * p.stride * p.held_stride;
         for (size_t i = from; i < to; i += lanes) {
             real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
             if (SPRING_UNLIKELY(i + lanes > p.count)) /* padding lanes of the last vector keep their finite values */
@@ -80,6 +84,8 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
                 .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
+                .holds = holds,
+                .held = holds ? vec_load(held + i * p.held_stride) : splat(0),
             };
             if (c.dragged)
                 c.damping = implicit_factors_of(m.kick * c.drag);
@@ -112,13 +118,22 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     return wrong | not_finite(predicted);
 }
 
+/* Leapfrog has loops of their own for held forces, so that other scenes lose no time. */
+SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const unsigned ends = m->ends_step ? ENDS_STEP : 0, predicts = m->predicted != NULL ? PREDICTS : 0;
+    return for_each_vector(p, m, from, to, update_kick_drift, ends | predicts, true);
+}
+
 static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
+    if (p->held_stride != 0)
+        return move_kick_drift_held(p, m, from, to);
     if (m->predicted == NULL)
-        return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP)
-                            : for_each_vector(p, m, from, to, update_kick_drift, 0);
-    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP | PREDICTS)
-                        : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS);
+        return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP, false)
+                            : for_each_vector(p, m, from, to, update_kick_drift, 0, false);
+    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP | PREDICTS, false)
+                        : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS, false);
 }
 
 SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -129,9 +144,15 @@ SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates
     return too_fast(m, c, v);
 }
 
+SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_implicit_kick, 0, true);
+}
+
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_implicit_kick, 0);
+    return p->held_stride != 0 ? move_implicit_kick_held(p, m, from, to)
+                               : for_each_vector(p, m, from, to, update_implicit_kick, 0, false);
 }
 
 SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -144,7 +165,7 @@ SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coord
 
 static bool move_implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0);
+    return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0, true);
 }
 
 /* --------------------------------------------------------------------------------------- stages of Runge-Kutta methods */
@@ -170,17 +191,17 @@ SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, uns
 
 static bool move_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_stage, NO_SUM);
+    return for_each_vector(p, m, from, to, update_stage, NO_SUM, true);
 }
 
 static bool move_first_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_stage, FIRST_SUM);
+    return for_each_vector(p, m, from, to, update_stage, FIRST_SUM, true);
 }
 
 static bool move_next_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_stage, NEXT_SUM);
+    return for_each_vector(p, m, from, to, update_stage, NEXT_SUM, true);
 }
 
 SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -193,7 +214,7 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
 
 static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_last_stage, 0);
+    return for_each_vector(p, m, from, to, update_last_stage, 0, true);
 }
 
 /* The acceleration of stage `number` by the force found there: of x, or with drag of y = e^(drag t/2) (x - x0), where t
@@ -232,19 +253,19 @@ static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, 
 {
     switch (m->nystrom->number) {
     case 1:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 1);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 1, true);
     case 2:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 2);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 2, true);
     case 3:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 3);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 3, true);
     case 4:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 4);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 4, true);
     case 5:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 5);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 5, true);
     case 6:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 6);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 6, true);
     default:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages, true);
     }
 }
 
@@ -265,7 +286,7 @@ SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *
 
 static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_nystrom_end, 0);
+    return for_each_vector(p, m, from, to, update_nystrom_end, 0, true);
 }
 
 /* ------------------------------------------------------------------------------------------------ Chebyshev damping */
@@ -287,12 +308,29 @@ SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates 
 
 static bool move_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, 0);
+    return for_each_vector(p, m, from, to, update_damping_term, 0, false);
 }
 
 static bool move_last_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, 1);
+    return for_each_vector(p, m, from, to, update_damping_term, 1, false);
+}
+
+/* ------------------------------------------------------------------------------- kicks, and drifts with exact drag */
+
+SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
+    const real v0 = (variant & ENDS_STEP) != 0 ? start + m->kick * free : start;
+    const real v = v0 + m->kick * free, x = vec_load(m->x0 + c->at) + vec_load(m->span + c->mass) * v;
+    store_state(m, c, x, v + vec_load(m->loss + c->mass) * v);
+    return (variant & ENDS_STEP) != 0 ? not_finite(x) | too_fast(m, c, v0) : not_finite(x);
+}
+
+static bool move_kick_damped_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_damped_drift, ENDS_STEP, true)
+                        : for_each_vector(p, m, from, to, update_kick_damped_drift, 0, true);
 }
 
 #endif

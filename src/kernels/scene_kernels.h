@@ -62,6 +62,7 @@ typedef struct scene_links {
     size_t bands;
     const scene_band *band;
     unbanded_links unbanded;
+    bool tension_only; /* links pull and never push */
 } scene_links;
 
 /* What the kernels of links write. */
@@ -78,6 +79,9 @@ typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar 
 
 /* Computes scene_band.direction of all bands at positions x. direction: that of the first band. */
 typedef void direction_kernel(const scene_links *, const scalar *x, scalar *direction);
+/* Returns whether a link of the bands is longer than `stretch` times its rest length, cut links and links of rest length
+   0 excepted. May return true for a link that is shorter by 1e-5 of that. 0 <= stretch <= 1e9. */
+typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
 
 /* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
 typedef struct scene_particles {
@@ -88,6 +92,8 @@ typedef struct scene_particles {
     size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
     const scalar *gravity;      /* a vector for each axis; for quads one vector */
     scalar drag;                /* [N s/m] */
+    const scalar *held;         /* [N] held forces */
+    size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
 /* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
@@ -122,6 +128,7 @@ typedef struct scene_motion {
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
     const scene_chebyshev *chebyshev;
+    const scalar *span, *loss; /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
 } scene_motion;
 
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN, or if
@@ -157,6 +164,8 @@ typedef struct scene_kernels {
     particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
                                              + kick force/mass */
     particle_kernel *last_damping_term;   /* the same, if no particle is pinned; pinned ones keep v0 */
+    stretch_kernel *stretched;            /* see above */
+    particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */

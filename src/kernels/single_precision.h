@@ -12,6 +12,8 @@
 #define spring_batch_advance        spring_batchf_advance
 #define spring_batch_advance_with   spring_batchf_advance_with
 #define spring_batch_advance_marked spring_batchf_advance_marked
+#define spring_batch_follow         spring_batchf_follow
+#define spring_batch_follow_with    spring_batchf_follow_with
 #define spring_batch_stable_step    spring_batchf_stable_step
 #define spring_batch_v128           spring_batchf_v128
 #define spring_batch_v256           spring_batchf_v256
@@ -49,6 +51,10 @@
 #define spring_scene_v512         spring_scenef_v512
 #define spring_unbanded_v128      spring_unbandedf_v128
 #define spring_unbanded_v256      spring_unbandedf_v256
+#define spring_scene_set_links    spring_scenef_set_links
+#define spring_scene_tear         spring_scenef_tear
+#define spring_scene_tear_with    spring_scenef_tear_with
+#define spring_scene_transform    spring_scenef_transform
 #endif
 
 #endif

@@ -12,10 +12,12 @@
 #include "bands.h"
 
 /* The force of a link divided by the vector between its ends. rate: relative velocity . delta */
-SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped)
+SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped,
+                                bool tension_only)
 {
-    const scalar scale = l->stiffness[j] * (1 - l->rest[j] / scalar_sqrt(square));
-    return damped ? scale + l->damping[j] * (rate / square) : scale;
+    const scalar stretch = 1 - l->rest[j] / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
+    const scalar scale = damped ? pull + l->damping[j] * (rate / square) : pull;
+    return tension_only && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is noticed */
 }
 
 /* A link that is cut has no force, however far apart its ends are. */
@@ -26,7 +28,7 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
 
 /* From arrays of each axis. */
 SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                uint32_t axes, bool damped)
+                                uint32_t axes, bool damped, bool tension_only)
 {
     const unbanded_links *const l = &s->unbanded;
     for (size_t j = 0; j < l->count; j++) {
@@ -46,7 +48,7 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
             if (damped)
                 delta[0] += l->damping[j] * (v[to] - v[from]);
         } else {
-            scale = link_scale(l, j, square, rate, damped);
+            scale = link_scale(l, j, square, rate, damped, tension_only);
         }
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
@@ -57,7 +59,7 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
 }
 
 SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
-                                 size_t stride, bool damped)
+                                 size_t stride, bool damped, bool tension_only)
 {
     const size_t a = stride * l->a[j], b = stride * l->b[j];
     const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
@@ -65,20 +67,27 @@ SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar
     if (!link_acts(l, j, damped) || !(square > 0))
         return;
     const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
-    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped)), delta);
+    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped, tension_only)), delta);
     quad_store(force + a, quad_plus(quad_load(force + a), pull));
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
 }
 
+/* Tension-only: a function of its own, since it is called for few links. */
+SPRING_NOINLINE void one_taut_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                   size_t stride, bool damped)
+{
+    one_quad_link(l, j, x, v, force, stride, damped, true);
+}
+
 /* From quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
 SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
-                              size_t stride, bool damped)
+                              size_t stride, bool damped, bool tension_only)
 {
     const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
     const size_t ahead = 32; /* links, whose ends are prefetched: for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
-        if (j + ahead < fours) {
+        if (stride > quad_size && j + ahead < fours) { /* not in a small scene */
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_PREFETCH(x + stride * l->a[j + ahead + m]);
@@ -96,16 +105,23 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
                 rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
         }
         const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
-        quad scale = quad_times(quad_load(l->stiffness + j),
-                                quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square))));
+        const quad stretch = quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square)));
+        quad scale = quad_times(quad_load(l->stiffness + j), stretch);
         if (damped)
             scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
                                                 quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
         if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
             for (size_t m = 0; m < some; m++)
-                one_quad_link(l, j + m, x, v, force, stride, damped);
+                if (tension_only)
+                    one_taut_link(l, j + m, x, v, force, stride, damped);
+                else
+                    one_quad_link(l, j + m, x, v, force, stride, damped, false);
             continue;
         }
+        if (tension_only)
+            scale = quad_where_positive(scale, scale);
+        if (tension_only && damped)
+            scale = quad_where_positive(scale, stretch);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
@@ -115,7 +131,10 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        one_quad_link(l, j, x, v, force, stride, damped);
+        if (tension_only && stride > quad_size)
+            one_taut_link(l, j, x, v, force, stride, damped);
+        else
+            one_quad_link(l, j, x, v, force, stride, damped, tension_only);
 }
 
 /* -------------------------------------------------------------------------------- damping alone, along frozen directions */
@@ -163,6 +182,17 @@ SPRING_INLINE size_t force_in_record(bool damped)
     return (damped ? 2 : 1) * quad_size;
 }
 
+/* Tension-only links of records. Functions of their own, which do not slow down others. */
+SPRING_NOINLINE void taut_links(const unbanded_links *l, const scalar *x, scalar *force)
+{
+    quad_links(l, x, NULL, force, force_in_record(false) + quad_size, false, true);
+}
+
+SPRING_NOINLINE void damped_taut_links(const unbanded_links *l, const scalar *x, const scalar *v, scalar *force)
+{
+    quad_links(l, x, v, force, force_in_record(true) + quad_size, true, true);
+}
+
 SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                 uint32_t axes, bool damped)
 {
@@ -195,32 +225,48 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
                                bool alone)
 {
     const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    scalar *const records = out->records;
     if (s->axes == 3)
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
     if (alone)
-        quad_damping(&s->unbanded, out->records + quad_size, out->records + at_force, stride);
+        quad_damping(&s->unbanded, records + quad_size, records + at_force, stride);
+    else if (!s->tension_only)
+        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, false);
+    else if (damped)
+        damped_taut_links(&s->unbanded, records, records + quad_size, records + at_force);
     else
-        quad_links(&s->unbanded, out->records, out->records + quad_size, out->records + at_force, stride, damped);
+        taut_links(&s->unbanded, records, records + at_force);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
         forces_of_records(s, out, 2, damped);
 }
 
-/* function(..., axes, damped) with both as constants. */
-#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
-    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
-       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
-       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
-                   : function(__VA_ARGS__, 3, false))
+/* function(..., axes, damped, false) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                              \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true, false) : function(__VA_ARGS__, 1, false, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true, false) : function(__VA_ARGS__, 2, false, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
+                   : function(__VA_ARGS__, 3, false, false))
+
+/* The same of tension-only links, of which few are computed here: one loop for all. */
+SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    if (s->axes == 3)
+        all_unbanded(s, x, v, out, 3, s->terms == STIFFNESS_AND_DAMPING_TERM, true);
+    else
+        all_unbanded(s, x, v, out, 2, s->terms == STIFFNESS_AND_DAMPING_TERM, true);
+}
 
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
     if (s->terms == DAMPING_TERM)
         all_unbanded_damping(s, v, out, s->axes);
+    else if (s->tension_only)
+        all_taut(s, x, v, out);
     else
         SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
 }
@@ -233,17 +279,27 @@ static void compute_record_forces(const scene_links *s, const scalar *x, const s
         all_records(s, x, v, out, true, s->terms == DAMPING_TERM);
 }
 
+SPRING_NOINLINE void small_taut_links(const scene_links *s, const scalar *x, const scalar *v, scalar *force)
+{
+    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        quad_links(&s->unbanded, x, v, force, quad_size, true, true);
+    else
+        quad_links(&s->unbanded, x, v, force, quad_size, false, true);
+}
+
 /* The forces of a small scene, whose quantities are arrays of quads. */
 static void compute_quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     for (size_t i = 0; i < s->particles; i++)
         quad_store(out->force + quad_size * i, quad_all(0));
-    if (s->terms == STIFFNESS_TERM)
-        quad_links(&s->unbanded, x, v, out->force, quad_size, false);
-    else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        quad_links(&s->unbanded, x, v, out->force, quad_size, true);
-    else
+    if (s->terms == DAMPING_TERM)
         quad_damping(&s->unbanded, v, out->force, quad_size);
+    else if (s->tension_only)
+        small_taut_links(s, x, v, out->force);
+    else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        quad_links(&s->unbanded, x, v, out->force, quad_size, true, false);
+    else
+        quad_links(&s->unbanded, x, v, out->force, quad_size, false, false);
 }
 
 #endif

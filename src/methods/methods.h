@@ -8,6 +8,7 @@
 #include "leapfrog.h"
 #include "rk4.h"
 #include "rkn8.h"
+#include "srkn6.h"
 #include "symplectic_euler.h"
 
 /* ROW(value, its entry in the table) */
@@ -16,6 +17,7 @@
     ROW(SPRING_SYMPLECTIC_EULER, symplectic_euler_method) \
     ROW(SPRING_LEAPFROG, leapfrog_method)                 \
     ROW(SPRING_RK4, rk4_method)                           \
+    ROW(SPRING_SRKN6, srkn6_method)                       \
     ROW(SPRING_RKN8, rkn8_method)                         \
     ROW(SPRING_EXACT, exact_method)
 

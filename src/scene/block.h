@@ -40,6 +40,7 @@ typedef enum scene_array {
     ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
     ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
     ARRAY_SUMS,          /* work space of the stable step, by particle */
+    ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COUNT
 } scene_array;
 
@@ -112,6 +113,10 @@ SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
 SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m,
                                                         double dt, uint64_t n);
 
+/* spring_scene_tear() with a given instruction set, for tests. */
+SPRING_INTERNAL spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch,
+                                                     const double *limit, uint32_t *torn, size_t room, size_t *count);
+
 /* -------------------------------------------------------------------------------------------------- access to arrays */
 
 static inline bool scene_has(const spring_scene *s, scene_array a)
@@ -163,6 +168,8 @@ static inline scene_array forces_in(uint32_t buffer)
 /* The array that holds a quantity of the state. */
 static inline scene_array state_array(const spring_scene *s, spring_quantity q)
 {
+    if (q == SPRING_FORCE)
+        return ARRAY_HELD;
     return q == SPRING_POSITION ? positions_in(s->buffer) : velocities_in(s->buffer);
 }
 
@@ -186,6 +193,11 @@ static inline double inverse_mass_at(const spring_scene *s, size_t i)
 static inline bool scene_callback_uses_velocity(const spring_scene *s)
 {
     return s->force != NULL && (s->layout.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
+}
+
+static inline bool scene_tension_only(const spring_scene *s)
+{
+    return (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
 }
 
 /* Whether forces other than drag depend on velocities. */

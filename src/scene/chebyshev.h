@@ -113,8 +113,9 @@ static inline void freeze_directions(const scene_step *s, const scalar *x)
         }
         const scalar root = (scalar)spring_sqrt((double)links->damping[j]),
                      length = (scalar)spring_sqrt((double)square);
+        const bool acts = square > 0 && !(s->links->tension_only && length <= links->rest[j]);
         for (uint32_t a = 0; a < l->axes; a++)
-            direction[quad_size * j + a] = l->axes == 1 ? root : square > 0 ? root * (delta[a] / length) : 0;
+            direction[quad_size * j + a] = l->axes == 1 ? root : acts ? root * (delta[a] / length) : 0;
     }
 }
 

@@ -26,11 +26,14 @@ static def_error check_methods(uint32_t methods)
 
 static def_error check_head(const spring_scene_def *def)
 {
-    const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY |
+                           SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES;
     if (def->axes > 3)
         return invalid("axes", 0);
     if ((def->flags & ~flags) != 0)
         return invalid("flags", 0);
+    if ((def->flags & SPRING_SCENE_TENSION_ONLY) != 0 && axes_of(def) == 1)
+        return (def_error){SPRING_EUNSUPPORTED, "flags", 0};
     if (check_methods(def->methods).status != SPRING_OK)
         return check_methods(def->methods);
     if (def->particles == 0)
@@ -91,13 +94,15 @@ static def_error check_links(const spring_scene_def *def)
     return no_error;
 }
 
-/* Methods that evaluate forces at positions alone, in a scene whose forces depend on velocities. */
+/* Methods that evaluate forces at positions alone and need smooth forces, in a scene whose forces depend on velocities or
+   have a kink. */
 static def_error check_velocities(const spring_scene_def *def)
 {
+    const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0;
     const bool called = def->force != NULL && (def->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
         if ((def->methods & 1u << m) != 0 && spring_method_describe((spring_method)m)->positions_only &&
-            (called || has_damped_links(def)))
+            (called || kinked || has_damped_links(def)))
             return (def_error){SPRING_EUNSUPPORTED, "methods", 0};
     return no_error;
 }

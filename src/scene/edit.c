@@ -7,25 +7,34 @@ static bool is_editable(const spring_scene *s)
     return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
 }
 
-spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link)
+/* Whether a link may take the place of the one with this index. */
+static bool replaces_link(const spring_scene *s, size_t index, const spring_link *link)
+{
+    const stored_link old = scene_link(s, index);
+    const bool same_ends = (link->a == old.a && link->b == old.b) || (link->a == old.b && link->b == old.a);
+    return same_ends && scene_link_invalid_field(link) == NULL &&
+           scene_link_overflows(link, inverse_mass_at(s, old.a), inverse_mass_at(s, old.b)) == NULL;
+}
+
+spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count, const spring_link *link)
 {
     if (s == NULL || link == NULL)
         return SPRING_EINVAL;
     if (!is_editable(s))
         return SPRING_EDISABLED;
-    if (index >= s->layout.links)
+    if (first > s->layout.links || count > s->layout.links - first)
         return SPRING_ERANGE;
-    const stored_link old = scene_link(s, index);
-    const bool same_ends = (link->a == old.a && link->b == old.b) || (link->a == old.b && link->b == old.a);
-    if (!same_ends || scene_link_invalid_field(link) != NULL ||
-        scene_link_overflows(link, inverse_mass_at(s, old.a), inverse_mass_at(s, old.b)) != NULL)
-        return SPRING_EINVAL;
-    s->damped_links -= old.damping > 0;
-    s->damped_links += (scalar)link->damping > 0;
-    scene_write_link(s, index, link);
-    s->known = NO_FORCE;
-    s->bounds_known = false;
+    for (size_t i = 0; i < count; i++)
+        if (!replaces_link(s, first + i, &link[i]))
+            return SPRING_EINVAL;
+    for (size_t i = 0; i < count; i++)
+        scene_replace_link(s, first + i, &link[i]);
     return SPRING_OK;
+}
+
+spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link)
+{
+    return spring_scene_set_links(s, index, 1, link);
 }
 
 spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link)

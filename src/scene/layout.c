@@ -105,12 +105,13 @@ static void find_bands(const spring_scene_def *def, scene_layout *l)
 
 /* ------------------------------------------------------------------------------------------------------------ arrays */
 
-/* The methods that store no stages. */
+/* The methods that store nothing for stages or masses. */
 static uint32_t default_methods(void)
 {
     uint32_t methods = 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
-        if (spring_scene_steppers[m].step != NULL && spring_scene_steppers[m].stages == 0)
+        if (spring_scene_steppers[m].step != NULL && spring_scene_steppers[m].stages == 0 &&
+            spring_scene_steppers[m].mass_factors == 0)
             methods |= 1u << m;
     return methods;
 }
@@ -187,6 +188,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
         [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
         [ARRAY_SUMS] = {number, l->particles, true},
+        [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
     };
     memcpy(row, rows, sizeof rows);
 }

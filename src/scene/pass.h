@@ -94,10 +94,14 @@ static inline scene_motion whole_step(const scene_step *s)
 
 /* ----------------------------------------------------------------------------------------------------- preparation */
 
+/* Added to a force, -0 changes no bit, while 0 would change -0. */
+static const scalar nothing_held[padding] = {-0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0,
+                                             -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0, -0.0};
+
 static inline scene_particles scene_prepare_particles(const spring_scene *s)
 {
     const scene_layout *l = &s->layout;
-    const bool each = scene_has(s, ARRAY_INVERSE_MASS);
+    const bool each = scene_has(s, ARRAY_INVERSE_MASS), holds = scene_has(s, ARRAY_HELD);
     return (scene_particles){
         .count = l->small ? quad_size * l->particles : l->particles,
         .axes = l->small ? 1 : l->axes,
@@ -106,6 +110,8 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
         .mass_stride = each,
         .gravity = s->gravity_vectors[0],
         .drag = (scalar)s->drag,
+        .held = holds ? scene_read_axis(s, ARRAY_HELD, 0) : nothing_held,
+        .held_stride = holds,
     };
 }
 
@@ -152,6 +158,7 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
                 .direction = scene_read(s, ARRAY_LINK_DIRECTIONS),
             },
+        .tension_only = scene_tension_only(s),
     };
 }
 

@@ -9,3 +9,5 @@
 #include "state.c"
 #include "step.c"
 #include "steppers.c"
+#include "tear.c"
+#include "transform.c"

@@ -43,7 +43,8 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);
         const double extension = length_and_rate(s, &link).length - (double)link.rest;
-        e.elastic += (double)link.stiffness * extension * extension / 2;
+        if (extension > 0 || !scene_tension_only(s))
+            e.elastic += (double)link.stiffness * extension * extension / 2;
     }
     return e;
 }
@@ -57,6 +58,8 @@ double spring_scene_tension(const spring_scene *s, size_t index)
     const link_extent now = length_and_rate(s, &link);
     const double tension =
         link_tension((double)link.stiffness, (double)link.rest, (double)link.damping, now.length, now.rate);
+    if (scene_tension_only(s) && (now.length <= (double)link.rest || tension <= 0))
+        return 0;
     return reversed ? -tension : tension;
 }
 
@@ -66,8 +69,10 @@ double spring_scene_tension(const spring_scene *s, size_t index)
 static spring_status check_range(const spring_scene *s, spring_quantity q, const void *buffer, size_t *stride,
                                  size_t first, size_t count)
 {
-    if (s == NULL || buffer == NULL || (q != SPRING_POSITION && q != SPRING_VELOCITY))
+    if (s == NULL || buffer == NULL || (q != SPRING_POSITION && q != SPRING_VELOCITY && q != SPRING_FORCE))
         return SPRING_EINVAL;
+    if (q == SPRING_FORCE && !scene_has(s, ARRAY_HELD))
+        return SPRING_EDISABLED;
     if (*stride == 0)
         *stride = s->layout.axes;
     if (*stride < s->layout.axes)
@@ -118,7 +123,8 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
         for (size_t i = 0; i < count; i++)
             to[s->layout.particle_stride * i] = (scalar)in[i * stride + a];
     }
-    s->known = NO_FORCE;
+    if (q != SPRING_FORCE) /* held forces are no part of the stored force */
+        s->known = NO_FORCE;
     return SPRING_OK;
 }
 

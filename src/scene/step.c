@@ -176,7 +176,8 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         double speed = 0, acceleration = 0;
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
-            const double force = (double)all[a * s->layout.stride + stride * i] - s->drag * v;
+            const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[stride * i] : 0;
+            const double force = (double)all[a * s->layout.stride + stride * i] + held - s->drag * v;
             const double accel = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed = spring_hypot(speed, fabs(v));
             acceleration = spring_hypot(acceleration, fabs(accel));

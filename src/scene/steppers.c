@@ -7,6 +7,7 @@
  */
 #include "chebyshev.h"
 #include "../methods/rkn8_tableau.h"
+#include "../methods/srkn6_coefficients.h"
 #include "../spring/propagator.h"
 #include "../spring/roots.h"
 
@@ -205,6 +206,63 @@ static double scene_rkn8_limit(const scene_bounds *b)
     return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
 }
 
+/* Indices of what SRKN6 stores for each mass, with drag, for each of its different drifts; see scene_motion. */
+enum { SRKN6_SPAN, SRKN6_LOSS = srkn6_different, SRKN6_FACTORS = 2 * srkn6_different };
+
+static void compute_srkn6_factors(const scene_step *s)
+{
+    const scene_particles *p = &s->particles;
+    const size_t count = p->mass_stride != 0 ? p->count : padding;
+    for (size_t i = 0; i < count; i++) {
+        const bool as_before = i > 0 && p->inverse_mass[i] == p->inverse_mass[i - 1];
+        const double drag = (double)(p->drag * p->inverse_mass[i]);
+        for (unsigned k = 0; k < srkn6_different; k++) {
+            scalar *span = mass_factor(s, SRKN6_SPAN + k), *loss = mass_factor(s, SRKN6_LOSS + k);
+            const double drift = srkn6_a[k] * (double)s->h, z = drag * drift;
+            const double change = as_before ? 0 : spring_expm1(-z);
+            span[i] = as_before ? span[i - 1] : (scalar)(z != 0 ? drift * (-change / z) : drift);
+            loss[i] = as_before ? loss[i - 1] : (scalar)change;
+        }
+    }
+}
+
+/* Kicks and drifts in turn. The last kick of a step and the first kick of the next are one pass over the particles, with
+   the results of two. Drag acts in drifts alone. */
+static scene_outcome scene_srkn6(scene_step *s)
+{
+    const bool dragged = (scalar)s->scene->drag != 0;
+    if (s->first && dragged)
+        compute_srkn6_factors(s);
+    find_start_force(s, v_at(s, s->from));
+    s->particles.drag = 0;
+    particle_kernel *const kick_drift = dragged ? s->kernels->kick_damped_drift : s->kernels->kick_drift;
+    scene_motion m = whole_step(s), last_kick = whole_step(s);
+    last_kick.v0 = last_kick.v;
+    last_kick.force = force_at(s, s->to);
+    last_kick.kick = (scalar)srkn6_b[0] * s->h;
+    for (int i = 0; i < srkn6_stages; i++) {
+        const unsigned k = (unsigned)srkn6_index(i, srkn6_stages);
+        m.kick = (scalar)srkn6_b[srkn6_index(i, srkn6_stages + 1)] * s->h;
+        m.drift = (scalar)srkn6_a[k] * s->h;
+        m.ends_step = i == 0 && !s->first;
+        m.span = dragged ? mass_factor(s, SRKN6_SPAN + k) : NULL;
+        m.loss = dragged ? mass_factor(s, SRKN6_LOSS + k) : NULL;
+        particle_kernel *const then = s->last && i + 1 == srkn6_stages ? s->kernels->implicit_kick : NULL;
+        if (!move_evaluate_move(s, kick_drift, &m, m.v, srkn6_c[i], then, &last_kick))
+            return (scene_outcome){.finite = false};
+        m.x0 = m.x;
+        m.v0 = m.v;
+        m.force = last_kick.force;
+    }
+    return (scene_outcome){.finite = true, .known = FORCE};
+}
+
+/* The growth of heavy drag in the drifts backwards would exceed the decay in the others: see srkn6.h. */
+static double scene_srkn6_limit(const scene_bounds *b)
+{
+    return fmin(9.07 / spring_sqrt(b->stiffness), 20 / b->damping);
+}
+
 SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
     [SPRING_EULER] = {.step = scene_euler, .stable_step = scene_euler_limit},
     [SPRING_SYMPLECTIC_EULER] = {.step = scene_symplectic_euler, .stable_step = scene_symplectic_euler_limit},
@@ -217,4 +275,5 @@ SPRING_TABLE const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT] = {
                      .stable_step = scene_rkn8_limit,
                      .stages = rkn8_stages + 1,
                      .mass_factors = RKN8_FACTORS},
+    [SPRING_SRKN6] = {.step = scene_srkn6, .stable_step = scene_srkn6_limit, .mass_factors = SRKN6_FACTORS},
 };

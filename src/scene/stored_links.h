@@ -64,6 +64,18 @@ static inline void scene_write_link(spring_scene *s, size_t index, const spring_
         occupied[at.slot] = (scalar)link->stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
 }
 
+/* The same for a scene in use, whose force and bounds are no longer known then. */
+static inline void scene_replace_link(spring_scene *s, size_t index, const spring_link *link)
+{
+    const stored_link old = scene_link(s, index);
+    s->damped_links -= old.damping > 0;
+    s->damped_links += (scalar)link->damping > 0;
+    if ((scalar)link->stiffness != old.stiffness || (scalar)link->damping != old.damping)
+        s->bounds_known = false;
+    scene_write_link(s, index, link);
+    s->known = NO_FORCE;
+}
+
 /* ---------------------------------------------------------------------------------------------------- other values */
 
 static inline void scene_store_gravity(spring_scene *s, const double *gravity)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* `quad` as a vector; see quad.h. */
 typedef scalar quad __attribute__((vector_size(quad_size * sizeof(scalar))));
+typedef scalar_bits quad_bits __attribute__((vector_size(quad_size * sizeof(scalar))));
 
 SPRING_INLINE quad quad_of(scalar a, scalar b, scalar c, scalar d)
 {
@@ -30,6 +31,11 @@ SPRING_INLINE quad quad_times(quad a, quad b)
 SPRING_INLINE quad quad_over(quad a, quad b)
 {
     return a / b;
+}
+
+SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+{
+    return (quad)((quad_bits)a & (quad_bits)(b > 0));
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

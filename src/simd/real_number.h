@@ -34,6 +34,11 @@ SPRING_INLINE real select_real(mask t, real a, real b)
     return t ? a : b;
 }
 
+SPRING_INLINE real vec_not_negative(real a)
+{
+    return a < 0 ? 0 : a;
+}
+
 SPRING_INLINE mask vec_load_mask(const int8_t *p)
 {
     return *p != 0;
@@ -47,6 +52,17 @@ SPRING_INLINE real vec_sqrt(real a)
 SPRING_INLINE real vec_abs(real a)
 {
     return (real)fabs((double)a);
+}
+
+SPRING_INLINE real vec_minus_abs(real a)
+{
+    return -vec_abs(a);
+}
+
+/* The smaller; b if a is NaN. */
+SPRING_INLINE real vec_min(real a, real b)
+{
+    return a < b ? a : b;
 }
 
 #ifndef SPRING_FLOAT

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The exact solution of one spring: exact_formula.h on numbers. */
 #include "exact_formula.h"
-#include "propagator.h"
 
-spring_propagator spring_propagator_of(const spring_params *p, double t, bool loaded)
+spring_propagator spring_propagator_of(const spring_quotients *r, double t, bool loaded)
 {
-    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, p->mass);
-    const exact_coefficients c = exact_coefficients_of(r.omega2, r.b, r.rest, t, loaded);
-    return (spring_propagator){c.half, c.F, c.G, c.H, c.wH, c.P};
+    const exact_coefficients c = exact_coefficients_of(r->omega2, r->b, r->rest, t, loaded);
+    return (spring_propagator){c.half, c.F, c.G, c.H, c.wH, c.P, c.decay_rate};
 }
 
 spring_state spring_exact(spring_state s, const spring_params *p, double t)

@@ -24,13 +24,24 @@
 #define SPRINGSTEP_EXACT_FORMULA_H
 
 #include "../simd/real.h"
+#include "propagator.h"
 #include "roots.h"
 #include "split.h"
 
 typedef struct exact_coefficients {
     real half;           /* of E, see exact_halves */
     real F, G, H, wH, P; /* times the other half; H [s], wH [1/s]; P [s^2] is complete */
+    real decay_rate;     /* [1/s] of E; for t > 0 that of the slowest mode */
 } exact_coefficients;
+
+/* Coefficients that are equal for all springs, computed once in double. */
+SPRING_INLINE exact_coefficients exact_prepare(const spring_propagator *y)
+{
+    return (exact_coefficients){
+        splat((scalar)y->half), splat((scalar)y->F), splat((scalar)y->G),          splat((scalar)y->H),
+        splat((scalar)y->wH),   splat((scalar)y->P), splat((scalar)y->decay_rate),
+    };
+}
 
 SPRING_INLINE void exact_step(real *x, real *v, real a, const exact_coefficients *c, bool loaded)
 {
@@ -115,7 +126,7 @@ SPRING_INLINE exact_coefficients exact_coefficients_of(real w, real b, real rest
         H = select_real(real_roots, select_real(forward, h, -h), H);
     }
     const exact_halves E = exact_halves_of(-rate * t);
-    exact_coefficients c = {E.half, E.other * F, E.other * G, E.other * H, w * (E.other * H), splat(0)};
+    exact_coefficients c = {E.half, E.other * F, E.other * G, E.other * H, w * (E.other * H), splat(0), rate};
     if (!loaded)
         return c;
 

@@ -4,6 +4,7 @@
 #define SPRINGSTEP_PROPAGATOR_H
 
 #include "../simd/targets.h"
+#include "roots.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,9 +14,10 @@
 typedef struct spring_propagator {
     double half;           /* e^(-bt/2), or of the slow root */
     double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
+    double decay_rate;     /* [1/s] for t > 0 that of the slowest mode */
 } spring_propagator;
 
-SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_params *p, double t,
+SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_quotients *r, double t,
                                                        bool loaded); /* without loaded, P = 0 */
 
 /* spring_step_exact(), by value. */
@@ -31,11 +33,20 @@ typedef struct exact_array {
     size_t stride;     /* from spring to spring: 1, or 0 for a vector of equal elements */
 } exact_array;
 
+/* Springs that follow targets: see spring_batch_follow(). */
+typedef struct exact_landing {
+    double x_tol, v_tol; /* finite */
+    size_t counted;      /* springs that are counted; those after them only fill a vector */
+    size_t *moving;      /* incremented by the number of springs that do not rest on their target */
+} exact_landing;
+
 typedef struct exact_run {
     size_t count; /* a multiple of any vector's */
     bool single;  /* arrays of float, not double */
     void *x, *v;
     exact_array omega2, gamma, accel;
+    const void *target; /* NULL: springs follow no targets */
+    exact_landing landing;
     double t; /* [s] */
 } exact_run;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One spring: checks, dispatch, energy, stable and accurate steps, parameters, texts.
+ * One spring: checks, dispatch, energy, stable and accurate steps, texts.
  */
 #include "../methods/methods.h"
 #include "accuracy.h"
@@ -130,28 +130,6 @@ double spring_step_error(const spring_params *p, spring_method m, double duratio
     const accuracy of = accuracy_of(p, method, duration);
     const double steps = duration / dt, slack = 1 + 4 * DBL_EPSILON; /* of the quotient: n steps of duration/n are n */
     return spring_error_of(&of, steps, fmax(1, floor(steps * slack)));
-}
-
-static spring_params params_of(double omega, double damping_ratio)
-{
-    const spring_params p = {.mass = 1, .stiffness = omega * omega, .damping = 2 * damping_ratio * omega};
-    const bool underflows = omega > 0 && p.stiffness < DBL_MIN;
-    return spring_params_valid(&p) && !underflows ? p : (spring_params){NAN, NAN, NAN, NAN};
-}
-
-spring_params spring_params_hertz(double hertz, double damping_ratio)
-{
-    const double two_pi = 6.283185307179586;
-    return params_of(hertz >= 0 ? two_pi * hertz : NAN, damping_ratio);
-}
-
-spring_params spring_params_half_life(double half_life, double damping_ratio)
-{
-    const double ln2 = 0.6931471805599453;
-    const double z = damping_ratio;
-    const double rate =
-        z <= 1 ? z : 1 / (z + spring_sqrt(z - 1) * spring_sqrt(z + 1)); /* of the envelope, in units of omega */
-    return params_of(half_life > 0 && spring_finite(half_life) && z > 0 ? ln2 / half_life / rate : NAN, z);
 }
 
 bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol)

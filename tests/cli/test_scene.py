@@ -453,3 +453,37 @@ def test_stable_step_is_told_above_it():
 def test_without_drag_no_step_of_euler_is_stable():
     result = run(SCENE, '--scene', 'chain', '--method', 'euler', '--duration', '1')
     assert result.returncode == 0 and 'no step of euler is stable' in result.stderr
+
+
+# --- links that pull only, and that tear ------------------------------------------------------------------------------
+
+def test_tension_only_cloth_stores_less():
+    """A level cloth falls; where its links are pressed together, only those that push store energy."""
+    args = ['--duration', '0.5', '--drag', '0', '--fps', '4']
+    both, pulls = scene('cloth', *args), scene('cloth', '--tension-only', *args)
+    assert all(float(row['elastic_J']) >= 0 for row in pulls)
+    assert 0 < float(pulls[-1]['elastic_J']) != float(both[-1]['elastic_J'])
+    assert abs(float(pulls[-1]['energy_J'])) <= 1e-2 * float(pulls[-1]['kinetic_J'])  # from rest, at a height of 0
+
+
+def test_links_that_tear_take_their_energy_away():
+    args = ['--duration', '1', '--drag', '0', '--fps', '8']
+    kept = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--tear', '50', *args)
+    torn = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--tear', '1.3', *args)
+    assert f'spring-scene: 0 of {SHEET} links have torn' in kept.stderr
+    count = int(torn.stderr.split()[1])
+    assert 0 < count < SHEET and torn.returncode == 0
+    energies = [column(parse(result.stdout), 'energy_J')[-1] for result in (kept, torn)]
+    assert energies[1] < energies[0] - 1e-3
+
+
+def test_links_that_hold_have_the_same_bits():
+    plain = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--duration', '0.2', '--hash')
+    holds = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--duration', '0.2', '--hash', '--tear', '1e6')
+    assert plain.stdout == holds.stdout
+
+
+@pytest.mark.parametrize('args', ['--scene chain --tension-only', '--scene water --tear 2', '--scene cloth --tear 0',
+                                  '--scene cloth --tension-only --method rkn8'])
+def test_refused_for_tension_and_tear(args):
+    is_failure(run(SCENE, '--method', 'leapfrog', *args.split()), 2, '--te')

@@ -214,7 +214,8 @@ static void define(definition *d)
     memset(d, 0, sizeof *d);
     const uint32_t axes = choose(5), what = take();
     wild = choose(4) == 0;
-    d->def.flags = choose(9);
+    const uint32_t flags = take(), unknown = 64;
+    d->def.flags = (flags % 9 == 8 ? unknown : flags % 9) | flags / 9 % 4 * SPRING_SCENE_TENSION_ONLY;
     d->def.methods = choose(4) == 3 ? choose(2u << SPRING_METHOD_COUNT) : take() & scene_methods();
     d->def.axes = axes == 4 && choose(8) > 0 ? 1 : axes;
     if (what & 1)
@@ -265,7 +266,7 @@ static void check_guards(const place *p)
 }
 
 typedef struct state {
-    double x[3 * most_particles], v[3 * most_particles], tension[most_links], time;
+    double x[3 * most_particles], v[3 * most_particles], tension[most_links], time, held[3 * most_particles];
 } state;
 
 /* All that can be seen of a scene but its forces. */
@@ -278,6 +279,9 @@ static void look(const scene *s, const definition *d, state *y)
     for (size_t i = 0; i < d->def.links; i++)
         y->tension[i] = spring_scene_tension(s, i);
     y->time = spring_scene_time(s);
+    must(spring_scene_get(s, SPRING_FORCE, y->held, 3, 0, d->def.particles) ==
+             (d->def.flags & SPRING_SCENE_FORCES ? SPRING_OK : SPRING_EDISABLED),
+         "held forces, too, if there is room");
 }
 
 static bool same_numbers(const double *a, const double *b, size_t count)
@@ -356,7 +360,7 @@ static void set(life *l)
 {
     static state before, after;
     double in[4 * most_particles];
-    const spring_quantity q = (spring_quantity)choose(3);
+    const spring_quantity q = (spring_quantity)choose(4);
     const size_t first = choose(90), count = choose(90), stride = choose(5);
     const bool fits = first <= l->d->def.particles && count <= l->d->def.particles - first;
     bool good = true;
@@ -372,12 +376,14 @@ static void set(life *l)
     must(spring_scene_set(l->other.s, q, in, stride, first, fits ? count : 90) == status, "the same answer");
     look(l->one.s, l->d, &after);
     if (status != SPRING_OK) {
-        must(status == SPRING_EINVAL || status == SPRING_ERANGE, "no other status is documented");
+        must(status == SPRING_EINVAL || status == SPRING_ERANGE ||
+                 (status == SPRING_EDISABLED && q == SPRING_FORCE && (l->d->def.flags & SPRING_SCENE_FORCES) == 0),
+             "no other status is documented");
         must(same(&before, &after), "an error changes nothing");
         return;
     }
-    must(good && fits && q <= SPRING_VELOCITY && apart >= l->axes, "it was in order");
-    const double *now = q == SPRING_POSITION ? after.x : after.v;
+    must(good && fits && q <= SPRING_FORCE && apart >= l->axes, "it was in order");
+    const double *now = q == SPRING_POSITION ? after.x : q == SPRING_VELOCITY ? after.v : after.held;
     for (size_t i = 0; i < count; i++)
         for (size_t a = 0; a < l->axes; a++)
             must(now[3 * (first + i) + a] == (double)(scalar)in[i * apart + a], "what is set is got");
@@ -406,7 +412,8 @@ static void get(const life *l)
     double out[4 * most_particles + 1];
     float outf[4 * most_particles + 1];
     const size_t first = choose(90), count = choose(90), stride = choose(5), apart = stride == 0 ? l->axes : stride;
-    const spring_quantity q = (spring_quantity)choose(3);
+    const spring_quantity q = (spring_quantity)choose(4);
+    const bool held = (l->d->def.flags & SPRING_SCENE_FORCES) != 0;
     for (size_t i = 0; i < sizeof out / sizeof out[0]; i++) {
         out[i] = 77;
         outf[i] = 77;
@@ -414,15 +421,17 @@ static void get(const life *l)
     const bool fits = first <= l->d->def.particles && count <= l->d->def.particles - first;
     const spring_status status = spring_scene_get(l->one.s, q, out, stride, first, count);
     must(spring_scene_getf(l->one.s, q, outf, stride, first, count) == status, "both say the same");
-    must(status == (q > SPRING_VELOCITY || apart < l->axes ? SPRING_EINVAL
-                    : !fits                                ? SPRING_ERANGE
-                                                           : SPRING_OK),
+    must(status == (q > SPRING_FORCE             ? SPRING_EINVAL
+                    : q == SPRING_FORCE && !held ? SPRING_EDISABLED
+                    : apart < l->axes            ? SPRING_EINVAL
+                    : !fits                      ? SPRING_ERANGE
+                                                 : SPRING_OK),
          "as documented");
     look(l->one.s, l->d, &whole);
     for (size_t i = 0; i < sizeof out / sizeof out[0]; i++) {
         const bool written = status == SPRING_OK && i < count * apart && i % apart < l->axes;
         must(written || (out[i] == 77 && outf[i] == 77), "between the particles nothing is written");
-        const double *all = q == SPRING_POSITION ? whole.x : whole.v;
+        const double *all = q == SPRING_POSITION ? whole.x : q == SPRING_VELOCITY ? whole.v : whole.held;
         must(!written || same_numbers(&out[i], &all[3 * (first + i / apart) + i % apart], 1), "that very particle");
         if (written && fabs(out[i]) <= (double)FLT_MAX)
             must(outf[i] == (float)out[i], "in float the same");
@@ -454,6 +463,84 @@ static void set_link(life *l)
          "no other status is documented");
     look(l->one.s, l->d, &after);
     must(same(&before, &after), "an error changes nothing");
+}
+
+/* Many links at once: all of them or none. */
+static void set_links(life *l)
+{
+    static state before, after;
+    static spring_link link[most_links];
+    const size_t first = choose(90), count = choose(90);
+    for (size_t i = 0; i < count; i++) {
+        link[i] = first + i < l->d->def.links ? l->d->link[first + i] : any_link(l->d->def.particles);
+        link[i].rest = size();
+    }
+    if (count > 0)
+        link[count - 1].stiffness = size();
+    look(l->one.s, l->d, &before);
+    const spring_status status = spring_scene_set_links(l->one.s, first, count, link);
+    must(spring_scene_set_links(l->other.s, first, count, link) == status, "the same answer");
+    look(l->one.s, l->d, &after);
+    if (status == SPRING_OK) {
+        must(l->d->def.flags & SPRING_SCENE_EDITABLE && first + count <= l->d->def.links, "they may be changed");
+        memcpy(&l->d->link[first], link, count * sizeof *link);
+        return;
+    }
+    must(status == SPRING_EINVAL || status == SPRING_ERANGE || status == SPRING_EDISABLED,
+         "no other status is documented");
+    must(same(&before, &after), "an error changes nothing");
+}
+
+/* Some links tear; then nothing is longer than its limit, and the pieces are those of the links that are left. */
+static void tear(life *l)
+{
+    static double limit[most_links];
+    static uint32_t torn[most_links], component[most_particles];
+    const bool each = choose(2) == 0;
+    const double stretch = size();
+    const size_t room = choose(30);
+    size_t count = 77, again = 77;
+    for (size_t i = 0; i < l->d->def.links; i++)
+        limit[i] = each ? (i < 8 ? size() : 2) : stretch;
+    const double *const limits = each ? limit : NULL;
+    const spring_status status = spring_scene_tear(l->one.s, stretch, limits, torn, most_links, &count);
+    must(spring_scene_tear(l->other.s, stretch, limits, torn, room, &again) == status && again == count,
+         "the same answer");
+    if (status != SPRING_OK) {
+        must((status == SPRING_EINVAL || status == SPRING_EDISABLED) && count == 77, "no other status is documented");
+        return;
+    }
+    must(l->d->def.flags & SPRING_SCENE_EDITABLE && count <= l->d->def.links, "links may tear");
+    for (size_t i = 0; i < count; i++) {
+        must(torn[i] < l->d->def.links && (i == 0 || torn[i - 1] < torn[i]), "in their order");
+        l->d->link[torn[i]].stiffness = l->d->link[torn[i]].damping = 0;
+        must(spring_scene_tension(l->one.s, torn[i]) == 0 || l->broken || wild, "a torn link does not pull");
+    }
+    must(spring_scene_tear(l->one.s, stretch, limits, NULL, 0, &again) == SPRING_OK && again == 0, "none tears twice");
+    const size_t pieces = spring_links_components(l->d->def.particles, l->d->def.links, l->d->link, component);
+    must(pieces > 0 && pieces <= l->d->def.particles && component[0] == 0, "the pieces of what is left");
+    for (size_t i = 0; i < l->d->def.links; i++)
+        must(component[l->d->link[i].a] == component[l->d->link[i].b] ||
+                 !(l->d->link[i].stiffness > 0 || l->d->link[i].damping > 0),
+             "a link joins its ends");
+}
+
+static void transform(life *l)
+{
+    static state before, after;
+    double matrix[12];
+    for (int i = 0; i < 12; i++)
+        matrix[i] = i < 4 ? number() : i % 5 == 0;
+    look(l->one.s, l->d, &before);
+    const spring_status status = spring_scene_transform(l->one.s, matrix);
+    must(spring_scene_transform(l->other.s, matrix) == status, "the same answer");
+    look(l->one.s, l->d, &after);
+    must(same_numbers(before.held, after.held, 3 * most_particles), "held forces stay");
+    if (status == SPRING_OK)
+        must(finite(&after), "the state is finite after SPRING_OK");
+    else
+        must((status == SPRING_EINVAL || status == SPRING_ENONFINITE) && same(&before, &after),
+             "an error changes nothing");
 }
 
 /* Pins, or masses, of a range of particles, in order or beyond them. */
@@ -554,8 +641,11 @@ static void check_tensions(const life *l)
         const link_force f = link_evaluate(l->axes, delta, relative, link->stiffness, link->damping, link->rest);
         const double size = link->stiffness * reach + link->damping * speed;
         const bool tiny = l->axes > 1 && fabs(f.length) < 1e-6 * reach; /* then the direction of the rate is rounding */
-        must(!(size < most && size > least && reach < 1e15 && reach > 1e-100 && !tiny) ||
-                 fabs(y.tension[i] - f.tension) <= part * size,
+        const bool pulls_only = (l->d->def.flags & SPRING_SCENE_TENSION_ONLY) != 0,
+                   kink = pulls_only && fabs(f.length - link->rest) <= part * reach;
+        const double want = pulls_only && (f.length <= link->rest || f.tension <= 0) ? 0 : f.tension;
+        must(!(size < most && size > least && reach < 1e15 && reach > 1e-100 && !tiny && !kink) ||
+                 fabs(y.tension[i] - want) <= part * size,
              "tension as defined");
     }
 }
@@ -608,6 +698,8 @@ static void remake(life *l)
     must(spring_scene_set(p.s, SPRING_POSITION, y.x, 3, 0, l->d->def.particles) == SPRING_OK &&
              spring_scene_set(p.s, SPRING_VELOCITY, y.v, 3, 0, l->d->def.particles) == SPRING_OK,
          "a state that was got can be set");
+    if (l->d->def.flags & SPRING_SCENE_FORCES)
+        must(spring_scene_set(p.s, SPRING_FORCE, y.held, 3, 0, l->d->def.particles) == SPRING_OK, "held forces, too");
     look(p.s, l->d, &made);
     must(same_numbers(made.x, y.x, 3 * most_particles) && same_numbers(made.v, y.v, 3 * most_particles) &&
              same_numbers(made.tension, y.tension, most_links),
@@ -620,7 +712,8 @@ static void remake(life *l)
 static void live(life *l)
 {
     for (int call = 0; call < most_calls && next < end; call++) {
-        switch (choose(14)) {
+        const uint32_t what = take(), old = 200;
+        switch (what < old ? what % 14 : 14 + what % 3) {
         case 0:
             set(l);
             break;
@@ -650,6 +743,15 @@ static void live(life *l)
             break;
         case 9:
             drive(l);
+            break;
+        case 14:
+            set_links(l);
+            break;
+        case 15:
+            tear(l);
+            break;
+        case 16:
+            transform(l);
             break;
         default:
             advance(l);

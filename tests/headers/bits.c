@@ -161,6 +161,21 @@ static void print_scene(const char *name, const sheet *s, spring_method m, doubl
            spring_scene_bits(s, m, scale), spring_scenef_bits(s, m, scalef));
 }
 
+/* Link damping far beyond the limit of explicit damping, in scenes with bands, without, and small ones. */
+static void print_heavy_damping(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int kind = 0; kind < 3; kind++) {
+            sheet s = make_sheet(axes, kind == 1, true);
+            if (kind == 2)
+                s.links = 12;
+            for (size_t i = 0; i < s.links; i++)
+                s.link[i].damping *= 1e4;
+            static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
+            print_scene(names[kind], &s, SPRING_LEAPFROG, 1, 1);
+        }
+}
+
 static void print_scenes(spring_method m)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
@@ -171,6 +186,61 @@ static void print_scenes(spring_method m)
     const sheet height_field =
         make_sheet(1, false, false); /* is linear, so its motion is the same, except for rounding */
     print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
+}
+
+/* Tension-only links, held forces, links that tear and are reeled in, and a scene that is moved as a whole. */
+#define SLACK_BITS(type)                                                                                          \
+    static uint64_t type##_slack_bits(sheet s, spring_method m)                                                   \
+    {                                                                                                             \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                        \
+        static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                      \
+        double force[3 * particles], out[2][3 * particles] = {{0}};                                               \
+        for (int i = 0; i < 3 * particles; i++)                                                                   \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                            \
+        const type##_def def = {.axes = s.axes,                                                                   \
+                                .flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE, \
+                                .methods = 1u << m,                                                               \
+                                .particles = particles,                                                           \
+                                .links = s.links,                                                                 \
+                                .position = s.position,                                                           \
+                                .mass_all = 0.3,                                                                  \
+                                .pinned = s.pinned,                                                               \
+                                .link = s.link,                                                                   \
+                                .gravity = {0.3, -9.81, 0.1},                                                     \
+                                .drag = 0.07};                                                                    \
+        type *scene;                                                                                              \
+        size_t torn = 0;                                                                                          \
+        uint32_t list[most_links] = {0};                                                                          \
+        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                      \
+            type##_set(scene, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                               \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK ||                                                   \
+            type##_tear(scene, 1.8, NULL, list, most_links, &torn) != SPRING_OK)                                  \
+            return 0;                                                                                             \
+        for (size_t i = 0; i < s.links; i++)                                                                      \
+            s.link[i].rest *= 0.75;                                                                               \
+        if (type##_set_links(scene, 0, 9, s.link) != SPRING_OK || type##_transform(scene, map) != SPRING_OK ||    \
+            type##_advance(scene, m, 1e-3, 150) != SPRING_OK)                                                     \
+            return 0;                                                                                             \
+        type##_get(scene, SPRING_POSITION, out[0], 0, 0, particles);                                              \
+        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, particles);                                              \
+        const spring_scene_energies e = type##_energy(scene);                                                     \
+        const double more[] = {e.kinetic, e.elastic, (double)torn, (double)list[1], type##_tension(scene, 5)};    \
+        return digest(digest(no_digest, out[0], 6 * particles), more, 5);                                         \
+    }
+
+SLACK_BITS(spring_scene)
+SLACK_BITS(spring_scenef)
+
+static void print_slack_scenes(spring_method m)
+{
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (int jumbled = 0; jumbled < 2; jumbled++)
+            for (int damped = 0; damped < 2; damped++) {
+                const sheet s = make_sheet(axes, jumbled, damped);
+                printf("slack-%s%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", jumbled ? "list" : "rows",
+                       damped ? "-damped" : "", axes, spring_method_name(m), spring_scene_slack_bits(s, m),
+                       spring_scenef_slack_bits(s, m));
+            }
 }
 
 /* Few steps, many that oscillate or do not, and a few periods of many. */
@@ -189,6 +259,68 @@ static void print_accuracy(spring_method m)
         print(spring_step_error(&asked[i].p, m, asked[i].duration, 2.7 * step));
     }
     printf("\n");
+}
+
+/* Springs that follow a target that moves: on their way, and where they land after the target has stopped. */
+static void print_follow(void)
+{
+    static const struct {
+        const char *name;
+        spring_params p;
+    } cases[] = {{"undamped", {1.3, 2.7, 0, 0}},   {"damped", {1.3, 270, 6, 0}},  {"loaded", {0.7, 270, 9, 0.9}},
+                 {"critical", {1, 400, 40, 0}},    {"heavy", {1.7, 30, 51, 0.2}}, {"dragged", {1.3, 0, 0.6, 0.9}},
+                 {"denormal", {1.3, 2.7, 0.06, 0}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const double scale = i == 6 ? 1e-306 : 1;
+        spring_state s = {0.83 * scale, -0.59 * scale};
+        uint64_t hash = no_digest;
+        spring_status status = SPRING_OK;
+        for (int frame = 1; frame <= 6000 && status == SPRING_OK; frame++) {
+            const double moved = frame <= 120 ? frame / 64.0 : 1.875; /* no product: nothing to fuse here */
+            status = spring_follow(&s, &cases[i].p, moved * scale, frame <= 120 ? 60 * scale / 64 : 0, 1.0 / 60);
+            hash = digest(digest(hash, &s.x, 1), &s.v, 1);
+        }
+        printf("follow %s %s %016" PRIx64, cases[i].name, spring_status_string(status), hash);
+        print(s.x);
+        print(s.v);
+        printf("\n");
+    }
+}
+
+static void print_follow_batches(const char *name, bool damped, bool loaded, uint32_t shared)
+{
+    static double x[count], v[count], w[count], g[count], a[count], target[count];
+    static float xf[count], vf[count], wf[count], gf[count], af[count], targetf[count];
+    for (int i = 0; i < count; i++) {
+        xf[i] = (float)(x[i] = (i - 70) / 83.0);
+        vf[i] = (float)(v[i] = (30 - i) / 59.0);
+        wf[i] = (float)(w[i] = i % 17 == 5 ? 0 : (i % 7 + 3) * 64);
+        gf[i] = (float)(g[i] = i % 5 == 1 ? 0 : i % 5 == 2 ? 250 : (i % 11 + 1) * 2.5);
+        af[i] = (float)(a[i] = (i % 13 - 6) / 1.7);
+        targetf[i] = (float)(target[i] = (i % 29 - 14) / 0.3);
+    }
+    const spring_batch b = {count, x, v, w, damped ? g : NULL, loaded ? a : NULL, shared};
+    const spring_batchf bf = {count, xf, vf, wf, damped ? gf : NULL, loaded ? af : NULL, shared};
+    uint64_t hash = no_digest, hashf = no_digest;
+    for (int frame = 0; frame < 300; frame++) {
+        const double tolerance = frame < 200 ? 0 : 0.01;
+        size_t moving = 0, movingf = 0;
+        spring_batch_follow(&b, target, 1.0 / 60, tolerance, tolerance, &moving);
+        spring_batchf_follow(&bf, targetf, 1.0 / 60, tolerance, tolerance, &movingf);
+        hash = digest_bits(hash, moving, 4);
+        hashf = digest_bits(hashf, movingf, 4);
+        for (int i = 0; i < count; i++) {
+            hash = digest(digest(hash, &x[i], 1), &v[i], 1);
+            hashf = digestf(digestf(hashf, xf[i]), vf[i]);
+        }
+    }
+    printf("follow-batch %s %016" PRIx64 ", float %016" PRIx64 "\n", name, hash, hashf);
+}
+
+static void print_params(spring_params p)
+{
+    print(p.stiffness);
+    print(p.damping);
 }
 
 int main(void)
@@ -260,5 +392,27 @@ int main(void)
         if (spring_method_describe(m)->springs)
             print_accuracy(m);
     }
+
+    print_follow();
+    print_follow_batches("own", true, false, 0);
+    print_follow_batches("loaded", true, true, SPRING_SHARED_ACCEL);
+    print_follow_batches("undamped", false, true, SPRING_SHARED_OMEGA2);
+    print_follow_batches("same", true, false, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
+    print_follow_batches("same-loaded", true, true, SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA);
+    printf("parameters");
+    print_params(spring_params_response(0.5, 0.75));
+    print_params(spring_params_bounce(0.5, 0.3));
+    print_params(spring_params_bounce(0.7, -0.3));
+    print_params(spring_params_settling(0.4, 1, 0.001));
+    print_params(spring_params_settling(0.4, 0.3, 0.01));
+    print_params(spring_params_settling(0.4, 3, 0.01));
+    printf("\n");
+
+    for (int j = 0; j < SPRING_METHOD_COUNT; j++) {
+        const spring_method m = spring_method_at(j);
+        if (spring_method_describe(m)->scenes && !spring_method_describe(m)->positions_only)
+            print_slack_scenes(m);
+    }
+    print_heavy_damping();
     return 0;
 }

@@ -11,14 +11,15 @@
 #include "parts.h"
 #include "samples.h"
 
-static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double", "float", NULL};
+static const char *const parts[] = {"spring", "batch", "scene", "small", NULL}, *const precisions[] = {"double",
+                                                                                                       "float", NULL};
 static int only_part = -1, only_kernel = -1, only_precision = -1;
 static uint64_t only_count, calls;
 static bool quick;
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
-     .help = "spring (one at a time), batch or scene"},
+     .help = "spring (one at a time), batch, scene or small"},
     {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = bench_kernels, .value = "NAME",
      .help = "only the rows of this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
@@ -70,6 +71,9 @@ static const cli_program program = {
         "\"16_steps\" a call. init_SHAPE is spring_scene_init(), and renumber_SHAPE the call\n"
         "that orders its links, compared with reading the links of a definition. Goals that depend on the width of "
         "vectors are those of this processor's.\n\n"
+        "Part small: METHOD_SCENE is spring_scene_advance() of one to six particles. Figures are per force\n"
+        "evaluation, count is that of evaluations per step. Limits: \"written_out\" is the same method in C\n"
+        "for this one scene; \"callback\" is the callback alone.\n\n"
         "Figures are medians of samples, in processor time, that alternate with those of the\n"
         "limit. spread is the distance between the quartiles over the median, the larger one of\n"
         "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the\n"
@@ -127,6 +131,7 @@ int main(int argc, char **argv)
     bench_add_springs();
     bench_add_batches();
     bench_add_scenes();
+    bench_add_small_scenes();
     cli_parse(&program, argc, argv);
     check_any_wanted();
     cli_table *table = cli_open_output();

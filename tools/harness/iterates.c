@@ -5,7 +5,8 @@
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler,
  *           RK4); Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  *           (symplectic Euler, leapfrog); Dormand, El-Mikkawy, Prince, High-order embedded Runge-Kutta-Nystrom
- *           formulae, IMA J. Numer. Anal. 7 (1987)
+ *           formulae, IMA J. Numer. Anal. 7 (1987); Blanes, Moan, Practical symplectic partitioned Runge-Kutta and
+ *           Runge-Kutta-Nystrom methods, J. Comput. Appl. Math. 142 (2002), SRKN11b
  */
 #include "harness/iterates.h"
 
@@ -290,6 +291,112 @@ static void rkn8_scene(const iterate_scene *s, double t, double h, double *x, do
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------- SRKN6 */
+
+/* The paper's numbers, with all digits by tests/srkn6_coefficients.py. Those with the middle index follow from the sums. */
+enum { SRKN_STAGES = 11, SRKN_GIVEN = 5 };
+static const char *const srkn_kick[SRKN_GIVEN] = {
+    "0.04146499851826284329877813391470493672394", "0.1981286719180665411367264731814969606125",
+    "-0.04000619210415268688882836353594483937569", "0.07525398430158034112787887852704275554175",
+    "-0.01151138742068777006244320150128919955259"};
+static const char *const srkn_drift[SRKN_GIVEN] = {
+    "0.1232297759462711515610863803333667525905", "0.2905537977995582703664141693279161833302",
+    "-0.127049212625416915662505053827485934473", "-0.246331761062075404194973489104062862596",
+    "0.3572088727959277526198603496193104628369"};
+
+/* out = given[i], and in the middle (1 - 2 (the sum of all given))/halves. */
+static void srkn_coefficient(mpfr_t out, const char *const given[SRKN_GIVEN], int i, unsigned long halves)
+{
+    mpfr_set_ui(out, i < SRKN_GIVEN ? 0 : 1, nearest);
+    mpfr_t number;
+    mpfr_init2(number, mpfr_get_prec(out));
+    for (int k = 0; k < SRKN_GIVEN; k++) {
+        mpfr_set_str(number, given[k], 10, nearest);
+        if (i == k)
+            mpfr_set(out, number, nearest);
+        mpfr_mul_ui(number, number, 2, nearest);
+        if (i == SRKN_GIVEN)
+            mpfr_sub(out, out, number, nearest);
+    }
+    if (i == SRKN_GIVEN)
+        mpfr_div_ui(out, out, halves, nearest);
+    mpfr_clear(number);
+}
+
+static int srkn_mirrored(int i, int n)
+{
+    return i < n / 2 ? i : n - 1 - i;
+}
+
+/* x' = v, v' = -g v for the time h: x += v (1 - e^(-g h))/g, v e^(-g h) */
+static void srkn_drift_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t lost;
+    if (mpfr_zero_p(r->g)) {
+        mpfr_fma(x, h, v, x, nearest);
+        return;
+    }
+    mpfr_init2(lost, mpfr_get_prec(x));
+    mpfr_mul(lost, r->g, h, nearest);
+    mpfr_neg(lost, lost, nearest);
+    mpfr_expm1(lost, lost, nearest);
+    mpfr_mul(lost, lost, v, nearest);
+    mpfr_add(v, v, lost, nearest);
+    mpfr_div(lost, lost, r->g, nearest);
+    mpfr_sub(x, x, lost, nearest);
+    mpfr_clear(lost);
+}
+
+static void srkn6_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
+{
+    mpfr_t a, part, zero;
+    mpfr_inits2(mpfr_get_prec(x), a, part, zero, (mpfr_ptr)NULL);
+    mpfr_set_zero(zero, 1);
+    for (int i = 0; i <= SRKN_STAGES; i++) {
+        spring_acceleration(a, r, x, zero);
+        srkn_coefficient(part, srkn_kick, srkn_mirrored(i, SRKN_STAGES + 1), 2);
+        mpfr_mul(part, part, h, nearest);
+        mpfr_fma(v, part, a, v, nearest);
+        if (i == SRKN_STAGES)
+            break;
+        srkn_coefficient(part, srkn_drift, srkn_mirrored(i, SRKN_STAGES), 1);
+        mpfr_mul(part, part, h, nearest);
+        srkn_drift_spring(x, v, r, part);
+    }
+    mpfr_clears(a, part, zero, (mpfr_ptr)NULL);
+}
+
+static void srkn_numbers(const char *const given[SRKN_GIVEN], double middle, double number[SRKN_GIVEN + 1])
+{
+    number[SRKN_GIVEN] = middle;
+    for (int i = 0; i < SRKN_GIVEN; i++) {
+        number[i] = strtod(given[i], NULL);
+        number[SRKN_GIVEN] -= 2 * middle * number[i];
+    }
+}
+
+/* Forces do not depend on velocities. The last one is kept: it is the first of the next step. */
+static void srkn6_scene(const iterate_scene *s, double t, double h, double *x, double *v)
+{
+    double *const a = s->room, kick[SRKN_GIVEN + 1], drift[SRKN_GIVEN + 1], at = 0;
+    srkn_numbers(srkn_kick, 0.5, kick);
+    srkn_numbers(srkn_drift, 1, drift);
+    if (s->step == 0 || s->changes)
+        s->acceleration(s->data, t, x, v, a);
+    for (int i = 0; i < SRKN_STAGES; i++) {
+        const double span = h * drift[srkn_mirrored(i, SRKN_STAGES)];
+        for (size_t k = 0; k < s->count; k++) {
+            v[k] += h * kick[srkn_mirrored(i, SRKN_STAGES + 1)] * a[k];
+            x[k] += s->drag[k] != 0 ? -expm1(-s->drag[k] * span) / s->drag[k] * v[k] : span * v[k];
+            v[k] *= exp(-s->drag[k] * span);
+        }
+        at += span;
+        s->acceleration(s->data, i + 1 < SRKN_STAGES ? t + at : t + h, x, v, a);
+    }
+    for (size_t k = 0; k < s->count; k++)
+        v[k] += h * kick[0] * a[k];
+}
+
 /* -------------------------------------------------------------------------------------------------- the methods */
 
 static const iterate iterates[] = {
@@ -299,6 +406,7 @@ static const iterate iterates[] = {
     [SPRING_EXACT] = {.spring = NULL}, /* takes no steps */
     [SPRING_SYMPLECTIC_EULER] = {.spring = symplectic_euler_spring, .scene = symplectic_euler_scene, .vectors = 1},
     [SPRING_RKN8] = {.spring = rkn8_spring, .scene = rkn8_scene, .vectors = 2 + RKN_STAGES - 1},
+    [SPRING_SRKN6] = {.spring = srkn6_spring, .scene = srkn6_scene, .vectors = 1},
 };
 _Static_assert(sizeof iterates / sizeof iterates[0] == SPRING_METHOD_COUNT, "each method has an entry");
 

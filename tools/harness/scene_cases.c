@@ -448,7 +448,7 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 
 /* ------------------------------------------------------------------------------------------------ the catalogue */
 
-#define STEPS(first, second, fourth, eighth) .steps = {first, second, fourth, eighth} /* order */
+#define STEPS(first, second, fourth, eighth) .steps = {first, second, fourth, eighth} /* order; eighth also for 6 */
 #define CHAIN(n, first, last)                                                                                   \
     .build = build_chain, .count = n, .omega = 1.44, .length = 0.1, .formula = "modes", .iterate = chain_modes, \
     .slowest = first, .fastest = last
@@ -563,7 +563,7 @@ uint64_t scene_case_steps(const scene_case *c, spring_method m)
     const spring_method_info *info = spring_method_describe(m);
     if (!info->scenes)
         return 0;
-    return c->steps[info->order < 2 ? 0 : info->order < 4 ? 1 : info->order < 8 ? 2 : 3];
+    return c->steps[info->order < 2 ? 0 : info->order < 4 ? 1 : info->order < 6 ? 2 : 3];
 }
 
 const size_t scene_case_count = sizeof scene_cases / sizeof scene_cases[0];

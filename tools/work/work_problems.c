@@ -58,6 +58,8 @@ static void build_water(const scene_case *c, scene_problem *p)
 }
 
 static const scene_case cloth = {.name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
+static const scene_case long_cloth = {
+    .name = "long-cloth", .build = build_cloth, .duration = 1, .omega = 30, .length = 0.04};
 static const scene_case water = {.name = "water", .build = build_water, .duration = 0.25, .omega = 77, .length = 0.1};
 
 /* ------------------------------------------------------------------------------------------------- the problems */
@@ -79,6 +81,7 @@ const work_problem work_problems[] = {
     {"stiff-and-soft", WORK_SCENE, .longest = 0.01, .harness = "stiff-and-soft-1", .reference_steps = 1024},
     {"cloth", WORK_SCENE, .longest = 0.06, .own = &cloth, .reference_steps = 1024},
     {"water", WORK_SCENE, .longest = 0.06, .own = &water, .reference_steps = 2048},
+    {"long-cloth", WORK_SCENE, .longest = 0.08, .own = &long_cloth, .reference_steps = 4096},
 };
 const size_t work_problem_count = sizeof work_problems / sizeof work_problems[0];
 

@@ -9,7 +9,7 @@ from springstep._clock import Clock
 from springstep._common import (InvalidError, Method, NonFiniteError, RangeError, SpringError, UnsupportedError, methods,
                                 self_test)
 from springstep._native import ffi, lib
-from springstep._scene import LINK, Energies, Grid, Scene, Snapshot, grid
+from springstep._scene import LINK, Energies, Grid, Scene, Snapshot, components, grid
 from springstep._spring import Spring
 from springstep._sweep import sweep
 
@@ -17,6 +17,6 @@ __version__: str = ffi.string(lib.spring_version()).decode()
 
 __all__ = [
     "Batch", "Clock", "Energies", "Grid", "InvalidError", "LINK", "Method", "NonFiniteError", "RangeError", "Scene",
-    "Snapshot", "Spring", "SpringError", "UnsupportedError", "ffi", "grid", "lib", "methods", "self_test",
+    "Snapshot", "Spring", "SpringError", "UnsupportedError", "components", "ffi", "grid", "lib", "methods", "self_test",
     "sweep",
 ]

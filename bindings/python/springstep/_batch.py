@@ -2,7 +2,7 @@
 """Many springs that are not joined, as arrays."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -36,6 +36,7 @@ class Batch:
             raise TypeError("x: not an array of float64 or float32")
         self._name, self._pointer = _PRECISIONS[x.dtype]
         self._steps = getattr(lib, f"{self._name}_advance_marked")
+        self._follows = getattr(lib, f"{self._name}_follow")
         self._guard = Guard("the batch is being advanced by another thread")
         self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
         self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
@@ -57,15 +58,19 @@ class Batch:
                 if field != name and values is not None and np.may_share_memory(state, values):
                     raise ValueError(f"{field}: shares memory with {name}")
 
-    def _lend(self, field: str, array: Any) -> None:
-        """Show an array to C as it is."""
+    def _as_lent(self, field: str, array: Any) -> Any:
+        """An array as C sees it, where it is."""
         if not isinstance(array, np.ndarray) or array.dtype != self._x.dtype or not (
                 array.flags.c_contiguous and array.flags.aligned):
             raise TypeError(f"{field}: not a contiguous array of {self._x.dtype}")
         one_for_all = field in self._parameters and array.ndim == 0
         if not one_for_all and (array.ndim != 1 or array.shape != self._x.shape):
             raise ValueError(f"{field}: its shape is {array.shape}, of x {self._x.shape}")
-        setattr(self._batch, field, ffi.from_buffer(self._pointer, array))
+        return ffi.from_buffer(self._pointer, array)
+
+    def _lend(self, field: str, array: Any) -> None:
+        """Show an array to C as it is."""
+        setattr(self._batch, field, self._as_lent(field, array))
 
     x = property(lambda self: self._x, doc="[m] the array handed over")
     v = property(lambda self: self._v, doc="[m/s] the array handed over")
@@ -77,9 +82,9 @@ class Batch:
     def __len__(self) -> int:
         return self._batch.count
 
-    def _first_invalid(self, index: int | None) -> None:
+    def _first_invalid(self, index: int | None, target: np.ndarray | None = None) -> None:
         """InvalidError for what is wrong with a spring, or with parameters that are shared."""
-        for field, values in (("x", self._x), ("v", self._v), *self._parameters.items()):
+        for field, values in (("x", self._x), ("v", self._v), ("target", target), *self._parameters.items()):
             if values is None or (index is None and values.ndim):
                 continue
             value = float(values[index] if values.ndim else values)
@@ -105,20 +110,69 @@ class Batch:
         status, failed = self._guard.long(self._advance, method_number(method), dt, step_count(steps))
         if failed is None:
             return
+        if status == lib.SPRING_EUNSUPPORTED:
+            fail(status, "method", method)
+        self._fail(status, failed, dt)
+
+    def _fail(self, status: int, failed: np.ndarray, dt: float, target: np.ndarray | None = None) -> NoReturn:
+        """Raise what belongs to a status, with the indices of the springs that have kept their state."""
         first = int(failed[0]) if len(failed) else None
         try:
-            if status == lib.SPRING_EUNSUPPORTED:
-                fail(status, "method", method)
             if status == lib.SPRING_EINVAL:
                 finite("dt", dt)
                 for index in failed if len(failed) else [None]:
-                    self._first_invalid(None if index is None else int(index))
+                    self._first_invalid(None if index is None else int(index), target)
             if first is None:
                 fail(status)
             fail(status, "x", float(self._x[first]), first)
         except SpringError as error:
             error.failed = failed
             raise
+
+    def _follow(self, target: np.ndarray, dt: float, x_tol: float, v_tol: float) -> tuple[int, int, np.ndarray | None]:
+        """The status, the number of springs that move and, after an error, the indices of springs that have kept their
+        state: those that are where they were, and fail again alone."""
+        unknown = len(self) + 1
+        moving = ffi.new("size_t *", unknown)
+        x, v = self._x.copy(), self._v.copy()
+        status = self._follows(self._batch, self._as_lent("target", target), dt, x_tol, v_tol, moving)
+        if status == lib.SPRING_OK:
+            return status, moving[0], None
+        if moving[0] == unknown:  # an error of the whole batch
+            return status, 0, np.empty(0, np.intp)
+        bits = f"u{x.itemsize}"
+        kept = (x.view(bits) == self._x.view(bits)) & (v.view(bits) == self._v.view(bits))
+        failed = [index for index in np.flatnonzero(kept) if self._fails(index, target, dt)]
+        return status, moving[0], np.array(failed, np.intp)
+
+    def _fails(self, index: int, target: np.ndarray, dt: float) -> bool:
+        """Whether a spring alone would fail."""
+        part = slice(index, index + 1)
+        parameters = (values if values is None or not values.ndim else values[part] for values in self._parameters.values())
+        one = Batch(self._x[part].copy(), self._v[part].copy(), *parameters)
+        return one._follows(one._batch, one._as_lent("target", target[part]), dt, 0, 0, ffi.NULL) != lib.SPRING_OK
+
+    def follow(self, target: np.ndarray | float, dt: float, x_tol: float = 0.0, v_tol: float = 0.0) -> int:
+        """Advance every spring by dt [s] towards its target [m], by the exact solution; return how many still move.
+
+        target: an array like x, or one number for all springs
+        x_tol, v_tol: [m], [m/s] a spring as near to rest on its target as this is placed there
+
+        Springs that fail keep their state, are counted, and are named by the exception, as in advance().
+        """
+        if np.ndim(target) == 0:
+            target = np.full(len(self), target, self._x.dtype)
+        for field, value in (("x_tol", x_tol), ("v_tol", v_tol)):
+            if not value >= 0:
+                invalid(field, value)
+        self._as_lent("target", target)
+        for name, state in (("x", self._x), ("v", self._v)):
+            if np.may_share_memory(state, target):
+                raise ValueError(f"target: shares memory with {name}")
+        status, moving, failed = self._guard.long(self._follow, target, dt, x_tol, v_tol)
+        if failed is not None:
+            self._fail(status, failed, dt, target)
+        return moving
 
     def stable_step(self, method: str = "leapfrog") -> float:
         """The least stable step of all springs [s]: 0 if there is none, infinity if all are."""

@@ -176,9 +176,11 @@ class Scene:
     drag: [N s/m] >= 0, on every particle
     force: adds forces, see Force
     force_ignores_velocity: force uses no velocities, and is shown zeros: leapfrog is twice as fast
-    methods: names of those that will be used; None: all except those that store stages
+    methods: names of those that will be used; None: all except those that store stages or drag factors
     editable: links, pins and masses may change
     undo: False: an advance that fails loses the state, and memory is saved
+    tension_only: links pull and never push, as those of ropes and nets; for two or three axes
+    held_forces: there is room for forces that are held until they are changed, see set_held_force()
     dtype: float64 or float32: what the scene computes in
 
     Everything is copied into a block of memory, as C does; position(), velocity() and their like copy it out. While one
@@ -189,7 +191,7 @@ class Scene:
                  mass: ArrayLike = 1.0, pinned: ArrayLike | None = None, gravity: ArrayLike | None = None,
                  drag: float = 0.0, force: Force | None = None, force_ignores_velocity: bool = False,
                  methods: Iterable[str] | None = None, editable: bool = False, undo: bool = True,
-                 dtype: DTypeLike = np.float64):
+                 dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False):
         self._dtype = np.dtype(dtype)
         if self._dtype not in _PREFIXES:
             raise TypeError("dtype: not float64 or float32")
@@ -219,7 +221,8 @@ class Scene:
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
         for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),
-                             ("FORCE_IGNORES_VELOCITY", force_ignores_velocity)):
+                             ("FORCE_IGNORES_VELOCITY", force_ignores_velocity), ("TENSION_ONLY", tension_only),
+                             ("FORCES", held_forces)):
             if wanted:
                 definition.flags |= getattr(lib, f"SPRING_SCENE_{flag}")
         for method in methods:
@@ -305,6 +308,8 @@ class Scene:
             fail(status, field, (value[part] if part else value).tolist(), index)
         if name == "methods":
             fail(status, field, methods)
+        if name == "flags":
+            fail(status, "tension_only", True)
         value = getattr(definition, name, None)
         fail(status, field, value if isinstance(value, (int, float)) else None)
 
@@ -393,6 +398,8 @@ class Scene:
         stride = out.strides[0] // out.itemsize if len(out) > 1 else 0
         start = ffi.cast(pointer, out.ctypes.data)
         if status := self._ask(get, quantity, start, stride, _natural("first", first), len(out)):
+            if status == lib.SPRING_EDISABLED:
+                fail(status, "held_forces", False)
             fail(status, "first, count", (first, len(out)))
         return out
 
@@ -414,6 +421,8 @@ class Scene:
             with np.errstate(over="ignore"):
                 row = int(np.flatnonzero(~np.isfinite(array.astype(self._dtype)).all(axis=1))[0])
             fail(status, field, array[row].tolist(), first + row)
+        if status == lib.SPRING_EDISABLED:
+            fail(status, "held_forces", False)
         if status:
             fail(status, "first, count", (first, len(array)))
 
@@ -435,6 +444,29 @@ class Scene:
     def set_velocity(self, values: ArrayLike, first: int = 0) -> None:
         """Set velocities [m/s], as set_position()."""
         self._set(lib.SPRING_VELOCITY, "velocity", values, first)
+
+    def held_force(self, first: int = 0, count: int | None = None, out: np.ndarray | None = None) -> np.ndarray:
+        """Held forces [N] of a scene with held_forces, as position()."""
+        return self._get(lib.SPRING_FORCE, first, count, out)
+
+    def set_held_force(self, values: ArrayLike, first: int = 0) -> None:
+        """Set the forces [N] that act on particles from `first` on until they are set again: (count, axes).
+
+        They act like gravity, with every method, and changing them costs nothing. Wind, for example, is computed from the
+        state once a frame and held for its steps.
+        """
+        self._set(lib.SPRING_FORCE, "held_force", values, first)
+
+    def transform(self, matrix: ArrayLike) -> None:
+        """Move all particles, pinned ones too: x = A x + b and v = A v, with the matrix [A b], (axes, axes + 1)."""
+        array = self._numbers("matrix", matrix, (self._axes, self._axes + 1))
+        rows = ffi.new("double[12]")
+        for row in range(self._axes):
+            for column in range(self._axes):
+                rows[4 * row + column] = array[row, column]
+            rows[4 * row + 3] = array[row, self._axes]
+        if status := self._ask("transform", rows):
+            fail(status, "matrix", array.tolist())
 
     def _save(self) -> Snapshot:
         return Snapshot(self, self._memory.tobytes(), self._called, self._pinned.copy())
@@ -499,6 +531,36 @@ class Scene:
                     if not 0 <= getattr(link, field) < np.inf:
                         fail(status, f"link.{field}", getattr(link, field), index)
             fail(status, "link", (link.a, link.b, link.rest, link.stiffness, link.damping), index)
+
+    def set_links(self, links: ArrayLike, first: int = 0) -> None:
+        """Change links from `first` on of an editable scene, all of them or none: like `links` of Scene, a and b as there."""
+        array = _joined(links)
+        status = self._ask("set_links", _natural("first", first), len(array),
+                           ffi.cast("spring_link *", ffi.from_buffer(array)))
+        if status == lib.SPRING_EINVAL:
+            for field in ("rest", "stiffness", "damping"):
+                if (wrong := np.flatnonzero(~((array[field] >= 0) & np.isfinite(array[field])))).size:
+                    fail(status, f"link.{field}", array[field][wrong[0]].item(), first + int(wrong[0]))
+        if status:
+            fail(status, "first, count" if status == lib.SPRING_ERANGE else "links", (first, len(array)))
+
+    def tear(self, stretch: float | ArrayLike) -> np.ndarray:
+        """Cut links of an editable scene that are longer than stretch times their rest length; returns their indices.
+
+        stretch: a number, or one for each link; infinity: it never tears. Call it once a frame.
+        """
+        limits = None if np.ndim(stretch) == 0 else self._numbers("stretch", stretch, (self._links,))
+        torn = np.empty(self._links, np.uint32)
+        count = ffi.new("size_t *")
+        status = self._ask("tear", stretch if limits is None else 0.0,
+                           ffi.NULL if limits is None else ffi.cast("double *", ffi.from_buffer(limits)),
+                           ffi.cast("uint32_t *", ffi.from_buffer(torn)), len(torn), count)
+        if status == lib.SPRING_EINVAL:
+            row = None if limits is None else int(np.flatnonzero(~(limits >= 0))[0])
+            fail(status, "stretch", stretch if limits is None else limits[row].item(), row)
+        if status:
+            fail(status, "editable", False)
+        return torn[:count[0]].copy()
 
     def find_link(self, a: int, b: int) -> int | None:
         """The first link between two particles, in either order, or None. Looks at all links."""
@@ -568,6 +630,20 @@ def _joined(links: ArrayLike) -> np.ndarray:
     for name in LINK.names:  # NumPy assigns structures by position
         joined[name] = links[name]
     return joined
+
+
+def components(particles: int, links: ArrayLike) -> tuple[int, np.ndarray]:
+    """How many pieces links join particles to, and the piece of each particle: 0, 1, ... by their first particles.
+
+    Links without stiffness and damping, such as torn ones, do not join.
+    """
+    joined = _joined(links)
+    piece = np.empty(_natural("particles", particles), np.uint32)
+    count = lib.spring_links_components(len(piece), len(joined), ffi.cast("spring_link *", ffi.from_buffer(joined)),
+                                        ffi.cast("uint32_t *", ffi.from_buffer(piece)))
+    if count == 0 and len(piece) > 0:
+        fail(lib.SPRING_EINVAL, "links")
+    return count, piece
 
 
 def _natural(field: str, index: int) -> int:

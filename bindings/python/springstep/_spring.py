@@ -23,8 +23,8 @@ class Spring:
     stiffness: [N/m] >= 0; 0 is a free particle
     mass: [kg] > 0
     damping: [N s/m] >= 0; critical at 2 sqrt(mass stiffness)
-    load: [N] a force held constant over the step; to follow a goal, stiffness times the goal
-    x: [m] displacement from the unloaded rest position
+    load: [N] a force held constant over the step
+    x: [m] displacement from the unloaded rest position; with follow() the value itself
     v: [m/s] velocity
 
     All may be changed at any time, and are checked where they are used.
@@ -63,6 +63,43 @@ class Spring:
             invalid("half_life", half_life)
         return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
 
+    @classmethod
+    def response(cls, response: float, damping_fraction: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
+        """A spring of 1 kg from a response > 0 [s] and a damping fraction >= 0, as in SwiftUI."""
+        params = lib.spring_params_response(response, damping_fraction)
+        if math.isnan(params.mass):
+            if finite("damping_fraction", damping_fraction) < 0:
+                invalid("damping_fraction", damping_fraction)
+            invalid("response", response)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
+    @classmethod
+    def bounce(cls, duration: float, bounce: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
+        """A spring of 1 kg from a duration > 0 [s] and a bounce, -1 < bounce <= 1, as in SwiftUI."""
+        params = lib.spring_params_bounce(duration, bounce)
+        if math.isnan(params.mass):
+            if not -1 < bounce <= 1:
+                invalid("bounce", bounce)
+            invalid("duration", duration)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
+    @classmethod
+    def settling(cls, time: float, damping_ratio: float, tolerance: float = 1e-3, *, x: float = 0.0,
+                 v: float = 0.0) -> Spring:
+        """A spring of 1 kg from its settling time > 0 [s] and its damping ratio > 0.
+
+        Released at rest, it stays within tolerance times the initial distance from the target from then on;
+        0 < tolerance < 1.
+        """
+        params = lib.spring_params_settling(time, damping_ratio, tolerance)
+        if math.isnan(params.mass):
+            if finite("damping_ratio", damping_ratio) <= 0:
+                invalid("damping_ratio", damping_ratio)
+            if not 0 < tolerance < 1:
+                invalid("tolerance", tolerance)
+            invalid("time", time)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
     def _check_parameters(self) -> None:
         """InvalidError for the first parameter that the library refuses."""
         if lib.spring_params_valid(self._params):
@@ -88,6 +125,23 @@ class Spring:
             self._check_parameters()
         if status:
             fail(status, "method" if status == lib.SPRING_EUNSUPPORTED else None, method)
+
+    def follow(self, target: float, dt: float, target_velocity: float = 0.0) -> None:
+        """Advance by dt [s] towards a target [m], by the exact solution. A damped spring lands on it, at rest.
+
+        target: where the target is at the end of the step
+        target_velocity: [m/s] its velocity during the step; 0 for a target that jumps
+
+        After an error nothing has changed.
+        """
+        status = lib.spring_follow(self._state, self._params, target, target_velocity, dt)
+        if status == lib.SPRING_EINVAL:
+            for field, value in (("target", target), ("target_velocity", target_velocity), ("dt", dt), ("x", self.x),
+                                 ("v", self.v)):
+                finite(field, value)
+            self._check_parameters()
+        if status:
+            fail(status)
 
     def energy(self) -> float:
         """Energy m v^2/2 + k x^2/2 - load x [J]."""

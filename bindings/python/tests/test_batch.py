@@ -114,7 +114,68 @@ def test_springs_that_fail_are_named_and_all_others_advance():
     assert caught.value.failed.tolist() == [500]
 
 
+def test_following_has_the_bits_of_single_springs():
+    batch = example()
+    target = np.random.default_rng(8).uniform(-5, 5, COUNT)
+    springs = [Spring(w, 1, g, a, x=x, v=v)
+               for x, v, w, g, a in zip(batch.x, batch.v, batch.omega2, batch.gamma, batch.accel)]
+    for _ in range(7):
+        assert batch.follow(target, 1 / 60) == COUNT
+        for spring, goal in zip(springs, target):
+            spring.follow(goal, 1 / 60)
+    assert (batch.x == [spring.x for spring in springs]).all() and (batch.v == [spring.v for spring in springs]).all()
+    assert batch.follow(target, 0) == COUNT and batch.follow(target, 0, np.inf, np.inf) == 0
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_springs_land_on_their_targets(dtype):
+    numbers = np.random.default_rng(9)
+    for lowest in np.geomspace(0.5, 50, 4):
+        omega, ratio = 2 * np.pi * lowest * numbers.uniform(1, 1.5, COUNT), numbers.uniform(0.1, 3, COUNT)
+        x, v, target = (numbers.uniform(-1000, 1000, COUNT).astype(dtype) for _ in range(3))
+        batch = Batch(x, v, (omega * omega).astype(dtype), (2 * ratio * omega).astype(dtype))
+        frames = 0
+        while batch.follow(target, 1 / 60):
+            frames += 1
+        assert (x == target).all() and (v == 0).all()
+        assert frames / 60 < 200 / (0.1 * 2 * np.pi * lowest)  # decay times of the slowest
+        assert batch.follow(7, 1 / 60) == COUNT  # one target for all
+        assert batch.follow(7, 1 / 60, np.inf, np.inf) == 0 and (x == 7).all() and (v == 0).all()
+
+
+def test_springs_that_cannot_follow_are_named_and_all_others_advance():
+    batch, target = example(), np.full(COUNT, 3.0)
+    batch.x[17], batch.omega2[500], target[900] = np.nan, -1.5, np.inf
+    before = batch.snapshot()
+    with pytest.raises(springstep.InvalidError, match=r"^x\[17\] = nan: ") as caught:
+        batch.follow(target, 0.01)
+    assert caught.value.failed.tolist() == [17, 500, 900]
+    changed = np.flatnonzero(batch.v != before[1])
+    assert len(changed) == COUNT - 3 and not set(changed) & {17, 500, 900}
+    batch.x[17], batch.omega2[500] = 0, 1
+    with pytest.raises(springstep.InvalidError, match=r"^target\[900\] = inf: "):
+        batch.follow(target, 0.01)
+    target[900], batch.gamma[300] = 1, 1e9
+    with pytest.raises(springstep.NonFiniteError, match=r"^x\[300\]") as caught:
+        batch.follow(target, -0.1)
+    assert caught.value.failed.tolist() == [300]
+
+
+@pytest.mark.parametrize("target", [[1.0] * COUNT, np.ones(COUNT, np.float32), np.ones(3), np.ones(2 * COUNT)[::2]])
+def test_targets_that_would_be_copied_are_refused(target):
+    with pytest.raises((TypeError, ValueError), match="^target: "):
+        example().follow(target, 0.1)
+
+
+def test_targets_that_share_memory_are_refused():
+    batch = example()
+    with pytest.raises(ValueError, match="^target: shares memory with v"):
+        batch.follow(batch.v, 0.1)
+
+
 @pytest.mark.parametrize("call, field", [
+    (lambda b: b.follow(1, np.nan), "dt"), (lambda b: b.follow(1, 0.1, -1), "x_tol"),
+    (lambda b: b.follow(1, 0.1, 0, np.nan), "v_tol"), (lambda b: Batch(b.x, b.v, -1.0).follow(1, 0.1), "omega2"),
     (lambda b: b.advance(np.nan), "dt"), (lambda b: b.advance(0.1, 1, "verlet"), "method"),
     (lambda b: b.advance(0.1, 1, "rkn8"), "method"), (lambda b: b.stable_step("rkn8"), "method"),
     (lambda b: b.advance(0.1, -3), "steps"), (lambda b: Batch(b.x, b.v, -1.0).advance(0.1), "omega2"),

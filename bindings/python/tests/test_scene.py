@@ -589,3 +589,107 @@ def test_scenes_in_threads():
     for thread in threads:
         thread.join()
     assert len({fnv(scene) for scene in scenes}) == 1 and scenes[0].time == 200 * 4e-4
+
+
+# --- slack links, tearing, held forces, transform
+
+
+@FLOATS
+def test_tension_only_links_do_not_push(dtype):
+    scene = Scene([[0, 0], [0.5, 0], [2, 0]], [(0, 1, 1, 30, 0), (1, 2, 1, 30, 0)], tension_only=True, dtype=dtype)
+    assert [scene.tension(0), scene.tension(1)] == [0, 15]
+    assert scene.energy().elastic == 30 * 0.5**2 / 2
+
+
+def test_tension_only_is_for_two_axes_and_methods_without_smooth_forces():
+    with pytest.raises(springstep.UnsupportedError, match="tension_only"):
+        Scene([0, 1], [(0, 1, 1, 30, 0)], tension_only=True)
+    with pytest.raises(springstep.UnsupportedError, match="methods"):
+        Scene([[0, 0], [1, 1]], tension_only=True, methods=["rkn8"])
+
+
+@FLOATS
+def test_held_forces_are_like_gravity(dtype):
+    falling, held = rope(dtype=dtype), rope(dtype=dtype, gravity=None, held_forces=True)
+    assert not held.held_force().any()
+    held.set_held_force(np.tile([0, -9.81 * 0.13, 0.4 * 0.13], (6, 1)))
+    for scene in (falling, held):
+        scene.advance(1e-3, 100)
+    error = 1000 * np.finfo(dtype).eps
+    assert np.allclose(held.position(), falling.position(), rtol=error, atol=error)
+    assert held.held_force(2, 1)[0, 1] == dtype(-9.81 * 0.13)
+    out = np.empty((6, 5), np.float32)
+    assert held.held_force(out=out[:, :3])[3, 2] == np.float32(dtype(0.4 * 0.13))
+
+
+def test_held_forces_are_refused():
+    for call in (lambda: rope().held_force(), lambda: rope().set_held_force(np.zeros((6, 3)))):
+        with pytest.raises(springstep.SpringError, match="held_forces"):
+            call()
+    with pytest.raises(springstep.InvalidError, match="held_force"):
+        rope(held_forces=True).set_held_force([[0, 0, np.nan]], first=2)
+
+
+@FLOATS
+def test_tear_and_components(dtype):
+    scene = rope(editable=True, dtype=dtype)
+    assert scene.tear(1.5).tolist() == []
+    scene.set_position([[0.3 * 5 + 2, 0, 0]], first=5)
+    assert scene.tear([np.inf] * 5).tolist() == []
+    assert scene.tear(1.5).tolist() == [4]
+    links = [scene.link(i) for i in range(scene.links)]
+    count, piece = springstep.components(len(scene), links)
+    assert (count, piece.tolist()) == (2, [0, 0, 0, 0, 0, 1])
+    assert springstep.components(2, [])[1].tolist() == [0, 1]
+
+
+def test_tear_is_refused():
+    with pytest.raises(springstep.SpringError, match="editable"):
+        rope().tear(1.5)
+    with pytest.raises(springstep.InvalidError, match="stretch"):
+        rope(editable=True).tear(-1)
+    with pytest.raises(springstep.InvalidError, match=r"stretch\[3\]"):
+        rope(editable=True).tear([1, 1, 1, np.nan, 1])
+    with pytest.raises(ValueError, match="stretch"):
+        rope(editable=True).tear([1, 1])
+    with pytest.raises(springstep.InvalidError, match="links"):
+        springstep.components(2, [(0, 2, 1, 1, 0)])
+
+
+def test_set_links():
+    scene, one = rope(editable=True), rope(editable=True)
+    links = [(a, b, 0.9 * rest, stiffness, damping) for a, b, rest, stiffness, damping in map(scene.link, range(1, 4))]
+    scene.set_links(links, first=1)
+    for i, link in enumerate(links):
+        one.set_link(1 + i, rest=link[2])
+    for each in (scene, one):
+        each.advance(1e-3, 50)
+    assert fnv(scene) == fnv(one)
+    before = fnv(scene), scene.link(1)
+    with pytest.raises(springstep.InvalidError, match=r"link.rest\[3\]"):
+        scene.set_links([(*links[0][:2], 0.1, 1, 0), links[1], (*links[2][:2], -1, 1, 0)], first=1)
+    with pytest.raises(springstep.InvalidError, match="links"):
+        scene.set_links([(0, 2, 1, 1, 0)])
+    with pytest.raises(springstep.RangeError):
+        scene.set_links(links, first=4)
+    with pytest.raises(springstep.SpringError):
+        rope().set_links(links)
+    assert (fnv(scene), scene.link(1)) == before
+
+
+@FLOATS
+def test_transform(dtype):
+    scene = rope(dtype=dtype)
+    scene.advance(1e-3, 10)
+    x, v = scene.position().astype(float), scene.velocity().astype(float)
+    turn = np.array([[0, -1, 0, 3], [1, 0, 0, 0], [0, 0, 1, -2]], float)
+    scene.transform(turn)
+    assert (scene.position() == (x @ turn[:, :3].T + turn[:, 3]).astype(dtype)).all()
+    assert (scene.velocity() == (v @ turn[:, :3].T).astype(dtype)).all()
+    flat = Scene([[1, 2], [3, 4]])
+    flat.transform([[1, 0, 5], [0, 2, 6]])
+    assert flat.position().tolist() == [[6, 10], [8, 14]]
+    with pytest.raises(springstep.InvalidError, match="matrix"):
+        flat.transform([[1, 0, np.nan], [0, 2, 6]])
+    with pytest.raises(ValueError, match="matrix"):
+        flat.transform(np.eye(3))

@@ -60,6 +60,21 @@ def test_how_it_should_feel():
     assert Spring.hertz(2, 0.1).stiffness == pytest.approx((4 * math.pi) ** 2, rel=1e-15)
     spring = Spring.half_life(0.7, 0.3)
     assert math.exp(-spring.damping * 0.7 / 2) == pytest.approx(0.5, rel=1e-14)
+    assert Spring.response(0.3, 0.7).stiffness == pytest.approx(438.649084492860, rel=1e-12)
+    assert Spring.bounce(0.5, 0.25).damping == pytest.approx(18.8495559215388, rel=1e-12)
+    assert Spring.settling(0.4, 0.3, x=1).settling_time(1e-3) == pytest.approx(0.4, rel=1e-9)
+
+
+def test_a_spring_lands_on_its_target():
+    spring, frames = Spring.bounce(0.5, 0.3, x=100), 0
+    while (spring.x, spring.v) != (7.3, 0):
+        spring.follow(7.3, 1 / 60)
+        frames += 1
+    assert frames < 400
+    spring.restore((0, 2.0))
+    for frame in range(1, 100):
+        spring.follow(2 * frame / 60, 1 / 60, 2.0)
+        assert spring.snapshot() == pytest.approx((2 * frame / 60, 2.0), abs=1e-12)  # no lag
 
 
 @pytest.mark.parametrize("field, value", [("mass", 0.0), ("mass", math.nan), ("stiffness", -2.7), ("damping", -0.6),
@@ -82,6 +97,11 @@ def test_a_wrong_field_is_named(field, value):
     (lambda s: s.step_error(math.nan, 1e-3), "duration"), (lambda s: s.settling_time(-1), "x_tol"),
     (lambda s: Spring.hertz(-1, 0.5), "hertz"), (lambda s: Spring.hertz(1, -0.5), "damping_ratio"),
     (lambda s: Spring.half_life(0, 0.5), "half_life"), (lambda s: Spring.half_life(1, 0), "damping_ratio"),
+    (lambda s: Spring.response(0, 1), "response"), (lambda s: Spring.response(1, -1), "damping_fraction"),
+    (lambda s: Spring.bounce(0, 0), "duration"), (lambda s: Spring.bounce(1, -1), "bounce"),
+    (lambda s: Spring.settling(0, 1), "time"), (lambda s: Spring.settling(1, 0), "damping_ratio"),
+    (lambda s: Spring.settling(1, 1, 1), "tolerance"), (lambda s: s.follow(math.nan, 0.1), "target"),
+    (lambda s: s.follow(1, math.inf), "dt"), (lambda s: s.follow(1, 0.1, math.nan), "target_velocity"),
     (lambda s: Clock(0), "dt"), (lambda s: Clock(1e-3).tick(-1), "frame_dt"), (lambda s: Clock(1e-3, -1), "steps"),
 ])
 def test_a_wrong_argument_is_named(call, field):

@@ -140,6 +140,7 @@ export class Controls {
         const words = {
             rk4: "Runge–Kutta 4",
             rkn8: "RKN 8",
+            srkn6: "SRKN 6",
             "symplectic-euler": "symplectic Euler",
         };
         const text = words[name] ?? name;

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Whether a link of a band is stretched beyond a limit: a quick look at all links before one is torn.
+ *
+ * Method    length^2 is compared with (stretch rest)^2, without a root. Both have relative errors below 8 eps, so a link
+ *           that is longer is found also if the squares are equal to within a few roundings. The caller decides exactly.
+ */
+#ifndef SPRINGSTEP_STRETCH_H
+#define SPRINGSTEP_STRETCH_H
+
+#include "../simd/real.h"
+#include "scene_kernels.h"
+
+SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, const scalar *x, real stretch)
+{
+    const real nearly = splat((scalar)(1 - 0x1p-18)); /* 4e-6, more than the rounding errors also in float */
+    const ptrdiff_t stride_c = band->coefficient_stride;
+    mask longer = {0};
+    for (ptrdiff_t t = band->start; t < band->end; t += (ptrdiff_t)lanes) {
+        const ptrdiff_t slot = t - band->start;
+        const real rest = vec_load(band->rest + slot * stride_c), bound = stretch * rest;
+        real square = splat(0);
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const scalar *const at = x + a * s->stride + t;
+            const real delta = vec_load(at + band->offset) - vec_load(at);
+            square += delta * delta;
+        }
+        const mask beyond = (rest != 0) & not_mask(square < nearly * (bound * bound));
+        if (SPRING_UNLIKELY(any(beyond))) /* of links that were cut, too */
+            longer |= beyond & vec_load_mask(band->occupied + slot);
+    }
+    return any(longer);
+}
+
+static bool any_stretched(const scene_links *s, const scalar *x, scalar stretch)
+{
+    bool longer = false;
+    for (size_t i = 0; i < s->bands && !longer; i++)
+        longer = band_stretched(s, &s->band[i], x, splat(stretch));
+    return longer;
+}
+
+#endif

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A step of a spring that follows a target, on `real`: one spring or a SIMD vector of springs.
+ *
+ * Method    The rest position moves at the constant velocity T'. So y = x - rest and u = v - T' obey the equation of a
+ *           spring without load, and the exact solution (exact_formula.h) advances them.
+ * Landing   x is stored with an error of up to d, half an ulp, and stepping stops where a step changes x by less. To reach
+ *           the target all the same, a spring is placed on it at rest if dt > 0 and
+ *
+ *               hypot(y, u/omega) min(1, r dt) <= 9/4 d,   r the decay rate of its slowest mode.
+ *
+ *           Wherever rounding can hold a spring, this holds. With an error of +-d in x after each step, (y, u/omega)
+ *           ends up within the sum of +-d Phi(i dt) (1, 0) over i >= 1, Phi the propagator of (y, u/omega). The sum
+ *           times r dt is largest at critical damping for dt -> 0, where it is the integral of Phi (1, 0) omega dt,
+ *           d (2, 1), of norm sqrt(5) d = 2.236 d. (It tends to d for large damping ratios, to 2/pi d for small ones.)
+ *           9/4 leaves room for the rounding errors of a step. v adds nothing, since it has a relative error. d is that
+ *           of the larger of x and the rest position, between which a power of two may lie.
+ * Special   No stiffness: only u decays. Near 0 an ulp may be as small as it likes; a spring lands where numbers would
+ *           become denormal.
+ */
+#ifndef SPRINGSTEP_FOLLOW_FORMULA_H
+#define SPRINGSTEP_FOLLOW_FORMULA_H
+
+#include "exact_formula.h"
+
+/* What a step needs of a spring. */
+typedef struct follow_coefficients {
+    exact_coefficients exact;
+    real omega2;
+    real share; /* min(1, r dt); 0 for a spring that does not land */
+} follow_coefficients;
+
+SPRING_INLINE follow_coefficients follow_prepare(exact_coefficients exact, real omega2, real dt)
+{
+    const real share = exact.decay_rate * dt;
+    const mask lands = (share > 0) & (omega2 > 0);
+    return (follow_coefficients){exact, omega2, select_real(lands, select_real(share < 1, share, splat(1)), splat(0))};
+}
+
+/* Half an ulp of a >= 0 that is not denormal, exactly. Computed of a/2, since the number after the largest is infinite. */
+SPRING_INLINE real half_ulp(real a)
+{
+    const scalar u = (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON) / 2;
+    const real half = a / 2, next = half + half * (u + 2 * u * u);
+    return next - half;
+}
+
+/* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow: spring_hypot() on `real` */
+SPRING_INLINE real vec_hypot(real a, real b)
+{
+    const mask larger = a > b;
+    const real large = select_real(larger, a, b), small = select_real(larger, b, a);
+    const real ratio = small / select_real(large > 0, large, splat(1));
+    return large * vec_sqrt(1 + ratio * ratio);
+}
+
+/* Whether a spring lands: see above. single: x is stored as a float, whatever it is computed in. */
+SPRING_INLINE mask follow_lands(real x, real rest, real y, real u, const follow_coefficients *c, bool single)
+{
+    const scalar ulps = single && sizeof(scalar) == sizeof(double) ? (scalar)0x1p29 : 1; /* an ulp of float in double */
+    const scalar least = single ? (scalar)FLT_MIN : (scalar)DBL_MIN;
+    const scalar reach = 2.25; /* [d] 9/4, see above */
+    const real x_size = vec_abs(x), rest_size = vec_abs(rest), distance = vec_abs(y);
+    const real room = half_ulp(select_real(x_size > rest_size, x_size, rest_size)) * (reach * ulps) + least;
+    const mask near = (c->share > 0) & (distance * c->share <= room);
+    if (!any(near))
+        return near;
+    const real speed = vec_abs(u) / vec_sqrt(select_real(near, c->omega2, splat(1)));
+    return near & (vec_hypot(distance, speed) * c->share <= room);
+}
+
+#endif

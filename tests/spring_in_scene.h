@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/* One spring as a scene of two particles, for methods that are offered for scenes only. Choose a power of two for its mass,
+   so that w and g are what the references work from. */
+#ifndef SPRING_IN_SCENE_H
+#define SPRING_IN_SCENE_H
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <springstep/scene.h>
+
+#include "check.h"
+#include "harness/reference.h"
+
+/* The state after n steps of dt. */
+static inline spring_state advance_in_scene(spring_method m, spring_params p, double dt, uint64_t n, spring_state from)
+{
+    const double position[] = {0, from.x}, velocity[] = {0, from.v};
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 0, p.stiffness, 0};
+    const spring_scene_def def = {.axes = 1,
+                                  .methods = 1u << m,
+                                  .particles = 2,
+                                  .links = 1,
+                                  .position = position,
+                                  .velocity = velocity,
+                                  .mass_all = p.mass,
+                                  .pinned = pinned,
+                                  .link = &link,
+                                  .gravity = {p.load / p.mass},
+                                  .drag = p.damping};
+    size_t bytes = 0;
+    spring_scene *s;
+    spring_state end = {NAN, NAN};
+    CHECK(spring_scene_bytes(&def, &bytes) == SPRING_OK, "a valid definition");
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    CHECK(spring_scene_init(memory, bytes, &def, &s) == SPRING_OK, "a valid definition");
+    CHECK(spring_scene_advance(s, m, dt, n) == SPRING_OK, "finite numbers");
+    spring_scene_get(s, SPRING_POSITION, &end.x, 0, 1, 1);
+    spring_scene_get(s, SPRING_VELOCITY, &end.v, 0, 1, 1);
+    free(memory);
+    return end;
+}
+
+static inline double omega_of(const spring_params *p)
+{
+    return sqrt(p->stiffness / p->mass);
+}
+
+/* A random spring, its mass a power of two: every second one with damping, two of four with a load. */
+static inline spring_params random_spring(int i)
+{
+    spring_params p = {.mass = ldexp(1, (int)(random_bits() % 12) - 6), .stiffness = random_log(1e-3, 1e3)};
+    if (i % 2 != 0)
+        p.damping = p.mass * omega_of(&p) * random_log(1e-4, 5);
+    if (i % 4 >= 2)
+        p.load = p.stiffness * random_uniform(-2, 2);
+    return p;
+}
+
+/* The distance of n steps from the same steps in exact arithmetic, divided by the bound of its rounding, reference.h. */
+static inline double rounding_of_steps(spring_method m, spring_params p, double dt, uint64_t n, spring_state start)
+{
+    double rounded, truncated;
+    reference ref;
+    reference_init(&ref);
+    reference_start(&ref, &p, start);
+    reference_bounds *bounds = reference_bounds_new(&p, start);
+    reference_bounds_add(bounds, &p, m, dt, n);
+    reference_bounds_end(bounds, &rounded, &truncated);
+    reference_iterate(&ref, &p, m, dt, n);
+    const double distance = reference_distance(&ref, advance_in_scene(m, p, dt, n, start));
+    reference_clear(&ref);
+    return distance / rounded;
+}
+
+/* The distance of n steps from the exact solution. */
+static inline double error_in_scene(spring_method m, spring_params p, double duration, uint64_t n, spring_state start)
+{
+    reference exact;
+    reference_init(&exact);
+    reference_start(&exact, &p, start);
+    reference_exact(&exact, &p, duration);
+    const double error = reference_distance(&exact, advance_in_scene(m, p, duration / (double)n, n, start));
+    reference_clear(&exact);
+    return error;
+}
+
+/* The matrix of one step in (x, v/omega), of a spring with h omega = z and a damping ratio. */
+typedef struct step_invariants {
+    double trace, det;
+} step_invariants;
+
+static inline step_invariants invariants_of_step(spring_method m, double z, double ratio)
+{
+    spring_params p = {.mass = 0.5, .stiffness = 2.7};
+    const double omega = omega_of(&p);
+    p.damping = 2 * ratio * p.mass * omega;
+    const spring_state a = advance_in_scene(m, p, z / omega, 1, (spring_state){1, 0}),
+                       b = advance_in_scene(m, p, z / omega, 1, (spring_state){0, omega});
+    return (step_invariants){a.x + b.v / omega, (a.x * b.v - a.v * b.x) / omega};
+}
+
+#endif

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Batches that follow targets, with one instruction set: v128, v256, v512 or best on the command line. Built twice: once
+ * with SPRING_FLOAT, for the single-precision version. In double a spring is what spring_follow() makes of it, in float what
+ * the kernels without vectors make of it, and that lies near what spring_follow() makes of it in double.
+ *     test_follow_batch VECTORS [SPRINGS]     so many that have to land, instead of 600
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/batch_kernels.h"
+#include "simd/targets.h"
+#include "check.h"
+
+extern const batch_kernels plain_batch;
+static const batch_kernels *kernels;
+static size_t springs = 600;
+
+static const double two_pi = 6.283185307179586;
+static const double eps = sizeof(scalar) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON;
+
+enum { most = 301, arrays = 6 }; /* more than two groups of any vectors, and a rest */
+
+typedef struct place {
+    scalar x[most], v[most], w[most], g[most], a[most], target[most];
+} place;
+
+/* Bits of a set of features; SPRING_SHARED_... are the first three. */
+enum { UNDAMPED = 8, UNLOADED = 16, all_features = 32 };
+
+static spring_batch batch_of(place *p, unsigned features, size_t count)
+{
+    return (spring_batch){.count = count,
+                          .x = p->x,
+                          .v = p->v,
+                          .omega2 = p->w,
+                          .gamma = features & UNDAMPED ? NULL : p->g,
+                          .accel = features & UNLOADED ? NULL : p->a,
+                          .shared = features & 7};
+}
+
+static spring_params spring_at(const place *p, unsigned features, size_t i)
+{
+    return (spring_params){.mass = 1,
+                           .stiffness = (double)p->w[features & SPRING_SHARED_OMEGA2 ? 0 : i],
+                           .damping = features & UNDAMPED ? 0 : (double)p->g[features & SPRING_SHARED_GAMMA ? 0 : i],
+                           .load = features & UNLOADED ? 0 : (double)p->a[features & SPRING_SHARED_ACCEL ? 0 : i]};
+}
+
+/* Springs some of which land in the next step, are at rest, or have no stiffness or no load. */
+static void draw(place *p, double dt)
+{
+    for (size_t i = 0; i < most; i++) {
+        const double omega = random_log(0.1, 300), zeta = random_log(0.01, 20);
+        p->w[i] = (scalar)(random_bits() % 16 ? omega * omega : 0);
+        p->g[i] = (scalar)(random_bits() % 16 ? 2 * zeta * omega : 0);
+        p->a[i] = (scalar)(random_bits() % 4 ? random_uniform(-10, 10) : 0);
+        p->target[i] = (scalar)random_uniform(-1000, 1000);
+        const double rest = (double)p->target[i] + (p->w[i] > 0 ? (double)p->a[i] / (double)p->w[i] : 0);
+        const double size = random_bits() % 2 ? 100 : fabs(rest) * eps * random_log(0.1, 1e4) / fmin(1, fabs(dt));
+        p->x[i] = (scalar)(rest + size * random_uniform(-1, 1));
+        p->v[i] = (scalar)(random_bits() % 8 ? size * omega * random_uniform(-1, 1) : 0);
+    }
+}
+
+static const scalar bad_numbers[] = {NAN, INFINITY, -INFINITY, -1, -(scalar)0};
+
+/* One in eight gets a number that is not valid, or may not be. Shared parameters, the first of their arrays, stay. */
+static void spoil(place *p)
+{
+    for (size_t i = 1; i < most; i++) {
+        scalar *const one[arrays] = {&p->x[i], &p->v[i], &p->w[i], &p->g[i], &p->a[i], &p->target[i]};
+        if (random_bits() % 8 == 0)
+            *one[random_bits() % arrays] = bad_numbers[random_bits() % 5];
+    }
+}
+
+static bool same(scalar a, scalar b)
+{
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
+/* What becomes of spring i alone: its state and status, and whether it is counted. */
+typedef struct outcome {
+    scalar x, v;
+    spring_status status;
+    bool moving;
+} outcome;
+
+#ifdef SPRING_FLOAT
+static outcome alone(place *p, unsigned features, size_t i, double dt, double x_tol, double v_tol)
+{
+    scalar w = (scalar)spring_at(p, features, i).stiffness, g = (scalar)spring_at(p, features, i).damping;
+    scalar a = (scalar)spring_at(p, features, i).load, target = p->target[i];
+    outcome end = {p->x[i], p->v[i], SPRING_OK, true};
+    const spring_batch one = {1, &end.x, &end.v, &w, features & UNDAMPED ? NULL : &g, &a, features & 7};
+    size_t moving;
+    end.status = spring_batch_follow_with(&plain_batch, &one, &target, dt, x_tol, v_tol, &moving);
+    end.moving = moving > 0;
+    return end;
+}
+#else
+static outcome alone(place *p, unsigned features, size_t i, double dt, double x_tol, double v_tol)
+{
+    const spring_params one = spring_at(p, features, i);
+    spring_state s = {p->x[i], p->v[i]};
+    const spring_status status = spring_follow(&s, &one, p->target[i], 0, dt);
+    const double rest = one.load != 0 ? p->target[i] + one.load / one.stiffness : p->target[i];
+    if (status == SPRING_OK && fabs(s.x - rest) <= x_tol && fabs(s.v) <= v_tol && isfinite(rest))
+        return (outcome){rest, 0, status, false};
+    return (outcome){s.x, s.v, status, true};
+}
+#endif
+
+static void check_batch(place *p, unsigned features, size_t count, double dt, double x_tol, double v_tol)
+{
+    static outcome want[most];
+    size_t moves = 0, moving = 12345;
+    bool invalid = false, fails = false;
+    for (size_t i = 0; i < count; i++) {
+        want[i] = alone(p, features, i, dt, x_tol, v_tol);
+        moves += want[i].moving;
+        invalid |= want[i].status == SPRING_EINVAL;
+        fails |= want[i].status != SPRING_OK;
+    }
+    const spring_batch b = batch_of(p, features, count);
+    const scalar after_x = p->x[count < most ? count : 0], after_v = p->v[count < most ? count : 0];
+    const spring_status got = spring_batch_follow_with(kernels, &b, p->target, dt, x_tol, v_tol, &moving);
+    CHECK(got == (invalid ? SPRING_EINVAL : fails ? SPRING_ENONFINITE : SPRING_OK), "the status of the worst spring");
+    CHECK(moving == moves, "springs that move or fail are counted");
+    size_t differ = 0;
+    for (size_t i = 0; i < count; i++)
+        differ += !same(p->x[i], want[i].x) || !same(p->v[i], want[i].v);
+    CHECK(differ == 0, "a spring of a batch has the bits of a single one");
+    if (count < most)
+        CHECK(same(p->x[count], after_x) && same(p->v[count], after_v), "the number after a batch is not touched");
+}
+
+static void bits_of_single_springs(void)
+{
+    static place p;
+    static const double steps[] = {1.0 / 60, 1.0 / 240, 0.5, -0.01};
+    static const double tolerances[][2] = {{0, 0}, {0.01, 0.1}, {50, 3000}, {0, INFINITY}, {INFINITY, 0.1}};
+    for (unsigned features = 0; features < all_features; features++)
+        for (size_t i = 0; i < 60; i++) {
+            const double *tolerance = tolerances[i % 5], dt = steps[i % 4];
+            draw(&p, dt);
+            if (i % 3 == 0)
+                spoil(&p);
+            check_batch(&p, features, i % 2 ? most : i * 3, dt, tolerance[0], tolerance[1]);
+        }
+}
+
+/* In float every number goes through some roundings: five of F x0 + H v0, those of y and x, and a landing. */
+static void near_single_springs(void)
+{
+    static place p, before;
+    for (int i = 0; i < 200; i++) {
+        const double dt = random_log(1.0 / 240, 0.2);
+        draw(&p, dt);
+        before = p;
+        const unsigned features = i % 2 ? 3 : 0;
+        const spring_batch b = batch_of(&p, features, most);
+        CHECK(spring_batch_follow_with(kernels, &b, p.target, dt, 0, 0, NULL) == SPRING_OK, "good input");
+        for (size_t j = 0; j < most; j++) {
+            const spring_params one = spring_at(&before, features, j);
+            if (one.stiffness == 0)
+                continue;
+            const double target = (double)p.target[j], x0 = (double)before.x[j], v0 = (double)before.v[j];
+            const double omega = sqrt(one.stiffness), zeta = one.damping / 2 / omega,
+                         rest = target + one.load / one.stiffness;
+            const double slow = zeta <= 1 ? zeta * omega : omega / (zeta + sqrt(zeta * zeta - 1));
+            spring_state s = {x0, v0};
+            spring_follow(&s, &one, target, 0, dt);
+            const double size = hypot(x0 - rest, v0 / omega), landing = zeta > 0 ? 1 / fmin(1, slow * dt) : 0;
+            const bool landed = p.v[j] == 0 || s.v == 0;
+            const double bound = eps * (8 * size + 4 * fabs(rest) + (landed ? 1.125 * fabs(rest) * landing : 0));
+            CHECK_CLOSE((double)p.x[j], s.x, bound, "roundings to float, and landing");
+            CHECK_CLOSE((double)p.v[j] / omega, s.v / omega, bound, "roundings to float, and landing");
+        }
+    }
+}
+
+/* Batches of springs of about the same frequency, in frames, until none moves; with shared coefficients and load, and
+   without. */
+static void lands(void)
+{
+    static place p;
+    const size_t batches = (springs + most - 1) / most;
+    for (size_t i = 0; i < 2 * batches; i++) {
+        const double dt = 1 / random_log(30, 240), lowest = two_pi * random_log(0.02, 50), zeta = random_log(0.1, 10);
+        double slowest = INFINITY;
+        for (size_t j = 0; j < most; j++) {
+            const double omega = lowest * random_uniform(1, 1.5), damping_ratio = zeta * random_uniform(1, 1.5);
+            p.w[j] = (scalar)(omega * omega);
+            p.g[j] = (scalar)(2 * damping_ratio * omega);
+            p.target[j] = (scalar)random_uniform(-1000, 1000);
+            p.a[j] = (scalar)(random_uniform(-1, 1) * omega * omega);
+            p.x[j] = (scalar)random_uniform(-1000, 1000);
+            p.v[j] = 0;
+            slowest = fmin(slowest, damping_ratio < 1 ? damping_ratio * omega : omega / (2 * damping_ratio));
+        }
+        const unsigned features = (i % 2 ? SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA : 0) | (i / 2 % 2 ? UNLOADED : 0);
+        const spring_batch b = batch_of(&p, features, most);
+        size_t moving = most;
+        for (double t = 0; moving > 0 && t < 200 / slowest; t += dt)
+            spring_batch_follow_with(kernels, &b, p.target, dt, 0, 0, &moving);
+        CHECK(moving == 0, "all land within 200 decay times");
+        size_t missed = 0;
+        for (size_t j = 0; j < most; j++) {
+            const scalar shift = features & UNLOADED ? 0 : p.a[j] / p.w[features & SPRING_SHARED_OMEGA2 ? 0 : j];
+            missed += p.x[j] != p.target[j] + shift || p.v[j] != 0;
+        }
+        CHECK(missed == 0, "at rest: on their targets, or at rest positions rounded as the header says");
+    }
+}
+
+static void no_step_counts(void)
+{
+    static place p, before;
+    draw(&p, 1);
+    spoil(&p);
+    p.x[7] = p.target[7] = 3; /* at rest but for its parameters */
+    p.v[7] = p.a[7] = 0;
+    p.g[7] = -1;
+    before = p;
+    for (unsigned features = 0; features < all_features; features++)
+        for (int wide = 0; wide < 2; wide++) {
+            const double x_tol = wide ? 50 : 1e-3, v_tol = wide ? 3000 : 1e-2;
+            const spring_batch b = batch_of(&p, features, most);
+            size_t moving = 12345, want = 0;
+            for (size_t i = 0; i < most; i++) {
+                const spring_params one = spring_at(&p, features, i);
+                const double x = (double)p.x[i], v = (double)p.v[i];
+                const scalar a = (scalar)one.load, w = (scalar)one.stiffness;
+                const double rest = (double)(a != 0 ? p.target[i] + a / w : p.target[i]);
+                want += !(spring_params_valid(&one) && fabs(x - rest) <= x_tol && fabs(v) <= v_tol);
+            }
+            CHECK(spring_batch_follow_with(kernels, &b, p.target, 0, x_tol, v_tol, &moving) == SPRING_OK, "dt = 0");
+            CHECK(moving == want, "springs that move are counted");
+            CHECK(memcmp(&p, &before, sizeof p) == 0, "nothing moves");
+        }
+}
+
+static void bad_input_changes_nothing(void)
+{
+    static place p, before;
+    draw(&p, 1);
+    before = p;
+    const spring_batch good = batch_of(&p, 0, most);
+    const struct {
+        const spring_batch *b;
+        const scalar *target;
+        double dt, x_tol, v_tol;
+    } bad[] = {
+        {NULL, p.target, 0.1, 0, 0},      {&good, NULL, 0.1, 0, 0},         {&good, p.x + 3, 0.1, 0, 0},
+        {&good, p.v + 3, 0.1, 0, 0},      {&good, p.target, NAN, 0, 0},     {&good, p.target, INFINITY, 0, 0},
+        {&good, p.target, 0.1, -1e-9, 0}, {&good, p.target, 0.1, 0, -1e-9}, {&good, p.target, 0.1, NAN, 0},
+        {&good, p.target, 0.1, 0, NAN},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        size_t moving = 12345;
+        CHECK(spring_batch_follow(bad[i].b, bad[i].target, bad[i].dt, bad[i].x_tol, bad[i].v_tol, &moving) ==
+                  SPRING_EINVAL,
+              "bad input");
+        CHECK(moving == 12345, "not written");
+    }
+    spring_batch unknown = good, shared = good;
+    unknown.shared = 8;
+    CHECK(spring_batch_follow(&unknown, p.target, 0.1, 0, 0, NULL) == SPRING_EINVAL, "an unknown bit");
+    shared.shared = SPRING_SHARED_OMEGA2;
+    const scalar negative = -1;
+    shared.omega2 = &negative;
+    CHECK(spring_batch_follow(&shared, p.target, 0.1, 0, 0, NULL) == SPRING_EINVAL, "a shared parameter");
+    CHECK(memcmp(&p, &before, sizeof p) == 0, "nothing changed");
+    const spring_batch none = {.count = 0};
+    size_t moving = 12345;
+    CHECK(spring_batch_follow(&none, NULL, 0.1, 0, 0, &moving) == SPRING_OK && moving == 0, "no springs");
+}
+
+int main(int argc, char **argv)
+{
+    static const test tests[] = {
+        {"bits of single springs", bits_of_single_springs},
+        {"near single springs", near_single_springs},
+        {"lands", lands},
+        {"a step of 0 counts", no_step_counts},
+        {"bad input", bad_input_changes_nothing},
+    };
+    const char *vectors = argc > 1 ? argv[1] : "best";
+    const bool best = strcmp(vectors, "best") == 0;
+    if (best || strcmp(vectors, "v128") == 0)
+        kernels = &spring_batch_v128;
+#if SPRING_LONG_VECTORS
+    if ((best || strcmp(vectors, "v256") == 0) && __builtin_cpu_supports("avx2"))
+        kernels = &spring_batch_v256;
+    if ((best || strcmp(vectors, "v512") == 0) && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        kernels = &spring_batch_v512;
+#endif
+    if (argc > 2)
+        springs = strtoul(argv[2], NULL, 10);
+    if (kernels == NULL) {
+        printf("1..0 # SKIP this processor or build has no %s\n", vectors);
+        return 0;
+    }
+    return RUN_TESTS(sizeof(scalar) == sizeof(float) ? "follow_batchf" : "follow_batch", tests);
+}
