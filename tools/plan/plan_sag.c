@@ -51,35 +51,28 @@ static double length_of(const preset *scene, const spring_link *link)
 
 /* ------------------------------------------------------------------------------------------------ what the scene is */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-/* Every particle should be linked to a pinned one, if not directly. Otherwise it would fall for ever. */
+/* A part of the scene without pins would fall for ever. */
 static void check_pins(const preset *scene)
 {
     const size_t particles = scene->def.particles;
-    uint32_t *parent = malloc((particles + 1) * sizeof *parent);
-    if (parent == NULL)
+    uint32_t *part = malloc(particles * sizeof *part);
+    bool *held = calloc(particles, sizeof *held);
+    if (part == NULL || held == NULL)
         cli_fail(CLI_FAILED, "out of memory");
-    const uint32_t pins = (uint32_t)particles;
-    for (uint32_t i = 0; i <= pins; i++)
-        parent[i] = i < pins && scene->pinned[i] ? pins : i;
-    for (size_t i = 0; i < scene->def.links; i++)
-        parent[root_of(parent, scene->link[i].a)] = root_of(parent, scene->link[i].b);
-    for (uint32_t i = 0; i < pins; i++)
-        if (root_of(parent, i) != root_of(parent, pins))
+    spring_links_components(particles, scene->def.links, scene->link, part);
+    for (size_t i = 0; i < particles; i++)
+        held[part[i]] = held[part[i]] || scene->pinned[i];
+    for (size_t i = 0; i < particles; i++)
+        if (!held[part[i]])
             cli_fail(CLI_USAGE,
                      "--sag: the vertex at \"%g %g %g\" hangs on no pin; all parts of a mesh should be joined to its "
                      "highest vertices, which are pinned",
                      scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
-    free(parent);
+    free(part);
+    free(held);
 }
 
-/* [m] Of the box around all particles that are not unlinked. */
+/* [m] Of the box around all linked particles. */
 static double diagonal_of(const preset *scene)
 {
     const uint32_t axes = scene->def.axes;
