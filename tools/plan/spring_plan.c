@@ -48,7 +48,7 @@ static const cli_option options[] = {
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
     {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
      .help = "the stiffness with which --scene or --mesh hangs by at most S longer\n"
-             "under its own weight, from 1e-4 to 1, and the steps for that stiffness, as in\n"
+             "S is from 1e-4 to 1; 0.02 is 2 %. The steps for that stiffness are printed, too, as in\n"
              "spring-plan --sag 0.02 --scene cloth"},
     {"presets", CLI_FLAG, .flag = &presets,
      .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
@@ -72,23 +72,24 @@ static const cli_program program = {
         "With --sag, the scene is left to hang until it is at rest. All links get the same stiffness, the least\n"
         "with which the scene is at most S longer along gravity than with links that do not stretch. A second row\n"
         "has the stiffness with which no link is longer than (1 + S) times its rest length. It is larger, since\n"
-        "links near pins carry the weight of all below them: a rope needs twice the stiffness, a cloth that\n"
-        "hangs by two corners many times as much. In jelly, which stands on its pins, compression counts\n"
-        "instead.",
+        "links near pins carry the weight of everything below them: a long rope needs twice the stiffness, a\n"
+        "cloth that hangs by two corners many times as much. In jelly, which stands on its pins, compression\n"
+        "counts instead.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
     .meaning =
         "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
         "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
         "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
         "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n"
-               "force_evaluations counts one per step for leapfrog in scenes; if links are so heavily damped that\n"
-               "leapfrog uses Chebyshev polynomials, a step takes two, and evaluations of damping. time_s has all.\n\n"
+        "force_evaluations counts one per step for leapfrog in scenes. With heavily damped links a step takes two\n"
+        "and evaluations of damping; time_s includes them.\n\n"
         "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
         "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
-        "With --sag: limit (scene or link: what is stretched by at most S; by 0.1 % less at the least),\n"
+        "With --sag: limit (scene or link: what is stretched by S, or by at most 0.1 % of S less),\n"
         "stiffness_N_per_m, scene_stretch and link_stretch (at rest, of the scene and of its most stretched\n"
         "link), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
-        "the stable step), dt_s, and time_per_frame_s (on this machine).",
+        "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"
+        "than how its links stretch, such as a hammock, has only the row of its links.",
     .shown = {"dt_s", "measured_error"},
     .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
                  "--sag 0.02 --scene rope -o stiffness.tsv"},
