@@ -247,7 +247,7 @@ static double search(const hanging *h, double sag, double first, double stretch_
         last_stretch = stretch;
         stiffness *= pow(stretch / aim, 1 / power);
     }
-    refuse_sag(sag, last_stiffness, "is stretched by another share, and so with every stiffness near it");
+    refuse_sag(sag, last_stiffness, "comes to rest in more than one shape");
 }
 
 /* The steps for a stiffness. */
