@@ -40,9 +40,11 @@ static const cli_option options[] = {
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
      .help = "time to run [s]; two of this, --dt, --steps give the third"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
-     .help = "step [s] (default: half the stable step of leapfrog, or less)\n"
-             "By default a frame takes as many steps as make them at most half the stable step of leapfrog, and an\n"
-             "eighth of --push-duration. A duration is rounded to whole steps."},
+     .help =
+         "step [s] (default: half the stable step of leapfrog, or less)\n"
+         "By default a frame takes as many steps as make them at most half the stable step of leapfrog, with other\n"
+         "methods also of RK4, which heavily damped links limit, and an eighth of --push-duration. A duration is\n"
+         "rounded to whole steps."},
     {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps"},
     {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
@@ -397,6 +399,8 @@ static bool run(view *v, uint64_t frame_count)
 static double default_step(spring_scene *scene, bool disturbed)
 {
     double longest = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
+    if (method != SPRING_LEAPFROG) /* damped links limit the others */
+        longest = fmin(longest, 0.5 * spring_scene_stable_step(scene, SPRING_RK4));
     if (disturbed)
         longest = fmin(longest, disturbance_time / 8);
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));

@@ -290,3 +290,116 @@ def test_presets():
             assert found == sorted(found)
             assert all(row['substeps'] == '0' or float(row['measured_error']) <= float(row['error']) for row in three)
             assert len({row['stable_substeps'] for row in three}) == 1
+
+
+SAG_COLUMNS = 'limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s time_per_frame_s'.split()
+
+
+def hang(*args):
+    """The rows of --sag by limit, as numbers."""
+    rows = {row.pop('limit'): row for row in plan('--sag', *args)}
+    assert all(list(row) == SAG_COLUMNS[1:] for row in rows.values())
+    return {limit: {name: float(number) for name, number in row.items()} for limit, row in rows.items()}
+
+
+def has_the_steps(row):
+    """As few steps in a frame as are at most half of the stable step each."""
+    assert row['dt_s'] == pytest.approx(1 / 60 / row['steps_per_frame'], rel=1e-15)
+    assert row['dt_s'] <= row['stable_step_s'] / 2 * (1 + 1e-15)
+    assert row['steps_per_frame'] == math.ceil(2 / 60 / row['stable_step_s'])
+    assert row['time_per_frame_s'] > 0
+
+
+@pytest.mark.parametrize('sag', [0.001, 0.02, 0.3])
+@pytest.mark.parametrize('size, mass', [(2, 0.7), (9, 0.03)])
+def test_a_rope_that_hangs(size, mass, sag):
+    """n links of stiffness k, each with the weight of all particles below: in all they stretch by m g n (n + 1)/(2 k)."""
+    links, weight = size - 1, mass * 9.81
+    rows = hang(f'{sag} --scene rope --size {size} --mass {mass}')
+    spacing = 2 / links
+    want = {'scene': weight * (links + 1) / 2 / (sag * spacing), 'link': weight * links / (sag * spacing)}
+    window = 1e-3 + 1e-4  # a stretch of up to 0.1 % less; balance to 1e-5 of gravity, twice for the extrapolation
+    for limit, row in rows.items():
+        assert -1e-4 <= row['stiffness_N_per_m'] / want[limit] - 1 <= window
+        assert sag * (1 - 1e-3) <= row[f'{limit}_stretch'] <= sag
+        ratio = (links + 1) / (2 * links)
+        assert row['scene_stretch'] / row['link_stretch'] == pytest.approx(ratio, rel=2e-4)
+        highest = {2: 1, 9: 4}[size] * row['stiffness_N_per_m'] / mass  # between a pin and a particle, or two
+        assert row['stable_step_s'] == pytest.approx(2 / math.sqrt(highest), rel=1e-12)
+        has_the_steps(row)
+    assert set(rows) == {'scene', 'link'}
+
+
+@pytest.mark.parametrize('scene, height', [('cloth', 2), ('jelly', 0.7)])
+def test_a_cloth_and_jelly(scene, height, tmp_path):
+    """Settled by another program, with the stiffness that is printed."""
+    for limit, row in hang(f'0.03 --scene {scene} --size 6 --mass 0.02').items():
+        has_the_steps(row)
+        drag = 0.02 * 2 * math.sqrt(9.81 / height)
+        path = tmp_path / f'{limit}.tsv'
+        run(SCENE, *f'--scene {scene} --size 6 --mass 0.02 --drag {drag} --stiffness {row["stiffness_N_per_m"]} '
+                    f'--method leapfrog --duration 20 --positions {path}'.split())
+        last = positions(path)[-1]
+        heights = last[2::3]
+        sign = {'cloth': 1, 'jelly': -1}[scene]
+        stretch = sign * ((max(heights) - min(heights)) / height - 1)
+        assert stretch == pytest.approx(row['scene_stretch'], rel=0.02), 'the height without stretch is extrapolated'
+        assert row[f'{limit}_stretch'] == pytest.approx(0.03, rel=1e-3) and row['scene_stretch'] <= row['link_stretch']
+        at = [last[3 * i:3 * i + 3] for i in range(len(last) // 3)]
+        pairs = [(i, i + 6) for i in range(30)] if scene == 'cloth' else [(i, i + 36) for i in range(5 * 36)]
+        strains = [sign * (math.dist(at[i], at[j]) / (height / 5) - 1) for i, j in pairs]
+        assert max(strains) == pytest.approx(row['link_stretch'], rel=0.01), 'upright links are stretched most'
+
+
+def test_meshes_that_hang(tmp_path):
+    """Of half the spacing and all of the mass, hung by an edge: columns are ropes. Their rows do not stretch."""
+    columns, links, mass, spacing = 3, 4, 0.2, 0.5
+    vertices = [f'v {spacing * i} {-spacing * j} 0' for j in range(links + 1) for i in range(columns)]
+    lines = ['l ' + ' '.join(str(j * columns + i + 1) for j in range(links + 1)) for i in range(columns)]
+    lines += ['l ' + ' '.join(str(j * columns + i + 1) for i in range(columns)) for j in range(links + 1)]
+    path = mesh_file(tmp_path, *vertices, *lines, 'v 7 7 7')
+    rows = hang(f'0.05 --mass {mass} --damping 0.3 --drag 0.1 --mesh {path}')
+    for limit, row in rows.items():
+        weights = {'scene': (links + 1) / 2, 'link': links}[limit]
+        assert -1e-4 <= row['stiffness_N_per_m'] / (mass * 9.81 * weights / (0.05 * spacing)) - 1 <= 1.1e-3
+        has_the_steps(row)
+    assert set(rows) == {'scene', 'link'}
+
+
+def test_damping_and_drag_leave_the_stiffness():
+    one, other = (hang(f'0.05 --scene cloth --size 5 {options}') for options in ['', '--damping 70 --drag 3'])
+    for limit in one:
+        assert one[limit]['stiffness_N_per_m'] == other[limit]['stiffness_N_per_m']
+        assert one[limit]['steps_per_frame'] == other[limit]['steps_per_frame'], 'damping does not limit leapfrog'
+
+
+def test_a_hammock(tmp_path):
+    """A taut rope between two points sags by the cube root of 1/stiffness, far more than its links stretch."""
+    path = mesh_file(tmp_path, 'v 0 1 0', 'v 1 0.99 0', 'v 2 0.99 0', 'v 3 1 0', 'l 1 2 3 4')
+    printed = run(PLAN, *f'--sag 0.02 --mesh {path}'.split()).stdout
+    assert 'depends on more than how its links stretch' in printed
+    row, = parse(printed)
+    assert row['limit'] == 'link' and float(row['scene_stretch']) > 10 * float(row['link_stretch'])
+
+
+@pytest.mark.parametrize('options, status, words', [
+    ('--sag 0.02', 2, ['--sag: "0.02"', '--scene or --mesh']),
+    ('--sag 0 --scene rope', 2, ['--sag: "0"']),
+    ('--sag 2 --scene rope', 2, ['--sag: "2"', 'from 1e-4 to 1']),
+    ('--sag 1e-5 --scene rope', 2, ['--sag: "1e-05"', 'from 1e-4 to 1']),
+    ('--sag 0.02 --scene water', 2, ['gravity of this scene is "0"', 'should not be 0']),
+    ('--sag 0.02 --scene chain', 2, ['gravity of this scene is "0"', 'should not be 0']),
+    ('--sag 0.5 --scene jelly', 1, ['--sag: "0.5" cannot be reached', 'N/m']),
+    ('--sag 0.02 --scene rope --stiffness 3', 2, ['--stiffness: "3"', '--sag']),
+    ('--sag 0.02 --scene rope --error 0.1', 2, ['--error: "0.1"', '--sag']),
+    ('--sag 0.02 --scene rope --duration 3', 2, ['--duration: "3"', '--sag']),
+    ('--sag 0.02 --scene rope --hertz 3', 2, ['--hertz: "3"', 'scene']),
+    ('--sag 0.02 --presets', 2, ['--sag: "0.02"', '--presets']),
+])
+def test_what_does_not_hang(options, status, words):
+    is_failure(run(PLAN, *options.split(), stdout=None), status, *words)
+
+
+def test_a_part_that_falls(tmp_path):
+    path = mesh_file(tmp_path, 'v 0 1 0', 'v 1 0 0', 'v 5 0 0', 'v 5 -1.5 0', 'l 1 2', 'l 3 4')
+    is_failure(run(PLAN, '--sag', '0.02', '--mesh', str(path), stdout=None), 2, '--sag: the vertex at "5 ', 'on no pin')

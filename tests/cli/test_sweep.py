@@ -621,6 +621,15 @@ def test_a_scene(scene):
             assert 0 < float(row['error']) < 1
 
 
+def test_heavily_damped_links():
+    """They limit the reference, RK4, and not leapfrog."""
+    rows = sweep('--scene rope --over damping=0,30,1000 steps_per_frame=8 duration=0.1 --method leapfrog '
+                 '--measure stable_step_s')
+    assert [row['status'] for row in rows] == ['stable'] * 3
+    assert len(set(column(rows, 'stable_step_s'))) == 1
+    assert max(column(rows, 'error')) <= 0.01
+
+
 @pytest.mark.parametrize('scene, bound', [('cloth', 1e-9), ('water', 2e-4)])
 def test_reference_of_a_scene(scene, bound):
     """As right as the manual says: order 8 in short steps is nearer to the truth than the reference."""

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What spring-plan finds out of one method: the fewest steps with which the error stays within a tolerance. */
+/* What spring-plan computes: the fewest steps with which the error of a method stays within a tolerance, and the stiffness with
+   which a scene hangs by at most a given stretch. */
 #ifndef SPRINGSTEP_PLAN_H
 #define SPRINGSTEP_PLAN_H
 
@@ -34,5 +35,29 @@ void plan_scene_free(plan_scene *s);
 plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double work, bool timed);
 
 uint64_t plan_scene_frames(const plan_scene *s);
+
+/** [s] The time of that many steps from the start of a scene, without setup: the shortest of two to ten runs. */
+double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps);
+
+static const double plan_frame = 1.0 / 60; /* [s] */
+
+/* What is at most as long as asked for. */
+typedef enum plan_limit { PLAN_SCENE, PLAN_LINK, plan_limits } plan_limit;
+
+/* A scene that is stiff enough, and its steps by leapfrog. */
+typedef struct plan_sag {
+    double stiffness;   /* [N/m] of every link; NaN: the height of the scene depends on more than how links stretch */
+    double stretch[2];  /* by limit: of the scene and of the link that is stretched most */
+    double stable_step; /* [s] */
+    double substeps;    /* steps in a frame, at most half of the stable step each */
+    double time;        /* [s] of a frame */
+} plan_sag;
+
+/** Finds the least stiffness with which a settled scene is stretched by at most `sag`, and another one for its links.
+
+    The stretch of a link is length/rest - 1, that of a scene is height/(height with unstretchable links) - 1. In a scene that
+    stands on its pins both count with the opposite sign. Links get the given damping. Exits with a message if the scene has
+    no gravity, if a part of it is not linked to a pin, or if there is no such stiffness. */
+void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan_limits]);
 
 #endif

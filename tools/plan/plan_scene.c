@@ -16,7 +16,6 @@
 #include "plan.h"
 #include "scenes/start.h"
 
-static const double frames_a_second = 60;
 static const double most_numbers = 2e7; /* of the reference that are kept: a second of 10^5 particles */
 static const double patience = 30;      /* times the work that is wanted, where a reference takes more */
 static const double law_holds = 0.5;    /* an error below this falls by the order of the method */
@@ -167,10 +166,10 @@ plan_scene *plan_scene_new(const preset *scene, double duration, double error, d
         cli_fail(CLI_FAILED, "out of memory");
     s->preset = scene;
     s->numbers = s->preset->def.particles * s->preset->def.axes;
-    const double frames = fmax(rint(duration * frames_a_second), 1);
+    const double frames = fmax(rint(duration / plan_frame), 1);
     if (frames * (double)s->numbers > most_numbers)
         cli_fail(CLI_USAGE, "--duration: \"%g\" of this scene is too long; it should be at most %.3g s", duration,
-                 most_numbers / (double)s->numbers / frames_a_second);
+                 most_numbers / (double)s->numbers * plan_frame);
     s->frames = (uint64_t)frames;
     s->frame = duration / frames;
     s->reference = room(s->frames * s->numbers);
@@ -191,19 +190,19 @@ uint64_t plan_scene_frames(const plan_scene *s)
 
 /* --------------------------------------------------------------------------------------------------------- the search */
 
-/* [s] The shortest of two to ten runs, without setup: two if they are long. */
-static double time_of(const plan_scene *s, spring_method m, uint64_t substeps)
+double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps)
 {
     const double long_enough = 1e7; /* [ns] */
     double best = INFINITY, all = 0;
     for (int i = 0; i < 2 || (i < 10 && all < long_enough); i++) {
-        spring_scene *scene = start(s, m);
+        size_t bytes;
+        spring_scene *running = start_scene(scene, m, &bytes);
         const double before = timing_busy();
-        spring_scene_advance(scene, m, s->frame / (double)substeps, substeps * s->frames);
+        spring_scene_advance(running, m, dt, steps);
         const double spent = timing_busy() - before;
         best = fmin(best, spent);
         all += spent;
-        free(scene);
+        free(running);
     }
     return best * 1e-9;
 }
@@ -243,6 +242,6 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
     row.measured = now;
     row.uncertainty = s->uncertainty;
     if (timed)
-        row.time = time_of(s, m, enough);
+        row.time = plan_time(s->preset, m, s->frame / (double)enough, enough * s->frames);
     return row;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * spring-plan: an error and a duration in, methods and their steps out, the best first; for one spring, a preset scene, or
- * a mesh.
+ * a mesh. Or a stretch in, and the stiffness and steps out with which a scene hangs by at most that.
  */
 #include <float.h>
 #include <math.h>
@@ -16,7 +16,7 @@
 
 /* ---------------------------------------------------------------------------------------------- the command line */
 
-static double error = NAN, duration = NAN;
+static double error = NAN, duration = NAN, sag = NAN;
 static double mass = NAN, stiffness = NAN, damping = NAN, hertz = NAN, damping_ratio = NAN, drag = NAN;
 static int kind = -1;
 static uint64_t size;
@@ -41,11 +41,15 @@ static const cli_option options[] = {
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
     {"mesh", CLI_INPUT, .file = &mesh, .value = "FILE",
-     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness\n"
+     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness or --sag\n"
              "A particle a vertex, a link along each edge and across each face of four corners; the highest\n"
              "vertices are held, gravity pulls at the others, as in\n"
              "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
+    {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
+     .help = "the stiffness with which --scene or --mesh hangs by at most S longer\n"
+             "S is from 1e-4 to 1; 0.02 is 2 %. The steps for that stiffness are printed, too, as in\n"
+             "spring-plan --sag 0.02 --scene cloth"},
     {"presets", CLI_FLAG, .flag = &presets,
      .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
              "or in --scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
@@ -55,7 +59,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-plan",
-    .summary = "Which method, and which step, for an error that is small enough.",
+    .summary = "Which method, and which step, for an error that is small enough; how stiff links should be.",
     .details =
         "A spring is given by --stiffness, or by --hertz, a scene by --scene, or by --mesh.\n\n"
         "Of a spring the error is the largest at any of the first 65536 steps, and at no more of those after\n"
@@ -64,17 +68,31 @@ static const cli_program program = {
         "positions from a reference over the largest distance of that from the start. The reference is\n"
         "extrapolated from two runs of the method of highest order, which are made finer until the uncertainty\n"
         "is a twentieth of the error, or the runs take too long; predicted is what the error of a coarser step\n"
-        "and the order lead to. Steps are whole numbers a frame.",
+        "and the order lead to. Steps are whole numbers a frame.\n\n"
+        "With --sag, the scene is left to hang until it is at rest. All links get the same stiffness, the least\n"
+        "with which the scene is at most S longer along gravity than with links that do not stretch. A second row\n"
+        "has the stiffness with which no link is longer than (1 + S) times its rest length. It is larger, since\n"
+        "links near pins carry the weight of everything below them: a long rope needs twice the stiffness, a\n"
+        "cloth that hangs by two corners many times as much. In jelly, which stands on its pins, compression\n"
+        "counts instead. It takes seconds, and minutes with thousands of particles.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
-    .meaning = "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
-               "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
-               "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
-               "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n\n"
-               "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
-               "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).",
+    .meaning =
+        "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
+        "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
+        "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
+        "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n"
+        "force_evaluations counts one per step for leapfrog in scenes. With heavily damped links a step takes two\n"
+        "and evaluations of damping; time_s includes them.\n\n"
+        "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
+        "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
+        "With --sag: limit (scene or link: what is stretched by S, or by at most 0.1 % of S less),\n"
+        "stiffness_N_per_m, scene_stretch and link_stretch (at rest, of the scene and of its most stretched\n"
+        "link), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
+        "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"
+        "than how its links stretch, such as a hammock, has only the row of its links.",
     .shown = {"dt_s", "measured_error"},
     .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
-                 "--presets --scene rope --quick -o steps.tsv"},
+                 "--sag 0.02 --scene rope -o stiffness.tsv"},
     .options = options,
 };
 
@@ -84,29 +102,54 @@ static void refuse(const char *option, double value, const char *should)
         cli_fail(CLI_USAGE, "--%s: \"%g\" %s", option, value, should);
 }
 
-static void check_usage(void)
+static void check_presets(void)
 {
-    if (mesh != NULL && (presets || kind >= 0))
-        cli_fail(CLI_USAGE, "--mesh: \"%s\" is a scene; --scene and --presets are others", mesh);
-    if (presets) {
-        refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
-        refuse("duration", duration, "is not for --presets, which takes a second");
-        refuse("stiffness", stiffness, "is not for --presets");
-        refuse("hertz", hertz, "is not for --presets");
-        refuse("damping-ratio", damping_ratio, "is not for --presets");
-        refuse("mass", mass, "is not for --presets");
-        refuse("damping", damping, "is not for --presets");
-        refuse("drag", drag, "is not for --presets");
-        if (size > 0)
-            cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is not for --presets", size);
-        return;
-    }
+    refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
+    refuse("duration", duration, "is not for --presets, which takes a second");
+    refuse("sag", sag, "is not for --presets");
+    refuse("stiffness", stiffness, "is not for --presets");
+    refuse("hertz", hertz, "is not for --presets");
+    refuse("damping-ratio", damping_ratio, "is not for --presets");
+    refuse("mass", mass, "is not for --presets");
+    refuse("damping", damping, "is not for --presets");
+    refuse("drag", drag, "is not for --presets");
+    if (size > 0)
+        cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is not for --presets", size);
+}
+
+static void check_error(void)
+{
     if (isnan(error))
         cli_fail(CLI_USAGE, "--error: is missing; it should be an error such as 0.01");
     if (isnan(duration))
         cli_fail(CLI_USAGE, "--duration: is missing; it should be a time in seconds");
     if (mesh != NULL && isnan(stiffness))
         cli_fail(CLI_USAGE, "--stiffness: is missing; it should be that of the links of --mesh");
+}
+
+static void check_sag(void)
+{
+    if (!(sag >= 1e-4 && sag <= 1)) /* less takes minutes, and is proportional to 1/stiffness */
+        refuse("sag", sag, "should be a stretch from 1e-4 to 1, such as 0.02 for 2 %");
+    if (kind < 0 && mesh == NULL)
+        refuse("sag", sag, "is of a scene; it goes with --scene or --mesh");
+    refuse("error", error, "is not for --sag");
+    refuse("duration", duration, "is not for --sag");
+    refuse("stiffness", stiffness, "is not for --sag, which finds the stiffness");
+}
+
+static void check_usage(void)
+{
+    if (mesh != NULL && (presets || kind >= 0))
+        cli_fail(CLI_USAGE, "--mesh: \"%s\" is a scene; --scene and --presets are others", mesh);
+    if (presets) {
+        check_presets();
+        return;
+    }
+    if (!isnan(sag))
+        check_sag();
+    else
+        check_error();
     if (kind >= 0 || mesh != NULL) {
         refuse("hertz", hertz, "is of one spring, not of a scene");
         refuse("damping-ratio", damping_ratio, "is of one spring, not of a scene");
@@ -208,7 +251,7 @@ static preset poked_preset(const preset_settings *settings, disturbances **poke)
 static preset chosen_scene(disturbances **poke)
 {
     if (mesh != NULL) {
-        const mesh_settings settings = {or_else(mass, 1), stiffness, or_else(damping, 0), or_else(drag, 0)};
+        const mesh_settings settings = {or_else(mass, 1), or_else(stiffness, 1), or_else(damping, 0), or_else(drag, 0)};
         return mesh_read(mesh, &settings);
     }
     preset_settings chosen = preset_unchosen((preset_kind)kind);
@@ -264,12 +307,11 @@ static void write_plan(cli_table *table)
 
 static double stable_substeps(const preset *r, spring_method m)
 {
-    const double frame = 1.0 / 60;
     size_t bytes;
     spring_scene *scene = start_scene(r, m, &bytes);
     const double step = spring_scene_stable_step(scene, m);
     free(scene);
-    return step > 0 ? floor(frame / step) + 1 : 0;
+    return step > 0 ? floor(plan_frame / step) + 1 : 0;
 }
 
 static void write_presets(void)
@@ -312,6 +354,30 @@ static void write_spring(void)
     write_plan(table);
 }
 
+static void write_sag(cli_table *table, preset *scene)
+{
+    static const char *const what[] = {[PLAN_SCENE] = "scene", [PLAN_LINK] = "link"};
+    plan_sag row[plan_limits];
+    plan_stiffness(scene, sag, or_else(damping, 0), row);
+    for (int i = 0; i < plan_limits; i++)
+        if (isnan(row[i].stiffness))
+            cli_comment(table,
+                        "plan: the height of this scene depends on more than how its links stretch: no row for it.");
+        else
+            cli_comment(
+                table,
+                "plan: for a %s that is stretched by at most %g take a stiffness of %.4g N/m, and leapfrog in %.0f "
+                "step%s a frame, %.3g s on this machine.",
+                what[i], sag, row[i].stiffness, row[i].substeps, row[i].substeps == 1 ? "" : "s", row[i].time);
+    cli_columns(table, "limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s "
+                       "time_per_frame_s");
+    for (int i = 0; i < plan_limits; i++)
+        if (!isnan(row[i].stiffness))
+            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g", what[i], row[i].stiffness,
+                    row[i].stretch[PLAN_SCENE], row[i].stretch[PLAN_LINK], row[i].stable_step, row[i].substeps,
+                    plan_frame / row[i].substeps, row[i].time);
+}
+
 static void write_scene(void)
 {
     disturbances *poke = NULL;
@@ -320,8 +386,12 @@ static void write_scene(void)
     timing_stamp(table);
     cli_comment(table, "scene: %s, %zu particles, %zu links", mesh != NULL ? "a mesh" : preset_names[kind],
                 scene.def.particles, scene.def.links);
-    plan_one_scene(&scene);
-    write_plan(table);
+    if (!isnan(sag)) {
+        write_sag(table, &scene);
+    } else {
+        plan_one_scene(&scene);
+        write_plan(table);
+    }
     disturbances_free(poke);
     preset_clear(&scene);
 }

@@ -339,10 +339,12 @@ static spring_scene *start(const subject *s, spring_method m)
     return scene;
 }
 
-/* Steps in a frame, at most a sixteenth of the stable step of leapfrog each. */
+/* Steps in a frame, at most a sixteenth of the stable steps of leapfrog and of RK4 each. Damped links limit RK4 alone. */
 static double reference_steps(const subject *s, spring_scene *scene)
 {
-    return fmax(ceil(s->frame / (spring_scene_stable_step(scene, SPRING_LEAPFROG) / 16)), 1);
+    const double leapfrog = spring_scene_stable_step(scene, SPRING_LEAPFROG);
+    const double rk4 = spring_scene_stable_step(scene, SPRING_RK4);
+    return fmax(ceil(s->frame / (fmin(leapfrog, rk4) / 16)), 1);
 }
 
 static void run_reference(sweep_memory *r, const subject *s, spring_scene *scene, uint64_t substeps)

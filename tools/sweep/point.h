@@ -107,8 +107,8 @@ void sweep_memory_free(sweep_memory *memory);
  *
  * With a tolerance the step is spring_accurate_step(), there is no run, and the error is spring_step_error().
  *
- * A scene is run as it is, water with a poke, and compared with RK4 in steps of at most a sixteenth of leapfrog's stable step, and
- * looked at after each frame:
+ * A scene is run as it is, water with a poke, and compared with RK4 in steps of at most a sixteenth of its stable step and of
+ * leapfrog's, and looked at after each frame:
  *
  *     error         the largest distance of all positions, root of the sum of squares, over the largest distance of the
  *                   reference from its start

@@ -63,17 +63,20 @@ static const cli_program program = {
                "2 s in 8 steps a frame of 1/60 s, is looked at after each frame, and is otherwise as spring-scene\n"
                "makes it.",
     .columns = "omega_dt method error energy_error status",
-    .meaning = "The first columns are the parameters of the axes, here omega_dt.\n\n"
-               "error: against the exact solution, from the worst start; of a scene against RK4 in steps of a\n"
-               "sixteenth of leapfrog's stable step, over the motion; that is itself right to 1e-9 for slow motion,\n"
-               "a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
-               "energy_error: the largest, with its sign, over the energy at the start; of a scene over its largest\n"
-               "kinetic energy. settling_time_s: until it stays below 1 % of the start; a scene below 1 % of its\n"
-               "largest speed.\n\n"
-               "status: stable; growing (at the stable step or beyond); exploded (that, and a hundredfold energy; of\n"
-               "a scene ten times the kinetic energy it should have, or no finite numbers: the errors are those\n"
-               "until then); unsupported; no_step (none is accurate enough, or the stable step is 0); too_long;\n"
-               "invalid (numbers that the library refuses, or a scene where nothing moves). What is not known is nan.",
+    .meaning =
+        "The first columns are the parameters of the axes, here omega_dt.\n\n"
+        "error: against the exact solution, from the worst start; of a scene against RK4 in steps of at\n"
+        "most a sixteenth of its stable step and of leapfrog's, over the motion; that is itself right to 1e-9\n"
+        "for slow motion, a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
+        "force_evaluations: one per step for leapfrog in scenes. With heavily damped links a step takes two and\n"
+        "evaluations of damping, which are not counted.\n\n"
+        "energy_error: the largest, with its sign, over the energy at the start; of a scene over its largest\n"
+        "kinetic energy. settling_time_s: until it stays below 1 % of the start; a scene below 1 % of its\n"
+        "largest speed.\n\n"
+        "status: stable; growing (at the stable step or beyond); exploded (that, and a hundredfold energy; of\n"
+        "a scene ten times the kinetic energy it should have, or no finite numbers: the errors are those\n"
+        "until then); unsupported; no_step (none is accurate enough, or the stable step is 0); too_long;\n"
+        "invalid (numbers that the library refuses, or a scene where nothing moves). What is not known is nan.",
     .shown = {"omega_dt", "error"},
     .examples = {"--over omega_dt=0.01:3:log:50 damping_ratio=0:2:21 -o map.tsv",
                  "--scene rope --over stiffness=1e2:1e4:log:5 steps_per_frame=1,2 --jobs 2 -o rope.tsv",
