@@ -581,6 +581,34 @@ static void too_fast(void)
         }
 }
 
+/* Velocities at the ends of steps are compared, not those half a step later, which here are larger: ten steps a period, from
+   rest, so that the velocity is largest in the middle of a step. */
+static void speed_at_the_ends_of_steps(void)
+{
+    const double x[] = {0, 1}, pi = 3.141592653589793;
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 0.4, 2.7, 0};
+    spring_scene_def def = {
+        .axes = 1, .particles = 2, .links = 1, .position = x, .pinned = pinned, .link = &link, .mass_all = 1.3};
+    const double dt = 2 * sin(pi / 10) / sqrt(2.7 / 1.3);
+    spring_scene *s = scene_of(&def);
+    double fastest = 0, v[2];
+    for (int i = 0; i < 10; i++) {
+        spring_scene_advance(s, SPRING_LEAPFROG, dt, 1);
+        spring_scene_get(s, SPRING_VELOCITY, v, 1, 0, 2);
+        fastest = fmax(fastest, fabs(v[1]));
+    }
+    free(s);
+    def.max_speed = fastest;
+    s = scene_of(&def);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_OK, "not above the limit");
+    free(s);
+    def.max_speed = fastest * 0.999;
+    s = scene_of(&def);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_EUNSTABLE, "above it");
+    free(s);
+}
+
 static void speed_limit_of_pins_and_input(void)
 {
     const double x[] = {0, 1}, v[] = {100, 0};
@@ -716,6 +744,7 @@ int main(void)
         {"slack links", slack_links},
         {"more damping than terms", beyond_the_largest_number_of_terms},
         {"max_speed", too_fast},
+        {"max_speed at the ends of steps", speed_at_the_ends_of_steps},
         {"max_speed of pins, bad input", speed_limit_of_pins_and_input},
         {"soften", soften},
         {"soften: bad input", soften_bad_input},
