@@ -140,43 +140,11 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-/* The same, by damping alone along frozen directions d: d (d . relative velocity). */
-SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
-                                       size_t slots, scalar *force, size_t axis, uint32_t axes)
-{
-    const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
-                        *const upper = lower + band->offset;
-    const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
-    const size_t together = links_together(axes);
-    size_t j = 0;
-    for (; j < count; j += together * lanes) {
-        SPRING_UNROLL
-        for (size_t m = 0; m < together; m++) {
-            const size_t i = j + m * lanes;
-            real d[3], rate;
-            SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++) {
-                d[a] = vec_load(direction + a * stride_d + i);
-                const real along = d[a] * (vec_load(upper + a * stride + i) - vec_load(lower + a * stride + i));
-                rate = a == 0 ? along : rate + along;
-            }
-            SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                vec_store(force + a * axis + i, d[a] * rate);
-        }
-    }
-    if (j < slots)
-        clear_slots(force + j, axis, slots - j, axes);
-}
-
 SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                                   size_t slots, scalar *force, size_t axis, uint32_t axes, link_terms terms)
+                                   size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
 {
-    const bool damped = terms == STIFFNESS_AND_DAMPING_TERM;
-    if (terms == DAMPING_TERM)
-        tile_damping_forces(band, v, stride, t, slots, force, axis, axes);
-    else if (axes == 1 &&
-             band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
+    if (axes == 1 &&
+        band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true, false);
     else
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false, false);
@@ -215,6 +183,62 @@ SPRING_INLINE taut_kernel *taut_forces(uint32_t axes, bool damped)
     if (axes == 2)
         return damped ? damped_taut_forces_on_2_axes : taut_forces_on_2_axes;
     return damped ? damped_taut_forces_on_3_axes : taut_forces_on_3_axes;
+}
+
+/* As tile_forces(), by damping alone along frozen directions d: d (d . relative velocity). Functions of their own, so that
+   the loop over tiles exists once. */
+SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+                                       size_t slots, scalar *force, size_t axis, uint32_t axes)
+{
+    const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
+                        *const upper = lower + band->offset;
+    const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            real d[3], rate;
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                d[a] = vec_load(direction + a * stride_d + i);
+                const real along = d[a] * (vec_load(upper + a * stride + i) - vec_load(lower + a * stride + i));
+                rate = a == 0 ? along : rate + along;
+            }
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + i, d[a] * rate);
+        }
+    }
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
+}
+
+SPRING_NOINLINE void damping_forces_on_1_axis(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+                                              size_t slots, scalar *force, size_t axis)
+{
+    tile_damping_forces(band, v, stride, t, slots, force, axis, 1);
+}
+
+SPRING_NOINLINE void damping_forces_on_2_axes(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+                                              size_t slots, scalar *force, size_t axis)
+{
+    tile_damping_forces(band, v, stride, t, slots, force, axis, 2);
+}
+
+SPRING_NOINLINE void damping_forces_on_3_axes(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+                                              size_t slots, scalar *force, size_t axis)
+{
+    tile_damping_forces(band, v, stride, t, slots, force, axis, 3);
+}
+
+SPRING_INLINE void damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t, size_t slots,
+                                  scalar *force, size_t axis, uint32_t axes)
+{
+    (axes == 1   ? damping_forces_on_1_axis
+     : axes == 2 ? damping_forces_on_2_axes
+                 : damping_forces_on_3_axes)(band, v, stride, t, slots, force, axis);
 }
 
 /* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
@@ -273,7 +297,7 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
 /* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. `axis` is the number
    of elements from one axis of a ring to the next, `t` the first slot of a tile. */
 SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                             size_t to, uint32_t axes, link_terms terms)
+                             size_t to, uint32_t axes, bool damped)
 {
     ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
@@ -294,11 +318,12 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
             if (t >= band->start && t < band->end) {
-                if (axes > 1 && terms != DAMPING_TERM && SPRING_UNLIKELY(s->tension_only))
-                    taut_forces(axes, terms == STIFFNESS_AND_DAMPING_TERM)(band, x, v, s->stride, t, count, force,
-                                                                           axis);
+                if (!damped && SPRING_UNLIKELY(s->terms == DAMPING_TERM))
+                    damping_forces(band, v, s->stride, t, count, force, axis, axes);
+                else if (axes > 1 && SPRING_UNLIKELY(s->tension_only))
+                    taut_forces(axes, damped)(band, x, v, s->stride, t, count, force, axis);
                 else
-                    one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, terms);
+                    one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
@@ -313,29 +338,32 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
     }
 }
 
-/* function(..., terms), with terms as a constant. */
-#define SPRING_BY_TERMS(terms, function, ...)                                                    \
-    ((terms) == STIFFNESS_TERM               ? function(__VA_ARGS__, STIFFNESS_TERM)             \
-     : (terms) == STIFFNESS_AND_DAMPING_TERM ? function(__VA_ARGS__, STIFFNESS_AND_DAMPING_TERM) \
-                                             : function(__VA_ARGS__, DAMPING_TERM))
-
 /* A function for each number of axes: in one function, gcc would keep less of the loops in registers. */
 SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 1);
+    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        all_bands(s, x, v, out, from, to, 1, true);
+    else
+        all_bands(s, x, v, out, from, to, 1, false);
 }
 
 SPRING_NOINLINE void band_forces_on_2_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 2);
+    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        all_bands(s, x, v, out, from, to, 2, true);
+    else
+        all_bands(s, x, v, out, from, to, 2, false);
 }
 
 SPRING_NOINLINE void band_forces_on_3_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    SPRING_BY_TERMS(s->terms, all_bands, s, x, v, out, from, to, 3);
+    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        all_bands(s, x, v, out, from, to, 3, true);
+    else
+        all_bands(s, x, v, out, from, to, 3, false);
 }
 
 static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
@@ -343,45 +371,6 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
 {
     band_kernel *const of_axes[] = {band_forces_on_1_axis, band_forces_on_2_axes, band_forces_on_3_axes};
     of_axes[s->axes - 1](s, x, v, out, from, to);
-}
-
-/* See direction_kernel. */
-SPRING_INLINE void all_band_directions(const scene_links *s, const scalar *x, scalar *direction, uint32_t axes)
-{
-    for (const scene_band *band = s->band; band < s->band + s->bands; band++) {
-        scalar *const of_band = direction + (band->direction - s->band[0].direction);
-        for (size_t j = 0; j < (size_t)(band->end - band->start); j += lanes) {
-            const mask joined = vec_load_mask(band->occupied + j);
-            real root = vec_sqrt(vec_load(band->damping + (ptrdiff_t)j * band->coefficient_stride));
-            real delta[3], inverse = splat(0);
-            SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++) {
-                const scalar *const at = x + a * s->stride + band->start + j;
-                delta[a] = vec_load(at + band->offset) - vec_load(at);
-                inverse += delta[a] * delta[a];
-            }
-            if (axes > 1)
-                vec_inverse_sqrt(&inverse, &joined, 1);
-            if (s->tension_only) { /* a slack link is not damped */
-                const real rest = vec_load(band->rest + (ptrdiff_t)j * band->coefficient_stride);
-                root = select_real(rest * inverse < 1, root, splat(0));
-            }
-            SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                vec_store(of_band + a * band->direction_stride + j,
-                          select_real(joined, axes == 1 ? root : root * (inverse * delta[a]), splat(0)));
-        }
-    }
-}
-
-static void compute_band_directions(const scene_links *s, const scalar *x, scalar *direction)
-{
-    if (s->axes == 1)
-        all_band_directions(s, x, direction, 1);
-    else if (s->axes == 2)
-        all_band_directions(s, x, direction, 2);
-    else
-        all_band_directions(s, x, direction, 3);
 }
 
 #endif

@@ -18,6 +18,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
+#include "directions.h"
 #include "particles.h"
 #include "stretch.h"
 #if SPRING_VECTOR < 64
