@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The functions of src/simd/elementary.h that the exact solution needs, with the same operations in the same order. Only
+// + - * / and Math.sqrt are used, which ECMAScript defines to the last bit. Math.exp and Math.sin differ between engines.
+
+const bits = new Float64Array(1);
+const words = new Uint32Array(bits.buffer);
+bits[0] = 1;
+const high = words[1] ? 1 : 0; // the word with the exponent: the order depends on the processor
+const low = 1 - high;
+
+const toInteger = 6755399441055744; // 1.5 * 2^52: adding it leaves the nearest integer in the lowest bits
+
+export const nearest = (a) => a + toInteger - toInteger;
+
+/** 2^k of an integer, |k| < 1087. */
+export function powerOfTwo(k) {
+    const shift = k > 1022 ? -64 : k < -1022 ? 64 : 0;
+    const back = k > 1022 ? 18446744073709551616 : k < -1022 ? 5.421010862427522e-20 : 1; // 2^64, 2^-64
+    words[low] = 0;
+    words[high] = (k + shift + 1023) << 20;
+    return bits[0] * back;
+}
+
+/** The e of a = m 2^e, 1/2 <= m < 1, a > 0: frexp() in C. */
+export function exponentOf(a) {
+    const denormal = a < 2.2250738585072014e-308;
+    bits[0] = denormal ? a * 18446744073709551616 : a;
+    return (words[high] >>> 20) - (denormal ? 1086 : 1022);
+}
+
+/** a b - product, where product is a b rounded: exactly, for numbers of 2^-450 to 2^450. */
+export function productError(a, b, product) {
+    const ca = 134217729 * a; // 2^27 + 1: halves of 26 bits
+    const aHigh = ca - (ca - a);
+    const aLow = a - aHigh;
+    const cb = 134217729 * b;
+    const bHigh = cb - (cb - b);
+    const bLow = b - bHigh;
+    return aHigh * bHigh - product + aHigh * bLow + aLow * bHigh + aLow * bLow;
+}
+
+/** a^2 - square, where square is a^2 rounded. */
+export function squareError(a, square) {
+    const c = 134217729 * a;
+    const aHigh = c - (c - a);
+    const aLow = a - aHigh;
+    return aHigh * aHigh - square + aHigh * (2 * aLow) + aLow * aLow;
+}
+
+/** c[0] + c[1] z + ..., an even number of terms, by Horner's rule for even and odd powers. */
+function polynomial(z, c) {
+    const square = z * z;
+    let even = c[c.length - 2];
+    let odd = c[c.length - 1];
+    for (let i = c.length - 4; i >= 0; i -= 2) {
+        even = even * square + c[i];
+        odd = odd * square + c[i + 1];
+    }
+    return even + odd * z;
+}
+
+const expTerms = [
+    1 / 2, 1 / 6, 1 / 24, 1 / 120, 1 / 720, 1 / 5040, 1 / 40320, 1 / 362880, 1 / 3628800, 1 / 39916800,
+    1 / 479001600, 1 / 6227020800,
+];
+
+/** The k of e^x = 2^k (1 + e), |x| <= 1500. */
+export const expPower = (x) => nearest(x * 1.4426950408889634);
+
+/** The e of e^x = 2^k (1 + e). */
+export function expRest(x, k) {
+    const r = x - k * 0.6931471806019545 - k * -4.2009150726810846e-11; // ln 2 in two parts
+    return r + r * r * polynomial(r, expTerms);
+}
+
+const sineTerms = [
+    -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800, 1 / 6227020800, -1 / 1307674368000,
+    1 / 355687428096000,
+];
+const cosineTerms = [
+    1 / 24, -1 / 720, 1 / 40320, -1 / 3628800, 1 / 479001600, -1 / 87178291200, 1 / 20922789888000,
+    -1 / 6402373705728000,
+];
+
+export function sineCosine(angle) {
+    const known = Math.abs(angle) < 2251799813685248 ? angle : angle - angle;
+    const quarter = known * 0.6366197723675814 + toInteger;
+    const q = quarter - toInteger;
+    const r = known - q * 1.570796325802803 - q * 9.920935796805404e-10; // pi/2 in two parts
+    const z = r * r;
+    const sine = r + r * z * polynomial(z, sineTerms);
+    const near = 1 - z / 2;
+    const cosine = near + (1 - near - z / 2 + z * z * polynomial(z, cosineTerms));
+    bits[0] = quarter;
+    const turn = words[low];
+    const first = turn & 1 ? cosine : sine;
+    const second = turn & 1 ? sine : cosine;
+    return { sine: turn & 2 ? -first : first, cosine: (turn + 1) & 2 ? -second : second };
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The exact solution of a spring over a time step about its target: src/spring/roots.c, exact_formula.h and follow_formula.h
+// with the same operations in the same order.
+import {
+    expPower,
+    expRest,
+    exponentOf,
+    nearest,
+    powerOfTwo,
+    productError,
+    sineCosine,
+    squareError,
+} from "./elementary.js";
+
+const { abs, sqrt } = Math;
+const leastNormal = 2.2250738585072014e-308; // 2^-1022
+const tiny = 2.7755575615628914e-17; // 2^-55 does not change 1
+
+/** n - q d, where q is n/d rounded. */
+function remainderOf(n, d, q) {
+    const product = q * d;
+    return n - product - productError(q, d, product);
+}
+
+const scaled = (a, k) => a * powerOfTwo(k < -1086 ? -1086 : k);
+
+/** n/d - q for numbers of any size. */
+function restOf(n, d, q) {
+    if (n === 0) return 0;
+    const byN = exponentOf(n);
+    const byD = exponentOf(d);
+    const byQ = q === 0 ? 0 : exponentOf(q);
+    const m = fraction(d, byD);
+    const r = remainderOf(scaled(fraction(n, byN), byN - byD - byQ), m, fraction(q, byQ));
+    return scaled(r / m, byQ);
+}
+
+/** a 2^-k, exactly: 2^1074 would overflow. */
+const fraction = (a, k) => (k < -1000 ? a * powerOfTwo(1000) * powerOfTwo(-k - 1000) : a * powerOfTwo(-k));
+
+/** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow: 2^-400 to 2^400. */
+const moderate = (a) => a > 3.8725919148493183e-121 && a < 2.5822498780869086e120;
+
+export class Propagator {
+    constructor(stiffness, damping, mass) {
+        const w = stiffness / mass + 0;
+        const g = damping / mass + 0;
+        const b = g / 2;
+        const rest =
+            moderate(mass) && moderate(w) && (moderate(g) || g === 0)
+                ? (remainderOf(stiffness, mass, w) - b * remainderOf(damping, mass, g)) * (1 / mass)
+                : restOf(stiffness, mass, w) - b * restOf(damping, mass, g);
+        this.omega2 = w; // [1/s^2]
+        this.b = b; // [1/s]
+        // The distance between the roots, sqrt |w - b^2|. Squares of large and small numbers are scaled by powers of two.
+        const large = b > 2.5822498780869086e120 || w > 6.668014432879854e240;
+        const small = b < 3.8725919148493183e-121 && w < 1.499696813895631e-241;
+        const scale = large ? 1.90109156629516e-211 : small ? 4.149515568880993e180 : 1;
+        const back = large ? 5.260135901548374e210 : small ? 2.409919865102884e-181 : 1;
+        const c = b * scale;
+        const square = c * c;
+        const D = w * scale * scale - square - squareError(c, square) + rest * scale * scale;
+        this.split = sqrt(abs(D)) * back;
+        this.overdamped = D < 0;
+        this.dt = NaN;
+        this.half = this.F = this.G = this.H = this.wH = this.share = this.angle = 0.5;
+    }
+
+    /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - wH x) about the target. */
+    prepare(dt) {
+        if (dt === this.dt) return;
+        this.dt = dt;
+        const { omega2, b, split } = this;
+        const angle = split * dt;
+        const size = abs(angle);
+        let rate = b;
+        let F, G, H;
+        if (this.overdamped) {
+            const x = -2 * size < -750 ? -750 : -2 * size;
+            const k = expPower(x);
+            const power = powerOfTwo(k);
+            const part = power * expRest(x, k);
+            const left = power + part;
+            const fast = b + split;
+            const slow = omega2 / fast;
+            const h = size < tiny ? abs(dt) : (1 - power - part) / (2 * split);
+            const more = slow * h;
+            rate = dt > 0 ? slow : fast;
+            F = dt > 0 ? 1 + more : left - more;
+            G = dt > 0 ? left - more : 1 + more;
+            H = dt > 0 ? h : -h;
+        } else {
+            const { sine, cosine } = sineCosine(angle);
+            H = size < tiny ? dt : sine * (1 / split);
+            F = cosine + b * H;
+            G = cosine - b * H;
+        }
+        // The power of two in two halves, so that a large start times a tiny factor does not underflow early.
+        const y = -rate * dt;
+        const x = y < -1500 ? -1500 : y > 1500 ? 1500 : y;
+        const k = expPower(x);
+        const most = nearest(k / 2);
+        const power = powerOfTwo(most);
+        const other = power + power * expRest(x, k);
+        this.half = powerOfTwo(k - most);
+        this.F = other * F;
+        this.G = other * G;
+        this.H = other * H;
+        this.wH = omega2 * (other * H);
+        const share = rate * dt;
+        this.share = share > 0 && omega2 > 0 ? (share < 1 ? share : 1) : 0;
+        this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances
+    }
+}
+
+/** Half an ulp of a >= 0 that is not denormal. */
+function halfUlp(a) {
+    const half = a / 2;
+    return half + half * 1.1102230246251568e-16 - half; // u + 2 u^2, u = 2^-53
+}
+
+function hypot(a, b) {
+    const large = a > b ? a : b;
+    const small = a > b ? b : a;
+    const ratio = small / (large > 0 ? large : 1);
+    return large * sqrt(1 + ratio * ratio);
+}
+
+/** Whether rounding would keep the spring from coming closer to its target: the rule of follow_formula.h. */
+export function lands(x, target, y, u, share, omega2) {
+    const distance = abs(y);
+    const xSize = abs(x);
+    const size = abs(target);
+    const room = halfUlp(xSize > size ? xSize : size) * 2.25 + leastNormal;
+    return (
+        share > 0 && distance * share <= room && hypot(distance, abs(u) / sqrt(omega2)) * share <= room
+    );
+}
