@@ -14,17 +14,18 @@ export const nearest = (a) => a + toInteger - toInteger;
 
 /** 2^k of an integer, |k| < 1087. */
 export function powerOfTwo(k) {
-    const shift = k > 1022 ? -64 : k < -1022 ? 64 : 0;
-    const back = k > 1022 ? 18446744073709551616 : k < -1022 ? 5.421010862427522e-20 : 1; // 2^64, 2^-64
+    const shift = k > 1022 ? 64 : k < -1022 ? -64 : 0;
     words[low] = 0;
-    words[high] = (k + shift + 1023) << 20;
-    return bits[0] * back;
+    words[high] = (k - shift + 1023) << 20;
+    return shift ? bits[0] * powerOfTwo(shift) : bits[0];
 }
+
+export const leastNormal = powerOfTwo(-1022);
 
 /** The e of a = m 2^e, 1/2 <= m < 1, a > 0: frexp() in C. */
 export function exponentOf(a) {
-    const denormal = a < 2.2250738585072014e-308;
-    bits[0] = denormal ? a * 18446744073709551616 : a;
+    const denormal = a < leastNormal;
+    bits[0] = denormal ? a * powerOfTwo(64) : a;
     return (words[high] >>> 20) - (denormal ? 1086 : 1022);
 }
 
@@ -59,10 +60,23 @@ function polynomial(z, c) {
     return even + odd * z;
 }
 
-const expTerms = [
-    1 / 2, 1 / 6, 1 / 24, 1 / 120, 1 / 720, 1 / 5040, 1 / 40320, 1 / 362880, 1 / 3628800, 1 / 39916800,
-    1 / 479001600, 1 / 6227020800,
-];
+/** first/n!, first sign/(n + step)!, first/(n + 2 step)! and so on. Factorials up to 18! are exact. */
+function taylor(n, step, first, sign, terms) {
+    const c = [];
+    for (let i = 1, factorial = 1; c.length < terms; i++) {
+        factorial *= i;
+        if (i === n) {
+            c.push(first / factorial);
+            first *= sign;
+            n += step;
+        }
+    }
+    return c;
+}
+
+const expTerms = taylor(2, 1, 1, 1, 12);
+const sineTerms = taylor(3, 2, -1, -1, 8);
+const cosineTerms = taylor(4, 2, 1, -1, 8);
 
 /** The k of e^x = 2^k (1 + e), |x| <= 1500. */
 export const expPower = (x) => nearest(x * 1.4426950408889634);
@@ -72,15 +86,6 @@ export function expRest(x, k) {
     const r = x - k * 0.6931471806019545 - k * -4.2009150726810846e-11; // ln 2 in two parts
     return r + r * r * polynomial(r, expTerms);
 }
-
-const sineTerms = [
-    -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800, 1 / 6227020800, -1 / 1307674368000,
-    1 / 355687428096000,
-];
-const cosineTerms = [
-    1 / 24, -1 / 720, 1 / 40320, -1 / 3628800, 1 / 479001600, -1 / 87178291200, 1 / 20922789888000,
-    -1 / 6402373705728000,
-];
 
 export function sineCosine(angle) {
     const known = Math.abs(angle) < 2251799813685248 ? angle : angle - angle;

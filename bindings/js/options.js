@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Options of springs: checks, and the parameters that people know, as in src/spring/params.c.
+import { leastNormal } from "./elementary.js";
 import { Propagator } from "./propagator.js";
 
 const show = (value) => (typeof value === "string" ? JSON.stringify(value) : String(value));
 
 /** Throws unless `holds`: `stiffness must be a finite number >= 0, got NaN`. */
-export function check(holds, name, what, value) {
+export function check(holds, name, what, value, Kind = typeof value === "number" ? RangeError : TypeError) {
     if (holds) return;
-    const Kind = typeof value === "number" ? RangeError : TypeError;
     throw new Kind(`${name} must be ${what}, got ${show(value)}`);
 }
 
@@ -15,14 +15,15 @@ export const isNumber = (value) => typeof value === "number" && value - value ==
 export const checkFinite = (name, value) => check(isNumber(value), name, "a finite number", value);
 const checkNotNegative = (name, value) =>
     check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
-const checkPositive = (name, value) => check(isNumber(value) && value > 0, name, "a finite number > 0", value);
+const checkPositive = (name, value) =>
+    check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
 const twoPi = 6.283185307179586;
 
 /** omega [1/s] -> [stiffness, damping, mass] */
 function unitMass(omega, dampingRatio) {
     const stiffness = omega * omega;
-    const normal = stiffness < Infinity && (omega === 0 || stiffness >= 2.2250738585072014e-308);
+    const normal = stiffness < Infinity && (omega === 0 || stiffness >= leastNormal);
     check(normal, "stiffness", "finite and not denormal", stiffness);
     return [stiffness, 2 * dampingRatio * omega, 1];
 }
@@ -66,10 +67,11 @@ const belongs = {
 /** The propagator of options; `others` are the names of options that are not about stiffness and damping. */
 export function propagatorOf(options, others) {
     check(typeof options === "object" && options !== null, "options", "an object", options);
-    const given = Object.keys(options).filter((name) => options[name] !== undefined && !others.includes(name));
+    const given = Object.keys(options).filter(
+        (name) => options[name] !== undefined && !others.includes(name),
+    );
     const way = given.find((name) => Object.hasOwn(ways, name));
-    if (way === undefined)
-        throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
+    if (way === undefined) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
     for (const name of given)
         if (name !== way && !belongs[way].includes(name))
             throw new TypeError(`the option ${name} does not go with ${way}`);

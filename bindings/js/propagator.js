@@ -5,6 +5,7 @@ import {
     expPower,
     expRest,
     exponentOf,
+    leastNormal,
     nearest,
     powerOfTwo,
     productError,
@@ -13,8 +14,10 @@ import {
 } from "./elementary.js";
 
 const { abs, sqrt } = Math;
-const leastNormal = 2.2250738585072014e-308; // 2^-1022
-const tiny = 2.7755575615628914e-17; // 2^-55 does not change 1
+const tiny = powerOfTwo(-55); // does not change 1
+const large = powerOfTwo(400);
+const small = powerOfTwo(-400);
+const nextUlp = powerOfTwo(-53) + powerOfTwo(-105); // u + 2 u^2 with u = 2^-53
 
 /** n - q d, where q is n/d rounded. */
 function remainderOf(n, d, q) {
@@ -38,8 +41,8 @@ function restOf(n, d, q) {
 /** a 2^-k, exactly: 2^1074 would overflow. */
 const fraction = (a, k) => (k < -1000 ? a * powerOfTwo(1000) * powerOfTwo(-k - 1000) : a * powerOfTwo(-k));
 
-/** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow: 2^-400 to 2^400. */
-const moderate = (a) => a > 3.8725919148493183e-121 && a < 2.5822498780869086e120;
+/** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
+const moderate = (a) => a > small && a < large;
 
 export class Propagator {
     constructor(stiffness, damping, mass) {
@@ -53,10 +56,15 @@ export class Propagator {
         this.omega2 = w; // [1/s^2]
         this.b = b; // [1/s]
         // The distance between the roots, sqrt |w - b^2|. Squares of large and small numbers are scaled by powers of two.
-        const large = b > 2.5822498780869086e120 || w > 6.668014432879854e240;
-        const small = b < 3.8725919148493183e-121 && w < 1.499696813895631e-241;
-        const scale = large ? 1.90109156629516e-211 : small ? 4.149515568880993e180 : 1;
-        const back = large ? 5.260135901548374e210 : small ? 2.409919865102884e-181 : 1;
+        let scale = 1;
+        let back = 1;
+        if (b > large || w > large * large) {
+            scale = powerOfTwo(-700);
+            back = powerOfTwo(700);
+        } else if (b < small && w < small * small) {
+            scale = powerOfTwo(600);
+            back = powerOfTwo(-600);
+        }
         const c = b * scale;
         const square = c * c;
         const D = w * scale * scale - square - squareError(c, square) + rest * scale * scale;
@@ -116,7 +124,7 @@ export class Propagator {
 /** Half an ulp of a >= 0 that is not denormal. */
 function halfUlp(a) {
     const half = a / 2;
-    return half + half * 1.1102230246251568e-16 - half; // u + 2 u^2, u = 2^-53
+    return half + half * nextUlp - half;
 }
 
 function hypot(a, b) {
@@ -132,7 +140,5 @@ export function lands(x, target, y, u, share, omega2) {
     const xSize = abs(x);
     const size = abs(target);
     const room = halfUlp(xSize > size ? xSize : size) * 2.25 + leastNormal;
-    return (
-        share > 0 && distance * share <= room && hypot(distance, abs(u) / sqrt(omega2)) * share <= room
-    );
+    return share > 0 && distance * share <= room && hypot(distance, abs(u) / sqrt(omega2)) * share <= room;
 }

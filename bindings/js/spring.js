@@ -60,7 +60,13 @@ export class Spring {
     }
 
     set onRest(onRest) {
-        check(onRest === null || typeof onRest === "function", "onRest", "a function or null", onRest);
+        check(
+            onRest === null || typeof onRest === "function",
+            "onRest",
+            "a function or null",
+            onRest,
+            TypeError,
+        );
         this.#onRest = onRest;
     }
 
@@ -84,13 +90,15 @@ export class Spring {
         const v = p.half * (p.G * v0 - p.wH * y0);
         const x = to + y;
         if (!isNumber(x) || !isNumber(v))
-            throw new RangeError(`value and velocity must stay finite, got ${x} and ${v}; they are unchanged`);
+            throw new RangeError(
+                `value and velocity must stay finite, got ${x} and ${v}; they are unchanged`,
+            );
         this.#value = x;
         this.#velocity = v;
         if (
             (Math.abs(x - target) <= this.#restDelta && Math.abs(v) <= this.#restSpeed) ||
             lands(x, to, y, v, p.share, p.omega2) ||
-            (this.clamp && this.#passed(y0, y))
+            (this.clamp && dt > 0 && this.#passed(y0, y))
         )
             this.#rest();
         return this.#value;

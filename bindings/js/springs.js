@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
 import { check, checkFinite, isNumber, propagatorOf, tolerance } from "./options.js";
+import { leastNormal } from "./elementary.js";
 import { lands } from "./propagator.js";
+
+const { abs } = Math;
+const { EPSILON: epsilon } = Number;
 
 export class Springs {
     #propagator;
@@ -20,37 +24,60 @@ export class Springs {
 
     step(dt) {
         checkFinite("dt", dt);
+        if (dt === 0) return this.#countMoving();
         const { target, value, velocity } = this;
         const count = value.length;
         const restDelta = this.#restDelta;
         const restSpeed = this.#restSpeed;
         const p = this.#propagator;
-        if (dt !== 0) p.prepare(dt);
+        p.prepare(dt);
         const { half, F, G, H, wH, share, omega2 } = p;
-        let moving = 0;
+        const attracts = omega2 > 0;
+        const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
+        // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
+        // is so small that a spring may land from far away, there is no limit.
+        const limited = attracts && (share === 0 || share >= 32 * epsilon);
+        const perShare = share > 0 ? 4 / share : 4;
+        const slope = perShare * epsilon;
+        const least = limited ? perShare * leastNormal + 2 * restDelta : Infinity;
+        let resting = 0;
         let failed = -1;
         for (let i = 0; i < count; i++) {
-            const goal = target[i];
-            const to = omega2 === 0 ? goal - goal : goal;
+            const to = origin[i];
             const v0 = velocity[i];
             const y0 = value[i] - to;
-            const y = dt === 0 ? y0 : half * (F * y0 + H * v0);
-            const v = dt === 0 ? v0 : half * (G * v0 - wH * y0);
-            const x = dt === 0 ? value[i] : to + y;
-            if (x - x !== 0 || v - v !== 0) {
-                if (failed < 0) failed = i;
-                moving++;
-                continue;
+            const y = half * (F * y0 + H * v0);
+            const v = half * (G * v0 - wH * y0);
+            const x = to + y;
+            if (!(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
+                const goal = target[i];
+                if (!isNumber(x) || !isNumber(v) || !isNumber(goal)) {
+                    if (failed < 0) failed = i;
+                    continue;
+                }
+                if (
+                    (abs(x - goal) <= restDelta && abs(v) <= restSpeed) ||
+                    lands(x, to, y, v, share, omega2)
+                ) {
+                    value[i] = goal;
+                    velocity[i] = 0;
+                    resting++;
+                    continue;
+                }
             }
-            const settled = Math.abs(x - goal) <= restDelta && Math.abs(v) <= restSpeed;
-            if (dt !== 0) {
-                const rests = settled || lands(x, to, y, v, share, omega2);
-                value[i] = rests ? goal : x;
-                velocity[i] = rests ? 0 : v;
-                moving += rests ? 0 : 1;
-            } else moving += settled ? 0 : 1;
+            value[i] = x;
+            velocity[i] = v;
         }
         if (failed >= 0) this.#fail(failed);
+        return count - resting;
+    }
+
+    #countMoving() {
+        const { target, value, velocity } = this;
+        let moving = 0;
+        for (let i = 0; i < value.length; i++)
+            if (!(abs(value[i] - target[i]) <= this.#restDelta && abs(velocity[i]) <= this.#restSpeed))
+                moving++;
         return moving;
     }
 

@@ -82,7 +82,9 @@ export function compareSingle(program, count) {
             }
             if (Buffer.compare(Buffer.from(got.buffer), Buffer.from(expected.buffer)) !== 0) {
                 if (different++ < 3)
-                    console.log(`# ${records.subarray(size * i, size * (i + 1))}\n#   ${got}\n#   ${expected}`);
+                    console.log(
+                        `# ${records.subarray(size * i, size * (i + 1))}\n#   ${got}\n#   ${expected}`,
+                    );
             }
         }
     }
@@ -96,7 +98,14 @@ function setRecord(record) {
     const tolerance = chance(0.5) ? 0 : 0.001;
     if (chance(0.05)) p.stiffness = 0;
     if (chance(0.05)) p.damping = 0;
-    record.set([p.mass, p.stiffness, p.damping, chance(0.05) ? 0 : timeStep(p.omega, p.zeta), tolerance, 10 * tolerance]);
+    record.set([
+        p.mass,
+        p.stiffness,
+        p.damping,
+        chance(0.05) ? 0 : timeStep(p.omega, p.zeta),
+        tolerance,
+        10 * tolerance,
+    ]);
     for (let i = 0; i < perSet; i++) {
         const target = chance(0.1) ? 0 : uniform(-1000, 1000);
         record[6 + i] = target + uniform(-1, 1) * near;

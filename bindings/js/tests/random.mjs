@@ -24,7 +24,8 @@ export function usual() {
 
 /** Of any size, denormal, 0, or with quotients that overflow. */
 export function extreme() {
-    const size = () => (chance(0.1) ? 0 : chance(0.1) ? logarithmic(1e-323, 1e-300) : 10 ** uniform(-300, 300));
+    const size = () =>
+        chance(0.1) ? 0 : chance(0.1) ? logarithmic(1e-323, 1e-300) : 10 ** uniform(-300, 300);
     const stiffness = size();
     const mass = chance(0.3) ? 1 : chance(0.5) ? size() || 1 : stiffness * 10 ** uniform(-6, 6) || 1;
     const critical = 2 * Math.sqrt(stiffness) * Math.sqrt(mass);
