@@ -29,21 +29,30 @@ export function exponentOf(a) {
     return (words[high] >>> 20) - (denormal ? 1086 : 1022);
 }
 
+/** a 2^k, exact where the result is normal, else rounded once: ldexp() in C, for a of 1e-300 or more where k < 0. */
+export function scaled(a, k) {
+    const half = k >> 1;
+    return a * powerOfTwo(half) * powerOfTwo(k - half);
+}
+
+/** The upper 26 bits of a. */
+function upper(a) {
+    const c = 134217729 * a; // 2^27 + 1
+    return c - (c - a);
+}
+
 /** a b - product, where product is a b rounded: exactly, for numbers of 2^-450 to 2^450. */
 export function productError(a, b, product) {
-    const ca = 134217729 * a; // 2^27 + 1: halves of 26 bits
-    const aHigh = ca - (ca - a);
+    const aHigh = upper(a);
     const aLow = a - aHigh;
-    const cb = 134217729 * b;
-    const bHigh = cb - (cb - b);
+    const bHigh = upper(b);
     const bLow = b - bHigh;
     return aHigh * bHigh - product + aHigh * bLow + aLow * bHigh + aLow * bLow;
 }
 
 /** a^2 - square, where square is a^2 rounded. */
 export function squareError(a, square) {
-    const c = 134217729 * a;
-    const aHigh = c - (c - a);
+    const aHigh = upper(a);
     const aLow = a - aHigh;
     return aHigh * aHigh - square + aHigh * (2 * aLow) + aLow * aLow;
 }

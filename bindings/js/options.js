@@ -3,12 +3,11 @@
 import { leastNormal } from "./elementary.js";
 import { Propagator } from "./propagator.js";
 
-const show = (value) => (typeof value === "string" ? JSON.stringify(value) : String(value));
-
 /** Throws unless `holds`: `stiffness must be a finite number >= 0, got NaN`. */
 export function check(holds, name, what, value, Kind = typeof value === "number" ? RangeError : TypeError) {
     if (holds) return;
-    throw new Kind(`${name} must be ${what}, got ${show(value)}`);
+    const shown = typeof value === "string" ? JSON.stringify(value) : String(value);
+    throw new Kind(`${name} must be ${what}, got ${shown}`);
 }
 
 export const isNumber = (value) => typeof value === "number" && value - value === 0;
@@ -17,75 +16,67 @@ const checkNotNegative = (name, value) =>
     check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
+const checkTolerance = (name, value) =>
+    check(typeof value === "number" && value >= 0, name, "a number >= 0", value);
+const checkBounce = (name, value) =>
+    check(isNumber(value) && value > -1 && value <= 1, name, "a number > -1 and <= 1", value);
 
 const twoPi = 6.283185307179586;
 
-/** omega [1/s] -> [stiffness, damping, mass] */
-function unitMass(omega, dampingRatio) {
-    const stiffness = omega * omega;
-    const normal = stiffness < Infinity && (omega === 0 || stiffness >= leastNormal);
-    check(normal, "stiffness", "finite and not denormal", stiffness);
-    return [stiffness, 2 * dampingRatio * omega, 1];
-}
+/** The decay rate of the slowest mode, in units of omega. */
+const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 1) * Math.sqrt(ratio + 1)));
 
-// Each way to describe a spring, by the option that it cannot do without.
+// Ways to describe a spring, by the option that they require: its check, another option, its check and its default;
+// [omega, damping ratio] of both.
 const ways = {
-    stiffness({ stiffness, damping, mass = 1 }) {
-        return [stiffness, damping, mass];
-    },
-    response({ response, dampingFraction = 1 }) {
-        checkPositive("response", response);
-        checkNotNegative("dampingFraction", dampingFraction);
-        return unitMass(twoPi / response, dampingFraction);
-    },
-    duration({ duration, bounce = 0 }) {
-        checkPositive("duration", duration);
-        check(isNumber(bounce) && bounce > -1 && bounce <= 1, "bounce", "a number > -1 and <= 1", bounce);
-        return unitMass(twoPi / duration, bounce >= 0 ? 1 - bounce : 1 / (1 + bounce));
-    },
-    hertz({ hertz, dampingRatio = 1 }) {
-        checkNotNegative("hertz", hertz);
-        checkNotNegative("dampingRatio", dampingRatio);
-        return unitMass(twoPi * hertz, dampingRatio);
-    },
-    halfLife({ halfLife, dampingRatio = 1 }) {
-        checkPositive("halfLife", halfLife);
-        checkPositive("dampingRatio", dampingRatio);
-        const z = dampingRatio;
-        const rate = z <= 1 ? z : 1 / (z + Math.sqrt(z - 1) * Math.sqrt(z + 1));
-        return unitMass(0.6931471805599453 / halfLife / rate, z);
-    },
-};
-const belongs = {
-    stiffness: ["damping", "mass"],
-    response: ["dampingFraction"],
-    duration: ["bounce"],
-    hertz: ["dampingRatio"],
-    halfLife: ["dampingRatio"],
+    response: [checkPositive, "dampingFraction", checkNotNegative, 1, (time, ratio) => [twoPi / time, ratio]],
+    duration: [
+        checkPositive,
+        "bounce",
+        checkBounce,
+        0,
+        (time, bounce) => [twoPi / time, bounce >= 0 ? 1 - bounce : 1 / (1 + bounce)],
+    ],
+    hertz: [checkNotNegative, "dampingRatio", checkNotNegative, 1, (hertz, ratio) => [twoPi * hertz, ratio]],
+    halfLife: [
+        checkPositive,
+        "dampingRatio",
+        checkPositive,
+        1,
+        (time, ratio) => [0.6931471805599453 / time / slowest(ratio), ratio],
+    ],
 };
 
-/** The propagator of options; `others` are the names of options that are not about stiffness and damping. */
-export function propagatorOf(options, others) {
+/** The propagator and the tolerances of options. `others` are the names of further options. */
+export function settings(options, others) {
     check(typeof options === "object" && options !== null, "options", "an object", options);
-    const given = Object.keys(options).filter(
-        (name) => options[name] !== undefined && !others.includes(name),
-    );
-    const way = given.find((name) => Object.hasOwn(ways, name));
-    if (way === undefined) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
+    const { restDelta = 0.001, restSpeed = 0.01, ...rest } = options;
+    checkTolerance("restDelta", restDelta);
+    checkTolerance("restSpeed", restSpeed);
+    const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
+    const names = ["stiffness", ...Object.keys(ways)];
+    const way = given.find((name) => names.includes(name));
+    if (!way) throw new TypeError(`options must have one of ${names.join(", ")}`);
+    let { stiffness, damping, mass = 1 } = rest;
+    const [checkIt, second, checkSecond, byDefault, convert] = ways[way] ?? [];
     for (const name of given)
-        if (name !== way && !belongs[way].includes(name))
+        if (!(name === way || (convert ? name === second : name === "damping" || name === "mass")))
             throw new TypeError(`the option ${name} does not go with ${way}`);
-    const [stiffness, damping, mass] = ways[way](options);
+    if (convert) {
+        const a = rest[way];
+        const b = rest[second] ?? byDefault;
+        checkIt(way, a);
+        checkSecond(second, b);
+        const [omega, ratio] = convert(a, b);
+        stiffness = omega * omega;
+        damping = 2 * ratio * omega;
+        const normal = stiffness < Infinity && (omega === 0 || stiffness >= leastNormal);
+        check(normal, "stiffness", "finite and not denormal", stiffness);
+    }
     checkNotNegative("stiffness", stiffness);
     checkNotNegative("damping", damping);
     checkPositive("mass", mass);
     checkFinite("stiffness / mass", stiffness / mass);
     checkFinite("damping / mass", damping / mass);
-    return new Propagator(stiffness, damping, mass);
-}
-
-/** A tolerance. */
-export function tolerance(name, value) {
-    check(typeof value === "number" && value >= 0, name, "a number >= 0", value);
-    return value;
+    return { propagator: new Propagator(stiffness, damping, mass), restDelta, restSpeed };
 }

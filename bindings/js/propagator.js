@@ -9,11 +9,12 @@ import {
     nearest,
     powerOfTwo,
     productError,
+    scaled,
     sineCosine,
     squareError,
 } from "./elementary.js";
 
-const { abs, sqrt } = Math;
+const { abs, max, min, sqrt } = Math;
 const tiny = powerOfTwo(-55); // does not change 1
 const large = powerOfTwo(400);
 const small = powerOfTwo(-400);
@@ -25,21 +26,16 @@ function remainderOf(n, d, q) {
     return n - product - productError(q, d, product);
 }
 
-const scaled = (a, k) => a * powerOfTwo(k < -1086 ? -1086 : k);
-
 /** n/d - q for numbers of any size. */
 function restOf(n, d, q) {
     if (n === 0) return 0;
     const byN = exponentOf(n);
     const byD = exponentOf(d);
     const byQ = q === 0 ? 0 : exponentOf(q);
-    const m = fraction(d, byD);
-    const r = remainderOf(scaled(fraction(n, byN), byN - byD - byQ), m, fraction(q, byQ));
+    const m = scaled(d, -byD);
+    const r = remainderOf(scaled(scaled(n, -byN), byN - byD - byQ), m, scaled(q, -byQ));
     return scaled(r / m, byQ);
 }
-
-/** a 2^-k, exactly: 2^1074 would overflow. */
-const fraction = (a, k) => (k < -1000 ? a * powerOfTwo(1000) * powerOfTwo(-k - 1000) : a * powerOfTwo(-k));
 
 /** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
 const moderate = (a) => a > small && a < large;
@@ -71,7 +67,6 @@ export class Propagator {
         this.split = sqrt(abs(D)) * back;
         this.overdamped = D < 0;
         this.dt = NaN;
-        this.half = this.F = this.G = this.H = this.wH = this.share = this.angle = 0.5;
     }
 
     /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - wH x) about the target. */
@@ -84,7 +79,7 @@ export class Propagator {
         let rate = b;
         let F, G, H;
         if (this.overdamped) {
-            const x = -2 * size < -750 ? -750 : -2 * size;
+            const x = max(-750, -2 * size);
             const k = expPower(x);
             const power = powerOfTwo(k);
             const part = power * expRest(x, k);
@@ -104,8 +99,7 @@ export class Propagator {
             G = cosine - b * H;
         }
         // The power of two in two halves, so that a large start times a tiny factor does not underflow early.
-        const y = -rate * dt;
-        const x = y < -1500 ? -1500 : y > 1500 ? 1500 : y;
+        const x = max(-1500, min(1500, -rate * dt));
         const k = expPower(x);
         const most = nearest(k / 2);
         const power = powerOfTwo(most);
@@ -116,7 +110,7 @@ export class Propagator {
         this.H = other * H;
         this.wH = omega2 * (other * H);
         const share = rate * dt;
-        this.share = share > 0 && omega2 > 0 ? (share < 1 ? share : 1) : 0;
+        this.share = omega2 > 0 && share > 0 ? min(share, 1) : 0;
         this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances
     }
 }

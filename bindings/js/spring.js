@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() with a load and a target velocity of 0.
-import { check, checkFinite, isNumber, propagatorOf, tolerance } from "./options.js";
+import { check, checkFinite, isNumber, settings } from "./options.js";
 import { lands } from "./propagator.js";
 
-const otherOptions = ["restDelta", "restSpeed", "clamp", "onRest"];
-
 export class Spring {
-    #propagator;
-    #restDelta;
-    #restSpeed;
+    #settings;
     #onRest = null;
     #value;
     #velocity = 0;
@@ -18,12 +14,9 @@ export class Spring {
 
     constructor(value = 0, options = { duration: 0.5 }) {
         checkFinite("value", value);
-        this.#propagator = propagatorOf(options, otherOptions);
-        const { restDelta = 0.001, restSpeed = 0.01, clamp = false, onRest = null } = options;
-        this.#restDelta = tolerance("restDelta", restDelta);
-        this.#restSpeed = tolerance("restSpeed", restSpeed);
-        this.clamp = clamp;
-        this.onRest = onRest;
+        this.#settings = settings(options, ["clamp", "onRest"]);
+        this.clamp = options.clamp ?? false;
+        this.onRest = options.onRest ?? null;
         this.#value = this.#target = value;
     }
 
@@ -80,7 +73,7 @@ export class Spring {
     step(dt) {
         checkFinite("dt", dt);
         if (this.#settled || dt === 0) return this.#value;
-        const p = this.#propagator;
+        const { propagator: p, restDelta, restSpeed } = this.#settings;
         p.prepare(dt);
         const target = this.#target;
         const to = p.omega2 === 0 ? 0 : target; // without stiffness a target has no effect
@@ -93,27 +86,14 @@ export class Spring {
             throw new RangeError(
                 `value and velocity must stay finite, got ${x} and ${v}; they are unchanged`,
             );
-        this.#value = x;
-        this.#velocity = v;
-        if (
-            (Math.abs(x - target) <= this.#restDelta && Math.abs(v) <= this.#restSpeed) ||
-            lands(x, to, y, v, p.share, p.omega2) ||
-            (this.clamp && dt > 0 && this.#passed(y0, y))
-        )
-            this.#rest();
+        // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
+        const passed = y0 > 0 ? y <= 0 : y0 < 0 && y >= 0;
+        const stops = this.clamp && dt > 0 && p.omega2 > 0 && (passed || p.angle >= Math.PI);
+        const near = Math.abs(x - target) <= restDelta && Math.abs(v) <= restSpeed;
+        this.#settled = stops || near || lands(x, to, y, v, p.share, p.omega2);
+        this.#value = this.#settled ? target : x;
+        this.#velocity = this.#settled ? 0 : v;
+        if (this.#settled) this.#onRest?.(this);
         return this.#value;
-    }
-
-    /** Whether the value was on its target during a step, from distance y0 to y. Zeros of an oscillation are pi apart. */
-    #passed(y0, y) {
-        const p = this.#propagator;
-        return p.omega2 > 0 && ((y0 > 0 && y <= 0) || (y0 < 0 && y >= 0) || p.angle >= Math.PI);
-    }
-
-    #rest() {
-        this.#value = this.#target;
-        this.#velocity = 0;
-        this.#settled = true;
-        this.#onRest?.(this);
     }
 }

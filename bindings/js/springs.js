@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
-import { check, checkFinite, isNumber, propagatorOf, tolerance } from "./options.js";
+import { check, checkFinite, isNumber, settings } from "./options.js";
 import { leastNormal } from "./elementary.js";
 import { lands } from "./propagator.js";
 
@@ -8,16 +8,11 @@ const { abs } = Math;
 const { EPSILON: epsilon } = Number;
 
 export class Springs {
-    #propagator;
-    #restDelta;
-    #restSpeed;
+    #settings;
 
     constructor(count, options = { duration: 0.5 }) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
-        this.#propagator = propagatorOf(options, ["restDelta", "restSpeed"]);
-        const { restDelta = 0.001, restSpeed = 0.01 } = options;
-        this.#restDelta = tolerance("restDelta", restDelta);
-        this.#restSpeed = tolerance("restSpeed", restSpeed);
+        this.#settings = settings(options, []);
         for (const name of ["target", "value", "velocity"])
             Object.defineProperty(this, name, { value: new Float64Array(count), enumerable: true });
     }
@@ -27,9 +22,7 @@ export class Springs {
         if (dt === 0) return this.#countMoving();
         const { target, value, velocity } = this;
         const count = value.length;
-        const restDelta = this.#restDelta;
-        const restSpeed = this.#restSpeed;
-        const p = this.#propagator;
+        const { propagator: p, restDelta, restSpeed } = this.#settings;
         p.prepare(dt);
         const { half, F, G, H, wH, share, omega2 } = p;
         const attracts = omega2 > 0;
@@ -74,10 +67,10 @@ export class Springs {
 
     #countMoving() {
         const { target, value, velocity } = this;
+        const { restDelta, restSpeed } = this.#settings;
         let moving = 0;
         for (let i = 0; i < value.length; i++)
-            if (!(abs(value[i] - target[i]) <= this.#restDelta && abs(velocity[i]) <= this.#restSpeed))
-                moving++;
+            if (!(abs(value[i] - target[i]) <= restDelta && abs(velocity[i]) <= restSpeed)) moving++;
         return moving;
     }
 
