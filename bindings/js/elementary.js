@@ -22,13 +22,6 @@ export function powerOfTwo(k) {
 
 export const leastNormal = powerOfTwo(-1022);
 
-/** The e of a = m 2^e, 1/2 <= m < 1, a > 0: frexp() in C. */
-export function exponentOf(a) {
-    const denormal = a < leastNormal;
-    bits[0] = denormal ? a * powerOfTwo(64) : a;
-    return (words[high] >>> 20) - (denormal ? 1086 : 1022);
-}
-
 /** a 2^k, exact where the result is normal, else rounded once: ldexp() in C, for a of 1e-300 or more where k < 0. */
 export function scaled(a, k) {
     const half = k >> 1;
@@ -57,35 +50,20 @@ export function squareError(a, square) {
     return aHigh * aHigh - square + aHigh * (2 * aLow) + aLow * aLow;
 }
 
-/** c[0] + c[1] z + ..., an even number of terms, by Horner's rule for even and odd powers. */
-function polynomial(z, c) {
+const inverse = [1]; // 1/n! of factorials that are exact
+for (let n = 1, factorial = 1; n < 19; n++) inverse[n] = 1 / (factorial *= n);
+
+/** 1/first! + z/(first + step)! + ... + z^k/last!, an even number of terms, by Horner's rule for even and odd powers. */
+function taylor(z, first, step, last) {
     const square = z * z;
-    let even = c[c.length - 2];
-    let odd = c[c.length - 1];
-    for (let i = c.length - 4; i >= 0; i -= 2) {
-        even = even * square + c[i];
-        odd = odd * square + c[i + 1];
+    let even = inverse[last - step];
+    let odd = inverse[last];
+    for (let n = last - 2 * step; n > first; n -= 2 * step) {
+        even = even * square + inverse[n - step];
+        odd = odd * square + inverse[n];
     }
     return even + odd * z;
 }
-
-/** first/n!, first sign/(n + step)!, first/(n + 2 step)! and so on. Factorials up to 18! are exact. */
-function taylor(n, step, first, sign, terms) {
-    const c = [];
-    for (let i = 1, factorial = 1; c.length < terms; i++) {
-        factorial *= i;
-        if (i === n) {
-            c.push(first / factorial);
-            first *= sign;
-            n += step;
-        }
-    }
-    return c;
-}
-
-const expTerms = taylor(2, 1, 1, 1, 12);
-const sineTerms = taylor(3, 2, -1, -1, 8);
-const cosineTerms = taylor(4, 2, 1, -1, 8);
 
 /** The k of e^x = 2^k (1 + e), |x| <= 1500. */
 export const expPower = (x) => nearest(x * 1.4426950408889634);
@@ -93,7 +71,7 @@ export const expPower = (x) => nearest(x * 1.4426950408889634);
 /** The e of e^x = 2^k (1 + e). */
 export function expRest(x, k) {
     const r = x - k * 0.6931471806019545 - k * -4.2009150726810846e-11; // ln 2 in two parts
-    return r + r * r * polynomial(r, expTerms);
+    return r + r * r * taylor(r, 2, 1, 13);
 }
 
 export function sineCosine(angle) {
@@ -102,9 +80,9 @@ export function sineCosine(angle) {
     const q = quarter - toInteger;
     const r = known - q * 1.570796325802803 - q * 9.920935796805404e-10; // pi/2 in two parts
     const z = r * r;
-    const sine = r + r * z * polynomial(z, sineTerms);
+    const sine = r - r * z * taylor(-z, 3, 2, 17); // C has the signs in the coefficients
     const near = 1 - z / 2;
-    const cosine = near + (1 - near - z / 2 + z * z * polynomial(z, cosineTerms));
+    const cosine = near + (1 - near - z / 2 + z * z * taylor(-z, 4, 2, 18));
     bits[0] = quarter;
     const turn = words[low];
     const first = turn & 1 ? cosine : sine;

@@ -4,7 +4,6 @@
 import {
     expPower,
     expRest,
-    exponentOf,
     leastNormal,
     nearest,
     powerOfTwo,
@@ -26,15 +25,12 @@ function remainderOf(n, d, q) {
     return n - product - productError(q, d, product);
 }
 
-/** n/d - q for numbers of any size. */
+/** n/d - q for numbers of any size, scaled by powers of two. Which ones does not matter, so log2 need not be exact. */
 function restOf(n, d, q) {
-    if (n === 0) return 0;
-    const byN = exponentOf(n);
-    const byD = exponentOf(d);
-    const byQ = q === 0 ? 0 : exponentOf(q);
+    const byD = Math.ceil(Math.log2(d));
+    const byQ = q && Math.ceil(Math.log2(q));
     const m = scaled(d, -byD);
-    const r = remainderOf(scaled(scaled(n, -byN), byN - byD - byQ), m, scaled(q, -byQ));
-    return scaled(r / m, byQ);
+    return scaled(remainderOf(scaled(n, -byD - byQ), m, scaled(q, -byQ)) / m, byQ);
 }
 
 /** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
@@ -115,24 +111,14 @@ export class Propagator {
     }
 }
 
-/** Half an ulp of a >= 0 that is not denormal. */
-function halfUlp(a) {
-    const half = a / 2;
-    return half + half * nextUlp - half;
-}
-
-function hypot(a, b) {
-    const large = a > b ? a : b;
-    const small = a > b ? b : a;
-    const ratio = small / (large > 0 ? large : 1);
-    return large * sqrt(1 + ratio * ratio);
-}
-
 /** Whether rounding would keep the spring from coming closer to its target: the rule of follow_formula.h. */
 export function lands(x, target, y, u, share, omega2) {
     const distance = abs(y);
-    const xSize = abs(x);
-    const size = abs(target);
-    const room = halfUlp(xSize > size ? xSize : size) * 2.25 + leastNormal;
-    return share > 0 && distance * share <= room && hypot(distance, abs(u) / sqrt(omega2)) * share <= room;
+    const half = max(abs(x), abs(target)) / 2;
+    const room = (half + half * nextUlp - half) * 2.25 + leastNormal; // 2.25 half ulps
+    if (!(share > 0 && distance * share <= room)) return false;
+    const speed = abs(u) / sqrt(omega2);
+    const large = max(distance, speed);
+    const ratio = min(distance, speed) / (large || 1);
+    return large * sqrt(1 + ratio * ratio) * share <= room;
 }

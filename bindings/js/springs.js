@@ -78,6 +78,6 @@ export class Springs {
     #fail(i) {
         for (const name of ["target", "value", "velocity"])
             if (!isNumber(this[name][i])) checkFinite(`${name}[${i}]`, this[name][i]);
-        throw new RangeError(`value[${i}] and velocity[${i}] must stay finite; they are unchanged`);
+        throw new RangeError(`value[${i}] or velocity[${i}] overflows`);
     }
 }

@@ -185,11 +185,7 @@ await test("errors name field and value", () => {
     refused(() => s.step(NaN), RangeError, "dt must be a finite number, got NaN");
     refused(() => s.step(), TypeError, "dt must be a finite number, got undefined");
     refused(() => s.jump(Infinity), RangeError, "value must be a finite number, got Infinity");
-    refused(
-        () => s.step(-1e6),
-        RangeError,
-        /^value and velocity must stay finite, got .*; they are unchanged$/,
-    );
+    refused(() => s.step(-1e6), RangeError, "value or velocity overflows");
     assert.deepStrictEqual([s.value, s.velocity, s.target], [1, 2, 1], "nothing has changed");
     refused(() => new Springs(-1), RangeError, "count must be an integer >= 0, got -1");
     refused(
@@ -203,11 +199,7 @@ await test("errors name field and value", () => {
     assert(many.value[0] > 0 && many.value[1] === 0 && many.value[2] > 0, "the others have moved");
     many.target.set([1, -1e308, 1]);
     many.value[1] = 1.5e308;
-    refused(
-        () => many.step(0.1),
-        RangeError,
-        "value[1] and velocity[1] must stay finite; they are unchanged",
-    );
+    refused(() => many.step(0.1), RangeError, "value[1] or velocity[1] overflows");
 });
 
 done();
