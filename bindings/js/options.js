@@ -18,56 +18,56 @@ const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 const checkTolerance = (name, value) =>
     check(typeof value === "number" && value >= 0, name, "a number >= 0", value);
-const checkBounce = (name, value) =>
-    check(isNumber(value) && value > -1 && value <= 1, name, "a number > -1 and <= 1", value);
 
 const twoPi = 6.283185307179586;
+
+// Ways to describe a spring: the option that each requires, and the one that goes with it.
+const ways = {
+    stiffness: "damping",
+    response: "dampingFraction",
+    duration: "bounce",
+    hertz: "dampingRatio",
+    halfLife: "dampingRatio",
+};
 
 /** The decay rate of the slowest mode, in units of omega. */
 const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 1) * Math.sqrt(ratio + 1)));
 
-// Ways to describe a spring, by the option that they require: its check, another option, its check and its default;
-// [omega, damping ratio] of both.
-const ways = {
-    response: [checkPositive, "dampingFraction", checkNotNegative, 1, (time, ratio) => [twoPi / time, ratio]],
-    duration: [
-        checkPositive,
-        "bounce",
-        checkBounce,
-        0,
-        (time, bounce) => [twoPi / time, bounce >= 0 ? 1 - bounce : 1 / (1 + bounce)],
-    ],
-    hertz: [checkNotNegative, "dampingRatio", checkNotNegative, 1, (hertz, ratio) => [twoPi * hertz, ratio]],
-    halfLife: [
-        checkPositive,
-        "dampingRatio",
-        checkPositive,
-        1,
-        (time, ratio) => [0.6931471805599453 / time / slowest(ratio), ratio],
-    ],
-};
+/** The undamped angular frequency and the damping ratio of a way other than stiffness and damping. */
+function omegaAndRatio(way, first, name, second) {
+    (way === "hertz" ? checkNotNegative : checkPositive)(way, first);
+    if (way === "hertz") {
+        checkNotNegative(name, second);
+        return [twoPi * first, second];
+    }
+    if (way === "halfLife") {
+        checkPositive(name, second);
+        return [0.6931471805599453 / first / slowest(second), second];
+    }
+    if (way === "response") checkNotNegative(name, second);
+    else {
+        check(isNumber(second) && second > -1 && second <= 1, name, "a number > -1 and <= 1", second);
+        second = second >= 0 ? 1 - second : 1 / (1 + second);
+    }
+    return [twoPi / first, second];
+}
 
 /** The propagator and the tolerances of options. `others` are the names of further options. */
 export function settings(options, others) {
-    check(typeof options === "object" && options !== null, "options", "an object", options);
     const { restDelta = 0.001, restSpeed = 0.01, ...rest } = options;
     checkTolerance("restDelta", restDelta);
     checkTolerance("restSpeed", restSpeed);
     const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
-    const names = ["stiffness", ...Object.keys(ways)];
-    const way = given.find((name) => names.includes(name));
-    if (!way) throw new TypeError(`options must have one of ${names.join(", ")}`);
-    let { stiffness, damping, mass = 1 } = rest;
-    const [checkIt, second, checkSecond, byDefault, convert] = ways[way] ?? [];
+    const way = given.find((name) => Object.hasOwn(ways, name));
+    if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
+    const second = ways[way];
     for (const name of given)
-        if (!(name === way || (convert ? name === second : name === "damping" || name === "mass")))
+        if (name !== way && name !== second && (name !== "mass" || way !== "stiffness"))
             throw new TypeError(`the option ${name} does not go with ${way}`);
-    if (convert) {
-        const a = rest[way];
-        const b = rest[second] ?? byDefault;
-        checkIt(way, a);
-        checkSecond(second, b);
-        const [omega, ratio] = convert(a, b);
+    let { stiffness, damping, mass = 1 } = rest;
+    if (way !== "stiffness") {
+        const byDefault = second === "bounce" ? 0 : 1;
+        const [omega, ratio] = omegaAndRatio(way, rest[way], second, rest[second] ?? byDefault);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
         const normal = stiffness < Infinity && (omega === 0 || stiffness >= leastNormal);

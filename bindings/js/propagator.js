@@ -15,8 +15,6 @@ import {
 
 const { abs, max, min, sqrt } = Math;
 const tiny = powerOfTwo(-55); // does not change 1
-const large = powerOfTwo(400);
-const small = powerOfTwo(-400);
 const nextUlp = powerOfTwo(-53) + powerOfTwo(-105); // u + 2 u^2 with u = 2^-53
 
 /** n - q d, where q is n/d rounded. */
@@ -34,7 +32,7 @@ function restOf(n, d, q) {
 }
 
 /** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
-const moderate = (a) => a > small && a < large;
+const moderate = (a) => a > powerOfTwo(-400) && a < powerOfTwo(400);
 
 export class Propagator {
     constructor(stiffness, damping, mass) {
@@ -47,20 +45,13 @@ export class Propagator {
                 : restOf(stiffness, mass, w) - b * restOf(damping, mass, g);
         this.omega2 = w; // [1/s^2]
         this.b = b; // [1/s]
-        // The distance between the roots, sqrt |w - b^2|. Squares of large and small numbers are scaled by powers of two.
-        let scale = 1;
-        let back = 1;
-        if (b > large || w > large * large) {
-            scale = powerOfTwo(-700);
-            back = powerOfTwo(700);
-        } else if (b < small && w < small * small) {
-            scale = powerOfTwo(600);
-            back = powerOfTwo(-600);
-        }
+        // The distance between the roots, sqrt |w - b^2|, scaled by a power of two lest squares overflow or underflow.
+        const k = Math.ceil(Math.log2(max(b, sqrt(w), leastNormal)));
+        const scale = powerOfTwo(-k);
         const c = b * scale;
         const square = c * c;
         const D = w * scale * scale - square - squareError(c, square) + rest * scale * scale;
-        this.split = sqrt(abs(D)) * back;
+        this.split = sqrt(abs(D)) * powerOfTwo(k);
         this.overdamped = D < 0;
         this.dt = NaN;
     }

@@ -5,18 +5,26 @@ import { lands } from "./propagator.js";
 
 export class Spring {
     #settings;
-    #onRest = null;
     #value;
     #velocity = 0;
     #target;
     #settled = true;
     clamp;
+    onRest;
 
     constructor(value = 0, options = { duration: 0.5 }) {
         checkFinite("value", value);
         this.#settings = settings(options, ["clamp", "onRest"]);
         this.clamp = options.clamp ?? false;
-        this.onRest = options.onRest ?? null;
+        const { onRest = null } = options;
+        check(
+            onRest === null || typeof onRest === "function",
+            "onRest",
+            "a function or null",
+            onRest,
+            TypeError,
+        );
+        this.onRest = onRest;
         this.#value = this.#target = value;
     }
 
@@ -48,21 +56,6 @@ export class Spring {
         return this.#settled;
     }
 
-    get onRest() {
-        return this.#onRest;
-    }
-
-    set onRest(onRest) {
-        check(
-            onRest === null || typeof onRest === "function",
-            "onRest",
-            "a function or null",
-            onRest,
-            TypeError,
-        );
-        this.#onRest = onRest;
-    }
-
     jump(value) {
         checkFinite("value", value);
         this.#value = this.#target = value;
@@ -90,7 +83,7 @@ export class Spring {
         this.#settled = stops || near || lands(x, to, y, v, p.share, p.omega2);
         this.#value = this.#settled ? target : x;
         this.#velocity = this.#settled ? 0 : v;
-        if (this.#settled) this.#onRest?.(this);
+        if (this.#settled) this.onRest?.(this);
         return this.#value;
     }
 }

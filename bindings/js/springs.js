@@ -13,8 +13,9 @@ export class Springs {
     constructor(count, options = { duration: 0.5 }) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
         this.#settings = settings(options, []);
-        for (const name of ["target", "value", "velocity"])
-            Object.defineProperty(this, name, { value: new Float64Array(count), enumerable: true });
+        this.target = new Float64Array(count);
+        this.value = new Float64Array(count);
+        this.velocity = new Float64Array(count);
     }
 
     step(dt) {
@@ -76,8 +77,7 @@ export class Springs {
 
     /** Says why spring i keeps its state. The others have been advanced. */
     #fail(i) {
-        for (const name of ["target", "value", "velocity"])
-            if (!isNumber(this[name][i])) checkFinite(`${name}[${i}]`, this[name][i]);
+        for (const name of ["target", "value", "velocity"]) checkFinite(`${name}[${i}]`, this[name][i]);
         throw new RangeError(`value[${i}] or velocity[${i}] overflows`);
     }
 }
