@@ -16,8 +16,6 @@ const checkNotNegative = (name, value) =>
     check(isNumber(value) && value >= 0, name, "a finite number >= 0", value);
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
-const checkTolerance = (name, value) =>
-    check(typeof value === "number" && value >= 0, name, "a number >= 0", value);
 
 const twoPi = 6.283185307179586;
 
@@ -55,8 +53,8 @@ function omegaAndRatio(way, first, name, second) {
 /** The propagator and the tolerances of options. `others` are the names of further options. */
 export function settings(options, others) {
     const { restDelta = 0.001, restSpeed = 0.01, ...rest } = options;
-    checkTolerance("restDelta", restDelta);
-    checkTolerance("restSpeed", restSpeed);
+    checkNotNegative("restDelta", restDelta);
+    checkNotNegative("restSpeed", restSpeed);
     const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
     const way = given.find((name) => Object.hasOwn(ways, name));
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);

@@ -13,9 +13,10 @@ import {
     squareError,
 } from "./elementary.js";
 
+const { EPSILON: epsilon } = Number;
 const { abs, max, min, sqrt } = Math;
-const tiny = powerOfTwo(-55); // does not change 1
-const nextUlp = powerOfTwo(-53) + powerOfTwo(-105); // u + 2 u^2 with u = 2^-53
+const tiny = epsilon / 8; // does not change 1
+const nextUlp = epsilon / 2 + (epsilon / 2) * epsilon; // u + 2 u^2 with u = 2^-53
 
 /** n - q d, where q is n/d rounded. */
 function remainderOf(n, d, q) {

@@ -20,10 +20,11 @@ export class Springs {
 
     step(dt) {
         checkFinite("dt", dt);
-        if (dt === 0) return this.#countMoving();
         const { target, value, velocity } = this;
         const count = value.length;
         const { propagator: p, restDelta, restSpeed } = this.#settings;
+        const settled = (x, v, goal) => abs(x - goal) <= restDelta && abs(v) <= restSpeed;
+        if (dt === 0) return value.filter((x, i) => !settled(x, velocity[i], target[i])).length;
         p.prepare(dt);
         const { half, F, G, H, wH, share, omega2 } = p;
         const attracts = omega2 > 0;
@@ -49,10 +50,7 @@ export class Springs {
                     if (failed < 0) failed = i;
                     continue;
                 }
-                if (
-                    (abs(x - goal) <= restDelta && abs(v) <= restSpeed) ||
-                    lands(x, to, y, v, share, omega2)
-                ) {
+                if (settled(x, v, goal) || lands(x, to, y, v, share, omega2)) {
                     value[i] = goal;
                     velocity[i] = 0;
                     resting++;
@@ -64,15 +62,6 @@ export class Springs {
         }
         if (failed >= 0) this.#fail(failed);
         return count - resting;
-    }
-
-    #countMoving() {
-        const { target, value, velocity } = this;
-        const { restDelta, restSpeed } = this.#settings;
-        let moving = 0;
-        for (let i = 0; i < value.length; i++)
-            if (!(abs(value[i] - target[i]) <= restDelta && abs(velocity[i]) <= restSpeed)) moving++;
-        return moving;
     }
 
     /** Says why spring i keeps its state. The others have been advanced. */

@@ -175,8 +175,12 @@ await test("errors name field and value", () => {
     refused(spring({ hertz: 1, duration: 1 }), TypeError, "the option duration does not go with hertz");
     refused(spring(null), TypeError, /null/);
     refused(spring(3), TypeError, /^options must have one of/);
-    refused(spring({ ...good, restDelta: -1 }), RangeError, "restDelta must be a number >= 0, got -1");
-    refused(spring({ ...good, restSpeed: NaN }), RangeError, "restSpeed must be a number >= 0, got NaN");
+    refused(spring({ ...good, restDelta: -1 }), RangeError, "restDelta must be a finite number >= 0, got -1");
+    refused(
+        spring({ ...good, restSpeed: NaN }),
+        RangeError,
+        "restSpeed must be a finite number >= 0, got NaN",
+    );
     refused(spring({ ...good, onRest: 3 }), TypeError, "onRest must be a function or null, got 3");
     refused(() => new Spring(NaN), RangeError, "value must be a finite number, got NaN");
     const s = new Spring(1, good);
