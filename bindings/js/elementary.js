@@ -66,7 +66,7 @@ function taylor(z, first, step, last) {
 }
 
 /** The k of e^x = 2^k (1 + e), |x| <= 1500. */
-export const expPower = (x) => nearest(x * 1.4426950408889634);
+export const expPower = (x) => nearest(x * Math.LOG2E);
 
 /** The e of e^x = 2^k (1 + e). */
 export function expRest(x, k) {
@@ -76,7 +76,7 @@ export function expRest(x, k) {
 
 export function sineCosine(angle) {
     const known = Math.abs(angle) < 2251799813685248 ? angle : angle - angle;
-    const quarter = known * 0.6366197723675814 + toInteger;
+    const quarter = known * (2 / Math.PI) + toInteger;
     const q = quarter - toInteger;
     const r = known - q * 1.570796325802803 - q * 9.920935796805404e-10; // pi/2 in two parts
     const z = r * r;

@@ -17,7 +17,7 @@ const checkNotNegative = (name, value) =>
 const checkPositive = (name, value) =>
     check(isNumber(value) && value > 0, name, "a finite number > 0", value);
 
-const twoPi = 6.283185307179586;
+const twoPi = 2 * Math.PI;
 
 // Ways to describe a spring: the option that each requires, and the one that goes with it.
 const ways = {
@@ -40,7 +40,7 @@ function omegaAndRatio(way, first, name, second) {
     }
     if (way === "halfLife") {
         checkPositive(name, second);
-        return [0.6931471805599453 / first / slowest(second), second];
+        return [Math.LN2 / first / slowest(second), second];
     }
     if (way === "response") checkNotNegative(name, second);
     else {

@@ -75,7 +75,7 @@ export class Spring {
         const y = p.half * (p.F * y0 + p.H * v0);
         const v = p.half * (p.G * v0 - p.wH * y0);
         const x = to + y;
-        if (!isNumber(x) || !isNumber(v)) throw new RangeError("value or velocity overflows");
+        if (!isNumber(0 * x + 0 * v)) throw new RangeError("value or velocity overflows");
         // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
         const passed = y0 > 0 ? y <= 0 : y0 < 0 && y >= 0;
         const stops = this.clamp && dt > 0 && p.omega2 > 0 && (passed || p.angle >= Math.PI);

@@ -30,11 +30,10 @@ export class Springs {
         const attracts = omega2 > 0;
         const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
-        // is so small that a spring may land from far away, there is no limit.
-        const limited = attracts && (share === 0 || share >= 32 * epsilon);
-        const perShare = share > 0 ? 4 / share : 4;
-        const slope = perShare * epsilon;
-        const least = limited ? perShare * leastNormal + 2 * restDelta : Infinity;
+        // is so small that a spring may land from far away, there is no limit, and without damping no need for one.
+        const slope = (4 * epsilon) / share;
+        const least =
+            attracts && share >= 32 * epsilon ? (4 * leastNormal) / share + 2 * restDelta : Infinity;
         let resting = 0;
         let failed = -1;
         for (let i = 0; i < count; i++) {
@@ -46,7 +45,7 @@ export class Springs {
             const x = to + y;
             if (!(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
                 const goal = target[i];
-                if (!isNumber(x) || !isNumber(v) || !isNumber(goal)) {
+                if (!isNumber(0 * x + 0 * v + 0 * goal)) {
                     if (failed < 0) failed = i;
                     continue;
                 }
