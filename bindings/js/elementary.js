@@ -20,6 +20,7 @@ export function powerOfTwo(k) {
     return shift ? bits[0] * powerOfTwo(shift) : bits[0];
 }
 
+export const epsilon = Number.EPSILON; // 2^-52
 export const leastNormal = powerOfTwo(-1022);
 
 /** a 2^k, exact where the result is normal, else rounded once: ldexp() in C, for a of 1e-300 or more where k < 0. */

@@ -68,8 +68,7 @@ export function settings(options, others) {
         const [omega, ratio] = omegaAndRatio(way, rest[way], second, rest[second] ?? byDefault);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
-        const normal = stiffness < Infinity && (omega === 0 || stiffness >= leastNormal);
-        check(normal, "stiffness", "finite and not denormal", stiffness);
+        check(omega === 0 || stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);
     }
     checkNotNegative("stiffness", stiffness);
     checkNotNegative("damping", damping);

@@ -2,6 +2,7 @@
 // The exact solution of a spring over a time step about its target: src/spring/roots.c, exact_formula.h and follow_formula.h
 // with the same operations in the same order.
 import {
+    epsilon,
     expPower,
     expRest,
     leastNormal,
@@ -13,7 +14,6 @@ import {
     squareError,
 } from "./elementary.js";
 
-const { EPSILON: epsilon } = Number;
 const { abs, max, min, sqrt } = Math;
 const tiny = epsilon / 8; // does not change 1
 const nextUlp = epsilon / 2 + (epsilon / 2) * epsilon; // u + 2 u^2 with u = 2^-53

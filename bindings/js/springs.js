@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
 import { check, checkFinite, isNumber, settings } from "./options.js";
-import { leastNormal } from "./elementary.js";
+import { epsilon, leastNormal } from "./elementary.js";
 import { lands } from "./propagator.js";
 
 const { abs } = Math;
-const { EPSILON: epsilon } = Number;
 
 export class Springs {
     #settings;
@@ -59,13 +58,12 @@ export class Springs {
             value[i] = x;
             velocity[i] = v;
         }
-        if (failed >= 0) this.#fail(failed);
+        if (failed >= 0) {
+            // The others have been advanced.
+            for (const name of ["target", "value", "velocity"])
+                checkFinite(`${name}[${failed}]`, this[name][failed]);
+            throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
+        }
         return count - resting;
-    }
-
-    /** Says why spring i keeps its state. The others have been advanced. */
-    #fail(i) {
-        for (const name of ["target", "value", "velocity"]) checkFinite(`${name}[${i}]`, this[name][i]);
-        throw new RangeError(`value[${i}] or velocity[${i}] overflows`);
     }
 }

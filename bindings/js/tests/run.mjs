@@ -164,7 +164,8 @@ await test("errors name field and value", () => {
     refused(spring({ duration: -1 }), RangeError, "duration must be a finite number > 0, got -1");
     refused(spring({ duration: 1, bounce: -1 }), RangeError, "bounce must be a number > -1 and <= 1, got -1");
     refused(spring({ hertz: Infinity }), RangeError, "hertz must be a finite number >= 0, got Infinity");
-    refused(spring({ hertz: 1e200 }), RangeError, "stiffness must be finite and not denormal, got Infinity");
+    refused(spring({ hertz: 1e200 }), RangeError, "stiffness must be a finite number >= 0, got Infinity");
+    refused(spring({ hertz: 1e-160 }), RangeError, /^stiffness must be no denormal number, got /);
     refused(
         spring({ halfLife: 1, dampingRatio: 0 }),
         RangeError,
