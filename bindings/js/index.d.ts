@@ -65,7 +65,7 @@ export declare class Spring {
     /** Whether the value is at rest on its target. step() has no effect then. */
     readonly settled: boolean;
 
-    /** Stop at the target instead of overshooting. */
+    /** Stop at the target instead of overshooting, however long the step. */
     clamp: boolean;
 
     /** Called once each time the spring settles during step(). */
@@ -76,7 +76,8 @@ export declare class Spring {
 
     /**
      * Advances by `dt` seconds, of any length, and returns the value. Value and velocity are bit-identical to those of
-     * spring_follow() in C. If they would overflow, step() throws a RangeError and changes nothing.
+     * spring_follow() in C. If they would overflow, step() throws a RangeError and changes nothing. A settled spring stays
+     * at rest on its target.
      */
     step(dt: number): number;
 }
