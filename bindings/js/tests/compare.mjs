@@ -98,6 +98,7 @@ function setRecord(record) {
     const tolerance = chance(0.5) ? 0 : 0.001;
     if (chance(0.05)) p.stiffness = 0;
     if (chance(0.05)) p.damping = 0;
+    else if (chance(0.05)) p.damping *= logarithmic(1e-20, 1e-13); // lands from far away
     record.set([
         p.mass,
         p.stiffness,

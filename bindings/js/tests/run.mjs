@@ -127,6 +127,10 @@ await test("clamp stops at the target, in long steps too", () => {
         }
         assert.deepStrictEqual([s.value, s.velocity, s.settled], [10, 0, true], `dt ${dt}`);
     }
+    const back = new Spring(0, { hertz: 1, dampingRatio: 0.1, clamp: true });
+    back.target = 10;
+    back.step(-0.4);
+    assert(back.value > 11 && !back.settled, "not backwards");
     const free = new Spring(0, { hertz: 1, dampingRatio: 0.1 });
     free.target = 10;
     for (let i = 0; i < 36; i++) free.step(1 / 60);
