@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The exact solution of a spring over a time step about its target: src/spring/roots.c, exact_formula.h and follow_formula.h
+// with the same operations in the same order.
+import {
+    epsilon,
+    expPower,
+    expRest,
+    leastNormal,
+    nearest,
+    powerOfTwo,
+    productError,
+    scaled,
+    sineCosine,
+    squareError,
+} from "./elementary.js";
+
+const { abs, max, min, sqrt } = Math;
+const tiny = epsilon / 8; // does not change 1
+const nextUlp = epsilon / 2 + (epsilon / 2) * epsilon; // u + 2 u^2 with u = 2^-53
+
+/** n - q d, where q is n/d rounded. */
+function remainderOf(n, d, q) {
+    const product = q * d;
+    return n - product - productError(q, d, product);
+}
+
+/** n/d - q for numbers of any size, scaled by powers of two. Which ones does not matter, so log2 need not be exact. */
+function restOf(n, d, q) {
+    const byD = Math.ceil(Math.log2(d));
+    const byQ = q && Math.ceil(Math.log2(q));
+    const m = scaled(d, -byD);
+    return scaled(remainderOf(scaled(n, -byD - byQ), m, scaled(q, -byQ)) / m, byQ);
+}
+
+/** Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
+const moderate = (a) => a > powerOfTwo(-400) && a < powerOfTwo(400);
+
+export class Propagator {
+    constructor(stiffness, damping, mass) {
+        const w = stiffness / mass + 0;
+        const g = damping / mass + 0;
+        const b = g / 2;
+        const rest =
+            moderate(mass) && moderate(w) && (moderate(g) || g === 0)
+                ? (remainderOf(stiffness, mass, w) - b * remainderOf(damping, mass, g)) * (1 / mass)
+                : restOf(stiffness, mass, w) - b * restOf(damping, mass, g);
+        this.omega2 = w; // [1/s^2]
+        this.b = b; // [1/s]
+        // The distance between the roots, sqrt |w - b^2|, scaled by a power of two lest squares overflow or underflow.
+        const k = Math.ceil(Math.log2(max(b, sqrt(w), leastNormal)));
+        const scale = powerOfTwo(-k);
+        const c = b * scale;
+        const square = c * c;
+        const D = w * scale * scale - square - squareError(c, square) + rest * scale * scale;
+        this.split = sqrt(abs(D)) * powerOfTwo(k);
+        this.overdamped = D < 0;
+        this.dt = NaN;
+    }
+
+    /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - wH x) about the target. */
+    prepare(dt) {
+        if (dt === this.dt) return;
+        this.dt = dt;
+        const { omega2, b, split } = this;
+        const angle = split * dt;
+        const size = abs(angle);
+        let rate = b;
+        let F, G, H;
+        if (this.overdamped) {
+            const x = max(-750, -2 * size);
+            const k = expPower(x);
+            const power = powerOfTwo(k);
+            const part = power * expRest(x, k);
+            const left = power + part;
+            const fast = b + split;
+            const slow = omega2 / fast;
+            const h = size < tiny ? abs(dt) : (1 - power - part) / (2 * split);
+            const more = slow * h;
+            rate = dt > 0 ? slow : fast;
+            F = dt > 0 ? 1 + more : left - more;
+            G = dt > 0 ? left - more : 1 + more;
+            H = dt > 0 ? h : -h;
+        } else {
+            const { sine, cosine } = sineCosine(angle);
+            H = size < tiny ? dt : sine * (1 / split);
+            F = cosine + b * H;
+            G = cosine - b * H;
+        }
+        // The power of two in two halves, so that a large start times a tiny factor does not underflow early.
+        const x = max(-1500, min(1500, -rate * dt));
+        const k = expPower(x);
+        const most = nearest(k / 2);
+        const power = powerOfTwo(most);
+        const other = power + power * expRest(x, k);
+        this.half = powerOfTwo(k - most);
+        this.F = other * F;
+        this.G = other * G;
+        this.H = other * H;
+        this.wH = omega2 * (other * H);
+        const share = rate * dt;
+        this.share = omega2 > 0 && share > 0 ? min(share, 1) : 0;
+        this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances
+    }
+}
+
+/** Whether rounding would keep the spring from coming closer to its target: the rule of follow_formula.h. */
+export function lands(x, target, y, u, share, omega2) {
+    const distance = abs(y);
+    const half = max(abs(x), abs(target)) / 2;
+    const room = (half + half * nextUlp - half) * 2.25 + leastNormal; // 2.25 half ulps
+    if (!(share > 0 && distance * share <= room)) return false;
+    const speed = abs(u) / sqrt(omega2);
+    const large = max(distance, speed);
+    const ratio = min(distance, speed) / (large || 1);
+    return large * sqrt(1 + ratio * ratio) * share <= room;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
+import { check, checkFinite, isNumber, settings } from "./options.js";
+import { epsilon, leastNormal } from "./elementary.js";
+import { lands } from "./propagator.js";
+
+const { abs } = Math;
+
+export class Springs {
+    #settings;
+
+    constructor(count, options = { duration: 0.5 }) {
+        check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
+        this.#settings = settings(options, []);
+        this.target = new Float64Array(count);
+        this.value = new Float64Array(count);
+        this.velocity = new Float64Array(count);
+    }
+
+    step(dt) {
+        checkFinite("dt", dt);
+        const { target, value, velocity } = this;
+        const count = value.length;
+        const { propagator: p, restDelta, restSpeed } = this.#settings;
+        const settled = (x, v, goal) => abs(x - goal) <= restDelta && abs(v) <= restSpeed;
+        if (dt === 0) return value.filter((x, i) => !settled(x, velocity[i], target[i])).length;
+        p.prepare(dt);
+        const { half, F, G, H, wH, share, omega2 } = p;
+        const attracts = omega2 > 0;
+        const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
+        // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
+        // is so small that a spring may land from far away, there is no limit, and without damping no need for one.
+        const slope = (4 * epsilon) / share;
+        const least =
+            attracts && share >= 32 * epsilon ? (4 * leastNormal) / share + 2 * restDelta : Infinity;
+        let resting = 0;
+        let failed = -1;
+        for (let i = 0; i < count; i++) {
+            const to = origin[i];
+            const v0 = velocity[i];
+            const y0 = value[i] - to;
+            const y = half * (F * y0 + H * v0);
+            const v = half * (G * v0 - wH * y0);
+            const x = to + y;
+            if (!(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
+                const goal = target[i];
+                if (!isNumber(0 * x + 0 * v + 0 * goal)) {
+                    if (failed < 0) failed = i;
+                    continue;
+                }
+                if (settled(x, v, goal) || lands(x, to, y, v, share, omega2)) {
+                    value[i] = goal;
+                    velocity[i] = 0;
+                    resting++;
+                    continue;
+                }
+            }
+            value[i] = x;
+            velocity[i] = v;
+        }
+        if (failed >= 0) {
+            // The others have been advanced.
+            for (const name of ["target", "value", "velocity"])
+                checkFinite(`${name}[${failed}]`, this[name][failed]);
+            throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
+        }
+        return count - resting;
+    }
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// A program in TypeScript that uses every declaration of the package, for tests/js.
+import { Spring, Springs, type SpringOptions } from "springstep";
+
+const options: SpringOptions = { duration: 0.5, bounce: 0.2, restDelta: 0.01, restSpeed: 0.1 };
+const rested: number[] = [];
+const spring = new Spring(0, { ...options, clamp: false, onRest: (s: Spring) => rested.push(s.value) });
+spring.clamp = true;
+spring.velocity = 3;
+spring.target = 1;
+for (let i = 0; i < 200; i++) spring.step(1 / 60);
+
+const ways: SpringOptions[] = [
+    { stiffness: 170, damping: 26, mass: 1 },
+    { response: 0.5, dampingFraction: 0.8 },
+    { hertz: 2, dampingRatio: 0.7 },
+    { halfLife: 0.05, dampingRatio: 0.7 },
+];
+for (const way of ways) new Spring(0, way).jump(1);
+
+// @ts-expect-error: a number is required
+const wrong = () => new Spring(0, { hertz: 2, dampingRatio: "none" });
+// @ts-expect-error: the target of a set is filled, not replaced
+const assign = (s: Springs) => (s.target = new Float64Array(2));
+
+const many = new Springs(2, { hertz: 2, dampingRatio: 0.7 });
+many.target.set([1, -1]);
+let moving: number = many.step(1 / 60);
+for (let i = 0; i < 200; i++) moving = many.step(1 / 60);
+
+console.log(rested.join(), spring.settled && assign.length + wrong.length === 1, moving);
