@@ -119,7 +119,7 @@ struct work_solver {
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
 };
 
-enum { WORK_EXTERNAL_SOLVERS = 8, WORK_SOLVERS = SPRING_METHOD_COUNT + 2 + WORK_EXTERNAL_SOLVERS };
+enum { WORK_EXTERNAL_SOLVERS = 9, WORK_SOLVERS = SPRING_METHOD_COUNT + 2 + WORK_EXTERNAL_SOLVERS };
 
 /* Each method by its name, rk4-stages, xpbd, and the external solvers. */
 const work_solver *work_solver_at(size_t i);

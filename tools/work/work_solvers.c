@@ -15,6 +15,7 @@ static const work_solver external[] = {
     {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed},
     {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
     {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
+    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
