@@ -32,6 +32,26 @@ static void arkstep(void)
     CHECK(evaluations >= 4 * steps && evaluations <= 4 * steps + 1, "four stages a step");
 }
 
+/* Against the exact solution, with steps of such a length that neither rounding nor the next term counts. */
+static double error_of_order_8(uint64_t n)
+{
+    const double duration = 10;
+    ode o = {.size = 2, .derivative = ode_spring_derivative, .data = &p, .scale = scale};
+    double y[] = {start.x, start.v};
+    spring_state s = start;
+    CHECK(ode_arkstep_8(&o, y, duration / (double)n, n) == NULL, "SUNDIALS has the table");
+    CHECK(o.evaluations >= 13 * n && o.evaluations <= 13 * n + 1, "thirteen stages a step");
+    spring_step_exact(&s, &p, duration);
+    return hypot(s.x - y[0], s.v - y[1]);
+}
+
+static void arkstep_8(void)
+{
+    const double coarse = error_of_order_8(40), fine = error_of_order_8(80);
+    CHECK_CLOSE(log2(coarse / fine), 8, 0.2, "eighth order, toward it: steps of a quarter and an eighth of a second");
+    CHECK_BELOW(error_of_order_8(320), 4 * DBL_EPSILON * 320, "rounding");
+}
+
 static void erkstep(void)
 {
 #if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
@@ -64,6 +84,7 @@ int main(void)
 {
     static const test tests[] = {
         {"ARKStep with the classical table agrees", arkstep},
+        {"ARKStep with the table of order 8", arkstep_8},
         {"ERKStep with the classical table does not, before 6.7.0", erkstep},
         {"BDF on a lightly damped spring", bdf_in_trouble},
     };

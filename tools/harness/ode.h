@@ -55,6 +55,9 @@ const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance);
 /* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
 
+/* The same with Fehlberg's table of order 8, 13 stages, that comes with ARKODE. */
+const char *ode_arkstep_8(ode *o, double *y, double h, uint64_t n);
+
 /* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of
    steps. */
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);

@@ -159,17 +159,16 @@ static ARKodeButcherTable classical_table(void)
     return ARKodeButcherTable_Create(4, 4, 0, c, A, b, NULL);
 }
 
-/* ARKODE adds no error control here: n steps of exactly h, one at a time. */
-const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
+/* ARKODE adds no error control here: n steps of exactly h, one at a time. Frees the table. */
+static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int order, ARKodeButcherTable table)
 {
     session s;
     const char *message = open_session(&s, o, y, 1);
-    const ARKodeButcherTable table = classical_table();
     double t = 0;
     if (message == NULL) {
         s.memory = create_arkstep(&s);
-        if (s.memory == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ARKStepSetTables(s.memory, 4, 0, NULL, table) != ARK_SUCCESS ||
+        if (s.memory == NULL || table == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
+            ARKStepSetTables(s.memory, order, 0, NULL, table) != ARK_SUCCESS ||
             ARKodeSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
@@ -184,6 +183,16 @@ const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
     ARKodeButcherTable_Free(table);
     close_session(&s);
     return message;
+}
+
+const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
+{
+    return arkstep_fixed(o, y, h, n, 4, classical_table());
+}
+
+const char *ode_arkstep_8(ode *o, double *y, double h, uint64_t n)
+{
+    return arkstep_fixed(o, y, h, n, 8, ARKodeButcherTable_LoadERK(ARKODE_FEHLBERG_13_7_8));
 }
 
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance)

@@ -19,6 +19,7 @@
 #include "harness/reference.h"
 #include "harness/scenes.h"
 #include "work_equation.h"
+#include "work_xpbd.h"
 
 typedef enum work_kind {
     WORK_SPRING, /* one spring, for spring_advance() */
@@ -42,6 +43,7 @@ typedef struct work_problem {
     const char *harness;
     const scene_case *own;
     uint64_t reference_steps;
+    bool slow; /* takes seconds: a quick run leaves it out unless it is chosen */
 } work_problem;
 
 extern const work_problem work_problems[];
@@ -73,6 +75,7 @@ typedef struct work {
     size_t bytes, counting_bytes;
     uint64_t calls; /* of its callback */
     double *gathered;
+    work_xpbd *xpbd; /* NULL: not for this scene */
 } work;
 
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED where it cannot be done */
@@ -93,7 +96,8 @@ typedef enum work_side {
     WORK_STEPPER, /* of the library */
     WORK_EXACT,   /* the exact solution: no stepper */
     WORK_STAGES,  /* the original study's arithmetic, on its problem */
-    WORK_EXTERNAL
+    WORK_EXTERNAL,
+    WORK_XPBD /* no solver of differential equations, but what game engines do */
 } work_side;
 
 typedef struct work_result {
@@ -115,9 +119,9 @@ struct work_solver {
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
 };
 
-enum { WORK_EXTERNAL_SOLVERS = 8, WORK_SOLVERS = SPRING_METHOD_COUNT + 1 + WORK_EXTERNAL_SOLVERS };
+enum { WORK_EXTERNAL_SOLVERS = 9, WORK_SOLVERS = SPRING_METHOD_COUNT + 2 + WORK_EXTERNAL_SOLVERS };
 
-/* Each method by its name, rk4-stages, and the external solvers. */
+/* Each method by its name, rk4-stages, xpbd, and the external solvers. */
 const work_solver *work_solver_at(size_t i);
 
 /* The solver that is a method. */

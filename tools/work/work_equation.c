@@ -5,14 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
 #include "harness/link.h"
 
 static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving, uint32_t held,
                 const uint32_t *number)
 {
     work_tie *t = &e->tie[e->ties++];
-    *t = (work_tie){.a = number[moving], .stiffness = l->stiffness, .rest = l->rest};
+    *t = (work_tie){.a = number[moving], .stiffness = l->stiffness, .damping = l->damping, .rest = l->rest};
     /* on one axis the force is k (x_b - x_a - rest): seen from b the rest length has the other sign */
     if (e->axes == 1 && moving == l->b)
         t->rest = -l->rest;
@@ -36,10 +35,9 @@ void work_equation_init(work_equation *e, const scene_problem *p)
         }
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *l = &p->link[i];
-        if (l->damping > 0)
-            cli_fail(CLI_FAILED, "link %zu is damped, which the external solvers' equation does not know", i);
+        e->damped = e->damped || l->damping > 0;
         if (!p->pinned[l->a] && !p->pinned[l->b])
-            e->link[e->links++] = (work_link){number[l->a], number[l->b], l->stiffness, l->rest};
+            e->link[e->links++] = (work_link){number[l->a], number[l->b], l->stiffness, l->damping, l->rest};
         else if (!p->pinned[l->a])
             tie(e, p, l, l->a, l->b, number);
         else if (!p->pinned[l->b])
@@ -55,34 +53,56 @@ void work_equation_clear(work_equation *e)
     free(e->per_mass);
 }
 
-/* Adds the force of an undamped link between two points to the sums of both. */
-static inline void add_link(size_t axes, const double *a, const double *b, double stiffness, double rest,
-                            double *restrict force_a, double *restrict force_b)
+typedef struct end { /* of a link */
+    const double *x, *v;
+    double *sum; /* of forces */
+} end;
+
+/* Adds the force of a link to the sums of both ends. */
+static inline void add_link(size_t axes, bool damped, end a, end b, double stiffness, double damping, double rest)
 {
-    const double delta[3] = {b[0] - a[0], axes > 1 ? b[1] - a[1] : 0, axes > 2 ? b[2] - a[2] : 0}, still[3] = {0};
-    const link_force f = link_evaluate(axes, delta, still, stiffness, 0, rest);
-    force_a[0] += f.force[0];
-    force_b[0] -= f.force[0];
-    if (axes > 1) {
-        force_a[1] += f.force[1];
-        force_b[1] -= f.force[1];
+    double delta[3] = {0}, relative[3] = {0};
+    for (size_t d = 0; d < axes; d++) {
+        delta[d] = b.x[d] - a.x[d];
+        relative[d] = damped ? b.v[d] - a.v[d] : 0;
     }
-    if (axes > 2) {
-        force_a[2] += f.force[2];
-        force_b[2] -= f.force[2];
+    const link_force f = link_evaluate(axes, delta, relative, stiffness, damped ? damping : 0, rest);
+    for (size_t d = 0; d < axes; d++) {
+        a.sum[d] += f.force[d];
+        b.sum[d] -= f.force[d];
     }
 }
 
-/* Called with constants, so that the compiler writes a loop for each number of axes. */
-static inline void add_forces(size_t axes, const work_equation *e, const double *x, const double *v, double *sum)
+/* Called with constants, so that the compiler writes a loop for each number of axes, with damping and without. */
+static inline void add_forces(size_t axes, bool damped, const work_equation *e, const double *x, const double *v,
+                              double *sum)
 {
+    static const double still[3] = {0};
     double unused[3] = {0};
-    for (const work_link *l = e->link; l < e->link + e->links; l++)
-        add_link(axes, x + axes * l->a, x + axes * l->b, l->stiffness, l->rest, sum + axes * l->a, sum + axes * l->b);
-    for (const work_tie *t = e->tie; t < e->tie + e->ties; t++)
-        add_link(axes, x + axes * t->a, t->point, t->stiffness, t->rest, sum + axes * t->a, unused);
+    for (const work_link *l = e->link; l < e->link + e->links; l++) {
+        const size_t a = axes * l->a, b = axes * l->b;
+        add_link(axes, damped, (end){x + a, v + a, sum + a}, (end){x + b, v + b, sum + b}, l->stiffness, l->damping,
+                 l->rest);
+    }
+    for (const work_tie *t = e->tie; t < e->tie + e->ties; t++) {
+        const size_t a = axes * t->a;
+        add_link(axes, damped, (end){x + a, v + a, sum + a}, (end){t->point, still, unused}, t->stiffness, t->damping,
+                 t->rest);
+    }
     for (size_t i = 0; i < axes * e->particles && e->drag > 0; i++)
         sum[i] -= e->drag * v[i];
+}
+
+static void add_forces_of(const work_equation *e, const double *x, const double *v, double *sum)
+{
+    if (e->axes == 1)
+        add_forces(1, true, e, x, v, sum);
+    else if (e->axes == 2)
+        add_forces(2, true, e, x, v, sum);
+    else if (e->damped)
+        add_forces(3, true, e, x, v, sum);
+    else
+        add_forces(3, false, e, x, v, sum);
 }
 
 static inline void divide(size_t axes, const work_equation *e, double *sum)
@@ -100,12 +120,7 @@ void work_equation_derivative(double t, const double *y, double *dy, const void 
     double *sum = dy + moving;
     memcpy(dy, v, moving * sizeof *dy);
     memset(sum, 0, moving * sizeof *sum);
-    if (e->axes == 1)
-        add_forces(1, e, x, v, sum);
-    else if (e->axes == 2)
-        add_forces(2, e, x, v, sum);
-    else
-        add_forces(3, e, x, v, sum);
+    add_forces_of(e, x, v, sum);
     if (e->force != NULL)
         e->force(e->user, t, e->particles, (const double *const[3]){x}, (const double *const[3]){v},
                  (double *const[3]){sum});

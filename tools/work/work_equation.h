@@ -12,17 +12,18 @@
 
 typedef struct work_link {
     uint32_t a, b; /* among the particles that move */
-    double stiffness, rest;
+    double stiffness, damping, rest;
 } work_link;
 
 typedef struct work_tie { /* a link to a point that does not move */
     uint32_t a;
     double point[3]; /* [m] */
-    double stiffness, rest;
+    double stiffness, damping, rest;
 } work_tie;
 
 typedef struct work_equation {
     size_t axes, particles, links, ties;
+    bool damped; /* a link is */
     work_link *link;
     work_tie *tie;
     double *per_mass; /* [particles] 1/mass */
@@ -31,7 +32,6 @@ typedef struct work_equation {
     void *user;
 } work_equation;
 
-/* Exits with CLI_FAILED if a link is damped: none of the problems needs it. */
 void work_equation_init(work_equation *e, const scene_problem *p);
 void work_equation_clear(work_equation *e);
 

@@ -57,6 +57,81 @@ static void build_water(const scene_case *c, scene_problem *p)
         }
 }
 
+/* ------------------------------------------------------------------------------------------------- stiff scenes */
+
+/* Gives all links one stiffness and one damping, by the numbers that decide how many steps a frame of 1/60 s takes:
+   stiff = sqrt(L)/60 Hz, where L is the bound of spring_scene_stable_step(), and damped = damping/mass/60 Hz. */
+static void stiffen(scene_problem *p, double stiff, double damped)
+{
+    const double frames = 60; /* [1/s] */
+    double *sum = scene_room(p->def.particles, sizeof *sum), largest = 0;
+    for (const spring_link *l = p->link; l < p->link + p->def.links; l++) {
+        sum[l->a] += p->pinned[l->b] ? 1 : 2;
+        sum[l->b] += p->pinned[l->a] ? 1 : 2;
+    }
+    for (size_t i = 0; i < p->def.particles; i++)
+        if (!p->pinned[i])
+            largest = fmax(largest, sum[i] / p->mass[i]);
+    for (spring_link *l = p->link; l < p->link + p->def.links; l++) {
+        l->stiffness = pow(stiff * frames, 2) / largest;
+        l->damping = damped * frames * p->mass[0];
+    }
+    free(sum);
+}
+
+static const double stiff_scene = 50, damped_scene = 100; /* steps of leapfrog a frame: half the first */
+
+/* One metre and one kilogram, level at the start and not stretched. The particles are a hundredth of the spacing above
+   or below the plane, so that buckling does not start from rounding errors. */
+static void build_stiff(scene_problem *p, const spring_grid *g)
+{
+    scene_problem_grid(p, g, 0, 1.0 / (g->count[0] * g->count[1]));
+    for (size_t i = 0; i < p->def.particles; i++)
+        p->position[3 * i + 2] = 0.01 * g->spacing * sin(1.7 * (double)i);
+    p->def.gravity[2] = -9.81;
+}
+
+/* Hangs by two corners. */
+static void build_stiff_sheet(scene_problem *p, uint32_t side, double damped)
+{
+    build_stiff(
+        p, &(spring_grid){.count = {side, side, 1}, .axes = 3, .spacing = 1.0 / (side - 1), .families = ALL_FAMILIES});
+    p->pinned[0] = p->pinned[side - 1] = 1;
+    stiffen(p, stiff_scene, damped);
+}
+
+static void build_stiff_cloth(const scene_case *c, scene_problem *p)
+{
+    (void)c;
+    build_stiff_sheet(p, 32, 0);
+}
+
+/* Smaller: the reference, which is explicit, takes hundreds of steps a frame. */
+static void build_damped_cloth(const scene_case *c, scene_problem *p)
+{
+    (void)c;
+    build_stiff_sheet(p, 16, damped_scene);
+}
+
+/* Hangs by one end; the particle at the other is a hundred times as heavy. */
+static void build_stiff_rope(const scene_case *c, scene_problem *p)
+{
+    const uint32_t particles = 32;
+    (void)c;
+    build_stiff(p, &(spring_grid){.count = {particles, 1, 1}, .axes = 3, .spacing = 1.0 / (particles - 1)});
+    p->pinned[0] = 1;
+    p->mass[particles - 1] *= 100;
+    p->def.mass = p->mass;
+    stiffen(p, stiff_scene, 0);
+}
+
+static const scene_case stiff_cloth = {
+    .name = "stiff-cloth", .build = build_stiff_cloth, .duration = 0.25, .omega = 300, .length = 0.1};
+static const scene_case stiff_rope = {
+    .name = "stiff-rope", .build = build_stiff_rope, .duration = 0.25, .omega = 300, .length = 0.1};
+static const scene_case damped_cloth = {
+    .name = "damped-cloth", .build = build_damped_cloth, .duration = 0.1, .omega = 30, .length = 0.03};
+
 static const scene_case cloth = {.name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
 static const scene_case long_cloth = {
     .name = "long-cloth", .build = build_cloth, .duration = 1, .omega = 30, .length = 0.04};
@@ -82,6 +157,9 @@ const work_problem work_problems[] = {
     {"cloth", WORK_SCENE, .longest = 0.06, .own = &cloth, .reference_steps = 1024},
     {"water", WORK_SCENE, .longest = 0.06, .own = &water, .reference_steps = 2048},
     {"long-cloth", WORK_SCENE, .longest = 0.08, .own = &long_cloth, .reference_steps = 4096},
+    {"stiff-cloth", WORK_SCENE, .longest = 0.06, .own = &stiff_cloth, .reference_steps = 4096, .slow = true},
+    {"stiff-rope", WORK_SCENE, .longest = 0.01, .own = &stiff_rope, .reference_steps = 4096},
+    {"damped-cloth", WORK_SCENE, .longest = 0.06, .own = &damped_cloth, .reference_steps = 8192, .slow = true},
 };
 const size_t work_problem_count = sizeof work_problems / sizeof work_problems[0];
 
@@ -212,6 +290,7 @@ static void open_scene(work *w)
     scene_problem_init(&w->scene, c);
     work_equation_init(&w->equation, &w->scene);
     make_scenes(w);
+    w->xpbd = work_xpbd_applies(&w->scene) ? work_xpbd_make(&w->scene) : NULL;
     w->size = 2 * w->scene.moving;
     w->duration = c->duration;
     w->omega = c->omega;
@@ -262,6 +341,8 @@ void work_close(work *w)
     free(w->fresh);
     free(w->counting);
     free(w->gathered);
+    if (w->xpbd != NULL)
+        work_xpbd_free(w->xpbd);
 }
 
 double work_error(const work *w, const double *y)

@@ -7,6 +7,7 @@
 #include "work.h"
 
 static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4};
+static const work_solver xpbd = {.name = "xpbd", .side = WORK_XPBD, .a_step = 1};
 
 static const work_solver external[] = {
     {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4},
@@ -14,6 +15,7 @@ static const work_solver external[] = {
     {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed},
     {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
     {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
+    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
@@ -35,7 +37,8 @@ const work_solver *work_solver_at(size_t i)
 {
     if (i < SPRING_METHOD_COUNT)
         return work_solver_of(spring_method_at((int)i));
-    return i == SPRING_METHOD_COUNT ? &stages : &external[i - SPRING_METHOD_COUNT - 1];
+    const size_t other = i - SPRING_METHOD_COUNT;
+    return other == 0 ? &stages : other == 1 ? &xpbd : &external[other - 2];
 }
 
 bool work_applies(const work *w, const work_solver *s)
@@ -45,8 +48,9 @@ bool work_applies(const work *w, const work_solver *s)
         return study;
     if (s->side == WORK_EXTERNAL)
         return !study;
-    const spring_method_info *info = spring_method_describe(s->method);
-    return scene ? info->scenes : info->springs;
+    if (s->side == WORK_XPBD)
+        return w->xpbd != NULL;
+    return scene ? (w->scene.def.methods >> s->method & 1) != 0 : spring_method_describe(s->method)->springs;
 }
 
 /* What a run of a spring takes may be less than a look at the clock: all runs together. */
@@ -99,6 +103,19 @@ static work_result run_scene(const work *w, const work_solver *s, uint64_t steps
     return r;
 }
 
+static work_result run_xpbd(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
+{
+    work_result r = {.steps = steps, .evaluations = steps * s->a_step};
+    for (uint64_t i = 0; i < runs; i++) {
+        work_xpbd_start(w->xpbd, &w->scene, w->duration / (double)steps);
+        const double begin = w->clock();
+        work_xpbd_advance(w->xpbd, steps);
+        r.spent += 1e-9 * (w->clock() - begin);
+    }
+    work_xpbd_get(w->xpbd, &w->scene, y);
+    return r;
+}
+
 static work_result run_external(const work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
     ode o = {.size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale, .clock = w->clock};
@@ -118,5 +135,7 @@ work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs
 {
     if (s->side == WORK_EXTERNAL)
         return run_external(w, s, e, runs, y);
+    if (s->side == WORK_XPBD)
+        return run_xpbd(w, s, e.steps, runs, y);
     return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y) : run_spring(w, s, e.steps, runs, y);
 }
