@@ -121,7 +121,7 @@ typedef struct scene_motion {
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
     bool ends_step;        /* begin with the implicit kick that ends the step before */
-    scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; scalar_max: no limit */
+    scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
     const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
     scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */

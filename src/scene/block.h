@@ -93,7 +93,7 @@ struct spring_scene {
     spring_scene_force_fn *force;
     void *user;
     double mass_all, drag, gravity[3];
-    scalar max_speed;                    /* [m/s] scalar_max: no limit */
+    scalar max_speed;                    /* [m/s] SCALAR_MAX: no limit */
     scalar gravity_vectors[3][padding];  /* by axis; in a small scene the first holds quads */
     scalar inverse_mass_vector[padding]; /* for scenes without ARRAY_INVERSE_MASS */
     double t0, dt;                       /* time is t0 + steps dt */

@@ -357,7 +357,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
-        .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : scalar_max,
+        .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : SCALAR_MAX,
     };
     s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);
     spread(s->inverse_mass_vector);

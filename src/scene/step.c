@@ -131,7 +131,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
             invalidate(s);
         if (s->known != PREDICTED_FORCE) /* the stored forces may be overwritten, or not finite themselves */
             s->known = NO_FORCE;
-        return s->max_speed < scalar_max ? SPRING_EUNSTABLE : SPRING_ENONFINITE;
+        return s->max_speed < SCALAR_MAX ? SPRING_EUNSTABLE : SPRING_ENONFINITE;
     }
     s->known = known;
     s->buffer = step.to;

@@ -57,7 +57,7 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     kick_drift.predicted = keeps ? NULL : predicted_velocities(s);
     last_kick.v0 = kick_drift.v;
     last_kick.force = force_at(s, s->to);
-    last_kick.max_speed = scalar_max; /* not yet the end of the step */
+    last_kick.max_speed = SCALAR_MAX; /* not yet the end of the step */
     const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
     particle_kernel *const implicit_kick = s->kernels->implicit_kick;
     if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||

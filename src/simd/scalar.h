@@ -9,12 +9,13 @@
 #ifdef SPRING_FLOAT
 typedef float scalar;
 typedef int32_t scalar_bits;
-#define scalar_max FLT_MAX
 #else
 typedef double scalar;
 typedef int64_t scalar_bits;
-#define scalar_max DBL_MAX
 #endif
+
+/* The largest finite number. */
+#define SCALAR_MAX (sizeof(scalar) == sizeof(float) ? (scalar)FLT_MAX : (scalar)DBL_MAX)
 
 enum { quad_size = 4 }; /* numbers of a quad, see quad.h */
 
