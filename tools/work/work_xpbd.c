@@ -266,8 +266,10 @@ INLINE void load_ends(const double *array, const block *k, layout at, lanes *a, 
                        : SHUFFLE(low, high, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
-INLINE void store_ends(double *array, const block *k, layout at, lanes a, lanes b)
+/* The vectors come by address: by value, their registers depend on the instruction set. */
+INLINE void store_ends(double *array, const block *k, layout at, const lanes *at_a, const lanes *at_b)
 {
+    const lanes a = *at_a, b = *at_b;
     if (at == SCATTERED) {
         double each_a[LANES], each_b[LANES];
         STORE(each_a, a);
@@ -322,7 +324,9 @@ INLINE void solve_block(const work_xpbd *s, const block *k, const block_links *l
     UNROLL
     for (int d = 0; d < AXES; d++) {
         const lanes p = l * delta[d];
-        store_ends(s->x[d], k, at, a[d] - w_a * p, b[d] + w_b * p);
+        a[d] -= w_a * p;
+        b[d] += w_b * p;
+        store_ends(s->x[d], k, at, &a[d], &b[d]);
     }
 }
 
