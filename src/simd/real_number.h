@@ -44,6 +44,18 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
+/* Lanes whose number has bit k. */
+SPRING_INLINE mask with_bit(const uint32_t *numbers, unsigned k)
+{
+    return (numbers[0] >> k & 1) != 0;
+}
+
+/* Sets bit k of the numbers of these lanes. */
+SPRING_INLINE void add_bit(uint32_t *numbers, unsigned k, mask where)
+{
+    numbers[0] |= (uint32_t)where << k;
+}
+
 SPRING_INLINE real vec_sqrt(real a)
 {
     return scalar_sqrt(a);
