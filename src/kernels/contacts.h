@@ -401,7 +401,7 @@ SPRING_INLINE mask touching(const uint32_t *bits)
 SPRING_INLINE mask near_colliders(const scene_contacts *t, const particle_vector *p, real3 x0, real3 d)
 {
     const real square = dot3(d, d);
-    mask near = not_finite(square); /* nothing is known of a motion whose square overflows */
+    mask near = not_mask(square <= SCALAR_MAX); /* nothing is known of a motion whose square overflows */
     for (unsigned i = 0; i < t->count; i++)
         near |= may_touch(&t->collider[i], x0, d, square);
     return near & p->free;
@@ -507,7 +507,7 @@ SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, 
 }
 
 /* Moves one vector of particles as if there were no colliders, and puts those that may be in contact into the queue.
-   Returns the lanes of the others whose result is infinite or NaN. */
+   Returns the lanes whose result is infinite or NaN, also of those: friction could hold an infinite force. */
 typedef mask free_update(const scene_particles *s, const scene_motion *m, const particle_vector *p, contact_queue *q,
                          unsigned variant);
 /* Moves the first group of the queue. */
@@ -575,13 +575,13 @@ SPRING_INLINE mask free_kick_drift(const scene_particles *s, const scene_motion 
     store_axes(p, m->v, w);
     mask wrong = not_finite3(x) | not_finite3(w);
     if ((variant & ENDS_STEP) != 0)
-        wrong |= too_fast3(m, p, v0);
+        wrong |= too_fast3(m, p, v0) & not_mask(queued);
     if (m->predicted != NULL) {
         const real3 predicted = kicked_implicitly3(m, p, w, free);
         store_axes(p, m->predicted, predicted);
         wrong |= not_finite3(predicted);
     }
-    return wrong & not_mask(queued);
+    return wrong;
 }
 
 SPRING_NOINLINE mask resolve_kick_drift(const scene_motion *m, const particle_vector *p, const contact_queue *q,
@@ -638,7 +638,7 @@ SPRING_INLINE mask free_implicit_kick(const scene_particles *s, const scene_moti
         enqueue(q, p, touched, queued, 2, (const real3 *const[]){&x, &v});
     }
     store_axes(p, m->v, v);
-    return too_fast3(m, p, v) & not_mask(queued);
+    return not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
 }
 
 SPRING_NOINLINE mask resolve_implicit_kick(const scene_motion *m, const particle_vector *p, const contact_queue *q,
@@ -674,7 +674,7 @@ SPRING_INLINE mask free_implicit_kick_drift(const scene_particles *s, const scen
     const real3 x = plus3(x0, d);
     store_axes(p, m->x, x);
     store_axes(p, m->v, w);
-    return hidden | ((not_finite3(x) | too_fast3(m, p, w)) & not_mask(queued));
+    return hidden | not_finite3(x) | not_finite3(w) | (too_fast3(m, p, w) & not_mask(queued));
 }
 
 SPRING_NOINLINE mask resolve_implicit_kick_drift(const scene_motion *m, const particle_vector *p,
@@ -721,7 +721,7 @@ SPRING_INLINE mask free_last_stage(const scene_particles *s, const scene_motion 
     clear_touched(m->contacts, p->first);
     store_axes(p, m->x, x);
     store_axes(p, m->v, v);
-    return (not_finite3(x) | too_fast3(m, p, v)) & not_mask(queued);
+    return not_finite3(x) | not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
 }
 
 /* As a drift with the mean velocity and kicks by the mean acceleration. */
