@@ -147,7 +147,7 @@ static void errors(void)
     } bound[] = {{10, {2e-5, 8e-5}, 1e-5}, {100, {1e-5, 2.5e-5}, 1e-5}, {1000, {1.2e-4, 7.5e-4}, 1e-5}};
     for (size_t i = 0; i < sizeof bound / sizeof bound[0]; i++)
         for (int how = FROM_REST; how <= IN_MOTION; how++) {
-            build_stiff(&m, bound[i].damped < 1000 ? 20 : 12, false, 50, bound[i].damped, (motion)how);
+            build_stiff(&m, bound[i].damped < 1000 ? 20 : 8, false, 50, bound[i].damped, (motion)how);
             const double cloth = error_after(&m, 17);
             build_stiff(&m, 32, true, 50, bound[i].damped, (motion)how);
             const double rope = error_after(&m, 25);
