@@ -10,17 +10,19 @@
 #include "check.h"
 
 static const uint64_t seed = 20240917;
-static const unsigned most_printed = 5; /* failures a test; the rest only count */
+static const unsigned most_failures = 5; /* of a test; the next one ends it */
 
 static uint64_t generator;
-static unsigned printed, number;
+static unsigned failures, number;
 static const char *skipped; /* why */
 static double closest;      /* largest error/bound in this test: how near to failing it came */
 
 static bool report(bool ok, const char *what, const char *file, unsigned line)
 {
-    CU_assertImplementation(ok ? CU_TRUE : CU_FALSE, line, what, file, "", CU_FALSE);
-    return !ok && printed++ < most_printed;
+    const CU_BOOL last = failures == most_failures ? CU_TRUE : CU_FALSE;
+    CU_assertImplementation(ok ? CU_TRUE : CU_FALSE, line, what, file, "", last);
+    failures += !ok;
+    return !ok;
 }
 
 void check(bool ok, const char *why, const char *what, const char *file, unsigned line)
@@ -90,7 +92,7 @@ static void on_start(const CU_pTest case_started, const CU_pSuite suite)
     (void)case_started;
     (void)suite;
     generator = seed;
-    printed = 0;
+    failures = 0;
     closest = 0;
     skipped = NULL;
 }

@@ -63,6 +63,12 @@ static void failure_and_skip(void)
     CHECK(false, reason);
 }
 
+static void failures_without_end(void)
+{
+    for (;;)
+        CHECK(false, reason);
+}
+
 static void good_start(void)
 {
     CHECK(random_bits() != random_bits(), reason);
@@ -110,6 +116,7 @@ static const scenario scenarios[] = {
     {"last bit of x", state_x, false, 1, 1 + DBL_EPSILON, 0},
     {"last bit of v", state_v, false, 1, 1 + DBL_EPSILON, 0},
     {"a failure before a success", failure_before_success, false, 0, 0, 0},
+    {"failures without end", failures_without_end, false, 0, 0, 0},
     {"a failure in a skipped test", failure_and_skip, false, 0, 0, 0},
 };
 static const size_t scenario_count = sizeof scenarios / sizeof scenarios[0];

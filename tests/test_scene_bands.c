@@ -93,7 +93,7 @@ static void many_bands(void)
     static model m;
     size_t bands = 0, tiles = 0;
     for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 3) {
+        for (unsigned features = 0; features < feature_masks; features += 7) {
             build_bands(&m, axes, features, features % 16 == 0 ? offset_count : 5);
             spring_scene *s = scene_of(&m.def);
             bands = s->layout.bands > bands ? s->layout.bands : bands;

@@ -44,7 +44,7 @@ static void forces_and_bits(void)
 {
     static model m;
     for (uint32_t axes = 2; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 7)
+        for (unsigned features = 0; features < feature_masks; features += 23)
             for (const uint32_t *shape = shapes[0]; shape[0] > 0; shape += 3) {
                 build_net(&m, shape, axes, features);
                 check_kernels(&m);
@@ -56,7 +56,7 @@ static void odd_links(void)
 {
     static model m;
     for (uint32_t axes = 2; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 13)
+        for (unsigned features = 0; features < feature_masks; features += 37)
             for (const uint32_t *shape = shapes[0]; shape[0] > 0; shape += 3) {
                 build_net(&m, shape, axes, features | OWN);
                 for (size_t i = 0; i < m.def.links; i++)
