@@ -9,6 +9,7 @@ from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, table
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
 PEERS = {'gsl-rk4': 11, 'gsl-rk8pd': 13, 'arkode-rk4': 4, 'arkode-8': 13}  # evaluations a step
+ODEINT = {'odeint-rkf78': 13, 'odeint-sb3a-m4': 5}  # where Boost is installed
 
 
 @pytest.fixture(scope='module', params=['ideal-1', 'elastic-pendulum'])
@@ -31,15 +32,17 @@ def test_work_rows(work):
 
 def cost(solver):
     """Of our own as spring-order says."""
-    if solver in PEERS:
-        return PEERS[solver]
+    if solver in PEERS | ODEINT:
+        return (PEERS | ODEINT)[solver]
     row, = table(ORDER, '--method', solver, '--n-min', '1', '--n-max', '1')
     return int(row['force_evaluations'])
 
 
-@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS])
+@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS, *ODEINT])
 def test_force_evaluations_of_fixed_steps(solver, work):
     rows = [row for row in work[1] if row['solver'] == solver]
+    if solver in ODEINT and not any(row['solver'].startswith('odeint-') for row in work[1]):
+        pytest.skip('built without Boost.odeint')
     assert rows
     first = [int(row['force_evaluations']) - cost(solver) * int(row['steps']) for row in rows]
     assert set(first) <= {0, 1}  # one more at the start

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-work: time against error, for every stepper of the library and for GSL and SUNDIALS on the same problems.
+ * spring-work: time against error, for every stepper of the library and for GSL, SUNDIALS and Boost.odeint on the same
+ * problems.
  *
  * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five
  *           times, or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers
@@ -37,7 +38,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-work",
-    .summary = "Time against error of every stepper, compared with GSL and SUNDIALS, in one run.",
+    .summary = "Time against error of every stepper, compared with GSL, SUNDIALS and odeint, in one run.",
     .details = "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
                "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
                "times as heavy) and damped-cloth (16 x 16) have such links that sqrt(L)/60 Hz = 50, where L is the\n"
@@ -45,6 +46,8 @@ static const cli_program program = {
                "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
                "the duration, which evaluates no forces; xpbd takes substeps of one iteration over all links, as\n"
                "game engines do, in scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
+               "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are there if Boost was when this was built.\n"
+               "odeint-sb3a-m4 is symplectic, for problems without drag and damping.\n"
                "A run that explodes, or is off by more than three times the size of the motion, has no row.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty",
     .meaning = "force_evaluations are those of one spring with the library by definition, all others counted; time_s\n"
@@ -56,7 +59,7 @@ static const cli_program program = {
                "energy_error relative to the energy at the start (nan: a scene), uncertainty that of the exact end\n"
                "of a scene: an error of five times that is an upper bound, and not resolved.\n\n"
                "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
-               "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS (peer,\n"
+               "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL, SUNDIALS and odeint (peer,\n"
                "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
@@ -235,7 +238,7 @@ static void work_on(cli_table *table, cli_table *levels, const work_problem *pro
     work w;
     work_open(&w, problem);
     row_count = 0;
-    for (size_t i = 0; i < WORK_SOLVERS; i++) {
+    for (size_t i = 0; i < work_solver_count; i++) {
         const work_solver *s = work_solver_at(i);
         if (!work_applies(&w, s))
             continue;

@@ -64,6 +64,7 @@ typedef struct work {
     /* what external solvers integrate */
     void (*derivative)(double t, const double *y, double *dy, const void *data);
     const void *data;
+    bool uses_velocity; /* the forces depend on velocities */
 
     reference reference; /* of a spring */
 
@@ -117,11 +118,13 @@ struct work_solver {
     /* of an external solver, one of them */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
+    int order;           /* with fixed steps */
+    bool positions_only; /* forces may not depend on velocities */
 };
 
-enum { WORK_EXTERNAL_SOLVERS = 9, WORK_SOLVERS = SPRING_METHOD_COUNT + 2 + WORK_EXTERNAL_SOLVERS };
+extern const size_t work_solver_count;
 
-/* Each method by its name, rk4-stages, xpbd, and the external solvers. */
+/* Each method by its name, rk4-stages, xpbd, and the external solvers: those of odeint where it was found. */
 const work_solver *work_solver_at(size_t i);
 
 /* The solver that is a method. */

@@ -191,6 +191,7 @@ static void open_spring(work *w)
     w->finest = w->problem->finest;
     w->derivative = ode_spring_derivative;
     w->data = p;
+    w->uses_velocity = p->damping > 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------- a scene */
@@ -303,6 +304,8 @@ static void open_scene(work *w)
     scene_start(&w->scene, w->start);
     w->derivative = work_equation_derivative;
     w->data = &w->equation;
+    w->uses_velocity = w->equation.damped || w->equation.drag > 0 ||
+                       (w->scene.def.force != NULL && !(w->scene.def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY));
     find_exact_end(w, c);
     /* likewise; the stable step is a bound, and takes no notice of callbacks */
     w->coarsest = fmin(5 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);

@@ -10,17 +10,23 @@ static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a
 static const work_solver xpbd = {.name = "xpbd", .side = WORK_XPBD, .a_step = 1};
 
 static const work_solver external[] = {
-    {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4},
+    {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4, .order = 4},
     {.name = "gsl-rk4-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk4_adaptive},
-    {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed},
+    {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed, .order = 8},
     {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
-    {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
-    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8},
+    {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4, .order = 4},
+    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8, .order = 8},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
+#ifdef SPRING_ODEINT
+    {.name = "odeint-rkf78", .side = WORK_EXTERNAL, .fixed = ode_odeint_rkf78, .order = 8},
+    {.name = "odeint-bulirsch-stoer", .side = WORK_EXTERNAL, .adaptive = ode_odeint_bulirsch_stoer},
+    {.name = "odeint-sb3a-m4", .side = WORK_EXTERNAL, .fixed = ode_odeint_sb3a_m4, .positions_only = true, .order = 4},
+#endif
 };
-_Static_assert(sizeof external / sizeof external[0] == WORK_EXTERNAL_SOLVERS, "as work.h says");
+
+const size_t work_solver_count = SPRING_METHOD_COUNT + 2 + sizeof external / sizeof external[0];
 
 const work_solver *work_solver_of(spring_method m)
 {
@@ -47,7 +53,7 @@ bool work_applies(const work *w, const work_solver *s)
     if (s->side == WORK_STAGES)
         return study;
     if (s->side == WORK_EXTERNAL)
-        return !study;
+        return !study && !(s->positions_only && w->uses_velocity);
     if (s->side == WORK_XPBD)
         return w->xpbd != NULL;
     return scene ? (w->scene.def.methods >> s->method & 1) != 0 : spring_method_describe(s->method)->springs;
