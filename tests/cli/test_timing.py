@@ -2,9 +2,12 @@
 """spring-work and spring-bench: what they measure and how they judge it; how long it takes is nobody's promise."""
 import functools
 import math
+import pathlib
 
 import pytest
-from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, table
+from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, run, table
+
+SUNDIALS = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'sundials'
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
@@ -51,7 +54,14 @@ def test_force_evaluations_of_fixed_steps(solver, work):
 def test_stamp_of_the_table(work, tmp_path_factory):
     text = work[2]
     assert str(tmp_path_factory.getbasetemp()) not in text
-    assert [what for what in ('compiler', 'flags', 'processor', 'load') if f'# {what}:' not in text] == []
+    assert [what for what in ('compiler', 'flags', 'processor', 'load', 'gsl', 'sundials', 'odeint') if f'# {what}:' not in text] == []
+
+
+@pytest.mark.parametrize('args', [[], ['--nonsense'], ['one', 'two']])
+def test_usage_of_the_build_of_sundials(args):
+    result = run(SUNDIALS, *args)
+    assert (result.returncode, result.stdout) == (2, '')
+    assert result.stderr.startswith('usage: tools/bench/sundials DIRECTORY')
 
 
 def cheapest(rows, error, among):

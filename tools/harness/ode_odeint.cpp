@@ -3,6 +3,7 @@
 // so that the compiler unrolls the loops of a step; it is a vector for more.
 #include <algorithm>
 #include <array>
+#include <boost/version.hpp>
 #include <boost/numeric/odeint.hpp>
 #include <boost/numeric/odeint/stepper/symplectic_rkn_sb3a_m4_mclachlan.hpp> // needs the one before
 #include <exception>
@@ -184,4 +185,9 @@ const char *ode_odeint_bulirsch_stoer(ode *o, double *y, double duration, double
 const char *ode_odeint_sb3a_m4(ode *o, double *y, double h, uint64_t n)
 {
     return integrate(McLachlan{h, n}, o->size / 2, o, y);
+}
+
+const char *ode_odeint_version()
+{
+    return BOOST_LIB_VERSION; // "1_74"
 }

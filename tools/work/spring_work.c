@@ -258,12 +258,29 @@ static void work_on(cli_table *table, cli_table *levels, const work_problem *pro
     work_close(&w);
 }
 
+/* The versions of the others, and whether SUNDIALS is as fast as it can be. */
+static void stamp_versions(cli_table *table)
+{
+    static double slowness;
+    if (!(slowness > 0))
+        slowness = ode_sundials_slowness(timing_now);
+    cli_comment(table, "gsl: %s", ode_gsl_version());
+    cli_comment(table, "sundials: %s%s", ode_sundials_version(), slowness >= ODE_UNOPTIMISED ? ", unoptimised" : "");
+    cli_comment(table, "sundials_vector_sum: %.2g times a plain loop", slowness);
+#ifdef SPRING_ODEINT
+    cli_comment(table, "odeint: Boost %s", ode_odeint_version());
+#else
+    cli_comment(table, "odeint: none");
+#endif
+}
+
 static cli_table *open_levels(void)
 {
     if (table_file == NULL)
         return NULL;
     cli_table *levels = cli_open_file("table", table_file);
     timing_stamp(levels);
+    stamp_versions(levels);
     cli_columns(levels, "problem error solver dt_s time_s peer peer_time_s ratio steps exact_time_s");
     return levels;
 }
@@ -275,6 +292,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
+    stamp_versions(table);
     cli_columns(table, program.columns);
     cli_table *levels = open_levels();
     for (size_t i = 0; i < work_problem_count; i++) {
