@@ -54,7 +54,7 @@ static void counts_of_a_scene(work *w)
     CHECK(work_count(w, SPRING_EULER, 1) == 1, "one force evaluation in one step of Euler");
     w->duration = (double)steps * short_step(w);
     CHECK(work_count(w, SPRING_EULER, steps) == steps, "one a step");
-    const uint64_t passes = w->equation.damped ? 2 : 1; /* of leapfrog: one for the damping of links */
+    const uint64_t passes = w->damped ? 2 : 1; /* of leapfrog: one for the damping of links */
     CHECK(work_count(w, SPRING_LEAPFROG, steps) == passes * steps + 1, "one a pass, and one at the start");
     CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "four stages a step");
     CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "from the start again, nothing is kept");
@@ -234,7 +234,7 @@ static void one_equation(work *w)
     const double size = 8 * (largest * fmax(1, w->motion) + damping * fastest) / w->scene.mass[0] + 10;
     for (int at = 0; at < 2; at++) {
         const double *y = at == 0 ? w->start : w->exact;
-        work_equation_derivative(0.3, y, ours, &w->equation);
+        w->derivative(0.3, y, ours, w->data);
         scene_derivative(0.3, y, theirs, &w->scene);
         for (size_t i = 0; i < w->size; i++)
             worst = fmax(worst, fabs(ours[i] - theirs[i]));
@@ -251,7 +251,7 @@ static void exact_end_of_a_scene(work *w)
     const work_solver *const rk4 = work_solver_of(SPRING_RK4);
     /* Errors with one and two times as many steps are far from 1e-12, too. Modes that decay fast have no order until
        steps are short for them. */
-    const double short_enough = w->equation.damped ? 1e-10 : 1e-8;
+    const double short_enough = w->damped ? 1e-10 : 1e-8;
     uint64_t n = (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 8)) + 1;
     CHECK_BELOW(w->uncertainty, 1e-12, "it is good for every error of the table");
     CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what it is known to");
@@ -260,7 +260,7 @@ static void exact_end_of_a_scene(work *w)
         coarse = moves ? work_error(w, y) : INFINITY;
     }
     work_run(w, rk4, (work_effort){.steps = n}, 1, y);
-    CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, w->equation.damped ? 0.2 : 0.1,
+    CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, w->damped ? 0.2 : 0.1,
                 "fourth order, toward it: terms of the next one are h times smaller, by rates of decay if damped");
     y[0] = NAN;
     CHECK(!(work_error(w, y) <= 1), "NaN is no small error");
@@ -282,7 +282,7 @@ static void stiffness_of_frames(void)
 
 static double xpbd_error(work *w, uint64_t substeps_of_a_frame, double *rms)
 {
-    const work_solver *s = work_solver_at(SPRING_METHOD_COUNT + 1);
+    const work_solver *s = work_solver_at(SPRING_METHOD_COUNT + 2);
     double *y = scene_room(w->size, sizeof *y), sum = 0;
     const uint64_t n = (uint64_t)rint(w->duration * 60) * substeps_of_a_frame;
     CHECK(strcmp(s->name, "xpbd") == 0 && work_applies(w, s), "it is for this scene");

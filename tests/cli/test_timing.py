@@ -19,11 +19,13 @@ ODEINT = {'odeint-rkf78': 13, 'odeint-sb3a-m4': 5}  # where Boost is installed
 def work(request, tmp_path_factory):
     """A problem, its rows, and its table as text."""
     path = tmp_path_factory.mktemp('work') / 'table.tsv'
-    return request.param, table(WORK, '--problem', request.param, '--quick', '--table', path), path.read_text()
+    forces = path.with_name('forces.tsv')
+    rows = table(WORK, '--problem', request.param, '--quick', '--table', path, '--forces', forces)
+    return request.param, rows, path.read_text(), parse(forces.read_text())
 
 
 def test_work_rows(work):
-    problem, rows, _ = work
+    problem, rows, *_ = work
     fixed = 'problem solver steps force_evaluations time_s error'.split()
     assert list(rows[0])[:len(fixed)] == fixed
     assert {row['problem'] for row in rows} == {problem}
@@ -57,6 +59,22 @@ def test_stamp_of_the_table(work, tmp_path_factory):
     assert [what for what in ('compiler', 'flags', 'processor', 'load', 'gsl', 'sundials', 'odeint') if f'# {what}:' not in text] == []
 
 
+def test_forces(work):
+    problem, _, _, forces = work
+    assert [(row['problem'], row['evaluation'], row['links']) for row in forces] == [
+        (problem, who, '1') for who in ('springstep', 'others')]
+    ours, *_ = times = [float(row['time_ns']) for row in forces]
+    assert min(times) > 0 and all(about(float(row['ratio']), time / ours) for row, time in zip(forces, times))
+
+
+def test_softened_and_xpbd_start_with_a_step_a_frame():
+    rows = table(WORK, '--quick', '--problem', 'stiff-rope')
+    for solver in 'leapfrog-softened', 'xpbd':
+        first, *more = [row for row in rows if row['solver'] == solver]
+        assert first['steps'] == '15' and float(first['stretch']) > 0 and float(first['energy_error']) > 0
+        assert float(more[-1]['error']) < float(first['error'])
+
+
 @pytest.mark.parametrize('args', [[], ['--nonsense'], ['one', 'two']])
 def test_usage_of_the_build_of_sundials(args):
     result = run(SUNDIALS, *args)
@@ -75,12 +93,12 @@ def cheapest(rows, error, among):
 
 
 def test_levels_of_the_table(work):
-    problem, rows, text = work
+    problem, rows, text, _ = work
     levels = parse(text)
     assert [(row['problem'], row['error']) for row in levels] == [(problem, f'1e-{n}') for n in range(1, 13)]
     for row in levels:
         for solver, time, among in (('solver', 'time_s', lambda name: name in SCENE_STEPPERS),
-                                    ('peer', 'peer_time_s', lambda name: name not in [*SCENE_STEPPERS, 'exact', 'xpbd'])):
+                                    ('peer', 'peer_time_s', lambda name: name not in [*SCENE_STEPPERS, 'exact', 'leapfrog-softened', 'xpbd'])):
             least, names = cheapest(rows, float(row['error']), among)
             assert row[time] == least and row[solver] in names
         ratio = float(row['peer_time_s']) / float(row['time_s'])

@@ -2,16 +2,9 @@
 /* XPBD in substeps, coloured and with SIMD; see work_xpbd.h. */
 #include "work_xpbd.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "work_lanes.h"
 
-#include "common/cli.h"
-
-enum { LANES = 8, AXES = 3 };
-
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
-typedef float floats __attribute__((vector_size(LANES * sizeof(float))));
+enum { AXES = 3 };
 
 /* How the ends of a block lie in memory. All but the first are moved as whole vectors. */
 typedef enum layout {
@@ -150,16 +143,6 @@ static void fill_block(block *k, block_links *links, const scene_problem *p, con
     }
 }
 
-/* Zeros, at the start of a cache line; exits without memory. */
-static void *aligned_room(size_t bytes)
-{
-    const size_t line = 64, whole = (bytes + line - 1) / line * line;
-    void *room = aligned_alloc(line, whole);
-    if (room == NULL)
-        cli_fail(CLI_FAILED, "no memory for xpbd");
-    return memset(room, 0, whole);
-}
-
 static void make_blocks(work_xpbd *s, const scene_problem *p)
 {
     coloured *order = colour(p);
@@ -169,7 +152,9 @@ static void make_blocks(work_xpbd *s, const scene_problem *p)
     for (size_t i = 0; i < p->def.links; s->blocks++) {
         const spring_link *first = &p->link[order[i].link];
         layout at = first->a < first->b ? layout_of(order[i].offset) : SCATTERED;
-        if (block_length(p, order, i, at) < LANES / 2)
+        const bool goes_on =
+            s->groups > 0 && s->group[s->groups - 1].layout == at && order[i].offset == order[i - 1].offset;
+        if (block_length(p, order, i, at) < LANES / 2 && !goes_on) /* the end of a row is a block of its own */
             at = SCATTERED;
         const size_t count = block_length(p, order, i, at);
         fill_block(&s->block[s->blocks], &s->links[s->blocks], p, order + i, count, at);
@@ -252,19 +237,6 @@ void work_xpbd_get(const work_xpbd *s, const scene_problem *p, double *y)
 
 /* ----------------------------------------------------------------------------------------------------- substeps */
 
-#define INLINE static inline __attribute__((always_inline))
-
-/* A macro, since a function that returns long vectors has another convention for each instruction set. */
-#define LOAD(vector, array)  memcpy(&(vector), (array), sizeof(vector))
-#define STORE(array, vector) memcpy((array), &(vector), sizeof(vector))
-
-/* Before a loop over axes whose arrays should be kept in registers. */
-#if defined(__clang__)
-#define UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define UNROLL _Pragma("GCC unroll 3")
-#endif
-
 #if defined(__clang__)
 #define SHUFFLE(v, w, ...) __builtin_shufflevector(v, w, __VA_ARGS__)
 #else
@@ -317,21 +289,6 @@ INLINE void store_ends(double *array, const block *k, layout at, const lanes *at
                                      : SHUFFLE(a, b, 4, 5, 12, 13, 6, 7, 14, 15);
     STORE(array + k->a[0], low);
     STORE(array + (at == ROWS ? k->b[0] : k->a[0] + LANES), high);
-}
-
-/* 1/sqrt(a) by a square root and a quotient in float, and one step of third order in double: 1 ulp, for 1e-30 < a < 1e30. The
-   build compiles this file with -fno-math-errno, or each root would be a call. */
-INLINE void inverse_root(const lanes *a, lanes *root)
-{
-    float each[LANES];
-    floats seed = __builtin_convertvector(*a, floats);
-    STORE(each, seed);
-    for (int j = 0; j < LANES; j++)
-        each[j] = sqrtf(each[j]);
-    LOAD(seed, each);
-    seed = 1 / seed;
-    const lanes y = __builtin_convertvector(seed, lanes), r = 1 - *a * (y * y);
-    *root = y + y * r * (0.5 + 0.375 * r);
 }
 
 INLINE void solve_block(const work_xpbd *s, const block *k, const block_links *links, layout at, bool damped)
