@@ -9,5 +9,5 @@ array external_titles[8] = ["GSL rk4", "GSL rk8pd", "… adaptive", "ARKODE 8", 
 array external_types[8] = [gsl, gsl, gsl, sundials, sundials, sundials, odeint, odeint]
 array external_markers[8] = [4, 6, 8, 12, 10, 2, 14, 4]
 
-# The label of run times, with what has to be known of them.
-time_label = "run time / s".(system("grep -c '^# sundials: .*unoptimised' ".work."; true") eq "0" ? "" : " (SUNDIALS: unoptimised)")
+# For the label of times: what has to be known of them.
+note_on_sundials = system("grep -c '^# sundials: .*unoptimised' ".work."; true") eq "0" ? "" : " (SUNDIALS: unoptimised)"

@@ -12,6 +12,6 @@ set multiplot layout 3,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0
 call plots."work-panel.gp" work "elastic-pendulum" "elastic pendulum" 0
 unset key
 call plots."work-panel.gp" work "cloth" "cloth" 0
-set xlabel time_label
+set xlabel "run time / s".note_on_sundials
 call plots."work-panel.gp" work "water" "water" 0
 unset multiplot

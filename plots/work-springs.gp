@@ -12,6 +12,6 @@ set output output
 set multiplot layout 2,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 call plots."work-panel.gp" work "ideal-10" "ideal, ten periods" 1
 unset key
-set xlabel time_label
+set xlabel "run time / s".note_on_sundials
 call plots."work-panel.gp" work "damped" "damped" 1
 unset multiplot

@@ -156,11 +156,11 @@ static bool leads(const work_solver *s)
 }
 
 /* Whether a sweep goes on after a run that took so long. External solvers have more time while they lead, so that small
-   errors have an opponent. */
+   errors have an opponent, and if they choose their steps, for they take long at any tolerance. */
 static bool goes_on(const work *w, const work_solver *s, double spent)
 {
     const double more = 4;
-    return spent <= longest(w) || (spent <= more * longest(w) && leads(s));
+    return spent <= longest(w) || (spent <= more * longest(w) && (s->adaptive != NULL || leads(s)));
 }
 
 static void sweep_steps(cli_table *table, work *w, const work_solver *s)
