@@ -22,7 +22,7 @@ set yrange [1e-13:3]
 set ytics 1e3
 set mxtics 1
 set mytics 1
-set xlabel "computing time of a frame / µs".note_on_sundials
+set xlabel "time per frame / µs".note_on_sundials
 set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 3
 call plots."key.gp" entries
