@@ -21,6 +21,7 @@ grid = 10
 page = 11
 gsl = 12
 sundials = 13
+odeint = 14
 set linetype 1      linecolor rgb "#D55E00" linewidth 2.5 dashtype solid          pointtype 7  pointsize 0.8
 set linetype 2      linecolor rgb "#CC79A7" linewidth 2.5 dashtype (16,3)         pointtype 13 pointsize 1
 set linetype 3      linecolor rgb "#0072B2" linewidth 2.5 dashtype (12,4)         pointtype 5  pointsize 0.8
@@ -35,6 +36,7 @@ set linetype page   linecolor rgb "#FFFFFF"
 # External solvers, by their library: an open marker each, see externals.gp.
 set linetype gsl      linecolor rgb "#5F6F7A" linewidth 1.5 dashtype solid
 set linetype sundials linecolor rgb "#8A5A3C" linewidth 1.5 dashtype (6,3)
+set linetype odeint   linecolor rgb "#7B4FA3" linewidth 1.5 dashtype (9,3,2,3)
 
 call plots."methods.gp" ARG2 ARG3
 

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
 # Scenes, error at the end against run time: one particle on a spring that swings, a cloth that falls, and a sheet of
-# water, which is linear. Open markers: GSL, grey, and SUNDIALS (ARKODE, CVODE), brown.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 5)"
+# water, which is linear. Open markers: GSL, grey, SUNDIALS (ARKODE, CVODE), brown, and Boost.odeint, violet, whose
+# symplectic method is for motion without drag.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 7)"
 output = ARG1
 work = ARG3
-entries = methods + 5
+entries = methods + 7
 call plots."work-panel.gp" work
 set output output
 set multiplot layout 3,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 call plots."work-panel.gp" work "elastic-pendulum" "elastic pendulum" 0
 unset key
 call plots."work-panel.gp" work "cloth" "cloth" 0
-set xlabel "run time / s"
+set xlabel "run time / s".note_on_sundials
 call plots."work-panel.gp" work "water" "water" 0
 unset multiplot

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
 # One spring, error at the end against the time the run took: ten periods without damping, and five with a damping ratio
-# of a tenth. Open markers: GSL, grey, and SUNDIALS (ARKODE, CVODE), brown. The star is the exact solution, which takes
-# no steps. Smaller errors than the axis shows are drawn at its end.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "835 + key_height(methods + 6)"
+# of a tenth. Open markers: GSL, grey, SUNDIALS (ARKODE, CVODE), brown, and Boost.odeint, violet, whose symplectic method
+# is for motion without drag. The star is the exact solution, which takes no steps. Smaller errors than the axis shows are
+# drawn at its end.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "835 + key_height(methods + 8)"
 output = ARG1
 work = ARG3
-entries = methods + 6
+entries = methods + 8
 call plots."work-panel.gp" work
 set output output
 set multiplot layout 2,1 margins 0.2,0.94,82.0/height,key_bottom(entries) - 40.0/height spacing 84.0/height
 call plots."work-panel.gp" work "ideal-10" "ideal, ten periods" 1
 unset key
-set xlabel "run time / s"
+set xlabel "run time / s".note_on_sundials
 call plots."work-panel.gp" work "damped" "damped" 1
 unset multiplot

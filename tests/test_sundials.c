@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SUNDIALS as an external solver: which of its integrators can be believed, and that its work is really counted. */
 #include <math.h>
+#include <stdlib.h>
 #include <sundials/sundials_config.h>
 
 #include "check.h"
@@ -80,12 +81,25 @@ static void bdf_in_trouble(void)
     CHECK(evaluations[0] > 2 * evaluations[1], "1202 against 329 with SUNDIALS 6.4.1");
 }
 
+static double ticks(void)
+{
+    static double now;
+    return now += 1;
+}
+
+static void slowness(void)
+{
+    CHECK_CLOSE(ode_sundials_slowness(ticks), 1, 0, "by a clock that runs as fast for both sums");
+    CHECK(atoi(ode_sundials_version()) == SUNDIALS_VERSION_MAJOR, "the version of the headers");
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"ARKStep with the classical table agrees", arkstep},
         {"ARKStep with the table of order 8", arkstep_8},
         {"ERKStep with the classical table does not, before 6.7.0", erkstep},
+        {"speed and version", slowness},
         {"BDF on a lightly damped spring", bdf_in_trouble},
     };
     return RUN_TESTS("sundials", tests);

@@ -54,7 +54,7 @@ static void counts_of_a_scene(work *w)
     CHECK(work_count(w, SPRING_EULER, 1) == 1, "one force evaluation in one step of Euler");
     w->duration = (double)steps * short_step(w);
     CHECK(work_count(w, SPRING_EULER, steps) == steps, "one a step");
-    const uint64_t passes = w->equation.damped ? 2 : 1; /* of leapfrog: one for the damping of links */
+    const uint64_t passes = w->damped ? 2 : 1; /* of leapfrog: one for the damping of links */
     CHECK(work_count(w, SPRING_LEAPFROG, steps) == passes * steps + 1, "one a pass, and one at the start");
     CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "four stages a step");
     CHECK(work_count(w, SPRING_RK4, steps) == 4 * steps, "from the start again, nothing is kept");
@@ -132,10 +132,10 @@ static void counted_derivative(double t, const double *y, double *dy, const void
 
 static void counts_of_external_solvers(void)
 {
-    const spring_params p = {1.3, 2.7, 0.2, 0.4};
     const double scale[] = {1, 1};
-    for (size_t i = 0; i < WORK_SOLVERS; i++) {
+    for (size_t i = 0; i < work_solver_count; i++) {
         const work_solver *s = work_solver_at(i);
+        const spring_params p = {1.3, 2.7, s->positions_only ? 0 : 0.2, 0.4};
         ode o = {.size = 2, .derivative = counted_derivative, .data = &p, .scale = scale};
         double y[] = {0.8, -0.9};
         if (s->side != WORK_EXTERNAL)
@@ -145,10 +145,79 @@ static void counts_of_external_solvers(void)
               "it integrates");
         CHECK(o.evaluations == derivatives, "every evaluation is counted");
         CHECK(s->fixed != NULL ? o.steps == steps : o.steps > 0, "steps are counted");
-        const uint64_t once = s->fixed == ode_gsl_rk4 ? 11 : s->fixed == ode_arkstep_rk4 ? 4 : 13;
+        const uint64_t once = s->fixed == ode_gsl_rk4 ? 11 : s->fixed == ode_arkstep_rk4 ? 4 : s->order == 4 ? 5 : 13;
         CHECK(s->fixed == NULL || (derivatives >= once * steps && derivatives <= once * steps + 1),
-              "RK4 of GSL: 4 + 3 + 4, for its step is doubled; ARKODE's RK4 4; order 8: 13");
+              "RK4 of GSL: 4 + 3 + 4, for its step is doubled; ARKODE's RK4 4; McLachlan's 5; order 8: 13");
     }
+}
+
+static double error_of(work *w, const work_solver *s, work_effort e)
+{
+    double *y = scene_room(w->size, sizeof *y);
+    CHECK(work_run(w, s, e, 1, y).failure == NULL, "it integrates");
+    const double error = work_error(w, y);
+    free(y);
+    return error;
+}
+
+/* The number of steps, doubled until the error is small. */
+static uint64_t steps_to(work *w, const work_solver *s, double error)
+{
+    uint64_t n = (uint64_t)ceil(2 * w->duration / w->coarsest);
+    for (int doubled = 0; doubled < 12 && !(error_of(w, s, (work_effort){.steps = n}) <= error); doubled++)
+        n *= 2;
+    return n;
+}
+
+/* Where errors are between those of long steps and rounding errors. */
+static void has_order(work *w, const work_solver *s)
+{
+    const uint64_t n = steps_to(w, s, s->order == 8 ? 1e-7 : 1e-5);
+    const double coarse = error_of(w, s, (work_effort){.steps = n}),
+                 fine = error_of(w, s, (work_effort){.steps = 2 * n});
+    CHECK_CLOSE(log2(coarse / fine), s->order, 0.2, "its order, toward it: the next term is smaller by a step");
+}
+
+/* Error control keeps the error of a step: over a run it grows by the number of steps, and by how the motion spreads errors. */
+static void follows_tolerance(work *w, const work_solver *s)
+{
+    const double tight = error_of(w, s, (work_effort){.tolerance = 1e-9});
+    CHECK_BELOW(tight, 1e-9 * 1e4, "some hundred steps, each of whose errors grows by less than a hundred");
+}
+
+/* On one particle with its order; to the same end of scenes whose states are an array and a vector. */
+static void external_solvers_converge(void)
+{
+    work *duffing = work_named("duffing"), *pendulum = work_named("elastic-pendulum"), *rope = work_named("stiff-rope");
+    for (size_t i = 0; i < work_solver_count; i++) {
+        const work_solver *s = work_solver_at(i);
+        if (s->side != WORK_EXTERNAL)
+            continue;
+        if (s->fixed == NULL) {
+            follows_tolerance(duffing, s);
+            follows_tolerance(pendulum, s);
+            follows_tolerance(rope, s);
+            continue;
+        }
+        const double small = s->order == 8 ? 1e-10 : 1e-6;
+        has_order(duffing, s);
+        CHECK_BELOW(error_of(pendulum, s, (work_effort){.steps = steps_to(pendulum, s, small)}), small, "it converges");
+        CHECK_BELOW(error_of(rope, s, (work_effort){.steps = steps_to(rope, s, small)}), small, "it converges");
+    }
+}
+
+static void some_forces_use_velocities(void)
+{
+    static const char *const with[] = {"damped", "cloth", "water", "damped-cloth"};
+    static const char *const without[] = {"ideal-1", "duffing", "elastic-pendulum", "stiff-and-soft", "stiff-cloth"};
+    for (size_t i = 0; i < sizeof with / sizeof with[0]; i++)
+        CHECK(work_named(with[i])->uses_velocity, "damping, drag or both");
+    for (size_t i = 0; i < sizeof without / sizeof without[0]; i++)
+        CHECK(!work_named(without[i])->uses_velocity, "neither, nor in a callback");
+    for (size_t k = 0; k < work_solver_count; k++)
+        CHECK(!work_solver_at(k)->positions_only || (!work_applies(work_named("cloth"), work_solver_at(k)) &&
+                                                     work_applies(work_named("duffing"), work_solver_at(k))),
+              "a solver for forces of positions is not run with drag");
 }
 
 /* Each component of dy/dt against the harness, from the sizes of what is added: eight links, sixteen roundings a
@@ -165,7 +234,7 @@ static void one_equation(work *w)
     const double size = 8 * (largest * fmax(1, w->motion) + damping * fastest) / w->scene.mass[0] + 10;
     for (int at = 0; at < 2; at++) {
         const double *y = at == 0 ? w->start : w->exact;
-        work_equation_derivative(0.3, y, ours, &w->equation);
+        w->derivative(0.3, y, ours, w->data);
         scene_derivative(0.3, y, theirs, &w->scene);
         for (size_t i = 0; i < w->size; i++)
             worst = fmax(worst, fabs(ours[i] - theirs[i]));
@@ -182,7 +251,7 @@ static void exact_end_of_a_scene(work *w)
     const work_solver *const rk4 = work_solver_of(SPRING_RK4);
     /* Errors with one and two times as many steps are far from 1e-12, too. Modes that decay fast have no order until
        steps are short for them. */
-    const double short_enough = w->equation.damped ? 1e-10 : 1e-8;
+    const double short_enough = w->damped ? 1e-10 : 1e-8;
     uint64_t n = (uint64_t)(w->duration / (spring_scene_stable_step(w->fresh, SPRING_LEAPFROG) / 8)) + 1;
     CHECK_BELOW(w->uncertainty, 1e-12, "it is good for every error of the table");
     CHECK_CLOSE(work_error(w, w->exact), 5 * w->uncertainty, 0, "no error below what it is known to");
@@ -191,7 +260,7 @@ static void exact_end_of_a_scene(work *w)
         coarse = moves ? work_error(w, y) : INFINITY;
     }
     work_run(w, rk4, (work_effort){.steps = n}, 1, y);
-    CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, w->equation.damped ? 0.2 : 0.1,
+    CHECK_CLOSE(log2(coarse / work_error(w, y)), 4, w->damped ? 0.2 : 0.1,
                 "fourth order, toward it: terms of the next one are h times smaller, by rates of decay if damped");
     y[0] = NAN;
     CHECK(!(work_error(w, y) <= 1), "NaN is no small error");
@@ -213,7 +282,7 @@ static void stiffness_of_frames(void)
 
 static double xpbd_error(work *w, uint64_t substeps_of_a_frame, double *rms)
 {
-    const work_solver *s = work_solver_at(SPRING_METHOD_COUNT + 1);
+    const work_solver *s = work_solver_at(SPRING_METHOD_COUNT + 2);
     double *y = scene_room(w->size, sizeof *y), sum = 0;
     const uint64_t n = (uint64_t)rint(w->duration * 60) * substeps_of_a_frame;
     CHECK(strcmp(s->name, "xpbd") == 0 && work_applies(w, s), "it is for this scene");
@@ -285,7 +354,9 @@ int main(void)
         {"force evaluations of scenes, by a callback", scenes_count},
         {"a scene that counts moves like one that does not", scenes_counted},
         {"leapfrog with a callback that may use velocities", predicted_velocity},
-        {"force evaluations of GSL and SUNDIALS", counts_of_external_solvers},
+        {"force evaluations of external solvers", counts_of_external_solvers},
+        {"external solvers converge with their order", external_solvers_converge},
+        {"forces that depend on velocities", some_forces_use_velocities},
         {"one equation of a scene", scenes_equation},
         {"the exact end of a scene", scenes_exact},
         {"the exact end of a spring", springs_exact},

@@ -2,24 +2,30 @@
 """spring-work and spring-bench: what they measure and how they judge it; how long it takes is nobody's promise."""
 import functools
 import math
+import pathlib
 
 import pytest
-from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, table
+from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, run, table
+
+SUNDIALS = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'sundials'
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
 PEERS = {'gsl-rk4': 11, 'gsl-rk8pd': 13, 'arkode-rk4': 4, 'arkode-8': 13}  # evaluations a step
+ODEINT = {'odeint-rkf78': 13, 'odeint-sb3a-m4': 5}  # where Boost is installed
 
 
 @pytest.fixture(scope='module', params=['ideal-1', 'elastic-pendulum'])
 def work(request, tmp_path_factory):
     """A problem, its rows, and its table as text."""
     path = tmp_path_factory.mktemp('work') / 'table.tsv'
-    return request.param, table(WORK, '--problem', request.param, '--quick', '--table', path), path.read_text()
+    forces = path.with_name('forces.tsv')
+    rows = table(WORK, '--problem', request.param, '--quick', '--table', path, '--forces', forces)
+    return request.param, rows, path.read_text(), parse(forces.read_text())
 
 
 def test_work_rows(work):
-    problem, rows, _ = work
+    problem, rows, *_ = work
     fixed = 'problem solver steps force_evaluations time_s error'.split()
     assert list(rows[0])[:len(fixed)] == fixed
     assert {row['problem'] for row in rows} == {problem}
@@ -31,15 +37,17 @@ def test_work_rows(work):
 
 def cost(solver):
     """Of our own as spring-order says."""
-    if solver in PEERS:
-        return PEERS[solver]
+    if solver in PEERS | ODEINT:
+        return (PEERS | ODEINT)[solver]
     row, = table(ORDER, '--method', solver, '--n-min', '1', '--n-max', '1')
     return int(row['force_evaluations'])
 
 
-@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS])
+@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS, *ODEINT])
 def test_force_evaluations_of_fixed_steps(solver, work):
     rows = [row for row in work[1] if row['solver'] == solver]
+    if solver in ODEINT and not any(row['solver'].startswith('odeint-') for row in work[1]):
+        pytest.skip('built without Boost.odeint')
     assert rows
     first = [int(row['force_evaluations']) - cost(solver) * int(row['steps']) for row in rows]
     assert set(first) <= {0, 1}  # one more at the start
@@ -48,7 +56,30 @@ def test_force_evaluations_of_fixed_steps(solver, work):
 def test_stamp_of_the_table(work, tmp_path_factory):
     text = work[2]
     assert str(tmp_path_factory.getbasetemp()) not in text
-    assert [what for what in ('compiler', 'flags', 'processor', 'load') if f'# {what}:' not in text] == []
+    assert [what for what in ('compiler', 'flags', 'processor', 'load', 'gsl', 'sundials', 'odeint') if f'# {what}:' not in text] == []
+
+
+def test_forces(work):
+    problem, _, _, forces = work
+    assert [(row['problem'], row['evaluation'], row['links']) for row in forces] == [
+        (problem, who, '1') for who in ('springstep', 'others')]
+    ours, *_ = times = [float(row['time_ns']) for row in forces]
+    assert min(times) > 0 and all(about(float(row['ratio']), time / ours) for row, time in zip(forces, times))
+
+
+def test_softened_and_xpbd_start_with_a_step_a_frame():
+    rows = table(WORK, '--quick', '--problem', 'stiff-rope')
+    for solver in 'leapfrog-softened', 'xpbd':
+        first, *more = [row for row in rows if row['solver'] == solver]
+        assert first['steps'] == '15' and float(first['stretch']) > 0 and float(first['energy_error']) > 0
+        assert float(more[-1]['error']) < float(first['error'])
+
+
+@pytest.mark.parametrize('args', [[], ['--nonsense'], ['one', 'two']])
+def test_usage_of_the_build_of_sundials(args):
+    result = run(SUNDIALS, *args)
+    assert (result.returncode, result.stdout) == (2, '')
+    assert result.stderr.startswith('usage: tools/bench/sundials DIRECTORY')
 
 
 def cheapest(rows, error, among):
@@ -62,12 +93,12 @@ def cheapest(rows, error, among):
 
 
 def test_levels_of_the_table(work):
-    problem, rows, text = work
+    problem, rows, text, _ = work
     levels = parse(text)
     assert [(row['problem'], row['error']) for row in levels] == [(problem, f'1e-{n}') for n in range(1, 13)]
     for row in levels:
         for solver, time, among in (('solver', 'time_s', lambda name: name in SCENE_STEPPERS),
-                                    ('peer', 'peer_time_s', lambda name: name not in [*SCENE_STEPPERS, 'exact', 'xpbd'])):
+                                    ('peer', 'peer_time_s', lambda name: name not in [*SCENE_STEPPERS, 'exact', 'leapfrog-softened', 'xpbd'])):
             least, names = cheapest(rows, float(row['error']), among)
             assert row[time] == least and row[solver] in names
         ratio = float(row['peer_time_s']) / float(row['time_s'])

@@ -2,6 +2,7 @@
 /* GSL's Runge-Kutta methods; see ode.h. */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
+#include <gsl/gsl_version.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -73,4 +74,9 @@ const char *ode_gsl_rk4_adaptive(ode *o, double *y, double duration, double tole
 const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance)
 {
     return adaptive(gsl_odeiv2_step_rk8pd, o, y, duration, tolerance);
+}
+
+const char *ode_gsl_version(void)
+{
+    return gsl_version;
 }

@@ -5,12 +5,16 @@
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
+#include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include <math.h>
+
 #include "harness/ode.h"
+#include "harness/plain_sum.h"
 
 /* Names are those of 7.1, which calls the older ones deprecated. */
 #if SUNDIALS_VERSION_MAJOR < 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR < 1)
@@ -245,3 +249,47 @@ const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
     return message;
 }
 #endif
+
+const char *ode_sundials_version(void)
+{
+    static char version[32];
+    return SUNDIALSGetVersion(version, sizeof version) == 0 ? version : "unknown";
+}
+
+/* The least of some times: other processes can only make them longer. */
+static double sum_ratio(double (*clock)(void), N_Vector x, N_Vector y, N_Vector z)
+{
+    const int samples = 20, sums = 50;
+    const size_t n = (size_t)N_VGetLength(x);
+    const double a = 0.7, b = -1.3; /* neither is 1 or -1, which have loops of their own */
+    double theirs = INFINITY, plain = INFINITY;
+    for (int i = 0; i < samples; i++) {
+        const double begin = clock();
+        for (int k = 0; k < sums; k++)
+            N_VLinearSum(a, x, b, y, z);
+        const double between = clock();
+        for (int k = 0; k < sums; k++)
+            plain_sum(n, a, N_VGetArrayPointer(x), b, N_VGetArrayPointer(y), N_VGetArrayPointer(z));
+        theirs = fmin(theirs, between - begin);
+        plain = fmin(plain, clock() - between);
+    }
+    return theirs / plain;
+}
+
+double ode_sundials_slowness(double (*clock)(void))
+{
+    double room[1000], ratio = -1;
+    const ode o = {.size = sizeof room / sizeof room[0], .scale = room};
+    session s;
+    for (size_t i = 0; i < o.size; i++)
+        room[i] = 1 + (double)i;
+    if (open_session(&s, &o, room, 1) == NULL) {
+        N_Vector sum = N_VClone(s.y);
+        if (sum != NULL) {
+            ratio = sum_ratio(clock, s.y, s.tolerance, sum);
+            N_VDestroy(sum);
+        }
+    }
+    close_session(&s);
+    return ratio;
+}

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-work: time against error, for every stepper of the library and for GSL and SUNDIALS on the same problems.
+ * spring-work: time against error, for every stepper of the library and for GSL, SUNDIALS and Boost.odeint on the same
+ * problems.
  *
  * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five
  *           times, or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers
@@ -19,45 +20,56 @@
 
 /* -------------------------------------------------------------------------------------------- the command line */
 
-enum { MOST_PROBLEMS = 32, MOST_ROWS = 1024 }; /* rows of one problem */
+enum { MOST_PROBLEMS = 32, MOST_ROWS = 4096 }; /* rows of one problem */
 
 static const char *problem_names[MOST_PROBLEMS + 1]; /* ended by NULL */
 static int only_problem = -1;
 static bool quick;
-static const char *table_file;
+static const char *table_file, *forces_file;
 
 static const cli_option options[] = {
     {"problem", CLI_CHOICE, .choice = &only_problem, .choices = problem_names, .value = "NAME",
      .help = "only this problem"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer points, none that takes long; not stiff-cloth, damped-cloth"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer points, none that takes long"},
     {"table", CLI_FILE, .file = &table_file, .value = "FILE",
      .help = "write the cheapest stepper and external solver for every error, too"},
+    {"forces", CLI_FILE, .file = &forces_file, .value = "FILE",
+     .help = "write what one evaluation of forces takes in each problem, too"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-work",
-    .summary = "Time against error of every stepper, compared with GSL and SUNDIALS, in one run.",
+    .summary = "Time against error of every stepper, compared with GSL, SUNDIALS and odeint, in one run.",
     .details = "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
                "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
                "times as heavy) and damped-cloth (16 x 16) have such links that sqrt(L)/60 Hz = 50, where L is the\n"
                "bound of spring_scene_stable_step(); damped-cloth has damping/mass/60 Hz = 100, too.\n\n"
                "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
-               "the duration, which evaluates no forces; xpbd takes substeps of one iteration over all links, as\n"
-               "game engines do, in scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
+               "the duration, which evaluates no forces; leapfrog-softened lowers stiffness until the step is 0.95\n"
+               "of the stable step; xpbd takes substeps of one iteration over all links, as game engines do; both in\n"
+               "scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
+               "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are there if Boost was when this was built.\n"
+               "odeint-sb3a-m4 is symplectic, for problems without drag and damping.\n"
                "A run that explodes, or is off by more than three times the size of the motion, has no row.",
-    .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty",
-    .meaning = "force_evaluations are those of one spring with the library by definition, all others counted; time_s\n"
-               "is the shortest of five loops, in which nothing is set up; error is |(x, v/omega) - exact| relative\n"
-               "to the size of the motion, error_x is |x - exact x| [m] (nan: a scene). effort is sweep (of steps or\n"
-               "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
-               "from which on the error in x never exceeds Euler's at 10^7 steps) or crossing (the last number of\n"
-               "evaluations with which leapfrog is ahead of RK4, and the next one). tolerance is 0 for fixed steps,\n"
-               "energy_error relative to the energy at the start (nan: a scene), uncertainty that of the exact end\n"
-               "of a scene: an error of five times that is an upper bound, and not resolved.\n\n"
-               "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
-               "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL and SUNDIALS (peer,\n"
-               "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.",
+    .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
+               "stretch",
+    .meaning =
+        "force_evaluations are those of one spring with the library by definition, all others counted; time_s\n"
+        "is the shortest of five loops, in which nothing is set up; error is |(x, v/omega) - exact| relative\n"
+        "to the size of the motion, error_x is |x - exact x| [m] (nan: a scene). effort is sweep (of steps or\n"
+        "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
+        "from which on the error in x never exceeds Euler's at 10^7 steps) or crossing (the last number of\n"
+        "evaluations with which leapfrog is ahead of RK4, and the next one). tolerance is 0 for fixed steps,\n"
+        "energy_error is relative to the energy at the start, of a scene to the kinetic energy at the end (nan:\n"
+        "a callback adds forces). uncertainty is that of the exact end of a scene: an error of five times that is\n"
+        "an upper bound, and not resolved. stretch is the largest length/rest length of a link, less 1.\n\n"
+        "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
+        "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL, SUNDIALS and odeint (peer,\n"
+        "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.\n\n"
+        "--forces: time_ns is one evaluation: of springstep a step of leapfrog over its evaluations, of others the\n"
+        "function that GSL, SUNDIALS and odeint evaluate, of xpbd a substep. links is the number of links (1: a\n"
+        "spring), ratio is time_ns over that of springstep.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
@@ -116,8 +128,9 @@ static double measure(cli_table *table, work *w, const work_solver *s, work_effo
             scene && s->side == WORK_STEPPER ? work_count(w, s->method, e.steps) : r.evaluations;
         const double error_x = scene ? NAN : fabs(y[0] - w->exact[0]), energy_error = work_energy_error(w, y);
         const double time = time_of(w, s, e, r.spent, y);
-        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g", w->problem->name,
-                s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance, energy_error, w->uncertainty);
+        cli_row(table, "%s\t%s\t%" PRIu64 "\t%" PRIu64 "\t%.4g\t%.17g\t%.17g\t%s\t%.4g\t%.17g\t%.3g\t%.6g",
+                w->problem->name, s->name, r.steps, evaluations, time, error, error_x, why, e.tolerance, energy_error,
+                w->uncertainty, work_stretch(w, y));
         remember(s, r.steps, time, error);
     }
     free(y);
@@ -131,14 +144,35 @@ static double longest(const work *w)
     return w->problem->longest * (quick ? 0.1 : 1);
 }
 
+/* No external solver was nearer to the exact end than the last row of this one. */
+static bool leads(const work_solver *s)
+{
+    if (row_count == 0 || rows[row_count - 1].solver != s || s->side != WORK_EXTERNAL)
+        return false;
+    for (size_t i = 0; i + 1 < row_count; i++)
+        if (rows[i].solver->side == WORK_EXTERNAL && rows[i].error <= rows[row_count - 1].error)
+            return false;
+    return true;
+}
+
+/* Whether a sweep goes on after a run that took so long. External solvers have more time while they lead, so that small
+   errors have an opponent, and if they choose their steps, for they take long at any tolerance. */
+static bool goes_on(const work *w, const work_solver *s, double spent)
+{
+    const double more = 4;
+    return spent <= longest(w) || (spent <= more * longest(w) && (s->adaptive != NULL || leads(s)));
+}
+
 static void sweep_steps(cli_table *table, work *w, const work_solver *s)
 {
     const double finest = quick ? fmax(w->finest, w->duration / 2e6) : w->finest;
-    const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(2); /* of a scene: infinity */
-    double n = ceil(w->duration / w->coarsest), spent = 0;
-    for (; n < most * 0.999 && spent <= longest(w); n = ceil(n * factor))
+    const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* of a scene: infinity */
+    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED;             /* from one a frame on */
+    double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
+           spent = 0;
+    for (; n < most * 0.999 && goes_on(w, s, spent); n = ceil(n * factor))
         spent = measure(table, w, s, (work_effort){.steps = (uint64_t)n}, "sweep");
-    if (spent <= longest(w))
+    if (goes_on(w, s, spent))
         measure(table, w, s, (work_effort){.steps = (uint64_t)most}, "sweep");
 }
 
@@ -146,7 +180,7 @@ static void sweep_tolerances(cli_table *table, work *w, const work_solver *s)
 {
     const double tightest = quick ? 1e-9 : 1e-14, factor = quick ? 100 : sqrt(10);
     double spent = 0;
-    for (double tolerance = 1e-2; tolerance > 0.9 * tightest && spent <= longest(w); tolerance /= factor)
+    for (double tolerance = 1e-2; tolerance > 0.9 * tightest && goes_on(w, s, spent); tolerance /= factor)
         spent = measure(table, w, s, (work_effort){.tolerance = tolerance}, "sweep");
 }
 
@@ -228,14 +262,67 @@ static void write_levels(cli_table *table, const work *w)
     }
 }
 
+/* --------------------------------------------------------------------------------------------------- the forces */
+
+typedef struct force_times {
+    double ours, others, xpbd; /* [ns] */
+} force_times;
+
+/* Loops of each, by turns, and the shortest: interruptions and clock rates are the same for all. */
+static force_times time_forces(work *w)
+{
+    /* Leapfrog handles heavy damping apart from other forces. */
+    const spring_method m = w->damped ? SPRING_SYMPLECTIC_EULER : SPRING_LEAPFROG;
+    const int loops = quick ? 10 : 50;
+    const bool scene = w->problem->kind == WORK_SCENE;
+    const uint64_t n = w->size > 100 ? 50 : 5000, ours = scene ? work_count(w, m, n) : n;
+    double *y = scene_room(w->size, sizeof *y), *dy = scene_room(w->size, sizeof *dy);
+    force_times t = {INFINITY, INFINITY, w->xpbd != NULL ? INFINITY : NAN};
+    const double duration = w->duration;
+    w->clock = timing_now;
+    w->duration = fmin(duration, (double)n * w->coarsest / 20); /* stable */
+    for (int i = 0; i < loops; i++) {
+        t.ours =
+            fmin(t.ours, 1e9 * work_run(w, work_solver_of(m), (work_effort){.steps = n}, 1, y).spent / (double)ours);
+        const double begin = timing_now();
+        for (uint64_t k = 0; k < n; k++)
+            w->derivative(0, w->start, dy, w->data);
+        t.others = fmin(t.others, (timing_now() - begin) / (double)n);
+        if (w->xpbd != NULL) {
+            work_xpbd_start(w->xpbd, &w->scene, w->duration / (double)n);
+            const double start = timing_now();
+            work_xpbd_advance(w->xpbd, n);
+            t.xpbd = fmin(t.xpbd, (timing_now() - start) / (double)n);
+        }
+    }
+    w->duration = duration;
+    free(y);
+    free(dy);
+    return t;
+}
+
+static void write_forces(cli_table *table, work *w)
+{
+    const force_times t = time_forces(w);
+    const size_t links = w->problem->kind == WORK_SCENE ? w->scene.def.links : 1;
+    const struct {
+        const char *name;
+        double time;
+    } row[] = {{"springstep", t.ours}, {"others", t.others}, {"xpbd", t.xpbd}};
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
+        if (!isnan(row[i].time))
+            cli_row(table, "%s\t%s\t%zu\t%.4g\t%.4g\t%.4g", w->problem->name, row[i].name, links, row[i].time,
+                    row[i].time / (double)links, row[i].time / t.ours);
+}
+
 /* ---------------------------------------------------------------------------------------------------- the work */
 
-static void work_on(cli_table *table, cli_table *levels, const work_problem *problem)
+static void work_on(cli_table *table, cli_table *levels, cli_table *forces, const work_problem *problem)
 {
     work w;
     work_open(&w, problem);
     row_count = 0;
-    for (size_t i = 0; i < WORK_SOLVERS; i++) {
+    for (size_t i = 0; i < work_solver_count; i++) {
         const work_solver *s = work_solver_at(i);
         if (!work_applies(&w, s))
             continue;
@@ -248,6 +335,8 @@ static void work_on(cli_table *table, cli_table *levels, const work_problem *pro
     }
     if (levels != NULL && problem->kind != WORK_STUDY)
         write_levels(levels, &w);
+    if (forces != NULL)
+        write_forces(forces, &w);
     if (problem->kind == WORK_STUDY)
         equal_error(table, &w);
     if (problem->periods > 0)
@@ -255,14 +344,32 @@ static void work_on(cli_table *table, cli_table *levels, const work_problem *pro
     work_close(&w);
 }
 
-static cli_table *open_levels(void)
+/* The versions of the others, and whether SUNDIALS is as fast as it can be. */
+static void stamp_versions(cli_table *table)
 {
-    if (table_file == NULL)
+    static double slowness;
+    if (!(slowness > 0))
+        slowness = ode_sundials_slowness(timing_now);
+    cli_comment(table, "gsl: %s", ode_gsl_version());
+    cli_comment(table, "sundials: %s%s", ode_sundials_version(), slowness >= ODE_UNOPTIMISED ? ", unoptimised" : "");
+    cli_comment(table, "sundials_vector_sum: %.2g times a plain loop", slowness);
+#ifdef SPRING_ODEINT
+    cli_comment(table, "odeint: Boost %s", ode_odeint_version());
+#else
+    cli_comment(table, "odeint: none");
+#endif
+}
+
+/* NULL: not asked for. */
+static cli_table *open_further(const char *option, const char *path, const char *columns)
+{
+    if (path == NULL)
         return NULL;
-    cli_table *levels = cli_open_file("table", table_file);
-    timing_stamp(levels);
-    cli_columns(levels, "problem error solver dt_s time_s peer peer_time_s ratio steps exact_time_s");
-    return levels;
+    cli_table *table = cli_open_file(option, path);
+    timing_stamp(table);
+    stamp_versions(table);
+    cli_columns(table, columns);
+    return table;
 }
 
 int main(int argc, char **argv)
@@ -272,12 +379,15 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
+    stamp_versions(table);
     cli_columns(table, program.columns);
-    cli_table *levels = open_levels();
+    cli_table *levels =
+        open_further("table", table_file, "problem error solver dt_s time_s peer peer_time_s ratio steps exact_time_s");
+    cli_table *forces = open_further("forces", forces_file, "problem evaluation links time_ns link_ns ratio");
     for (size_t i = 0; i < work_problem_count; i++) {
-        const bool chosen = only_problem < 0 ? !(quick && work_problems[i].slow) : i == (size_t)only_problem;
+        const bool chosen = only_problem < 0 || i == (size_t)only_problem;
         if (chosen)
-            work_on(table, levels, &work_problems[i]);
+            work_on(table, levels, forces, &work_problems[i]);
         cli_progress((double)(i + 1) / (double)work_problem_count);
     }
     cli_finish();

@@ -27,6 +27,8 @@ typedef enum work_kind {
     WORK_SCENE   /* for spring_scene_advance() */
 } work_kind;
 
+typedef void work_derivative(double t, const double *y, double *dy, const void *data); /* as in ode.h */
+
 typedef struct work_problem {
     const char *name;
     work_kind kind;
@@ -42,12 +44,16 @@ typedef struct work_problem {
     /* a scene: a case of the harness, or one of its own */
     const char *harness;
     const scene_case *own;
+    work_derivative *derivative; /* of few particles: written out for them */
     uint64_t reference_steps;
-    bool slow; /* takes seconds: a quick run leaves it out unless it is chosen */
 } work_problem;
 
 extern const work_problem work_problems[];
 extern const size_t work_problem_count;
+
+typedef struct work_constants {        /* of equations that are written out */
+    double omega2, gamma, accel, rest; /* as in batch.h; [m] */
+} work_constants;
 
 /* A problem that is open. */
 typedef struct work {
@@ -62,8 +68,11 @@ typedef struct work {
     double (*clock)(void);   /* [ns] by which runs are timed */
 
     /* what external solvers integrate */
-    void (*derivative)(double t, const double *y, double *dy, const void *data);
+    work_derivative *derivative;
     const void *data;
+    work_constants constants;
+    bool damped;        /* a link is */
+    bool uses_velocity; /* the forces depend on velocities */
 
     reference reference; /* of a spring */
 
@@ -81,11 +90,18 @@ typedef struct work {
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED where it cannot be done */
 void work_close(work *w);
 
+/* As it is at the start, in memory of its own; exits where it cannot be done. */
+spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes);
+
 /* Relative to the motion; never below what the exact end is known to. */
 double work_error(const work *w, const double *y);
 
-/* |energy - exact energy| relative to that at the start, of a spring; NaN of a scene. */
+/* |energy - exact energy|, of a spring relative to the energy at the start, of a scene to its kinetic energy at the exact
+   end; NaN if a callback adds forces. */
 double work_energy_error(const work *w, const double *y);
+
+/* The largest length of a link relative to its rest length, less 1; NaN on one axis. */
+double work_stretch(const work *w, const double *y);
 
 typedef struct work_effort { /* what is varied: one of them */
     uint64_t steps;
@@ -97,7 +113,8 @@ typedef enum work_side {
     WORK_EXACT,   /* the exact solution: no stepper */
     WORK_STAGES,  /* the original study's arithmetic, on its problem */
     WORK_EXTERNAL,
-    WORK_XPBD /* no solver of differential equations, but what game engines do */
+    WORK_SOFTENED, /* leapfrog, with links that are softened until the step is stable: another scene */
+    WORK_XPBD      /* no solver of differential equations, but what game engines do */
 } work_side;
 
 typedef struct work_result {
@@ -117,11 +134,13 @@ struct work_solver {
     /* of an external solver, one of them */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
+    int order;           /* with fixed steps */
+    bool positions_only; /* forces may not depend on velocities */
 };
 
-enum { WORK_EXTERNAL_SOLVERS = 9, WORK_SOLVERS = SPRING_METHOD_COUNT + 2 + WORK_EXTERNAL_SOLVERS };
+extern const size_t work_solver_count;
 
-/* Each method by its name, rk4-stages, xpbd, and the external solvers. */
+/* Each method by its name, rk4-stages, leapfrog-softened, xpbd, and the external solvers: those of odeint where it was found. */
 const work_solver *work_solver_at(size_t i);
 
 /* The solver that is a method. */

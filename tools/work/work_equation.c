@@ -1,133 +1,241 @@
 /* SPDX-License-Identifier: MIT */
-/* The right-hand side that GSL and SUNDIALS integrate for a scene; see work_equation.h. */
+/* The right-hand side of ropes and sheets; see work_equation.h. */
 #include "work_equation.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "work_lanes.h"
 
-#include "harness/link.h"
+enum {
+    TILE = 8
+}; /* vectors whose forces are computed before they are added up, so that they are in the cache, and stored */
 
-static void tie(work_equation *e, const scene_problem *p, const spring_link *l, uint32_t moving, uint32_t held,
-                const uint32_t *number)
+/* The band of a link; the number of bands if it has none yet. */
+static size_t band_of(const work_equation *e, const spring_link *l)
 {
-    work_tie *t = &e->tie[e->ties++];
-    *t = (work_tie){.a = number[moving], .stiffness = l->stiffness, .damping = l->damping, .rest = l->rest};
-    /* on one axis the force is k (x_b - x_a - rest): seen from b the rest length has the other sign */
-    if (e->axes == 1 && moving == l->b)
-        t->rest = -l->rest;
-    for (size_t d = 0; d < e->axes; d++)
-        t->point[d] = p->position[held * e->axes + d];
+    size_t b = 0;
+    while (b < e->bands && e->band[b].offset != l->b - l->a)
+        b++;
+    return b;
 }
 
-void work_equation_init(work_equation *e, const scene_problem *p)
+/* Finds the bands. */
+static bool find_bands(work_equation *e, const scene_problem *p)
 {
-    const spring_scene_def *def = &p->def;
-    uint32_t *number = scene_room(def->particles, sizeof *number);
-    *e = (work_equation){.axes = def->axes, .drag = def->drag, .force = def->force, .user = def->user};
-    memcpy(e->gravity, def->gravity, sizeof e->gravity);
-    e->link = scene_room(def->links, sizeof *e->link);
-    e->tie = scene_room(def->links, sizeof *e->tie);
-    e->per_mass = scene_room(def->particles, sizeof *e->per_mass);
-    for (size_t i = 0; i < def->particles; i++)
-        if (!p->pinned[i]) {
-            e->per_mass[e->particles] = 1 / p->mass[i];
-            number[i] = (uint32_t)e->particles++;
-        }
-    for (size_t i = 0; i < def->links; i++) {
+    for (size_t i = 0; i < p->def.links; i++) {
         const spring_link *l = &p->link[i];
+        if (!(l->a < l->b))
+            return false;
+        const size_t b = band_of(e, l);
+        if (b == WORK_BANDS)
+            return false;
+        if (b == e->bands)
+            e->band[e->bands++] = (work_band){.offset = l->b - l->a, .rest = l->rest};
+        if (!(fabs(e->band[b].rest - l->rest) <= 0))
+            return false;
         e->damped = e->damped || l->damping > 0;
-        if (!p->pinned[l->a] && !p->pinned[l->b])
-            e->link[e->links++] = (work_link){number[l->a], number[l->b], l->stiffness, l->damping, l->rest};
-        else if (!p->pinned[l->a])
-            tie(e, p, l, l->a, l->b, number);
-        else if (!p->pinned[l->b])
-            tie(e, p, l, l->b, l->a, number);
     }
-    free(number);
+    return true;
+}
+
+bool work_equation_applies(const scene_problem *p)
+{
+    work_equation e = {0};
+    return (p->def.axes == 1 || p->def.axes == WORK_AXES) && p->def.force == NULL && find_bands(&e, p);
+}
+
+/* Sets up arrays that may be read before the first slot and behind the last one: there are no links. */
+static void make_arrays(work_equation *e, const scene_problem *p)
+{
+    size_t widest = 0;
+    for (size_t b = 0; b < e->bands; b++)
+        widest = e->band[b].offset > widest ? e->band[b].offset : widest;
+    e->vectors = (p->def.particles + LANES - 1) / LANES;
+    const size_t margin = (widest + LANES) / LANES * LANES, stride = margin + e->vectors * LANES + margin;
+    double *next = e->memory = aligned_room((3 * WORK_AXES + 1 + (WORK_AXES + 2) * WORK_BANDS) * stride * sizeof *next);
+    next += margin;
+    for (size_t d = 0; d < WORK_AXES; d++) {
+        e->x[d] = next, next += stride;
+        e->v[d] = next, next += stride;
+        e->a[d] = next, next += stride;
+    }
+    e->inverse_mass = next, next += stride;
+    for (size_t b = 0; b < e->bands; b++) {
+        e->band[b].stiffness = next, next += stride;
+        e->band[b].damping = next, next += stride;
+        for (size_t d = 0; d < WORK_AXES; d++)
+            e->band[b].force[d] = next, next += stride;
+    }
+}
+
+static void find_runs(work_equation *e, const scene_problem *p)
+{
+    e->run = scene_room(p->def.particles, sizeof *e->run);
+    for (size_t i = 0; i < p->def.particles; i++) {
+        if (p->pinned[i])
+            continue;
+        if (i == 0 || p->pinned[i - 1])
+            e->run[e->runs++] = (work_segment){.first = i, .moving = e->moving};
+        e->run[e->runs - 1].count++;
+        e->moving++;
+    }
+}
+
+void work_equation_init(work_equation *e, scene_problem *p)
+{
+    *e = (work_equation){.axes = p->def.axes, .drag = p->def.drag};
+    memcpy(e->gravity, p->def.gravity, sizeof e->gravity);
+    find_bands(e, p);
+    make_arrays(e, p);
+    find_runs(e, p);
+    for (size_t i = 0; i < p->def.particles; i++) {
+        e->inverse_mass[i] = 1 / p->mass[i];
+        for (size_t d = 0; d < e->axes; d++)
+            e->x[d][i] = p->position[e->axes * i + d];
+    }
+    for (size_t i = 0; i < p->def.links; i++) {
+        const spring_link *l = &p->link[i];
+        const work_band *band = &e->band[band_of(e, l)];
+        band->stiffness[l->a] = l->stiffness;
+        band->damping[l->a] = l->damping;
+    }
+    for (size_t d = 0; d < e->axes; d++)
+        for (const work_segment *r = e->run; r < e->run + e->runs; r++)
+            for (size_t i = 0; i < r->count; i++)
+                p->coordinate[d * e->moving + r->moving + i] = e->axes * (r->first + i) + d;
 }
 
 void work_equation_clear(work_equation *e)
 {
-    free(e->link);
-    free(e->tie);
-    free(e->per_mass);
+    free(e->run);
+    free(e->memory);
 }
 
-typedef struct end { /* of a link */
-    const double *x, *v;
-    double *sum; /* of forces */
-} end;
+/* ------------------------------------------------------------------------------------------------------- forces */
 
-/* Adds the force of a link to the sums of both ends. */
-static inline void add_link(size_t axes, bool damped, end a, end b, double stiffness, double damping, double rest)
+/* Of the links of a band that begin in eight slots. */
+INLINE void find_forces(size_t axes, bool damped, const work_equation *e, const work_band *band, size_t at,
+                        const lanes *x, const lanes *v)
 {
-    double delta[3] = {0}, relative[3] = {0};
+    const double smallest = 1e-30; /* [m^2] slots without a link may be at one place: no NaN */
+    lanes delta[WORK_AXES], other, stiffness, damping, scale, square = {0}, rate = {0}, inverse;
+    LOAD(stiffness, band->stiffness + at);
+    LOAD(damping, band->damping + at);
+    UNROLL
     for (size_t d = 0; d < axes; d++) {
-        delta[d] = b.x[d] - a.x[d];
-        relative[d] = damped ? b.v[d] - a.v[d] : 0;
+        LOAD(other, e->x[d] + at + band->offset);
+        delta[d] = other - x[d];
+        square += delta[d] * delta[d];
+        if (damped) {
+            LOAD(other, e->v[d] + at + band->offset);
+            rate += delta[d] * (other - v[d]);
+        }
     }
-    const link_force f = link_evaluate(axes, delta, relative, stiffness, damped ? damping : 0, rest);
+    if (axes == 1) {
+        delta[0] = stiffness * (delta[0] - band->rest);
+        STORE(band->force[0] + at, delta[0]);
+        return;
+    }
+    square += smallest;
+    inverse_root(&square, &inverse);
+    scale = stiffness * (1 - band->rest * inverse);
+    if (damped)
+        scale += damping * rate * inverse * inverse;
+    UNROLL
     for (size_t d = 0; d < axes; d++) {
-        a.sum[d] += f.force[d];
-        b.sum[d] -= f.force[d];
+        delta[d] *= scale;
+        STORE(band->force[d] + at, delta[d]);
     }
 }
 
-/* Called with constants, so that the compiler writes a loop for each number of axes, with damping and without. */
-static inline void add_forces(size_t axes, bool damped, const work_equation *e, const double *x, const double *v,
-                              double *sum)
+INLINE void accelerate(size_t axes, const work_equation *e, size_t at)
 {
-    static const double still[3] = {0};
-    double unused[3] = {0};
-    for (const work_link *l = e->link; l < e->link + e->links; l++) {
-        const size_t a = axes * l->a, b = axes * l->b;
-        add_link(axes, damped, (end){x + a, v + a, sum + a}, (end){x + b, v + b, sum + b}, l->stiffness, l->damping,
-                 l->rest);
+    lanes inverse_mass;
+    LOAD(inverse_mass, e->inverse_mass + at);
+    UNROLL
+    for (size_t d = 0; d < axes; d++) {
+        lanes sum, v, lower, upper;
+        LOAD(v, e->v[d] + at);
+        sum = -e->drag * v;
+        for (size_t b = 0; b < e->bands; b++) {
+            LOAD(lower, e->band[b].force[d] + at);
+            LOAD(upper, e->band[b].force[d] + at - e->band[b].offset);
+            sum += lower - upper;
+        }
+        sum = sum * inverse_mass + e->gravity[d];
+        STORE(e->a[d] + at, sum);
     }
-    for (const work_tie *t = e->tie; t < e->tie + e->ties; t++) {
-        const size_t a = axes * t->a;
-        add_link(axes, damped, (end){x + a, v + a, sum + a}, (end){t->point, still, unused}, t->stiffness, t->damping,
-                 t->rest);
-    }
-    for (size_t i = 0; i < axes * e->particles && e->drag > 0; i++)
-        sum[i] -= e->drag * v[i];
 }
 
-static void add_forces_of(const work_equation *e, const double *x, const double *v, double *sum)
+INLINE void find_accelerations(size_t axes, bool damped, const work_equation *e)
+{
+    for (size_t first = 0; first < e->vectors; first += TILE) {
+        const size_t end = first + TILE < e->vectors ? first + TILE : e->vectors;
+        for (size_t i = first; i < end; i++) {
+            lanes x[WORK_AXES], v[WORK_AXES];
+            UNROLL
+            for (size_t d = 0; d < axes; d++) {
+                LOAD(x[d], e->x[d] + LANES * i);
+                LOAD(v[d], e->v[d] + LANES * i);
+            }
+            for (size_t b = 0; b < e->bands; b++)
+                find_forces(axes, damped, e, &e->band[b], LANES * i, x, v);
+        }
+        for (size_t i = first; i < end; i++)
+            accelerate(axes, e, LANES * i);
+    }
+}
+
+/* A loop for each number of axes, with damping and without. */
+INLINE void accelerations_of(const work_equation *e)
 {
     if (e->axes == 1)
-        add_forces(1, true, e, x, v, sum);
-    else if (e->axes == 2)
-        add_forces(2, true, e, x, v, sum);
+        find_accelerations(1, false, e);
     else if (e->damped)
-        add_forces(3, true, e, x, v, sum);
+        find_accelerations(WORK_AXES, true, e);
     else
-        add_forces(3, false, e, x, v, sum);
+        find_accelerations(WORK_AXES, false, e);
 }
 
-static inline void divide(size_t axes, const work_equation *e, double *sum)
+#if defined(__x86_64__)
+__attribute__((target("avx512f,avx512dq,avx512vl,fma"))) static void with_avx512(const work_equation *e)
 {
-    for (size_t i = 0; i < e->particles; i++)
-        for (size_t d = 0; d < axes; d++)
-            sum[axes * i + d] = sum[axes * i + d] * e->per_mass[i] + e->gravity[d];
+    accelerations_of(e);
+}
+
+__attribute__((target("avx2,fma"))) static void with_avx2(const work_equation *e)
+{
+    accelerations_of(e);
+}
+#endif
+
+static void dispatch(const work_equation *e)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+        with_avx512(e);
+        return;
+    }
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        with_avx2(e);
+        return;
+    }
+#endif
+    accelerations_of(e);
 }
 
 void work_equation_derivative(double t, const double *y, double *dy, const void *data)
 {
     const work_equation *e = data;
-    const size_t moving = e->axes * e->particles;
-    const double *x = y, *v = y + moving;
-    double *sum = dy + moving;
-    memcpy(dy, v, moving * sizeof *dy);
-    memset(sum, 0, moving * sizeof *sum);
-    add_forces_of(e, x, v, sum);
-    if (e->force != NULL)
-        e->force(e->user, t, e->particles, (const double *const[3]){x}, (const double *const[3]){v},
-                 (double *const[3]){sum});
-    if (e->axes == 1)
-        divide(1, e, sum);
-    else if (e->axes == 2)
-        divide(2, e, sum);
-    else
-        divide(3, e, sum);
+    const size_t half = e->axes * e->moving;
+    (void)t;
+    memcpy(dy, y + half, half * sizeof *dy);
+    for (size_t d = 0; d < e->axes; d++)
+        for (const work_segment *r = e->run; r < e->run + e->runs; r++) {
+            const double *at = y + d * e->moving + r->moving;
+            memcpy(e->x[d] + r->first, at, r->count * sizeof *at);
+            memcpy(e->v[d] + r->first, at + half, r->count * sizeof *at);
+        }
+    dispatch(e);
+    for (size_t d = 0; d < e->axes; d++)
+        for (const work_segment *r = e->run; r < e->run + e->runs; r++)
+            memcpy(dy + half + d * e->moving + r->moving, e->a[d] + r->first, r->count * sizeof *dy);
 }

@@ -1,41 +1,47 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The right-hand side that GSL and SUNDIALS integrate for a scene: a plain loop over the links.
+ * The right-hand side that other solvers integrate for ropes and sheets, with the same vector instructions as the library.
  *
- * The state holds what moves and nothing else: particles without pins, one after the other, so that no number is
- * copied. Links to pinned particles have a list of their own, those between two pinned ones none.
+ * The state holds the particles that move, axis by axis. Links with one offset between their ends form a band: forces of a
+ * band are computed for eight slots at a time, kept, and added up for both ends, as in the library. They are the harness's
+ * own, and use nothing of src/.
  */
 #ifndef SPRINGSTEP_WORK_EQUATION_H
 #define SPRINGSTEP_WORK_EQUATION_H
 
 #include "harness/scenes.h"
 
-typedef struct work_link {
-    uint32_t a, b; /* among the particles that move */
-    double stiffness, damping, rest;
-} work_link;
+enum { WORK_BANDS = 8, WORK_AXES = 3 };
 
-typedef struct work_tie { /* a link to a point that does not move */
-    uint32_t a;
-    double point[3]; /* [m] */
-    double stiffness, damping, rest;
-} work_tie;
+typedef struct work_band {
+    size_t offset;
+    double rest;
+    double *stiffness, *damping; /* [slots] 0 where there is no link */
+    double *force[WORK_AXES];    /* [slots] on the lower ends */
+} work_band;
+
+typedef struct work_segment {    /* particles that move and have no pinned one between them */
+    size_t first, moving, count; /* the first one's number among all, and among those that move */
+} work_segment;
 
 typedef struct work_equation {
-    size_t axes, particles, links, ties;
-    bool damped; /* a link is */
-    work_link *link;
-    work_tie *tie;
-    double *per_mass; /* [particles] 1/mass */
-    double gravity[3], drag;
-    spring_scene_force_fn *force; /* of one axis, and of no particle that is pinned */
-    void *user;
+    size_t axes, moving, vectors, bands, runs; /* moving: particles */
+    bool damped;
+    double gravity[WORK_AXES], drag;
+    double *x[WORK_AXES], *v[WORK_AXES], *a[WORK_AXES], *inverse_mass; /* of all particles */
+    work_band band[WORK_BANDS];
+    work_segment *run;
+    double *memory;
 } work_equation;
 
-void work_equation_init(work_equation *e, const scene_problem *p);
+/** Whether a scene is a rope or a sheet in space, or a sheet of heights: bands of links of one rest length each. */
+bool work_equation_applies(const scene_problem *p);
+
+/** Sorts the coordinates of the problem by axes. Exits without memory. */
+void work_equation_init(work_equation *e, scene_problem *p);
 void work_equation_clear(work_equation *e);
 
-/* dy/dt as in ode.h; data is a work_equation, y as in scenes.h. */
+/** dy/dt as in ode.h; data is a work_equation. */
 void work_equation_derivative(double t, const double *y, double *dy, const void *data);
 
 #endif

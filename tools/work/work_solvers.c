@@ -1,26 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 /* The solvers of spring-work; see work.h. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "common/stages.h"
 #include "work.h"
 
 static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4};
+static const work_solver softened = {.name = "leapfrog-softened", .side = WORK_SOFTENED, .method = SPRING_LEAPFROG};
 static const work_solver xpbd = {.name = "xpbd", .side = WORK_XPBD, .a_step = 1};
 
 static const work_solver external[] = {
-    {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4},
+    {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4, .order = 4},
     {.name = "gsl-rk4-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk4_adaptive},
-    {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed},
+    {.name = "gsl-rk8pd", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk8pd_fixed, .order = 8},
     {.name = "gsl-rk8pd-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk8pd},
-    {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4},
-    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8},
+    {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4, .order = 4},
+    {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8, .order = 8},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
+#ifdef SPRING_ODEINT
+    {.name = "odeint-rkf78", .side = WORK_EXTERNAL, .fixed = ode_odeint_rkf78, .order = 8},
+    {.name = "odeint-bulirsch-stoer", .side = WORK_EXTERNAL, .adaptive = ode_odeint_bulirsch_stoer},
+    {.name = "odeint-sb3a-m4", .side = WORK_EXTERNAL, .fixed = ode_odeint_sb3a_m4, .positions_only = true, .order = 4},
+#endif
 };
-_Static_assert(sizeof external / sizeof external[0] == WORK_EXTERNAL_SOLVERS, "as work.h says");
+
+const size_t work_solver_count = SPRING_METHOD_COUNT + 3 + sizeof external / sizeof external[0];
 
 const work_solver *work_solver_of(spring_method m)
 {
@@ -38,7 +46,7 @@ const work_solver *work_solver_at(size_t i)
     if (i < SPRING_METHOD_COUNT)
         return work_solver_of(spring_method_at((int)i));
     const size_t other = i - SPRING_METHOD_COUNT;
-    return other == 0 ? &stages : other == 1 ? &xpbd : &external[other - 2];
+    return other == 0 ? &stages : other == 1 ? &softened : other == 2 ? &xpbd : &external[other - 3];
 }
 
 bool work_applies(const work *w, const work_solver *s)
@@ -47,8 +55,8 @@ bool work_applies(const work *w, const work_solver *s)
     if (s->side == WORK_STAGES)
         return study;
     if (s->side == WORK_EXTERNAL)
-        return !study;
-    if (s->side == WORK_XPBD)
+        return !study && !(s->positions_only && w->uses_velocity);
+    if (s->side == WORK_XPBD || s->side == WORK_SOFTENED)
         return w->xpbd != NULL;
     return scene ? (w->scene.def.methods >> s->method & 1) != 0 : spring_method_describe(s->method)->springs;
 }
@@ -79,27 +87,54 @@ static work_result run_spring(const work *w, const work_solver *s, uint64_t step
                          .evaluations = steps * s->a_step};
 }
 
-static void gather(const work *w, spring_quantity what, double *y)
+static void gather(const work *w, const spring_scene *scene, spring_quantity what, double *y)
 {
     const scene_problem *p = &w->scene;
-    spring_scene_get(w->moved, what, w->gathered, 0, 0, p->def.particles);
+    spring_scene_get(scene, what, w->gathered, 0, 0, p->def.particles);
     for (size_t i = 0; i < p->moving; i++)
         y[i] = w->gathered[p->coordinate[i]];
 }
 
-static work_result run_scene(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
+/* From the start as it is in `fresh`, in the memory of `moved`. */
+static work_result run_scene_of(const work *w, spring_scene *moved, const spring_scene *fresh, size_t bytes,
+                                spring_method m, uint64_t steps, uint64_t runs, double *y)
 {
     work_result r = {.steps = steps};
     for (uint64_t i = 0; i < runs && r.failure == NULL; i++) {
-        memcpy(w->moved, w->fresh, w->bytes);
+        memcpy(moved, fresh, bytes);
         const double begin = w->clock();
-        const spring_status status = spring_scene_advance(w->moved, s->method, w->duration / (double)steps, steps);
+        const spring_status status = spring_scene_advance(moved, m, w->duration / (double)steps, steps);
         r.spent += 1e-9 * (w->clock() - begin);
         if (status != SPRING_OK)
             r.failure = spring_status_string(status);
     }
-    gather(w, SPRING_POSITION, y);
-    gather(w, SPRING_VELOCITY, y + w->scene.moving);
+    gather(w, moved, SPRING_POSITION, y);
+    gather(w, moved, SPRING_VELOCITY, y + w->scene.moving);
+    return r;
+}
+
+static work_result run_scene(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
+{
+    return run_scene_of(w, w->moved, w->fresh, w->bytes, s->method, steps, runs, y);
+}
+
+static work_result run_softened(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
+{
+    const double fraction = 0.95; /* of the stable step: short runs, without the resonance of long ones */
+    spring_scene_def def = w->scene.def;
+    spring_link *link = scene_room(def.links, sizeof *link);
+    size_t bytes;
+    work_result r = {.failure = "links cannot be softened"};
+    if (spring_links_soften(&def, w->duration / (double)steps, fraction, link) == SPRING_OK) {
+        def.link = link;
+        spring_scene *fresh = work_make_scene(&def, &bytes), *moved = work_make_scene(&def, &bytes);
+        r = run_scene_of(w, moved, fresh, bytes, s->method, steps, runs, y);
+        const uint64_t each = w->damped ? 2 : 1; /* as work_count() has it */
+        r.evaluations = each * steps + 1;
+        free(fresh);
+        free(moved);
+    }
+    free(link);
     return r;
 }
 
@@ -135,6 +170,8 @@ work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs
 {
     if (s->side == WORK_EXTERNAL)
         return run_external(w, s, e, runs, y);
+    if (s->side == WORK_SOFTENED)
+        return run_softened(w, s, e.steps, runs, y);
     if (s->side == WORK_XPBD)
         return run_xpbd(w, s, e.steps, runs, y);
     return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y) : run_spring(w, s, e.steps, runs, y);

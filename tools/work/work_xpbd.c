@@ -2,13 +2,9 @@
 /* XPBD in substeps, coloured and with SIMD; see work_xpbd.h. */
 #include "work_xpbd.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "work_lanes.h"
 
-enum { LANES = 8, AXES = 3 };
-
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
+enum { AXES = 3 };
 
 /* How the ends of a block lie in memory. All but the first are moved as whole vectors. */
 typedef enum layout {
@@ -18,11 +14,11 @@ typedef enum layout {
     FOURS  /* aabbaabb... */
 } layout;
 
-/* Eight links of one colour. Lanes without a link have factor 0, and change nothing. */
+/* Eight links of one colour: four cache lines. Lanes without a link have shares of 0, and change nothing. */
 typedef struct block {
     uint32_t a[LANES], b[LANES];
-    double rest[LANES], factor[LANES]; /* 1/((1 + c) (w_a + w_b) + 1/(k h^2)) for a substep of h */
-    layout layout;
+    double rest[LANES];
+    double share_a[LANES], share_b[LANES]; /* w_a and w_b over (1 + c) (w_a + w_b) + 1/(k h^2), for a substep of h */
 } block;
 
 typedef struct block_links { /* of a block, apart from it: substeps do not read them without damping */
@@ -30,9 +26,15 @@ typedef struct block_links { /* of a block, apart from it: substeps do not read 
     double ratio[LANES]; /* c = damping/(k h) */
 } block_links;
 
+typedef struct group { /* blocks of one layout */
+    size_t first, count;
+    layout layout;
+} group;
+
 struct work_xpbd {
-    size_t room, blocks; /* particles, with those of unused lanes, and whole vectors */
+    size_t room, blocks, groups; /* room: particles, with those of unused lanes, and whole vectors */
     block *block;
+    group *group;
     block_links *links;                    /* [blocks] */
     double *x[AXES], *old[AXES], *v[AXES]; /* [room] */
     double *inverse_mass, *moving, *decay; /* [room] moving 1 or, pinned, 0; decay 1/(1 + h drag/mass) */
@@ -65,8 +67,8 @@ static int by_colour(const void *left, const void *right)
     return l->a < r->a ? -1 : l->a > r->a;
 }
 
-/* The links in order of their colours. Links with one offset between their ends have colours of their own, the first
-   that is free at both ends: along the columns of a sheet that leaves whole rows in one colour. */
+/* The links in order of their colours. Links with one offset between their ends have colours of their own: that of the
+   link before if it is free at both ends, or else the first that is. In a sheet that leaves whole rows in one colour. */
 static coloured *colour(const scene_problem *p)
 {
     const size_t links = p->def.links;
@@ -81,8 +83,12 @@ static coloured *colour(const scene_problem *p)
         if (i == 0 || order[i].offset != order[i - 1].offset)
             memset(used, 0, p->def.particles * sizeof *used);
         const spring_link *l = &p->link[order[i].link];
-        while ((used[l->a] | used[l->b]) >> order[i].colour & 1)
-            order[i].colour++; /* two links of one offset meet at a particle: three colours are enough */
+        const uint64_t taken = used[l->a] | used[l->b];
+        if (i > 0 && order[i].offset == order[i - 1].offset)
+            order[i].colour = order[i - 1].colour;
+        if (taken >> order[i].colour & 1)
+            for (order[i].colour = 0; taken >> order[i].colour & 1;)
+                order[i].colour++; /* two links of one offset meet at a particle: three colours are enough */
         used[l->a] |= UINT64_C(1) << order[i].colour;
         used[l->b] |= UINT64_C(1) << order[i].colour;
     }
@@ -122,7 +128,6 @@ static void fill_block(block *k, block_links *links, const scene_problem *p, con
 {
     const uint32_t unused = (uint32_t)p->def.particles; /* and those behind */
     const spring_link *first = &p->link[order[0].link];
-    k->layout = at;
     for (uint32_t j = 0; j < LANES; j++) {
         if (j < count) {
             const spring_link *l = &p->link[order[j].link];
@@ -141,15 +146,21 @@ static void fill_block(block *k, block_links *links, const scene_problem *p, con
 static void make_blocks(work_xpbd *s, const scene_problem *p)
 {
     coloured *order = colour(p);
-    s->block = scene_room(p->def.links, sizeof *s->block);
+    s->block = aligned_room(p->def.links * sizeof *s->block);
     s->links = scene_room(p->def.links, sizeof *s->links);
+    s->group = scene_room(p->def.links, sizeof *s->group);
     for (size_t i = 0; i < p->def.links; s->blocks++) {
         const spring_link *first = &p->link[order[i].link];
         layout at = first->a < first->b ? layout_of(order[i].offset) : SCATTERED;
-        if (block_length(p, order, i, at) < LANES / 2)
+        const bool goes_on =
+            s->groups > 0 && s->group[s->groups - 1].layout == at && order[i].offset == order[i - 1].offset;
+        if (block_length(p, order, i, at) < LANES / 2 && !goes_on) /* the end of a row is a block of its own */
             at = SCATTERED;
         const size_t count = block_length(p, order, i, at);
         fill_block(&s->block[s->blocks], &s->links[s->blocks], p, order + i, count, at);
+        if (s->groups == 0 || s->group[s->groups - 1].layout != at)
+            s->group[s->groups++] = (group){.first = s->blocks, .layout = at};
+        s->group[s->groups - 1].count++;
         i += count;
     }
     free(order);
@@ -160,7 +171,7 @@ work_xpbd *work_xpbd_make(const scene_problem *p)
     enum { ARRAYS = 3 * AXES + 3 };
     work_xpbd *s = scene_room(1, sizeof *s);
     s->room = (p->def.particles + 3 * LANES) / LANES * LANES;
-    s->memory = scene_room(ARRAYS * s->room, sizeof *s->memory);
+    s->memory = aligned_room(ARRAYS * s->room * sizeof *s->memory);
     double *next = s->memory;
     for (size_t d = 0; d < AXES; d++) {
         s->x[d] = next, next += s->room;
@@ -187,6 +198,7 @@ void work_xpbd_free(work_xpbd *s)
 {
     free(s->block);
     free(s->links);
+    free(s->group);
     free(s->memory);
     free(s);
 }
@@ -204,10 +216,12 @@ void work_xpbd_start(work_xpbd *s, const scene_problem *p, double h)
         for (int j = 0; j < LANES; j++) {
             block *k = &s->block[i];
             block_links *l = &s->links[i];
-            const double w = s->inverse_mass[k->a[j]] + s->inverse_mass[k->b[j]];
+            const double w_a = s->inverse_mass[k->a[j]], w_b = s->inverse_mass[k->b[j]];
             if (l->stiffness[j] > 0) {
                 l->ratio[j] = l->damping[j] / (l->stiffness[j] * h);
-                k->factor[j] = 1 / ((1 + l->ratio[j]) * w + 1 / (l->stiffness[j] * h * h));
+                const double sum = (1 + l->ratio[j]) * (w_a + w_b) + 1 / (l->stiffness[j] * h * h);
+                k->share_a[j] = w_a / sum;
+                k->share_b[j] = w_b / sum;
             }
         }
 }
@@ -222,19 +236,6 @@ void work_xpbd_get(const work_xpbd *s, const scene_problem *p, double *y)
 }
 
 /* ----------------------------------------------------------------------------------------------------- substeps */
-
-#define INLINE static inline __attribute__((always_inline))
-
-/* A macro, since a function that returns long vectors has another convention for each instruction set. */
-#define LOAD(vector, array)  memcpy(&(vector), (array), sizeof(vector))
-#define STORE(array, vector) memcpy((array), &(vector), sizeof(vector))
-
-/* Before a loop over axes whose arrays should be kept in registers. */
-#if defined(__clang__)
-#define UNROLL _Pragma("clang loop unroll(full)")
-#else
-#define UNROLL _Pragma("GCC unroll 3")
-#endif
 
 #if defined(__clang__)
 #define SHUFFLE(v, w, ...) __builtin_shufflevector(v, w, __VA_ARGS__)
@@ -292,9 +293,8 @@ INLINE void store_ends(double *array, const block *k, layout at, const lanes *at
 
 INLINE void solve_block(const work_xpbd *s, const block *k, const block_links *links, layout at, bool damped)
 {
-    double each[LANES];
-    const double smallest = 1e-300; /* [m^2] ends at one place: no direction, and no NaN */
-    lanes a[AXES], b[AXES], delta[AXES], square = {0}, moved = {0}, inverse, factor, rest, w_a, w_b;
+    const double smallest = 1e-30; /* [m^2] ends at one place: no direction, and no NaN */
+    lanes a[AXES], b[AXES], delta[AXES], square = {0}, moved = {0}, inverse, rest, share_a, share_b;
     UNROLL
     for (int d = 0; d < AXES; d++) {
         load_ends(s->x[d], k, at, &a[d], &b[d]);
@@ -307,27 +307,30 @@ INLINE void solve_block(const work_xpbd *s, const block *k, const block_links *l
         }
     }
     square += smallest;
-    STORE(each, square);
-    for (int j = 0; j < LANES; j++)
-        each[j] = 1 / sqrt(each[j]);
-    LOAD(inverse, each);
-    LOAD(factor, k->factor);
+    inverse_root(&square, &inverse);
     LOAD(rest, k->rest);
+    LOAD(share_a, k->share_a);
+    LOAD(share_b, k->share_b);
     lanes l = rest * inverse - 1;
     if (damped) {
         lanes ratio;
         LOAD(ratio, links->ratio);
         l -= ratio * inverse * inverse * moved;
     }
-    l *= factor;
-    load_ends(s->inverse_mass, k, at, &w_a, &w_b);
+    share_a *= l;
+    share_b *= l;
     UNROLL
     for (int d = 0; d < AXES; d++) {
-        const lanes p = l * delta[d];
-        a[d] -= w_a * p;
-        b[d] += w_b * p;
+        a[d] -= share_a * delta[d];
+        b[d] += share_b * delta[d];
         store_ends(s->x[d], k, at, &a[d], &b[d]);
     }
+}
+
+INLINE void solve_group(const work_xpbd *s, const group *g, layout at, bool damped)
+{
+    for (size_t i = g->first; i < g->first + g->count; i++)
+        solve_block(s, &s->block[i], &s->links[i], at, damped);
 }
 
 INLINE void predict(const work_xpbd *s)
@@ -363,17 +366,15 @@ INLINE void substeps(const work_xpbd *s, uint64_t n, bool damped)
 {
     for (uint64_t i = 0; i < n; i++) {
         predict(s);
-        for (size_t j = 0; j < s->blocks; j++) {
-            const block *k = &s->block[j];
-            if (k->layout == ROWS)
-                solve_block(s, k, &s->links[j], ROWS, damped);
-            else if (k->layout == PAIRS)
-                solve_block(s, k, &s->links[j], PAIRS, damped);
-            else if (k->layout == FOURS)
-                solve_block(s, k, &s->links[j], FOURS, damped);
+        for (const group *g = s->group; g < s->group + s->groups; g++)
+            if (g->layout == ROWS)
+                solve_group(s, g, ROWS, damped);
+            else if (g->layout == PAIRS)
+                solve_group(s, g, PAIRS, damped);
+            else if (g->layout == FOURS)
+                solve_group(s, g, FOURS, damped);
             else
-                solve_block(s, k, &s->links[j], SCATTERED, damped);
-        }
+                solve_group(s, g, SCATTERED, damped);
         find_velocities(s);
     }
 }
