@@ -99,10 +99,10 @@ static const cli_option options[] = {
     {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
      .help = "cut links longer than STRETCH times their rest length, after each row\n"
              "The number of torn links is printed on standard error. Not for scenes with one axis."},
-    {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:FIELD=VALUE,...",
+    {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:A=X,B=Y",
      .help =
-         "plane, sphere, capsule or box that particles cannot enter; repeatable\n"
-         "Every field is a number, by default 0. All shapes have x y z [m], a point of the plane, the centre, or one\n"
+         "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
+         "The fields A, B, ... are numbers, by default 0. All shapes have x y z [m], a point of the plane, the centre, or one\n"
          "end of the capsule; vx vy vz [m/s], the velocity; wx wy wz [rad/s], the spin, which enters friction only;\n"
          "friction >= 0 and restitution, 0 to 1. A plane has the normal nx ny nz (by default upwards), a sphere\n"
          "radius, a capsule radius and the other end x2 y2 z2, a box hx hy hz, half of its size along x, y and z,\n"
@@ -143,7 +143,7 @@ static const cli_program program = {
                "With --collider there is a column more, touching: the particles that touch a collider.\n\n"
                "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
     .shown = {"t_s", "energy_J"},
-    .examples = {"--scene cloth --method leapfrog --duration 2 --collider sphere:x=1,y=1,z=-.6,radius=.4 -o cloth.tsv",
+    .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o cloth.tsv",
                  "--scene water --method rk4 --duration 1 --poke 0,1,1,2e4,.1 --poke .5,3,2,2e4,.1",
                  "--scene rope --method leapfrog --dt 1e-3 --steps 500 --frames rope"},
     .options = options,

@@ -99,7 +99,7 @@ def test_pandas_reads_a_table(tmp_path):
         assert list(frame.columns) == list(rows[0]) and len(frame) == len(rows)
 
 
-WITH_OTHERS = {'frame-rate', 'seed', 'push-duration', 'axes', 'links', 'columns'}  # refused where they do not count
+WITH_OTHERS = {'frame-rate', 'particle-radius', 'seed', 'push-duration', 'axes', 'links', 'columns'}  # refused where they do not count
 LACKED = {'chain': ['gravity'], 'water': ['gravity'], PLAN: ['damping', 'damping-ratio']}  # by --presets, which SHORT asks for
 
 
