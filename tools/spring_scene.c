@@ -99,15 +99,17 @@ static const cli_option options[] = {
     {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
      .help = "cut links longer than STRETCH times their rest length, after each row\n"
              "The number of torn links is printed on standard error. Not for scenes with one axis."},
-    {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:A=X,B=Y",
+    {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:FIELDS",
      .help =
          "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
-         "The fields A, B, ... are numbers, by default 0. All shapes have x y z [m], a point of the plane, the centre, or one\n"
-         "end of the capsule; vx vy vz [m/s], the velocity; wx wy wz [rad/s], the spin, which enters friction only;\n"
-         "friction >= 0 and restitution, 0 to 1. A plane has the normal nx ny nz (by default upwards), a sphere\n"
-         "radius, a capsule radius and the other end x2 y2 z2, a box hx hy hz, half of its size along x, y and z,\n"
-         "and radius, which rounds its edges. z is up; the rope has no y. At most 32 colliders. Not for scenes\n"
-         "with one axis, and not for euler, rkn8 and srkn6."},
+         "Fields are NAME=NUMBER, separated by commas, and by default 0. All shapes have x y z [m], a point of the\n"
+         "plane, the centre, or one end of the capsule; vx vy vz [m/s], the velocity; wx wy wz [rad/s], the spin, "
+         "which\n"
+         "enters friction only; friction >= 0; and restitution, 0 to 1. A plane has the normal nx ny nz, by default\n"
+         "upwards; a sphere radius; a capsule radius and the other end x2 y2 z2; a box hx hy hz, half of its size "
+         "along\n"
+         "x, y and z, and radius, which rounds its edges. z is up. The rope has no y. At most 32 colliders. Not for\n"
+         "scenes with one axis, and not for euler, rkn8 and srkn6."},
     {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,
      .help = "of every particle, for --collider [m]"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
@@ -143,7 +145,7 @@ static const cli_program program = {
                "With --collider there is a column more, touching: the particles that touch a collider.\n\n"
                "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
     .shown = {"t_s", "energy_J"},
-    .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o cloth.tsv",
+    .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o c.tsv",
                  "--scene water --method rk4 --duration 1 --poke 0,1,1,2e4,.1 --poke .5,3,2,2e4,.1",
                  "--scene rope --method leapfrog --dt 1e-3 --steps 500 --frames rope"},
     .options = options,

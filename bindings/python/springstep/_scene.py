@@ -155,7 +155,9 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
 
 _SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX}
 _USED = {shape: ("at", "velocity", "spin", "friction", "restitution", *more) for shape, more in {
-    "plane": (), "sphere": ("radius",), "capsule": ("radius", "to", "velocity_to"), "box": ("radius", "half")}.items()}
+    "plane": ("axis",), "sphere": ("radius",), "capsule": ("radius", "to", "velocity_to"), "box": ("radius", "half", "axis"),
+}.items()}
+_NOT_NEGATIVE = ("half", "radius", "friction", "restitution")
 
 
 @dataclass
@@ -609,26 +611,26 @@ class Scene:
     def _refuse_colliders(self, given: list[Collider]) -> NoReturn:
         """The exception for colliders of which C refuses one."""
         for place, collider in enumerate(given):
-            flat = self._axes == 2
-            wrong = {field: np.ndarray.any(~np.isfinite(self._rounded(values if np.ndim(values) == 0 else values[:self._axes])))
-                     for field, values in vars(collider).items() if field in _USED[collider.shape]}
-            half = np.asarray(collider.half[:self._axes], np.float64)
-            wrong["half"] = wrong.get("half", False) or (collider.shape == "box" and (half < 0).any())
-            wrong["radius"] = wrong.get("radius", False) or ("radius" in _USED[collider.shape] and collider.radius < 0)
-            wrong["friction"] |= collider.friction < 0
-            wrong["restitution"] |= not 0 <= collider.restitution <= 1
-            if flat and np.ndim(collider.spin) == 1:
-                wrong["spin"] = not np.isfinite(self._rounded(collider.spin[-1]))
-            for field, bad in wrong.items():
-                if bad:
-                    invalid(f"colliders.{field}", getattr(collider, field), place)
-            if collider.shape in ("plane", "box") and not _orthonormal(collider, self._axes):
-                invalid("colliders.axis", collider.axis, place, reason="not unit vectors at right angles")
+            for field in _USED[collider.shape]:
+                values = getattr(collider, field)
+                if field == "axis":
+                    if not _orthonormal(collider, self._axes):
+                        invalid("colliders.axis", values, place, reason="not unit vectors at right angles")
+                    continue
+                used = self._used(field, values)
+                if not np.isfinite(used).all() or (field in _NOT_NEGATIVE and (used < 0).any()):
+                    invalid(f"colliders.{field}", values, place)
+                if field == "restitution" and values > 1:
+                    invalid(f"colliders.{field}", values, place, reason="not 0 to 1")
         fail(lib.SPRING_EINVAL, "colliders")
 
-    def _rounded(self, values: ArrayLike) -> np.ndarray:
+    def _used(self, field: str, values: ArrayLike) -> np.ndarray:
+        """The numbers that C looks at, in the precision of the scene."""
+        array = np.atleast_1d(np.asarray(values, np.float64))
+        if field == "spin" and self._axes == 2:
+            array = array[-1:]
         with np.errstate(over="ignore"):
-            return np.asarray(values, np.float64).astype(self._dtype)
+            return array[:self._axes].astype(self._dtype)
 
     def touching(self, first: int = 0, count: int | None = None) -> np.ndarray:
         """Which colliders particles first ... first + count - 1 touched in the last step: bit i stands for collider i."""
