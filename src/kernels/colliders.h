@@ -15,28 +15,18 @@
 #include "../simd/real3.h"
 #include "scene_kernels.h"
 
-/* The pose of a collider at a time, for each lane. Planes use only the offset. */
-typedef struct collider_pose {
-    real3 at, to;
-    real offset; /* [m] of the surface of a plane, along its normal */
-} collider_pose;
+/* When the pose of a collider is wanted. */
+typedef enum pose_time {
+    STEP_START,
+    STEP_END,
+    WITHIN_STEP /* at a fraction of the step */
+} pose_time;
 
-SPRING_INLINE collider_pose pose_at_start(const scene_collider *c)
+SPRING_INLINE real3 place_of(pose_time when, real fraction, const scalar start[3], const scalar end[3],
+                             const scalar shift[3])
 {
-    return (collider_pose){splat3(c->at), splat3(c->to), splat(c->offset)};
-}
-
-SPRING_INLINE collider_pose pose_at_end(const scene_collider *c)
-{
-    return (collider_pose){splat3(c->at_end), splat3(c->to_end), splat(c->offset_end)};
-}
-
-/* At a fraction of the step. */
-SPRING_INLINE collider_pose pose_within(const scene_collider *c, real fraction)
-{
-    return (collider_pose){plus_scaled3(splat3(c->at), fraction, splat3(c->shift)),
-                           plus_scaled3(splat3(c->to), fraction, splat3(c->shift_to)),
-                           c->offset + fraction * c->offset_shift};
+    return when == WITHIN_STEP ? plus_scaled3(splat3(start), fraction, splat3(shift))
+                               : splat3(when == STEP_END ? end : start);
 }
 
 /* The place on a collider that is nearest to a particle. */
@@ -85,17 +75,23 @@ SPRING_INLINE void set_box(contact_point *p, const scene_collider *c)
     p->gap = select_real(in_core, depth - c->radius, p->gap);
 }
 
-SPRING_NOINLINE void find_contact(const scene_collider *c, const collider_pose *pose, const real3 *x, contact_point *p)
+/* fraction: of the step, for WITHIN_STEP */
+SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real fraction, const real3 *x,
+                                  contact_point *p)
 {
+    const real3 at = place_of(when, fraction, c->at, c->at_end, c->shift);
     p->along = splat(0);
-    p->arm = minus3(*x, pose->at);
+    p->arm = minus3(*x, at);
     switch (c->shape) {
-    case SPRING_PLANE:
+    case SPRING_PLANE: {
+        const real offset = when == WITHIN_STEP ? c->offset + fraction * c->offset_shift
+                                                : splat(when == STEP_END ? c->offset_end : c->offset);
         p->normal = splat3(c->axis[0]);
-        p->gap = dot3(*x, p->normal) - pose->offset;
+        p->gap = dot3(*x, p->normal) - offset;
         break;
+    }
     case SPRING_CAPSULE: {
-        const real3 axis = minus3(pose->to, pose->at);
+        const real3 axis = minus3(place_of(when, fraction, c->to, c->to_end, c->shift_to), at);
         p->along = nearest_on_axis(axis, p->arm);
         p->arm = plus_scaled3(p->arm, -p->along, axis);
         set_round(p, p->arm, c->radius);
@@ -133,7 +129,7 @@ SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_poin
 }
 
 /* Lanes whose particle may touch the collider on its way from x to x + d. A few of the others are found, too: with the radius
-   R that includes the way of the collider, (R + |d|)^2 <= 5/4 R^2 + 5 d^2, and `reach` has the first term. */
+   R that includes the way of the collider, (R + |d|)^2 <= 17/16 R^2 + 17 d^2, and `reach` has the first term. */
 SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_squared)
 {
     if (c->shape == SPRING_PLANE) {
@@ -156,7 +152,7 @@ SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_s
         }
     } else
         square = dot3(arm, arm);
-    return not_mask(square > c->reach + (scalar)5.05 * d_squared);
+    return not_mask(square > c->reach + (scalar)17.1 * d_squared);
 }
 
 #endif

@@ -125,7 +125,7 @@ static void place_collider(scene_collider *to, const spring_collider *c, double 
     scalar shift = length_of_shift(to->shift);
     if (c->shape == SPRING_CAPSULE && length_of_shift(to->shift_to) > shift)
         shift = length_of_shift(to->shift_to);
-    to->reach = (scalar)1.26 * (to->radius + shift) * (to->radius + shift);
+    to->reach = (scalar)1.07 * (to->radius + shift) * (to->radius + shift);
 }
 
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1)

@@ -44,10 +44,10 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
-/* Lanes whose number has bit k. */
-SPRING_INLINE mask with_bit(const uint32_t *numbers, unsigned k)
+/* Lanes whose number has one of these bits. */
+SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
 {
-    return (numbers[0] >> k & 1) != 0;
+    return (numbers[0] & bits) != 0;
 }
 
 /* Sets bit k of the numbers of these lanes. */

@@ -94,12 +94,12 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
 #endif
 }
 
-/* Lanes whose number has bit k. */
-SPRING_INLINE mask with_bit(const uint32_t *numbers, unsigned k)
+/* Lanes whose number has one of these bits. */
+SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
 {
     mask t = {0};
     for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
-        t[i] = -(scalar_bits)(numbers[i] >> k & 1);
+        t[i] = -(scalar_bits)((numbers[i] & bits) != 0);
     return t;
 }
 
