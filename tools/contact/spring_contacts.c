@@ -354,7 +354,7 @@ static bool quick;
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &part, .choices = parts, .value = "P",
-     .help = "cases with a closed form, the energy in a box, or a list of the cases"},
+     .help = "closed forms, the energy in a box, or a list of the cases"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps, for a look"},
     {.name = NULL},
 };
