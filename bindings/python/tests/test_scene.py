@@ -821,6 +821,13 @@ def test_bad_colliders_are_named(field, value, shape, more):
     assert fnv(scene) == after
 
 
+def test_the_colliders_in_the_documents():
+    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
+    names = {}
+    exec(re.search(r"## Colliders\n\n```python\n(.*?)```", page, re.S)[1], names)
+    assert names["scene"].touching().tolist() == [1]
+
+
 def test_refused_for_colliders():
     with pytest.raises(springstep.InvalidError, match="colliders.at") as caught:
         drop(springstep.sphere([0, 0, 1e39], 1), dtype=np.float32)
