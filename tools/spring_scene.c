@@ -15,6 +15,7 @@
 
 #include "common/cli.h"
 #include "common/run_length.h"
+#include "scenes/collider_words.h"
 #include "scenes/scene_run.h"
 #include "scenes/start.h"
 
@@ -29,6 +30,8 @@ static run_length length = {.duration = 5};
 static double frame_rate = 60, fps = 60, disturbance_time = disturbance_duration, rain;
 static double tear; /* length over rest length; 0: links do not tear */
 static bool tension_only;
+static cli_words colliders;
+static double particle_radius;                                       /* [m] */
 static double poke[MOST_DISTURBANCES][5], box[MOST_DISTURBANCES][2]; /* t, x, y, force, area; t, mass */
 static const char *frames, *positions;
 static bool hash_alone;
@@ -96,6 +99,19 @@ static const cli_option options[] = {
     {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
      .help = "cut links longer than STRETCH times their rest length, after each row\n"
              "The number of torn links is printed on standard error. Not for scenes with one axis."},
+    {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:FIELDS",
+     .help =
+         "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
+         "Fields are NAME=NUMBER, separated by commas, and by default 0. All shapes have x y z [m], a point of the\n"
+         "plane, the centre, or one end of the capsule; vx vy vz [m/s], the velocity; wx wy wz [rad/s], the spin, "
+         "which\n"
+         "enters friction only; friction >= 0; and restitution, 0 to 1. A plane has the normal nx ny nz, by default\n"
+         "upwards; a sphere radius; a capsule radius and the other end x2 y2 z2; a box hx hy hz, half of its size "
+         "along\n"
+         "x, y and z, and radius, which rounds its edges. z is up. The rope has no y. At most 32 colliders. Not for\n"
+         "scenes with one axis, and not for euler, rkn8 and srkn6."},
+    {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,
+     .help = "of every particle, for --collider [m]"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
@@ -125,10 +141,11 @@ static const cli_program program = {
     .columns = "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m",
     .meaning = "energy_J is the sum of its parts kinetic_J, elastic_J and gravity_J (0 at the origin),\n"
                "max_displacement_m the largest distance of a particle from its start. A row for each frame, at\n"
-               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n\n"
+               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
+               "With --collider there is a column more, touching: the particles that touch a collider.\n\n"
                "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
     .shown = {"t_s", "energy_J"},
-    .examples = {"--scene cloth --method leapfrog --duration 2 -o cloth.tsv",
+    .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o c.tsv",
                  "--scene water --method rk4 --duration 1 --poke 0,1,1,2e4,.1 --poke .5,3,2,2e4,.1",
                  "--scene rope --method leapfrog --dt 1e-3 --steps 500 --frames rope"},
     .options = options,
@@ -148,12 +165,28 @@ static bool is_disturbed(void)
 /* On one axis links have a direction rather than a length. */
 static void refuse_on_one_axis(const preset_settings *s)
 {
-    if (s->axes == 1 && (tension_only || tear > 0))
+    if (s->axes == 1 && (tension_only || tear > 0 || colliders.count > 0))
         cli_fail(CLI_USAGE, "--%s is not for scenes with one axis, such as this %s",
-                 tension_only ? "tension-only" : "tear", preset_names[kind]);
+                 tension_only ? "tension-only"
+                 : tear > 0   ? "tear"
+                              : "collider",
+                 preset_names[kind]);
     if (tension_only && spring_method_describe((spring_method)method)->positions_only)
         cli_fail(CLI_USAGE, "--tension-only: \"%s\" requires smooth forces; --method should be another",
                  spring_method_name((spring_method)method));
+}
+
+static void refuse_methods_without_contacts(void)
+{
+    const spring_method m = (spring_method)method;
+    if (colliders.count > 0 && (m == SPRING_EULER || spring_method_describe(m)->positions_only))
+        cli_fail(CLI_USAGE, "--collider: \"%s\" has no contacts; --method should be another", spring_method_name(m));
+}
+
+static void set_colliders(spring_scene *scene, const spring_collider *c)
+{
+    if (colliders.count > 0 && spring_scene_set_colliders(scene, c, (uint32_t)colliders.count) != SPRING_OK)
+        cli_fail(CLI_USAGE, "--collider: \"%s\" or one that follows has numbers that are too large", colliders.word[0]);
 }
 
 /* What has no effect is a mistake. */
@@ -325,6 +358,17 @@ typedef struct view { /* a scene, and what is shown of it */
     size_t torn;    /* links */
 } view;
 
+static size_t count_touching(const view *v)
+{
+    size_t touching = 0;
+    for (size_t i = 0; i < v->preset->def.particles; i++) {
+        uint32_t mask = 0;
+        spring_scene_touching(v->scene, &mask, i, 1);
+        touching += mask != 0;
+    }
+    return touching;
+}
+
 static void write_row(view *v)
 {
     const spring_scene_energies e = spring_scene_energy(v->scene);
@@ -334,9 +378,13 @@ static void write_row(view *v)
         const double *p = &v->xyz[3 * i], *q = &v->preset->start[3 * i];
         most = fmax(most, hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]));
     }
-    if (!hash_alone)
-        cli_row(v->output, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", spring_scene_time(v->scene),
-                e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most);
+    if (hash_alone)
+        return;
+    char touching[24] = "";
+    if (colliders.count > 0)
+        snprintf(touching, sizeof touching, "\t%zu", count_touching(v));
+    cli_row(v->output, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g%s", spring_scene_time(v->scene),
+            e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most, touching);
 }
 
 static void write_pictures(const view *v, uint64_t frame)
@@ -463,7 +511,9 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     cli_comment(v.output, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
     cli_comment(v.output, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
                 length.dt, spring_scene_stable_step(scene, (spring_method)method));
-    cli_columns(v.output, program.columns);
+    char columns[200];
+    snprintf(columns, sizeof columns, "%s%s", program.columns, colliders.count > 0 ? " touching" : "");
+    cli_columns(v.output, columns);
     return v;
 }
 
@@ -487,12 +537,17 @@ int main(int argc, char **argv)
     check_frames();
     const preset_settings settings = chosen_settings();
     refuse_on_one_axis(&settings);
+    refuse_methods_without_contacts();
+    spring_collider collider[MOST_COLLIDERS];
+    collider_words_read(&colliders, (uint32_t)settings.axes, collider);
     preset r;
     start_preset(&r, &settings);
     r.def.flags |= (tension_only ? SPRING_SCENE_TENSION_ONLY : 0) | (tear > 0 ? SPRING_SCENE_EDITABLE : 0);
+    r.def.colliders = (uint32_t)colliders.count, r.def.particle_radius = particle_radius;
     disturbances *p = chosen_disturbances(&r, &settings);
     size_t bytes;
     spring_scene *scene = start_scene(&r, (spring_method)method, &bytes);
+    set_colliders(scene, collider);
     choose_step(scene, p != NULL);
     remark_on_step(scene, p != NULL);
 

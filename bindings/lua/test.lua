@@ -260,6 +260,36 @@ holds("a rope that is torn, pushed and moved", function()
   same(after[0], before[0] + 5, "x")
 end)
 
+holds("a cloth on a sphere, and which particles touch it", function()
+  local scene = cloth("spring_scene", function(def)
+    def.colliders, def.particle_radius = 2, 0.01
+  end)
+  local ball = ffi.new("spring_collider[2]")
+  ball[0].shape, ball[0].radius, ball[0].friction = spring.SPRING_SPHERE, 0.3, 0.5
+  ball[0].at[0], ball[0].at[1], ball[0].at[2] = 1, 1, -0.4
+  ball[1].shape, ball[1].axis[0][2], ball[1].at[2] = spring.SPRING_PLANE, 1, -9
+  spring.must(spring.spring_scene_set_colliders(scene, ball, 2), "colliders")
+  spring.must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, 1e-3, 500), "advance")
+  local n = 25 * 25
+  local mask, x = ffi.new("uint32_t[?]", n), ffi.new("double[?]", 3 * n)
+  spring.must(spring.spring_scene_touching(scene, mask, 0, n), "touching")
+  spring.must(spring.spring_scene_get(scene, spring.SPRING_POSITION, x, 0, 0, n), "get")
+  local touching = 0
+  for i = 0, n - 1 do
+    local away = math.sqrt((x[3 * i] - 1)^2 + (x[3 * i + 1] - 1)^2 + (x[3 * i + 2] + 0.4)^2)
+    assert(away > 0.31 - 1e-14, away)
+    if mask[i] == 1 then
+      touching = touching + 1
+      assert(math.abs(away - 0.31) < 1e-3, away)
+    end
+  end
+  assert(touching > 3 and touching < n, touching)
+  ball[0].restitution = 2
+  refused(ffi.string(spring.spring_status_string(spring.SPRING_EINVAL)), function()
+    spring.must(spring.spring_scene_set_colliders(scene, ball, 1), "colliders")
+  end)
+end)
+
 -- --- what is refused
 
 holds("a scene in float, and a wrong mass in it", function()

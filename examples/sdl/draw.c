@@ -43,9 +43,9 @@ camera camera_for(world_kind kind, int width, int height)
         vec3 eye, target;
         double zoom; /* focal length over the height of the window */
     } views[WORLD_KINDS] = {
-        {{1.3, -0.55, 3.0}, {0.52, -0.62, 0}, 1.35},
-        {{0, -1.05, 3.6}, {0, -1.05, 0}, 1.35},
-        {{2, 2.9, 7.2}, {2, -0.1, 2.25}, 1.25},
+        {{1.3, -0.55, 3.0}, {0.52, -0.62, 0}, 1.35}, {{0, -1.05, 3.6}, {0, -1.05, 0}, 1.35},
+        {{2, 2.9, 7.2}, {2, -0.1, 2.25}, 1.25},      {{0.4, 1.9, 3.0}, {0, 0.42, 0}, 1.35},
+        {{-0.8, 1.5, 4.6}, {0, 0.85, 0}, 1.35},
     };
     const struct view *v = &views[kind];
     camera c = {.eye = v->eye, .forward = unit(from_to(v->eye, v->target)), .x = width / 2.0, .y = height / 2.0};
@@ -260,6 +260,16 @@ static void paint_triangle(painter *p, const surface *s, const triangle *t)
     }
 }
 
+static void paint_body(painter *p, const camera *c, const world *w);
+
+static vec3 middle_of_body(const world *w)
+{
+    const spring_collider *b = &w->body[0];
+    const double *to = b->shape == SPRING_CAPSULE ? b->to : b->at;
+    return (vec3){(b->at[0] + to[0]) / 2, (b->at[1] + to[1]) / 2, (b->at[2] + to[2]) / 2};
+}
+
+/* A body is painted behind the triangles that are nearer than it, and over the others. */
 static void paint_surface(painter *p, const camera *c, const world *w, const vec3 *at)
 {
     surface s = {.w = w, .c = c, .at = at};
@@ -279,8 +289,15 @@ static void paint_surface(painter *p, const camera *c, const world *w, const vec
         for (size_t i = 0; i < n; i++)
             list[i].depth = s.seen[list[i].a].depth + s.seen[list[i].b].depth + s.seen[list[i].c].depth;
         qsort(list, n, sizeof *list, farthest_first);
-        for (size_t i = 0; i < n; i++)
+        bool body = world_has_bodies(w);
+        const double depth = body ? camera_project(c, middle_of_body(w)).depth : 0;
+        for (size_t i = 0; i < n; i++) {
+            if (body && list[i].depth < 3 * depth)
+                body = false, paint_body(p, c, w);
             paint_triangle(p, &s, &list[i]);
+        }
+        if (body)
+            paint_body(p, c, w);
     }
     free(list);
     free(s.seen);
@@ -445,6 +462,40 @@ static void paint_ball(painter *p, const camera *c, vec3 at, double radius, vec3
         }
 }
 
+/* A sphere, or an upright capsule: two balls and the side of a cylinder between them. */
+static void paint_body(painter *p, const camera *c, const world *w)
+{
+    enum { STRIPS = 24 };
+    static const vec3 blue = {0.30, 0.42, 0.62};
+    const spring_collider *b = &w->body[0];
+    paint_ball(p, c, (vec3){b->at[0], b->at[1], b->at[2]}, b->radius, blue);
+    if (b->shape != SPRING_CAPSULE)
+        return;
+    paint_ball(p, c, (vec3){b->to[0], b->to[1], b->to[2]}, b->radius, blue);
+    for (int k = 0; k < STRIPS; k++) {
+        double x[4], y[4];
+        SDL_Color colors[4];
+        for (int i = 0; i < 4; i++) {
+            const double *end = i < 2 ? b->to : b->at, side = 2.0 * (k + i % 2) / STRIPS - 1;
+            const spot s = camera_project(c, (vec3){end[0], end[1], end[2]});
+            const vec3 normal = {side, 0, sqrt(fmax(0, 1 - side * side))};
+            const double facing = fmax(0, dot(normal, (vec3){-0.45, 0.6, 0.66}));
+            x[i] = s.x + side * b->radius * c->focal / s.depth;
+            y[i] = s.y;
+            colors[i] = shade(blue, 0.25 + 0.8 * facing, 0.6 * pow(facing, 40));
+        }
+        quad(p, x, y, colors);
+    }
+}
+
+static void paint_ground(painter *p, const camera *c)
+{
+    static const vec3 earth = {0.46, 0.44, 0.40};
+    const double wide = 2.8, far = -1.5, near = 2.2;
+    const vec3 corners[4] = {{-wide, 0, far}, {wide, 0, far}, {-wide, 0, near}, {wide, 0, near}};
+    paint_slab(p, c, corners, earth, 0.6, 1.0);
+}
+
 static void paint_rope(painter *p, const camera *c, const world *w, const vec3 *at)
 {
     static const vec3 wood = {0.45, 0.31, 0.20}, iron = {0.35, 0.37, 0.42}, steel = {0.42, 0.50, 0.62};
@@ -472,6 +523,11 @@ bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at)
         paint_rim(p, c, false);
         paint_surface(p, c, w, at);
         paint_rim(p, c, true);
+        break;
+    case WORLD_DRAPE:
+    case WORLD_CAPE:
+        paint_ground(p, c);
+        paint_surface(p, c, w, at);
         break;
     default:
         paint_rod(p, c, w);

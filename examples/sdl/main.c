@@ -24,7 +24,7 @@ static const double frame_time = 1.0 / 60;                                      
 static const double dampings[] = {0, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}; /* of links, 1 is critical */
 enum { DAMPINGS = sizeof dampings / sizeof *dampings };
 /* About half the stable step of leapfrog; of water a third. */
-static const uint64_t usual_steps[WORLD_KINDS] = {16, 20, 4};
+static const uint64_t usual_steps[WORLD_KINDS] = {16, 20, 4, 16, 20};
 
 typedef struct app {
     SDL_Window *window;
@@ -194,6 +194,8 @@ static void key(app *a, SDL_Keycode pressed)
     case SDLK_1:
     case SDLK_2:
     case SDLK_3:
+    case SDLK_4:
+    case SDLK_5:
         if (!choose_world(a, (world_kind)(pressed - SDLK_1)))
             quit(a, true);
         break;
@@ -325,6 +327,9 @@ static void draw_trouble(app *a, int width, int height)
     if (exploded(a)) {
         snprintf(what, sizeof what, "%s has exploded.", label);
         snprintf(then, sizeof then, "R starts again. Before that: M for another method, Up for shorter steps.");
+    } else if (world_has_bodies(&a->world)) {
+        snprintf(what, sizeof what, "%s has no contacts.", label);
+        snprintf(then, sizeof then, "M takes another method.");
     } else { /* SPRING_EUNSUPPORTED: see positions_only in spring_method_info */
         snprintf(what, sizeof what, "%s is not for damped links.", label);
         snprintf(then, sizeof then, "Left takes damping away, M takes another method.");
@@ -339,7 +344,7 @@ static void draw_trouble(app *a, int width, int height)
 static void draw_help(app *a, int height)
 {
     const char *lines[] = {
-        "1 2 3 scene   M N method   Up Down steps   Left Right damping   W wind   R again   Esc",
+        "1 to 5 scene   M N method   Up Down steps   Left Right damping   W wind   R again   Esc",
         a->world.kind == WORLD_WATER ? "mouse: left grabs, right, middle or Space pokes"
                                      : "mouse: left grabs, right cuts, middle or Space pokes",
     };
@@ -397,7 +402,8 @@ static bool parse(options *o, int count, char **word)
                                                                 : NULL;
         if (value == NULL || i + 1 == count) {
             fprintf(stderr,
-                    "springs: %s %s; usage: springs [--scene cloth|rope|water] [--method NAME] [--script FILE]\n",
+                    "springs: %s %s; usage: springs [--scene cloth|rope|water|drape|cape] [--method NAME] [--script "
+                    "FILE]\n",
                     word[i], value == NULL ? "is not an option" : "should be followed by its value");
             return false;
         }

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Cloth, rope and water as scenes of springs; see world.h. */
+/* Cloth, rope, water, drape and cape as scenes of springs; see world.h. */
 #include "world.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-const char *const world_names[WORLD_KINDS] = {"cloth", "rope", "water"};
+const char *const world_names[WORLD_KINDS] = {"cloth", "rope", "water", "drape", "cape"};
 
-/* A curtain on hooks, a rope with a ball at its end, a pool 4 m wide. A sum of links, 8 a particle in a sheet, decides on
+/* A curtain on hooks, a rope with a ball at its end, a pool 4 m wide, a cloth above a sphere, a cape. A sum of links, 8 a particle in a sheet, decides on
    the step: in water it makes one step a frame of 1/60 s too long for leapfrog, in the others about a dozen. */
 static const struct recipe {
     spring_grid grid;
@@ -36,7 +36,31 @@ static const struct recipe {
                       .pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y},
                      .mass = 0.2,
                      .drag = 0.08},
+    [WORLD_DRAPE] = {{.count = {31, 31},
+                      .axes = 3,
+                      .spacing = 0.045,
+                      .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                      .stiffness = 100},
+                     .mass = 0.005,
+                     .drag = 0.005,
+                     .gravity = 9.81},
+    [WORLD_CAPE] = {{.count = {20, 30},
+                     .axes = 3,
+                     .spacing = 0.04,
+                     .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                     .stiffness = 600,
+                     .pinned = SPRING_GRID_FIRST_Y},
+                    .mass = 0.01,
+                    .drag = 0.008,
+                    .gravity = 9.81},
 };
+
+static const double skin = 0.012;       /* [m] radius of the particles of drape and cape */
+static const double sphere = 0.35;      /* [m] radius, under the drape */
+static const double body_radius = 0.18; /* [m] of the capsule with the cape, between these heights: */
+static const double body_low = 0.35, body_high = 1.3;
+static const double pace = 2.2,
+                    course = 3.0; /* [m/s] of the body, [m] from where it appears to where it is taken back */
 
 static const double ball = 0.5;        /* [kg] at the end of the rope */
 static const double strongest = 0.035; /* [N] on a particle: a third of its weight */
@@ -68,6 +92,32 @@ static vec3 hanging_aside(double along)
     return (vec3){0.8 * along, -0.6 * along, 0};
 }
 
+/* The drape: level, above the sphere and turned a little. */
+static vec3 above_the_sphere(double column, double row, double spacing)
+{
+    const double x = spacing * (column - 15), z = spacing * (row - 15);
+    return (vec3){0.92 * x - 0.38 * z, 1.1, 0.38 * x + 0.92 * z};
+}
+
+/* The cape hangs on an arc behind the neck of a body that faces to the right. */
+static vec3 behind_the_neck(double column, double row, double spacing)
+{
+    const double arc = body_radius + 2 * skin, angle = (column - 9.5) * spacing / arc;
+    return (vec3){-arc * cos(angle), body_high + 0.05 - spacing * row, arc * sin(angle)};
+}
+
+/* Where the body of the cape is at a time [s]: it jumps once in each course, and appears again where it began. */
+static vec3 body_at(const world *w, double time)
+{
+    const double far = pace * time - w->away, jump = (far - 1.1) / pace; /* [s] since it left the ground */
+    return (vec3){far - course / 2, jump > 0 && jump < 0.55 ? 9.81 / 2 * jump * (0.55 - jump) : 0, 0};
+}
+
+bool world_has_bodies(const world *w)
+{
+    return w->kind == WORLD_DRAPE || w->kind == WORLD_CAPE;
+}
+
 static void set_home(world *w)
 {
     for (uint32_t row = 0; row < w->rows; row++)
@@ -77,7 +127,12 @@ static void set_home(world *w)
                 *p = curtain(column, row, w->spacing);
             else if (w->kind == WORLD_ROPE)
                 *p = hanging_aside(column * w->spacing);
-            else
+            else if (w->kind == WORLD_DRAPE)
+                *p = above_the_sphere(column, row, w->spacing);
+            else if (w->kind == WORLD_CAPE) {
+                *p = behind_the_neck(column, row, w->spacing);
+                p->x -= course / 2;
+            } else
                 *p = (vec3){column * w->spacing, 0, row * w->spacing};
         }
 }
@@ -116,13 +171,14 @@ static void get_positions(const world *w, vec3 *out)
 /* ------------------------------------------------------------------------------------------------- making, freeing */
 
 /* Every method that scenes offer, so that the user may change it while all moves on. RKN8 and SRKN6 are not for damped
-   links: the links are made without damping, world_set_damping() comes later. */
-static uint32_t all_methods(void)
+   links: the links are made without damping, world_set_damping() comes later. Nor do they have contacts. */
+static uint32_t all_methods(const world *w)
 {
     uint32_t methods = 0;
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         const spring_method m = spring_method_at(i);
-        if (spring_method_describe(m)->scenes)
+        const spring_method_info *info = spring_method_describe(m);
+        if (info->scenes && !(info->positions_only && world_has_bodies(w)))
             methods |= 1u << m;
     }
     return methods;
@@ -150,14 +206,16 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
             w->pinned[column] = 1;
     spring_scene_def def = {.axes = w->axes,
                             .flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
-                            .methods = all_methods(),
+                            .methods = all_methods(w),
                             .particles = w->particles,
                             .links = w->links,
                             .position = position,
                             .mass = mass,
                             .pinned = w->pinned,
                             .link = w->link,
-                            .drag = r->drag};
+                            .drag = r->drag,
+                            .colliders = world_has_bodies(w) ? WORLD_BODIES : 0,
+                            .particle_radius = world_has_bodies(w) ? skin : 0};
     if (w->axes > 1)
         def.gravity[1] = -r->gravity;
     size_t bytes;
@@ -170,6 +228,41 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
     if (!made) /* else the scene begins where its memory does */
         free(memory);
     return made;
+}
+
+static void set_bodies(world *w)
+{
+    w->body[1] = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.8};
+    must(spring_scene_set_colliders(w->scene, w->body, WORLD_BODIES), "bodies");
+}
+
+/* The capsule and the pinned edge of the cape go to where the body is at the end of these steps. At the end of its course
+   everything is moved back by a transform, which stretches no link. */
+static void move_body(world *w, double duration)
+{
+    const double time = spring_scene_time(w->scene);
+    if (pace * time - w->away > course) {
+        const double back[12] = {1, 0, 0, -course, 0, 1, 0, 0, 0, 0, 1, 0};
+        must(spring_scene_transform(w->scene, back), "teleport");
+        w->away += course;
+        w->hand.x -= course;
+    }
+    const vec3 here = body_at(w, time), there = body_at(w, time + duration);
+    const double u[2] = {(there.x - here.x) / duration, (there.y - here.y) / duration};
+    w->body[0] = (spring_collider){.shape = SPRING_CAPSULE,
+                                   .at = {here.x, here.y + body_low},
+                                   .to = {here.x, here.y + body_high},
+                                   .radius = body_radius,
+                                   .velocity = {u[0], u[1]},
+                                   .velocity_to = {u[0], u[1]},
+                                   .friction = 0.3};
+    set_bodies(w);
+    for (uint32_t column = 0; column < w->columns; column++) {
+        const vec3 pin = behind_the_neck(column, 0, w->spacing);
+        const double target[3] = {pin.x + there.x, pin.y + there.y, pin.z};
+        if (column != w->grabbed)
+            must(spring_scene_drive(w->scene, column, target, duration), "drive");
+    }
 }
 
 bool world_open(world *w, world_kind kind)
@@ -200,6 +293,11 @@ bool world_open(world *w, world_kind kind)
     free(mass);
     if (!made)
         world_close(w);
+    else if (kind == WORLD_DRAPE) {
+        w->body[0] = (spring_collider){.shape = SPRING_SPHERE, .at = {0, sphere}, .radius = sphere, .friction = 0.4};
+        set_bodies(w);
+    } else if (kind == WORLD_CAPE)
+        move_body(w, 1);
     else if (kind == WORLD_WATER)
         world_poke(w, w->columns / 3 + w->columns * (w->rows / 2)); /* something to look at */
     return made;
@@ -235,6 +333,8 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
 {
     if (n == 0)
         return SPRING_OK;
+    if (w->kind == WORLD_CAPE)
+        move_body(w, (double)n * dt);
     if (w->grabbed != WORLD_NOTHING) { /* it will be there after these n steps, and the links feel how fast it goes */
         double own[3];
         reach(w, (double)n * dt);
@@ -254,6 +354,11 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
     w->spare = w->previous;
     w->previous = before;
     get_positions(w, w->current);
+    if (w->kind == WORLD_CAPE) /* where it is drawn */
+        for (int axis = 0; axis < 2; axis++) {
+            w->body[0].at[axis] += (double)n * dt * w->body[0].velocity[axis];
+            w->body[0].to[axis] += (double)n * dt * w->body[0].velocity[axis];
+        }
     return SPRING_OK;
 }
 
@@ -288,7 +393,7 @@ void world_set_damping(world *w, double ratio)
 /* Setting the force says, too, that it is another one now: a force may have been kept. */
 void world_set_wind(world *w, bool blows)
 {
-    w->wind = blows && w->kind == WORLD_CLOTH ? strongest : 0;
+    w->wind = blows && (w->kind == WORLD_CLOTH || w->kind == WORLD_CAPE) ? strongest : 0;
     must(spring_scene_set_force(w->scene, w->wind > 0 ? blow : NULL, w), "wind");
 }
 
@@ -347,7 +452,8 @@ void world_poke(world *w, uint32_t particle)
 {
     static const struct push {
         double speed[3], radius; /* [m/s] along the axes of the scene, [m] */
-    } pushes[WORLD_KINDS] = {{{0, 0, -6}, 0.15}, {{4, 0, 0}, 0.2}, {{-8, 0, 0}, 0.2}};
+    } pushes[WORLD_KINDS] = {
+        {{0, 0, -6}, 0.15}, {{4, 0, 0}, 0.2}, {{-8, 0, 0}, 0.2}, {{0, 4, 0}, 0.2}, {{0, 0, -4}, 0.15}};
     const struct push *push = &pushes[w->kind];
     const vec3 at = w->current[particle];
     for (uint32_t i = 0; i < w->particles; i++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What moves: a cloth, a rope, or water, and the hand that is at it. Nothing here knows of windows.
+ * What moves: a cloth, a rope, water, a cloth that falls on a sphere, or a cape on a body that runs, jumps and is
+ * teleported; and the hand that is at it. Nothing here knows of windows.
  *
  * Lengths are in metres; x to the right, y up, z towards the viewer.
  */
@@ -18,7 +19,9 @@ typedef struct gust {
     double along, across;
 } gust;
 
-typedef enum world_kind { WORLD_CLOTH, WORLD_ROPE, WORLD_WATER, WORLD_KINDS } world_kind;
+typedef enum world_kind { WORLD_CLOTH, WORLD_ROPE, WORLD_WATER, WORLD_DRAPE, WORLD_CAPE, WORLD_KINDS } world_kind;
+
+enum { WORLD_BODIES = 2 }; /* of a drape or a cape: a sphere or capsule, and the ground */
 
 extern const char *const world_names[WORLD_KINDS];
 
@@ -35,7 +38,7 @@ typedef struct world {
     size_t particles, links;
     double spacing, wave; /* [m] between particles at rest; [m/s] speed of waves along them */
     double damping;       /* [N s/m] of each link */
-    double wind;          /* [N] on a particle, at most; only a cloth feels it */
+    double wind;          /* [N] on a particle, at most; only a cloth or a cape feels it */
     gust *gust;           /* [particles] */
     spring_link *link;    /* [links] as the grid made them */
     uint8_t *pinned;      /* [particles] as they were at the start */
@@ -44,8 +47,10 @@ typedef struct world {
     vec3 *previous;       /* [particles] before the last step, and */
     vec3 *current;        /* [particles] after it: what is drawn lies between them */
     vec3 *spare;          /* [particles] */
-    uint32_t grabbed;     /* particle, or WORLD_NOTHING */
-    vec3 hand, goal;      /* where the hand is, and where the mouse wants it */
+    spring_collider body[WORLD_BODIES];
+    double away;      /* [m] the body of the cape has been teleported back by so much */
+    uint32_t grabbed; /* particle, or WORLD_NOTHING */
+    vec3 hand, goal;  /* where the hand is, and where the mouse wants it */
 } world;
 
 /** Make a world. False without memory, or if the library refuses it; the world is empty then. */
@@ -58,6 +63,9 @@ void world_close(world *w);
 
     Returns what spring_scene_advance() does; SPRING_ENONFINITE, too, where there is more energy than can be. */
 spring_status world_advance(world *w, spring_method method, double dt, uint64_t n);
+
+/** Whether there are colliders; methods that require smooth forces, and Euler, have no contacts. */
+bool world_has_bodies(const world *w);
 
 /** Positions [particles] a part alpha of the way from the state before the last step to that after it. */
 void world_between(const world *w, double alpha, vec3 *out);
@@ -80,7 +88,7 @@ void world_release(world *w);
 void world_cut(world *w, size_t link);
 bool world_is_cut(const world *w, size_t link);
 
-/** Push the surroundings of a particle: cloth away from the viewer, a rope to the right, water down. */
+/** Push the surroundings of a particle: cloth and cape away from the viewer, a rope to the right, a drape up, water down. */
 void world_poke(world *w, uint32_t particle);
 
 #endif

@@ -4,7 +4,7 @@ import math
 import sys
 
 import pytest
-from tools import ROUNDING, STABILITY, STEPPERS, VALIDATE, column, table
+from tools import CONTACTS, ROUNDING, STABILITY, STEPPERS, VALIDATE, column, table
 
 # --- spring-validate ------------------------------------------------------------------------------------------------
 
@@ -52,6 +52,62 @@ def test_bdf_is_in_trouble_on_light_damping(quick):
 
 def test_one_case(quick):
     assert table(VALIDATE, '--case', 'middle') == [row for row in quick if row['case'] == 'middle']
+
+
+# --- spring-contacts ------------------------------------------------------------------------------------------------
+
+@pytest.fixture(scope='module')
+def contacts():
+    return table(CONTACTS, '--quick')
+
+
+def errors_of(contacts, case, scheme):
+    """By steps per frame."""
+    rows = [row for row in contacts if (row['case'], row['scheme']) == (case, scheme)]
+    return {round(1 / 60 / float(row['dt_s'])): float(row['error']) for row in rows}
+
+
+@pytest.mark.parametrize('case, steps, bound', [  # a factor of two above the prototype of the scheme
+    ('bounce', 8, 3e-5), ('sphere', 4, 5e-5), ('creep', 4, 0), ('slide', 4, 1e-12), ('capstan', 8, 5e-3), ('capstan', 16, 5e-3),
+    ('plate-80', 4, 0), ('plate-500', 4, 0)])
+def test_contacts_of_the_library(contacts, case, steps, bound):
+    assert errors_of(contacts, case, 'library')[steps] <= bound
+
+
+def test_stopping_distance(contacts):
+    exact = 9 / (2 * 0.4 * 9.81)
+    for steps, error in errors_of(contacts, 'stopping', 'library').items():
+        assert error * exact <= 0.4 * 9.81 / 8 / (60 * steps)**2
+
+
+def test_schemes_of_engines_are_of_lower_order(contacts):
+    """The simple schemes are what they say: projection has order 1, penalty springs are passed by a fast plate."""
+    for case in ('spring-on-plane', 'sphere'):
+        library, projection = (errors_of(contacts, case, scheme) for scheme in ('library', 'projection'))
+        assert abs(math.log2(projection[4] / projection[16]) / 2 - 1) <= 0.15
+        assert math.log2(library[4] / library[16]) / 2 >= 1.7
+        assert all(library[steps] < projection[steps] / 50 for steps in library)
+    assert min(errors_of(contacts, 'plate-500', scheme)[4] for scheme in ('projection', 'penalty')) > 900
+    assert errors_of(contacts, 'creep', 'penalty')[4] > 1e-4
+
+
+def test_orders_are_slopes(contacts):
+    row = [row for row in contacts if (row['case'], row['scheme']) == ('sphere', 'library')][-1]
+    errors = errors_of(contacts, 'sphere', 'library')
+    assert abs(float(row['order']) - math.log2(errors[4] / errors[16]) / 2) <= 1e-12
+
+
+def test_energy_of_bounces():
+    """Close to the stable step: without any loss it grows, otherwise it never exceeds the start."""
+    rows = table(CONTACTS, '--part', 'energy', '--quick')
+    for row in rows:
+        lossless = float(row['restitution']) == 1 and float(row['damping_Ns_per_m']) == 0
+        assert (float(row['largest_energy']) > 1.02) == lossless and 1 <= float(row['largest_energy']) < 10
+    assert len(rows) == 5
+
+
+def test_list_of_contacts(contacts):
+    assert [row['case'] for row in table(CONTACTS, '--part', 'list')] == list(dict.fromkeys(row['case'] for row in contacts))
 
 
 # --- spring-stability -----------------------------------------------------------------------------------------------

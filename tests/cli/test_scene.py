@@ -487,3 +487,79 @@ def test_links_that_hold_have_the_same_bits():
                                   '--scene cloth --tension-only --method rkn8'])
 def test_refused_for_tension_and_tear(args):
     is_failure(run(SCENE, '--method', 'leapfrog', *args.split()), 2, '--te')
+
+
+# --- colliders --------------------------------------------------------------------------------------------------------
+
+FALLING_ROPE = ['--drag', '0', '--stiffness', '0', '--size', '2', '--length', '1', '--method', 'leapfrog', '--fps', '16']
+
+
+def test_cloth_lies_on_a_sphere_and_a_floor(frames_of):
+    """No particle is inside, all that touch are as far away as their radius, and the column counts them."""
+    args = ['--size', '15', '--method', 'leapfrog', '--duration', '2', '--fps', '4', '--particle-radius', '0.02', '--collider',
+            'sphere:x=1,y=1,z=-.6,radius=.4,friction=.5', 'plane:z=-0.9']
+    last = frames_of('--scene', 'cloth', *args)[0]
+    out = [min(math.dist((float(row['x_m']), float(row['y_m']), float(row['z_m'])), (1, 1, -0.6)) - 0.4,
+               float(row['z_m']) + 0.9) - 0.02 for row in last]
+    touching = int(table(SCENE, '--scene', 'cloth', *args)[-1]['touching'])
+    near = sum(distance < 1e-9 for distance in out)
+    assert min(out) > -1e-14 and 0 < touching < 225
+    assert abs(near - touching) <= 2  # frames and the last row are of the same time; a particle may part in the last step
+
+
+@pytest.mark.parametrize('restitution', [0, 0.9])
+def test_free_end_of_a_rope_bounces(restitution):
+    """A rope of two particles without stiffness: one falls from a height of 0 to -0.25 m, and bounces."""
+    rows = scene('rope', *FALLING_ROPE[:-4], '--fps', '64', '--dt', '0x1p-10', '--duration', '0.5', '--collider',
+                 f'plane:z=-0.25,restitution={restitution}')
+    end = float(rows[-1]['gravity_J']) / (0.05 * 9.81)  # [m], of two particles, one of which is pinned
+    fall = math.sqrt(0.5 / 9.81)
+    rest = 0.5 - fall
+    want = -0.25 + restitution * 9.81 * fall * rest - 9.81 / 2 * rest**2 if restitution else -0.25
+    assert abs(end - want) <= 1e-5
+    assert int(rows[-1]['touching']) == (0 if restitution else 1)
+
+
+def test_fields_of_colliders(frames_of):
+    """The box, the capsule and the plane of a wall stop a rope in a row of ways; a collider that is far away changes no bit."""
+    def height(*colliders):
+        return float(frames_of('--scene', 'rope', *FALLING_ROPE, '--duration', '0.5', '--dt', '0x1p-10', *colliders)[0][-1]['z_m'])
+
+    free = height()
+    assert free == height('--collider', 'sphere:z=90,radius=1')
+    assert abs(height('--collider', 'box:x=1,z=-.5,hx=.2,hz=.1,radius=.05') + 0.35) < 1e-12
+    assert abs(height('--collider', 'capsule:x=0.5,z=-.5,x2=1.5,z2=-.5,radius=.1') + 0.4) < 1e-12
+    assert abs(height('--collider', 'plane:z=-.5,nz=2', '--particle-radius', '.125') + 0.375) < 1e-12
+    assert abs(height('--collider', 'plane:z=-1,vz=1') + 0.5) < 1e-12  # rises for half a second
+    assert height('--collider', 'plane:nx=1,x=-9') == free
+
+
+def test_colliders_without_effect_have_the_same_bits():
+    plain = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--duration', '0.2', '--hash')
+    far = run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--duration', '0.2', '--hash', '--collider', 'plane:z=-9')
+    assert plain.stdout == far.stdout and far.returncode == 0
+
+
+@pytest.mark.parametrize('words, wanted', [
+    ('cube:x=1', ['cube', 'sphere:']),
+    ('sphere:nx=1', ['"nx"', 'not a field of a sphere', 'radius']),
+    ('sphere:radius=-1', ['radius=-1', '>= 0']),
+    ('plane:restitution=2', ['restitution=2', 'from 0 to 1']),
+    ('plane:friction', ['"friction"', '>= 0']),
+    ('plane:z=1x', ['z=1x', 'finite number']),
+    ('plane:z=', ['"z="']),
+    ('plane:z=nan', ['z=nan']),
+    ('plane:nx=0', ['no normal']),
+    ('plane:x=1e999', ['x=1e999']),
+    (' '.join(33 * ['plane:']), ['number 33', 'at most 32']),
+    ('plane: --method rkn8', ['rkn8']),
+    ('plane: --method euler', ['euler']),
+    ('plane: --scene chain', ['chain']),
+    ('plane: --scene water', ['water']),
+])
+def test_refused_for_colliders(words, wanted):
+    is_failure(run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--collider', *words.split()), 2, '--collider', *wanted)
+
+
+def test_particle_radius_needs_a_collider():
+    is_failure(run(SCENE, '--scene', 'cloth', '--method', 'leapfrog', '--particle-radius', '1'), 2, '--particle-radius')

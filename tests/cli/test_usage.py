@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from tools import (BENCH, BY_METHOD, ENERGY, MAP, METHODS, METHOD_TABLE, ORDER, PLAN, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
+from tools import (BENCH, BY_METHOD, CONTACTS, ENERGY, MAP, METHODS, METHOD_TABLE, ORDER, PLAN, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
                    SWEEP, VALIDATE, WORK, each_tool, is_failure, run, table)
 
 METHOD = f'one of {", ".join(METHODS)}'
@@ -28,6 +28,7 @@ COLUMNS = {  # the fixed ones, in their order; others may follow
     SCENE: 't_s energy_J kinetic_J elastic_J gravity_J max_displacement_m',
     SWEEP: 'omega_dt method error energy_error status',
     PLAN: 'scene method error substeps dt_s measured_error uncertainty stable_substeps',  # of --presets
+    CONTACTS: 'case scheme dt_s value exact error order',
     METHOD_TABLE: 'method label order forces_per_step symplectic springs scenes',
     MAP: 'scene method particles links substeps dt_s stable_step_s energy_error verdict',
 }

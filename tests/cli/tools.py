@@ -13,6 +13,7 @@ VALIDATE, STABILITY, ROUNDING = 'spring-validate', 'spring-stability', 'spring-r
 SCENE, MAP = 'spring-scene', 'spring-scene-map'
 PLAN = 'spring-plan'  # with --presets it measures no time
 METHOD_TABLE = 'spring-methods'
+CONTACTS = 'spring-contacts'
 SWEEP = 'spring-sweep'
 BENCH, WORK = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
 ENGINES = 'spring-engines'  # built where there are engines
@@ -28,6 +29,7 @@ SHORT = {  # for every tool that gives the same bytes twice a run that takes no 
     SWEEP: ['--over', 'omega_dt=0.1:3:log:3', '--method', 'rk4', '--scene', 'spring'],  # the last takes one word
     PLAN: ['--presets', '--scene', 'chain', '--quick'],
     METHOD_TABLE: [],
+    CONTACTS: ['--quick'],
 }
 TIMED = {  # for the others
     BENCH: ['--quick', '--kernel', 'leapfrog'],

@@ -12,7 +12,7 @@ import pytest
 from windows import read_bmp
 
 SPRINGS = os.environ.get('SPRINGS')
-SCENES = 'cloth', 'rope', 'water'
+SCENES = 'cloth', 'rope', 'water', 'drape', 'cape'
 BELOW_TEXT = 0, 200, 1000, 660  # of the window: neither settings nor help
 SETTINGS, TROUBLE = (8, 8, 374, 190), (0, 560, 1000, 640)
 AMBER, RED = (255, 190, 70), (255, 104, 88)
@@ -238,8 +238,28 @@ def test_drawn_between_two_states(play):
 
 
 def test_scenes_by_key(play):
-    states, _ = play('key 3; wait 1; say; key 2; wait 1; say; key 1; wait 1; say', scene='rope')
-    assert [state['scene'] for state in states] == ['water', 'rope', 'cloth']
+    states, _ = play('key 3; wait 1; say; key 2; wait 1; say; key 1; wait 1; say; key 4; wait 1; say; '
+                     'key 5; wait 1; say', scene='rope')
+    assert [state['scene'] for state in states] == ['water', 'rope', 'cloth', 'drape', 'cape']
+
+
+@pytest.mark.parametrize('method, works', [('leapfrog', True), ('rk4', True), ('symplectic-euler', True), ('euler', False),
+                                           ('rkn8', False)])
+def test_methods_with_contacts(play, method, works):
+    """A method without contacts stands still, says so, and the next one goes on."""
+    (state, again), _ = play('wait 5; say; key M; key M; key M; wait 5; say' if method == 'rkn8' else 'wait 5; say; wait 5; say',
+                             scene='drape', method=method)
+    assert (state['status'] == 'ok') == works and (float(state['time']) > 0) == works
+    assert (again['status'] == 'ok') == (works or method == 'rkn8')
+
+
+def test_cape_is_taken_back(play):
+    """The body runs to the right for 1.4 s, and begins again on the left; the cape does not tear or explode."""
+    states, _ = play(*['wait 14; say'] * 16, scene='cape')
+    xs = [float(state['x']) for state in states]
+    assert all(state['status'] == 'ok' for state in states)
+    jumps = [i for i in range(1, len(xs)) if xs[i] < xs[i - 1] - 200]
+    assert len(jumps) == 2 and max(float(state['energy']) for state in states) < 200
 
 
 def test_by_hand(screen):

@@ -9,14 +9,15 @@ from springstep._clock import Clock
 from springstep._common import (InvalidError, Method, NonFiniteError, RangeError, SpringError, UnstableError,
                                 UnsupportedError, methods, self_test)
 from springstep._native import ffi, lib
-from springstep._scene import LINK, Energies, Grid, Scene, Snapshot, components, grid
+from springstep._scene import (LINK, Collider, Energies, Grid, Scene, Snapshot, box, capsule, components, grid, plane,
+                               sphere)
 from springstep._spring import Spring
 from springstep._sweep import sweep
 
 __version__: str = ffi.string(lib.spring_version()).decode()
 
 __all__ = [
-    "Batch", "Clock", "Energies", "Grid", "InvalidError", "LINK", "Method", "NonFiniteError", "RangeError", "Scene",
-    "Snapshot", "Spring", "SpringError", "UnstableError", "UnsupportedError", "components", "ffi", "grid", "lib", "methods",
-    "self_test", "sweep",
+    "Batch", "Clock", "Collider", "Energies", "Grid", "InvalidError", "LINK", "Method", "NonFiniteError",
+    "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "UnstableError", "UnsupportedError", "box", "capsule",
+    "components", "ffi", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep",
 ]

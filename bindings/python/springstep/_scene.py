@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, NamedTuple, NoReturn
 
@@ -152,6 +153,74 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
     return result
 
 
+_SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX}
+_USED = {shape: ("at", "velocity", "spin", "friction", "restitution", *more) for shape, more in {
+    "plane": ("axis",), "sphere": ("radius",), "capsule": ("radius", "to", "velocity_to"), "box": ("radius", "half", "axis"),
+}.items()}
+_NOT_NEGATIVE = ("half", "radius", "friction", "restitution")
+
+
+@dataclass
+class Collider:
+    """A convex body that particles cannot enter, as in C; plane(), sphere(), capsule() and box() make one.
+
+    Vectors have three numbers, or two for scenes on two axes, where a spin is a number.
+    """
+
+    shape: str  #: "plane", "sphere", "capsule" or "box"
+    at: Sequence[float] = (0, 0, 0)  #: [m] a point of the plane, the centre, or one end of the capsule
+    to: Sequence[float] = (0, 0, 0)  #: [m] the other end of the capsule
+    axis: Sequence[Sequence[float]] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))  #: the first: unit normal of the plane; box: unit axes
+    half: Sequence[float] = (0, 0, 0)  #: [m] box: half of its size along each axis, without the radius
+    radius: float = 0.0  #: [m] of a sphere or capsule; also rounds a box
+    velocity: Sequence[float] = (0, 0, 0)  #: [m/s] of `at`
+    velocity_to: Sequence[float] = (0, 0, 0)  #: [m/s] of `to`
+    spin: Sequence[float] | float = (0, 0, 0)  #: [rad/s] of the surface: enters friction only, does not turn the body
+    friction: float = 0.0  #: Coulomb coefficient >= 0
+    restitution: float = 0.0  #: 0 to 1: normal speed after an impact over that before
+
+
+def plane(at: Sequence[float], normal: Sequence[float], *, velocity: Sequence[float] = (0, 0, 0),
+          spin: Sequence[float] | float = (0, 0, 0), friction: float = 0.0, restitution: float = 0.0) -> Collider:
+    """A half-space, from a point of its surface [m] and its normal, of any length, which points out of it."""
+    length = float(np.linalg.norm(normal))
+    if not 0 < length < np.inf:
+        invalid("normal", list(normal), reason="not a vector with a length greater than 0")
+    unit = [component / length for component in normal]
+    return Collider("plane", at, axis=(unit, (0, 0, 0), (0, 0, 0)), velocity=velocity, spin=spin, friction=friction,
+                    restitution=restitution)
+
+
+def sphere(at: Sequence[float], radius: float, *, velocity: Sequence[float] = (0, 0, 0),
+           spin: Sequence[float] | float = (0, 0, 0), friction: float = 0.0, restitution: float = 0.0) -> Collider:
+    """A ball, from its centre and its radius [m]."""
+    return Collider("sphere", at, radius=radius, velocity=velocity, spin=spin, friction=friction, restitution=restitution)
+
+
+def capsule(at: Sequence[float], to: Sequence[float], radius: float, *, velocity: Sequence[float] = (0, 0, 0),
+            velocity_to: Sequence[float] | None = None, spin: Sequence[float] | float = (0, 0, 0), friction: float = 0.0,
+            restitution: float = 0.0) -> Collider:
+    """All points within a radius of a line from `at` to `to` [m]. `to` has the velocity of `at` if none is given for it."""
+    return Collider("capsule", at, to, radius=radius, velocity=velocity,
+                    velocity_to=velocity if velocity_to is None else velocity_to, spin=spin, friction=friction,
+                    restitution=restitution)
+
+
+def box(at: Sequence[float], half: Sequence[float], *, axis: Sequence[Sequence[float]] = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+        radius: float = 0.0, velocity: Sequence[float] = (0, 0, 0), spin: Sequence[float] | float = (0, 0, 0),
+        friction: float = 0.0, restitution: float = 0.0) -> Collider:
+    """A box, from its centre and half of its size along each of its unit axes [m]; a radius is added and rounds its edges."""
+    return Collider("box", at, axis=axis, half=half, radius=radius, velocity=velocity, spin=spin, friction=friction,
+                    restitution=restitution)
+
+
+def _orthonormal(collider: Collider, axes: int) -> bool:
+    """As C asks: to 1e-6."""
+    count = 1 if collider.shape == "plane" else axes
+    rows = np.array([axis[:axes] for axis in collider.axis[:count]], np.float64)
+    return bool((abs(rows @ rows.T - np.eye(count)) <= 1e-6).all())
+
+
 class Snapshot:
     """The state of a scene at a time, its force included. Scene.restore() goes back to it."""
 
@@ -180,6 +249,8 @@ class Scene:
     editable: links, pins and masses may change
     undo: False: an advance that fails loses the state, and memory is saved
     max_speed: [m/s] a step after which a free particle is faster along an axis fails; 0: no limit
+    colliders: there is room for so many, at most 32, see set_colliders(); for two or three axes
+    particle_radius: [m] >= 0 of every particle, for contacts
     tension_only: links pull and never push, as those of ropes and nets; for two or three axes
     held_forces: there is room for forces that are held until they are changed, see set_held_force()
     dtype: float64 or float32: what the scene computes in
@@ -193,7 +264,7 @@ class Scene:
                  drag: float = 0.0, force: Force | None = None, force_ignores_velocity: bool = False,
                  methods: Iterable[str] | None = None, editable: bool = False, undo: bool = True,
                  dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False,
-                 max_speed: float = 0.0):
+                 max_speed: float = 0.0, colliders: int = 0, particle_radius: float = 0.0):
         self._dtype = np.dtype(dtype)
         if self._dtype not in _PREFIXES:
             raise TypeError("dtype: not float64 or float32")
@@ -220,6 +291,7 @@ class Scene:
         given = {"position": positions, "link": joined}
         definition = ffi.new(f"{self._prefix}_def *", {
             "axes": self._axes, "particles": self._particles, "links": self._links, "drag": drag, "max_speed": max_speed,
+            "colliders": min(_natural("colliders", colliders), 2**32 - 1), "particle_radius": particle_radius,
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
         for flag, wanted in (("EDITABLE", editable), ("NO_UNDO", not undo),
@@ -496,6 +568,79 @@ class Scene:
     def set_gravity(self, gravity: ArrayLike) -> None:
         """Change gravity [m/s^2], a number for each axis."""
         self._ask("set_gravity", [*self._vector("gravity", gravity), 0, 0][:3])
+
+    def set_colliders(self, colliders: Iterable[Collider]) -> None:
+        """Replace all colliders, at most as many as there is room for; [] removes them.
+
+        They are where they say now, and then move at their velocities. Set them once a frame.
+        """
+        given = list(colliders)
+        array = ffi.new("spring_collider[]", len(given))
+        for place, collider in enumerate(given):
+            self._fill_collider(array[place], collider, place)
+        if status := self._ask("set_colliders", array, len(given)):
+            if status == lib.SPRING_EINVAL:
+                self._refuse_colliders(given)
+            fail(status, "colliders", len(given))
+
+    def _fill_collider(self, c: Any, collider: Collider, place: int) -> None:
+        if not isinstance(collider, Collider):
+            raise TypeError(f"colliders[{place}]: a {type(collider).__name__}, not a Collider")
+        if collider.shape not in _SHAPES:
+            invalid("colliders.shape", collider.shape, place, reason=f"not one of {', '.join(_SHAPES)}")
+        c.shape = _SHAPES[collider.shape]
+        for field in ("at", "to", "half", "velocity", "velocity_to"):
+            setattr(c, field, self._short_vector(f"colliders.{field}", getattr(collider, field), place))
+        if np.ndim(collider.spin) == 0:
+            if self._axes == 3:
+                invalid("colliders.spin", collider.spin, place, reason="not three numbers")
+            c.spin[2] = collider.spin
+        else:
+            c.spin = self._short_vector("colliders.spin", collider.spin, place)
+        for row, axis in enumerate(collider.axis[:3]):
+            c.axis[row] = self._short_vector("colliders.axis", axis, place)
+        for field in ("radius", "friction", "restitution"):
+            setattr(c, field, getattr(collider, field))
+
+    def _short_vector(self, field: str, values: Sequence[float], place: int) -> list[float]:
+        """Three numbers; two will do on two axes."""
+        if np.ndim(values) != 1 or len(values) not in (self._axes, 3):
+            invalid(field, values, place, reason=f"not {self._axes} numbers")
+        return [*map(float, values), 0.0][:3]
+
+    def _refuse_colliders(self, given: list[Collider]) -> NoReturn:
+        """The exception for colliders of which C refuses one."""
+        for place, collider in enumerate(given):
+            for field in _USED[collider.shape]:
+                values = getattr(collider, field)
+                if field == "axis":
+                    if not _orthonormal(collider, self._axes):
+                        invalid("colliders.axis", values, place, reason="not unit vectors at right angles")
+                    continue
+                used = self._used(field, values)
+                if not np.isfinite(used).all() or (field in _NOT_NEGATIVE and (used < 0).any()):
+                    invalid(f"colliders.{field}", values, place)
+                if field == "restitution" and values > 1:
+                    invalid(f"colliders.{field}", values, place, reason="not 0 to 1")
+        fail(lib.SPRING_EINVAL, "colliders")
+
+    def _used(self, field: str, values: ArrayLike) -> np.ndarray:
+        """The numbers that C looks at, in the precision of the scene."""
+        array = np.atleast_1d(np.asarray(values, np.float64))
+        if field == "spin" and self._axes == 2:
+            array = array[-1:]
+        with np.errstate(over="ignore"):
+            return array[:self._axes].astype(self._dtype)
+
+    def touching(self, first: int = 0, count: int | None = None) -> np.ndarray:
+        """Which colliders particles first ... first + count - 1 touched in the last step: bit i stands for collider i."""
+        mask = np.empty(max(0, self._particles - first) if count is None else count, np.uint32)
+        pointer = ffi.cast("uint32_t *", ffi.from_buffer(mask))
+        if status := self._ask("touching", pointer, _natural("first", first), len(mask)):
+            if status == lib.SPRING_EDISABLED:
+                fail(status, "colliders", 0)
+            fail(status, "first, count", (first, len(mask)))
+        return mask
 
     def set_force(self, force: Force | None) -> None:
         """Change the force; None: none. Call it, too, after a change of what the force depends on."""

@@ -3,6 +3,7 @@
 import copy
 import gc
 import math
+import pickle
 import re
 import subprocess
 import sys
@@ -707,3 +708,148 @@ def test_a_scene_that_explodes_is_noticed_in_time():
     assert np.abs(scene.velocity()).max() <= 20
     with pytest.raises(springstep.InvalidError, match="max_speed"):
         rope(max_speed=-1.0)
+
+
+# --- colliders
+
+
+def drop(*colliders, axes=3, dtype=np.float64, velocity=None, **options):
+    """A row of free particles at a height of 0.5 m, above colliders; the last axis points upwards."""
+    up = axes - 1
+    position = np.zeros((5, axes))
+    position[:, 0] = np.arange(5) * 0.3
+    position[:, up] = 0.5
+    gravity = np.zeros(axes)
+    gravity[up] = -9.81
+    scene = Scene(position, velocity=velocity, gravity=gravity, dtype=dtype, colliders=4, mass=0.13, **options)
+    scene.set_colliders(colliders)
+    return scene
+
+
+@pytest.mark.parametrize("axes", [2, 3])
+@FLOATS
+def test_shapes(axes, dtype):
+    """Each particle falls on something else, but the last."""
+    def at(x, z):
+        return [x, z] if axes == 2 else [x, 0, z]
+
+    half = [0.1, 0.1, 0.1][:axes]
+    scene = drop(springstep.sphere(at(0.0, -0.1), 0.2, friction=0.3), springstep.box(at(0.3, 0.0), half, radius=0.05),
+                 springstep.capsule(at(0.5, 0.0), at(0.7, 0.0), 0.05, friction=0.3),
+                 springstep.plane(at(0, -0.25), at(0, 3.0)), axes=axes, dtype=dtype, particle_radius=0.01)
+    scene.advance(1 / 240, 240)
+    assert scene.touching().tolist() == [1, 2, 4, 8, 8]
+    assert scene.touching(1, 2).tolist() == [2, 4] and scene.touching().dtype == np.uint32
+    wanted = np.array([0.11, 0.16, 0.06, -0.24, -0.24])
+    assert abs(scene.position()[:, axes - 1] - wanted).max() <= 8 * np.finfo(dtype).eps
+    assert not scene.velocity().any() and scene.at_rest(0, 1e-3)
+    scene.set_colliders([])
+    assert not scene.touching().any() and not scene.at_rest(0, 1e-3)
+
+
+def test_bounce_friction_and_moving_colliders():
+    """Closed forms: the height of a bounce, and the braking distance v^2/(2 mu g)."""
+    flat = springstep.plane([0, 0, 0], [0, 0, 1], restitution=0.8)
+    scene = drop(flat)
+    fall = math.sqrt(2 * 0.5 / 9.81)
+    steps = round((1 + 0.8) * fall * 480)
+    scene.advance(1 / 480, steps)
+    rest = steps / 480 - fall
+    assert abs(scene.position()[0, 2] - (0.8 * 9.81 * fall * rest - 9.81 / 2 * rest**2)) < 3e-5
+
+    slide = drop(springstep.plane([0, 0, 0.5], [0, 0, 1], friction=0.4), velocity=np.tile([2.0, 0, 0], (5, 1)))
+    slide.advance(1 / 480, 480)
+    assert abs(slide.position()[0, 0] - 4 / (2 * 0.4 * 9.81)) <= 0.4 * 9.81 / 8 / 480**2
+    assert not slide.velocity().any()
+
+    lift = drop(springstep.plane([0, 0, 0.5], [0, 0, 1], velocity=[0, 0, 2]))
+    lift.advance(1 / 480, 240)
+    assert np.allclose(lift.position()[:, 2], 1.5, rtol=0, atol=1e-14)
+
+
+def test_colliders_are_part_of_snapshots():
+    scene = drop(springstep.plane([0, 0, 0], [0, 0, 1]))
+    before = scene.snapshot()
+    scene.advance(1 / 240, 200)
+    landed, mask = fnv(scene), scene.touching()
+    scene.restore(before)
+    scene.set_colliders([])
+    scene.advance(1 / 240, 200)
+    assert fnv(scene) != landed
+    scene.restore(before)
+    scene.advance(1 / 240, 200)
+    assert fnv(scene) == landed and (scene.touching() == mask).all() and mask.all()
+
+
+def test_colliders_are_values():
+    ball = springstep.sphere([0, 1, 2], 0.5, spin=[0, 0, 3], friction=0.3)
+    again = pickle.loads(pickle.dumps(ball))
+    assert again == ball == copy.deepcopy(ball) != springstep.sphere([0, 1, 2], 0.6, spin=[0, 0, 3], friction=0.3)
+    assert springstep.capsule([0, 0, 0], [1, 0, 0], 0.1, velocity=[1, 2, 3]).velocity_to == [1, 2, 3]
+    assert springstep.Collider("sphere", [0, 1, 2], radius=0.5, spin=[0, 0, 3], friction=0.3) == ball
+
+
+@pytest.mark.parametrize("field, value, shape, more", [
+    ("at", [0, math.nan, 0], "sphere", {}),
+    ("at", [0, 0], "sphere", {}),
+    ("to", [math.inf, 0, 0], "capsule", {}),
+    ("half", [1, -1, 1], "box", {}),
+    ("radius", -1, "sphere", {}),
+    ("radius", math.nan, "box", {}),
+    ("velocity", [0, 0, math.inf], "plane", {}),
+    ("velocity_to", [0, 0, math.inf], "capsule", {}),
+    ("spin", [0, math.nan, 0], "plane", {}),
+    ("spin", 1.0, "plane", {}),
+    ("friction", -0.1, "plane", {}),
+    ("friction", math.inf, "plane", {}),
+    ("restitution", 1.5, "plane", {}),
+    ("axis", [[1, 1, 0], [0, 1, 0], [0, 0, 1]], "plane", {}),
+    ("axis", [[1, 0, 0], [1, 0, 0], [0, 0, 1]], "box", {}),
+    ("shape", "cone", "cone", {}),
+])
+def test_bad_colliders_are_named(field, value, shape, more):
+    scene = drop()
+    before = scene.snapshot()
+    bad = springstep.Collider(**{"shape": shape, field: value, **more})
+    with pytest.raises(springstep.InvalidError, match=rf"colliders\.{field}\[1\]") as caught:
+        scene.set_colliders([springstep.plane([0, 0, 0], [0, 0, 1]), bad])
+    assert (caught.value.field, caught.value.index) == (f"colliders.{field}", 1) and caught.value.value is value
+    scene.advance(1 / 240, 200)
+    after = fnv(scene)
+    scene.restore(before)
+    scene.advance(1 / 240, 200)
+    assert fnv(scene) == after
+
+
+def test_the_colliders_in_the_documents():
+    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
+    names = {}
+    exec(re.search(r"## Colliders\n\n```python\n(.*?)```", page, re.S)[1], names)
+    assert names["scene"].touching().tolist() == [1]
+
+
+def test_refused_for_colliders():
+    with pytest.raises(springstep.InvalidError, match="colliders.at") as caught:
+        drop(springstep.sphere([0, 0, 1e39], 1), dtype=np.float32)
+    assert caught.value.index == 0
+    with pytest.raises(springstep.RangeError, match="colliders"):
+        drop(*[springstep.sphere([0, 0, 0], 1)] * 5)
+    with pytest.raises(springstep.SpringError, match="colliders"):
+        rope(colliders=33)
+    with pytest.raises(springstep.RangeError, match="colliders"):
+        rope(colliders=-1)
+    with pytest.raises(springstep.InvalidError, match="particle_radius"):
+        rope(colliders=1, particle_radius=-1)
+    for call in (lambda: rope().touching(), lambda: rope().set_colliders([])):
+        with pytest.raises(springstep.UnsupportedError, match="colliders"):
+            call()
+    with pytest.raises(springstep.RangeError, match="first"):
+        drop().touching(3, 3)
+    with pytest.raises(springstep.InvalidError, match="normal"):
+        springstep.plane([0, 0, 0], [0, 0, 0])
+    with pytest.raises(TypeError, match=r"colliders\[0\]"):
+        drop((0, 0, 1))
+    with pytest.raises(springstep.UnsupportedError, match="rkn8"):
+        rope(colliders=1, methods=["rkn8"])
+    with pytest.raises(springstep.UnsupportedError, match="euler"):
+        drop(springstep.plane([0, 0, 0], [0, 0, 1])).advance(1e-3, method="euler")

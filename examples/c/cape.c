@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A cape on a body that runs, jumps and is teleported, in wind. The body is a capsule. Once a frame the program gives the
+ * capsule and the pinned row of the cape the velocity that brings them to the next pose.
+ *
+ *     cc -std=c11 cape.c -lspringstep -lm -o cape
+ */
+#include <springstep/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { W = 20, H = 30, N = W * H, STEPS = 20, TELEPORT = 150 /* frame */ };
+static const double frame = 1.0 / 60, mass = 0.002;      /* [s], [kg] of a particle */
+static const double spacing = 0.04, skin = 0.01;         /* [m], radius of a particle */
+static const double radius = 0.2, low = 0.4, high = 1.3; /* [m] of the body, heights of its ends */
+static const double air[3] = {-2, 0, 3}, drag = 0.0015;  /* [m/s], [N s/m] of a particle */
+static double x[N][3], v[N][3], force[N][3];
+
+static void must(spring_status status)
+{
+    if (status != SPRING_OK) {
+        fprintf(stderr, "%s\n", spring_status_string(status));
+        exit(1);
+    }
+}
+
+/* Where the body is in frame i: it runs, from t = 1 s on it jumps for 0.6 s. The other way after it was teleported. */
+static void place_body(int i, double facing, double at[2])
+{
+    const double t = i * frame, jump = t - 1, run = 4 * (t < 0.5 ? t * t : t - 0.25);
+    at[0] = facing > 0 ? run : -100 - run;
+    at[1] = jump > 0 && jump < 0.6 ? 9.81 / 2 * jump * (0.6 - jump) : 0;
+}
+
+/* Particle k of the upper edge is on an arc behind the neck. */
+static void place_pin(int k, const double at[2], double facing, double target[3])
+{
+    const double arc = radius + 2 * skin, angle = (k - (W - 1) / 2.0) * spacing / arc;
+    target[0] = at[0] - facing * arc * cos(angle);
+    target[1] = at[1] + high + 0.05;
+    target[2] = facing * arc * sin(angle);
+}
+
+/* Drag on each particle; wind.c has the wind on triangles. */
+static void blow(spring_scene *cape)
+{
+    must(spring_scene_get(cape, SPRING_VELOCITY, v[0], 0, 0, N));
+    for (int i = 0; i < N; i++)
+        for (int axis = 0; axis < 3; axis++) /* held for a frame, it may not turn the velocity around */
+            force[i][axis] = drag / (1 + drag * frame / mass) * (air[axis] - v[i][axis]);
+    must(spring_scene_set(cape, SPRING_FORCE, force[0], 0, 0, N));
+}
+
+static void move_body(spring_scene *cape, int i, double facing)
+{
+    double at[2], next[2], target[3];
+    place_body(i, facing, at), place_body(i + 1, facing, next);
+    spring_collider c[2] = {{.shape = SPRING_CAPSULE, .radius = radius, .friction = 0.3},
+                            {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.8}};
+    c[0].at[0] = c[0].to[0] = at[0], c[0].at[1] = at[1] + low, c[0].to[1] = at[1] + high;
+    c[0].velocity[0] = c[0].velocity_to[0] = (next[0] - at[0]) / frame;
+    c[0].velocity[1] = c[0].velocity_to[1] = (next[1] - at[1]) / frame;
+    must(spring_scene_set_colliders(cape, c, 2));
+    for (int k = 0; k < W; k++) {
+        place_pin(k, next, facing, target);
+        must(spring_scene_drive(cape, (size_t)k, target, frame));
+    }
+}
+
+static void show(const spring_scene *cape, const double at[2], double facing)
+{
+    double depth = 0;
+    must(spring_scene_get(cape, SPRING_POSITION, x[0], 0, 0, N));
+    for (int k = W; k < N; k++) {
+        const double dx = x[k][0] - at[0], dy = x[k][1] - fmin(fmax(x[k][1], at[1] + low), at[1] + high);
+        const double away = hypot(hypot(dx, dy), x[k][2]) - radius;
+        depth = fmax(depth, skin - fmin(away, x[k][1]));
+    }
+    printf("%.2f s  body at %+.2f %.2f m  hem %.2f m behind, %.2f m high  inside by %.1e m  elastic %.4f J\n",
+           spring_scene_time(cape), at[0], at[1], facing * (at[0] - x[N - W / 2][0]), x[N - W / 2][1], depth,
+           spring_scene_energy(cape).elastic);
+}
+
+int main(void)
+{
+    static spring_link link[6 * N]; /* less than six of each particle */
+    static uint8_t pinned[N];
+    double at[2], facing = 1;
+    spring_grid sheet = {.count = {W, H}, .spacing = spacing, .stiffness = 150, .damping = 0.01};
+    sheet.families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, sheet.pinned = SPRING_GRID_FIRST_Y;
+    size_t particles, links, bytes;
+    must(spring_grid_size(&sheet, &particles, &links));
+    must(spring_grid_fill(&sheet, x[0], pinned, link));
+    place_body(0, facing, at);
+    for (int i = 0; i < N; i++) /* hangs down behind the body */
+        place_pin(i % W, at, facing, x[i]), x[i][1] -= i / W * spacing;
+    spring_scene_def def = {.flags = SPRING_SCENE_FORCES | SPRING_SCENE_FORCE_IGNORES_VELOCITY};
+    def.particles = particles, def.position = x[0], def.mass_all = mass, def.pinned = pinned;
+    def.links = links, def.link = link, def.gravity[1] = -9.81, def.colliders = 2, def.particle_radius = skin;
+    must(spring_scene_bytes(&def, &bytes));
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    spring_scene *cape;
+    must(spring_scene_init(memory, bytes, &def, &cape)); /* without memory: SPRING_EINVAL */
+    for (int i = 0; i <= 300; i++) {
+        place_body(i, facing, at);
+        if (i % 30 == 0)
+            show(cape, at, facing);
+        if (i == TELEPORT) { /* turned by half, too: x = -100 m - x, z = -z */
+            must(spring_scene_transform(cape, (const double[]){-1, 0, 0, -100, 0, 1, 0, 0, 0, 0, -1, 0}));
+            place_body(i, facing = -1, at);
+            show(cape, at, facing);
+        }
+        move_body(cape, i, facing);
+        blow(cape);
+        must(spring_scene_advance(cape, SPRING_LEAPFROG, frame / STEPS, STEPS));
+    }
+    free(memory);
+    return 0;
+}

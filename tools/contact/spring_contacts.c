@@ -1,0 +1,437 @@
+/* SPDX-License-Identifier: MIT */
+/* spring-contacts: contacts of scenes against closed forms, beside the two schemes that engines use. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "contact/trial.h"
+
+static const double pi = 3.14159265358979323846, g = 9.81; /* [m/s^2] */
+
+static spring_scene_def one_particle(const double x[3], const double v[3], double gravity)
+{
+    return (spring_scene_def){
+        .particles = 1, .position = x, .velocity = v, .mass_all = 0.7, .gravity = {0, -gravity, 0}};
+}
+
+static const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+
+/* --------------------------------------------------------------------------------------------------------- cases */
+
+/* [m] height of the third bounce, from a drop of 1 m: the energy at its highest point. */
+static double bounce(contact_scheme scheme, double dt)
+{
+    const double x[3] = {0, 1, 0}, v[3] = {0};
+    const spring_scene_def def = one_particle(x, v, g);
+    spring_collider c = ground;
+    c.restitution = 0.8;
+    trial t;
+    trial_open(&t, &def, &c, scheme, dt);
+    int bounces = 0;
+    double height = 0;
+    for (double before = 0; bounces < 3 && spring_scene_time(t.scene) < 3;) {
+        double y[3], u[3];
+        trial_advance(&t, 1);
+        spring_scene_get(t.scene, SPRING_POSITION, y, 0, 0, 1);
+        spring_scene_get(t.scene, SPRING_VELOCITY, u, 0, 0, 1);
+        if (before > 0 && u[1] <= 0) /* the highest point is in this step */
+            bounces++, height = y[1] + u[1] * u[1] / (2 * g);
+        before = u[1];
+    }
+    trial_close(&t);
+    return height;
+}
+
+static void state_after(contact_scheme scheme, const spring_scene_def *def, const spring_collider *c, double dt,
+                        double end, size_t particle, double x[3], double v[3])
+{
+    trial t;
+    trial_open(&t, def, c, scheme, dt);
+    trial_advance(&t, (uint64_t)llround(end / dt));
+    spring_scene_get(t.scene, SPRING_POSITION, x, 0, particle, 1);
+    spring_scene_get(t.scene, SPRING_VELOCITY, v, 0, particle, 1);
+    trial_close(&t);
+}
+
+static const double omega = 2 * 3.14159265358979323846; /* [1/s] */
+
+/* y and v after 1.5 s of a spring with its rest position 0.5 m below a plane, from 1 m above it, with restitution 1. */
+static void spring_on_plane(double *y, double *v)
+{
+    const double below = 0.5, end = 1.5;
+    double t = 0;
+    *y = 1, *v = 0;
+    for (;;) {
+        const double amplitude = hypot(*y + below, *v / omega), phase = atan2(-*v / omega, *y + below);
+        const double hit = acos(below / amplitude), wait = (hit - phase) / omega;
+        if (t + wait > end) {
+            *y = amplitude * cos(omega * (end - t) + phase) - below;
+            *v = -amplitude * omega * sin(omega * (end - t) + phase);
+            return;
+        }
+        t += wait;
+        *y = 0, *v = amplitude * omega * sin(hit);
+    }
+}
+
+/* [m] distance from the exact position and velocity/omega. */
+static double spring_case(contact_scheme scheme, double dt)
+{
+    const double x[6] = {0, -10, 0, 0, 1, 0}, mass = 0.7;
+    const uint8_t pinned[2] = {1, 0};
+    const spring_link link = {0, 1, 9.5, mass * omega * omega, 0}; /* along a line: linear */
+    const spring_scene_def def = {
+        .particles = 2, .links = 1, .position = x, .mass_all = mass, .pinned = pinned, .link = &link};
+    spring_collider c = ground;
+    c.restitution = 1;
+    double y[3], v[3], exact_y, exact_v;
+    spring_on_plane(&exact_y, &exact_v);
+    state_after(scheme, &def, &c, dt, 1.5, 1, y, v);
+    return hypot(y[1] - exact_y, (v[1] - exact_v) / omega);
+}
+
+/* [m] distance from the exact position after 1.5 s of bounces at 3 m/s along the ground. */
+static double oblique(contact_scheme scheme, double dt)
+{
+    const double x[3] = {0, 1, 0}, v[3] = {3, 0, 0}, end = 1.5;
+    const spring_scene_def def = one_particle(x, v, g);
+    spring_collider c = ground;
+    c.restitution = 0.8, c.friction = 0.1;
+    double at = 0, speed = v[0], impact = sqrt(2 * g), t = impact / g, y[3], u[3];
+    at = speed * t;
+    for (;;) {
+        speed -= fmin(speed, c.friction * (1 + c.restitution) * impact);
+        impact *= c.restitution;
+        const double flight = 2 * impact / g;
+        if (t + flight > end)
+            break;
+        t += flight, at += speed * flight;
+    }
+    state_after(scheme, &def, &c, dt, end, 0, y, u);
+    return hypot(y[0] - at - speed * (end - t), y[1] - (impact * (end - t) - g / 2 * (end - t) * (end - t)));
+}
+
+/* d/dt of the angle from the top of a sphere of 1 m, and of its rate, of a particle that slides down. */
+static void sliding(const double s[2], double mu, double out[2])
+{
+    out[0] = s[1];
+    out[1] = g * sin(s[0]) - mu * (g * cos(s[0]) - s[1] * s[1]);
+}
+
+static void slide_exactly(double s[2], double mu, double end)
+{
+    enum { steps = 4096 }; /* of RK4: an error of 1e-14 */
+    const double h = end / steps;
+    for (int i = 0; i < steps; i++) {
+        double k[4][2], at[2];
+        sliding(s, mu, k[0]);
+        for (int j = 1; j < 4; j++) {
+            for (int a = 0; a < 2; a++)
+                at[a] = s[a] + (j == 3 ? h : h / 2) * k[j - 1][a];
+            sliding(at, mu, k[j]);
+        }
+        for (int a = 0; a < 2; a++)
+            s[a] += h / 6 * (k[0][a] + 2 * k[1][a] + 2 * k[2][a] + k[3][a]);
+    }
+}
+
+/* [m] distance from the exact position after 0.5 s. */
+static double sphere(contact_scheme scheme, double dt)
+{
+    const double start = 0.2, speed = 1, mu = 0.3, end = 0.5;
+    const double x[3] = {sin(start), cos(start), 0}, v[3] = {speed * cos(start), -speed * sin(start), 0};
+    const spring_scene_def def = one_particle(x, v, g);
+    const spring_collider c = {.shape = SPRING_SPHERE, .radius = 1, .friction = mu};
+    double exact[2] = {start, speed}, y[3], u[3];
+    slide_exactly(exact, mu, end);
+    state_after(scheme, &def, &c, dt, end, 0, y, u);
+    return hypot(y[0] - sin(exact[0]), y[1] - cos(exact[0]));
+}
+
+static const double slope = 3.14159265358979323846 / 6;
+
+/* [m] how far a block gets in 2 s that is released on an incline. */
+static double incline(contact_scheme scheme, double dt, double mu)
+{
+    const double x[3] = {0}, v[3] = {0};
+    const spring_scene_def def = one_particle(x, v, g);
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{sin(slope), cos(slope), 0}}, .friction = mu};
+    double y[3], u[3];
+    state_after(scheme, &def, &c, dt, 2, 0, y, u);
+    return hypot(hypot(y[0], y[1]), y[2]);
+}
+
+static double creep(contact_scheme scheme, double dt)
+{
+    return incline(scheme, dt, 1.001 * tan(slope));
+}
+
+static double slide(contact_scheme scheme, double dt)
+{
+    return incline(scheme, dt, 0.3);
+}
+
+/* [m] of a block that slides at 3 m/s, with friction 0.4, in 3 s. */
+static double stopping(contact_scheme scheme, double dt)
+{
+    const double x[3] = {0}, v[3] = {3, 0, 0};
+    const spring_scene_def def = one_particle(x, v, g);
+    spring_collider c = ground;
+    c.friction = 0.4;
+    double y[3], u[3];
+    state_after(scheme, &def, &c, dt, 3, 0, y, u);
+    return y[0];
+}
+
+/* Ratio of the tensions of a rope that is drawn over a cylinder, by half a turn, with friction 0.3. */
+static double capstan(contact_scheme scheme, double dt)
+{
+    enum { count = 64 };
+    const double radius = 0.5, thick = 0.01, around = radius + thick, tail = 0.6, load = 5;
+    const double length = pi * around + 2 * tail, spacing = length / (count - 1), stiffness = 500 / spacing;
+    const double mass = 16 * stiffness / (480.0 * 480), damping = 0.3 * sqrt(stiffness * mass), speed = 0.01, end = 16;
+    double x[3 * count], v[3 * count] = {0}, force[3] = {0};
+    spring_link link[count - 1];
+    uint8_t pinned[count] = {0};
+    for (int i = 0; i < count; i++) {
+        const double along = i * spacing, phi = fmin(fmax(along - tail, 0), pi * around) / around;
+        const double beyond = along < tail ? tail - along : fmax(along - length + tail, 0);
+        x[3 * i] = -around * cos(phi), x[3 * i + 1] = around * sin(phi) - beyond, x[3 * i + 2] = 0;
+        if (i + 1 < count)
+            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping};
+    }
+    pinned[count - 1] = 1, v[3 * (count - 1) + 1] = -speed;
+    const spring_scene_def def = {.flags = SPRING_SCENE_FORCES,
+                                  .particles = count,
+                                  .links = count - 1,
+                                  .position = x,
+                                  .velocity = v,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .particle_radius = thick};
+    const spring_collider c = {
+        .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = 0.3};
+    trial t;
+    trial_open(&t, &def, &c, scheme, dt);
+    const double frame = 1.0 / 60, moving = mass / spacing * speed * speed; /* momentum that the rope carries along */
+    const int frames = (int)lround(end / frame);
+    double pulled = 0, loaded = 0;
+    for (int i = 0; i < frames; i++) {
+        double u[3];
+        spring_scene_get(t.scene, SPRING_VELOCITY, u, 0, 0, 1);
+        force[1] = -load - 20 * mass * u[1]; /* the load, and drag on it that calms the rope */
+        spring_scene_set(t.scene, SPRING_FORCE, force, 0, 0, 1);
+        trial_advance(&t, (uint64_t)llround(frame / dt));
+        if (i < frames / 2)
+            continue;
+        pulled += spring_scene_tension(t.scene, count - 3) - moving;
+        loaded += spring_scene_tension(t.scene, 1) - moving;
+    }
+    trial_close(&t);
+    return pulled / loaded;
+}
+
+/* Particles of 1000 at rest that a plate of 1 cm passes through. */
+static double plate(contact_scheme scheme, double dt, double speed)
+{
+    enum { count = 1000 };
+    static double x[3 * count];
+    uint32_t random = 1;
+    for (int i = 0; i < 3 * count; i++) {
+        random = random * UINT32_C(1664525) + UINT32_C(1013904223);
+        x[i] = i % 3 == 1 ? 1 + 3 * (random / 4294967296.0) : 2 * (random / 4294967296.0) - 1;
+    }
+    const spring_scene_def def = {.particles = count, .position = x, .mass_all = 0.7};
+    const spring_collider c = {.shape = SPRING_BOX,
+                               .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                               .half = {5, 0.005, 5},
+                               .velocity = {0, speed, 0}};
+    trial t;
+    trial_open(&t, &def, &c, scheme, dt);
+    trial_advance(&t, (uint64_t)ceil(5 / speed / dt));
+    const double front = speed * spring_scene_time(t.scene);
+    int through = 0;
+    for (size_t i = 0; i < count; i++) {
+        double y[3];
+        spring_scene_get(t.scene, SPRING_POSITION, y, 0, i, 1);
+        through += y[1] < front;
+    }
+    trial_close(&t);
+    return through;
+}
+
+static double plate_80(contact_scheme scheme, double dt)
+{
+    return plate(scheme, dt, 80);
+}
+
+static double plate_500(contact_scheme scheme, double dt)
+{
+    return plate(scheme, dt, 500);
+}
+
+typedef struct contact_case {
+    const char *name, *purpose;
+    double (*run)(contact_scheme scheme, double dt);
+    double exact;
+    int schemes; /* of contact_scheme_names, the first ones */
+} contact_case;
+
+enum { case_count = 10 };
+
+static void make_cases(contact_case c[case_count])
+{
+    const double t = 2; /* [s] */
+    const contact_case all[case_count] = {
+        {"bounce", "height of the third bounce [m], restitution 0.8", bounce, pow(0.8, 6), contact_schemes},
+        {"spring-on-plane", "distance from the exact state [m], restitution 1", spring_case, 0, contact_schemes},
+        {"oblique", "distance from the exact position [m], bounces with friction 0.1", oblique, 0, contact_schemes},
+        {"sphere", "distance from the exact position [m], sliding with friction 0.3", sphere, 0, contact_schemes},
+        {"creep", "motion in 2 s [m] on an incline of 30 degrees, friction 1.001 tan 30", creep, 0, contact_schemes},
+        {"slide", "motion in 2 s [m] on an incline of 30 degrees, friction 0.3", slide,
+         g / 2 * (sin(slope) - 0.3 * cos(slope)) * t * t, contact_schemes},
+        {"stopping", "distance to a stop [m] from 3 m/s, friction 0.4", stopping, 9 / (2 * 0.4 * g), contact_schemes},
+        {"capstan", "ratio of the tensions of a rope over a cylinder, friction 0.3", capstan, exp(0.3 * pi),
+         CONTACT_PROJECTION + 1},
+        {"plate-80", "particles of 1000 that a plate at 80 m/s passes through", plate_80, 0, contact_schemes},
+        {"plate-500", "particles of 1000 that a plate at 500 m/s passes through", plate_500, 0, contact_schemes},
+    };
+    memcpy(c, all, sizeof all);
+}
+
+/* -------------------------------------------------------------------------------------------------------- energy */
+
+/* The largest energy over that at the start, in a minute, of a soft body that is thrown about in a box of six planes. */
+static double energy_in_box(double restitution, double damping, double fraction, double *dt)
+{
+    const spring_grid grid = {.count = {4, 4, 4}, .spacing = 0.1, .families = 7, .stiffness = 40, .damping = damping};
+    double x[3 * 64], v[3 * 64];
+    static spring_link link[64 * 13];
+    size_t particles, links, bytes;
+    spring_grid_size(&grid, &particles, &links);
+    spring_grid_fill(&grid, x, NULL, link);
+    for (size_t i = 0; i < particles; i++)
+        v[3 * i] = 2 - x[3 * i + 1], v[3 * i + 1] = 1 + x[3 * i], v[3 * i + 2] = -1.5;
+    const spring_scene_def def = {.particles = particles,
+                                  .links = links,
+                                  .position = x,
+                                  .velocity = v,
+                                  .mass_all = 0.01,
+                                  .link = link,
+                                  .colliders = 6};
+    spring_collider wall[6];
+    for (int i = 0; i < 6; i++) {
+        wall[i] = (spring_collider){.shape = SPRING_PLANE, .restitution = restitution};
+        wall[i].axis[0][i / 2] = i % 2 == 0 ? 1 : -1;
+        wall[i].at[i / 2] = i % 2 == 0 ? -0.2 : 0.6;
+    }
+    spring_scene *s = NULL;
+    void *memory = spring_scene_bytes(&def, &bytes) == SPRING_OK ? aligned_alloc(SPRING_SCENE_ALIGN, bytes) : NULL;
+    if (memory == NULL || spring_scene_init(memory, bytes, &def, &s) != SPRING_OK ||
+        spring_scene_set_colliders(s, wall, 6) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a soft body");
+    *dt = fraction * spring_scene_stable_step(s, SPRING_LEAPFROG);
+    double first = 0, most = 0;
+    for (int i = 0; i <= 600; i++) { /* ten times a second */
+        const spring_scene_energies e = spring_scene_energy(s);
+        const double energy = e.kinetic + e.elastic;
+        first = i == 0 ? energy : first;
+        most = fmax(most, energy / first);
+        if (spring_scene_advance(s, SPRING_LEAPFROG, *dt, (uint64_t)lround(0.1 / *dt)) != SPRING_OK)
+            most = INFINITY;
+    }
+    free(memory);
+    return most;
+}
+
+/* ------------------------------------------------------------------------------------------------------- the rows */
+
+static const char *const parts[] = {"cases", "energy", "list", NULL};
+static int part;
+static bool quick;
+
+static const cli_option options[] = {
+    {"part", CLI_CHOICE, .choice = &part, .choices = parts, .value = "P",
+     .help = "closed forms, the energy in a box, or a list of the cases"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps, for a look"},
+    {.name = NULL},
+};
+
+static const cli_program program = {
+    .name = "spring-contacts",
+    .summary = "Contacts of scenes against closed forms, beside the two schemes that engines use.",
+    .details =
+        "The method is leapfrog. The scheme library is spring_scene_set_colliders(). projection moves particles\n"
+        "that are inside a collider to its surface after each step, and changes their velocities there. penalty\n"
+        "pushes them out with damped springs.\n\n"
+        "The part energy throws a soft body about in a box of six planes for a minute, with the library alone.",
+    .columns = "case scheme dt_s value exact error order",
+    .meaning =
+        "error is the distance of value from exact, relative to exact if this is not 0. order is the mean slope\n"
+        "of error against dt_s, from the longest step to this one. With --part energy the columns are\n"
+        "restitution, damping_Ns_per_m, stable_fraction (dt over the stable step), dt_s and\n"
+        "largest_energy, over that at the start; with --part list, case and purpose.",
+    .shown = {"dt_s", "error"},
+    .examples = {"--quick", "--part energy --quick", "--part list"},
+    .options = options,
+};
+
+static void print_rows(cli_table *table, const contact_case *c, contact_scheme scheme)
+{
+    const bool slow = c->run == capstan;
+    const int first = slow ? 8 : 4, last = quick ? 16 : slow ? 32 : 128; /* steps per frame */
+    double first_error = 0;
+    for (int steps = first; steps <= last; steps *= 2) {
+        const double dt = 1.0 / 60 / steps, value = c->run(scheme, dt);
+        const double error = fabs(c->exact != 0 ? value / c->exact - 1 : value);
+        if (steps == first)
+            first_error = error;
+        const double order = error > 0 && steps > first ? log(first_error / error) / log(steps / (double)first) : NAN;
+        cli_row(table, "%s\t%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g", c->name, contact_scheme_names[scheme], dt, value,
+                c->exact, error, order);
+    }
+}
+
+static void print_cases(cli_table *table, const contact_case *cases)
+{
+    cli_columns(table, program.columns);
+    for (int i = 0; i < case_count; i++)
+        for (int scheme = 0; scheme < cases[i].schemes; scheme++) {
+            print_rows(table, &cases[i], (contact_scheme)scheme);
+            cli_progress((i + 1.0) / case_count);
+        }
+}
+
+static void print_energy(cli_table *table)
+{
+    static const double setting[][2] = {{1, 0}, {1, 0.02}, {0.9, 0}, {0.9, 0.02}, {0.5, 0}};
+    static const double fractions[] = {0.125, 0.25, 0.5, 0.99};
+    cli_columns(table, "restitution damping_Ns_per_m stable_fraction dt_s largest_energy");
+    for (size_t i = 0; i < sizeof setting / sizeof setting[0]; i++)
+        for (int k = quick ? 3 : 0; k < 4; k++) {
+            double dt;
+            const double most = energy_in_box(setting[i][0], setting[i][1], fractions[k], &dt);
+            cli_row(table, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g", setting[i][0], setting[i][1], fractions[k], dt, most);
+        }
+}
+
+int main(int argc, char **argv)
+{
+    contact_case cases[case_count];
+    cli_parse(&program, argc, argv);
+    make_cases(cases);
+    cli_table *table = cli_open_output();
+    if (part == 0)
+        print_cases(table, cases);
+    if (part == 1)
+        print_energy(table);
+    if (part == 2) {
+        cli_columns(table, "case purpose");
+        for (int i = 0; i < case_count; i++)
+            cli_row(table, "%s\t%s", cases[i].name, cases[i].purpose);
+    }
+    cli_finish();
+    return 0;
+}
