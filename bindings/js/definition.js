@@ -25,21 +25,27 @@ export function checkArray(name, value, length) {
     check(length === undefined || value.length === length, `${name}.length`, `${length}`, value?.length);
 }
 
-let numbers; // of methods, by name
+let table; // of methods, by name
 
 function known() {
-    if (numbers) return numbers;
-    numbers = new Map();
-    for (let number = 0, name; (name = library().spring_method_name(number)) !== 0; number++)
-        numbers.set(text(name), number);
-    numbers.delete("exact"); // for single springs
-    return numbers;
+    if (table) return table;
+    table = new Map();
+    const { method_at, method_order, method_forces, spring_method_name } = library();
+    for (let i = 0, number; (number = method_at(i)) >= 0; i++) {
+        const name = text(spring_method_name(number));
+        const order = method_order(number); // 0: not for scenes
+        if (order) table.set(name, { number, name, order, forcesPerStep: method_forces(number) });
+    }
+    return table;
 }
 
+export const methods = () =>
+    Array.from(known().values(), ({ name, order, forcesPerStep }) => ({ name, order, forcesPerStep }));
+
 export function methodNumber(name) {
-    const number = known().get(name);
-    check(number !== undefined, "method", `one of ${[...known().keys()].join(", ")}`, name, TypeError);
-    return number;
+    const method = known().get(name);
+    check(method, "method", `one of ${[...known().keys()].join(", ")}`, name, TypeError);
+    return method.number;
 }
 
 /** Copies numbers into the module. */

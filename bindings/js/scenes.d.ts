@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: MIT
 /// <reference lib="esnext.disposable" />
 
-/** Compiles the WebAssembly in the background. Without it, the first use compiles and waits. */
-export declare function ready(): Promise<void>;
+/**
+ * Compiles the WebAssembly in the background. Without it, the first use compiles and waits. `simd` chooses the version, by
+ * default that with SIMD if the engine has it; results are the same.
+ */
+export declare function ready(options?: { simd?: boolean }): Promise<void>;
+
+/** Whether the engine has SIMD for WebAssembly. Compiles nothing. */
+export declare function hasSimd(): boolean;
 
 export type Method = "euler" | "symplectic-euler" | "leapfrog" | "rk4" | "rkn8" | "srkn6";
+
+/** The methods for scenes. `forcesPerStep` is the number of force evaluations where forces do not depend on velocities. */
+export declare function methods(): { name: Method; order: number; forcesPerStep: number }[];
+
 export type Quantity = "position" | "velocity" | "force";
 
 /** A spring between particles a and b. */

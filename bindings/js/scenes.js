@@ -5,8 +5,10 @@ import { components } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
 import { check, checkFinite, isNumber } from "./options.js";
 
+export { methods } from "./definition.js";
 export { components, grid, soften } from "./grid.js";
 export { ready } from "./module.js";
+export { hasSimd } from "./simd.js";
 
 const quantities = ["position", "velocity", "force"];
 const notFinite = 2;

@@ -17,7 +17,7 @@ for (const name of ["Module", "instantiate"]) {
         return new.target ? new plain(...values) : plain(...values);
     };
 }
-const { components, grid, ready, Scene, soften } = await import("../scenes.js");
+const { components, grid, hasSimd, methods: offered, ready, Scene, soften } = await import("../scenes.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
 function offers(definition, method) {
@@ -51,6 +51,7 @@ function rope(more = {}) {
 
 await test("nothing is compiled by an import", () => assert.equal(compiled, 0));
 await test("the first use compiles, ready() once more does not", async () => {
+    assert.equal(hasSimd(), !scalar);
     rope().free();
     assert.equal(compiled, 1);
     await ready();
@@ -121,6 +122,17 @@ for (const [settings, method] of [...usual, ...further]) {
     });
 }
 note(`${compared} scenes and methods`);
+
+await test("methods have an order and a number of force evaluations", () => {
+    assert.deepEqual(
+        offered()
+            .map(({ name }) => name)
+            .sort(),
+        [...methods].sort(),
+    );
+    const { order, forcesPerStep } = offered().find(({ name }) => name === "rk4");
+    assert.deepEqual([order, forcesPerStep], [4, 4]);
+});
 
 await test("positions are one array, refilled, also when memory grows", () => {
     const scene = rope();

@@ -271,3 +271,20 @@ EXPORT(grid_fill) spring_status grid_fill(double *position, uint8_t *pinned, spr
 {
     return spring_grid_fill(&grid, position, pinned, link);
 }
+
+/* Methods in the order of tables: a number, or -1 behind the last. */
+EXPORT(method_at) int32_t method_at(uint32_t i)
+{
+    return i < SPRING_METHOD_COUNT ? (int32_t)spring_method_at(i) : -1;
+}
+
+EXPORT(method_order) int32_t method_order(spring_method m)
+{
+    const spring_method_info *info = spring_method_describe(m);
+    return info->scenes ? info->order : 0;
+}
+
+EXPORT(method_forces) int32_t method_forces(spring_method m)
+{
+    return spring_method_describe(m)->forces_per_step;
+}
