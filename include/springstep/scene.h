@@ -26,8 +26,7 @@
  *  - Threads may use different scenes concurrently. They may also read one scene concurrently, with functions that take
  *    a const scene, while no thread changes it.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the callback's are.
- *  - There is no position solver. For a contact, move particles between calls of spring_scene_advance(..., 1) with
- *    spring_scene_get() and spring_scene_set(), or apply a force in the callback.
+ *  - Particles collide with colliders (planes, spheres, capsules, boxes), not with each other, and links do not collide.
  *
  * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float:
  * half the memory and nearly twice the speed. Definitions, times, energies and spring_scenef_get() stay in double; only
@@ -103,6 +102,32 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /** Room for held forces, see SPRING_FORCE. */
 #define SPRING_SCENE_FORCES UINT32_C(16)
 
+/** The shapes of colliders. */
+typedef enum spring_shape {
+    SPRING_PLANE,   /**< a half-space */
+    SPRING_SPHERE,  /**< a ball */
+    SPRING_CAPSULE, /**< all points within a distance of a line segment */
+    SPRING_BOX      /**< a box in any orientation; with a radius its edges are rounded */
+} spring_shape;
+
+/** A convex body that particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored, and with two
+ * axes so are the third elements. */
+typedef struct spring_collider {
+    spring_shape shape;
+    double at[3];          /**< [m] a point of the plane; the centre; or one end of the axis of a capsule */
+    double to[3];          /**< [m] capsule: the other end */
+    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body. Box: its unit axes */
+    double half[3];        /**< [m] box: half of its size along each axis >= 0, without the radius */
+    double radius;         /**< [m] >= 0 of a sphere or capsule; also rounds a box */
+    double velocity[3];    /**< [m/s] of `at` */
+    double velocity_to[3]; /**< [m/s] of `to` */
+    double
+        spin[3]; /**< [rad/s] angular velocity of the surface about `at` (capsule: about its axis). It enters friction
+                              only and does not turn the body. With two axes spin[2] */
+    double friction;    /**< Coulomb coefficient >= 0 */
+    double restitution; /**< 0 to 1: normal speed after an impact over that before */
+} spring_collider;
+
 /** The definition of a scene. Leave features that you do not use at zero. Every array is copied. */
 typedef struct spring_scene_def {
     uint32_t axes;                /**< 1, 2 or 3; 0 means 3 */
@@ -122,6 +147,8 @@ typedef struct spring_scene_def {
     void *user;                   /**< passed to force */
     double max_speed;             /**< [m/s] a step after which a free particle is faster along an axis fails with
                                      SPRING_EUNSTABLE; 0: no limit */
+    uint32_t colliders;           /**< room for so many colliders, at most 32; 0: none */
+    double particle_radius;       /**< [m] >= 0 of every particle, for contacts */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */
@@ -136,7 +163,8 @@ typedef struct spring_scene spring_scene;
  * @return SPRING_OK; SPRING_EINVAL: an invalid value, or a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or
  *         drag/mass that is not finite in the precision of the scene; SPRING_ERANGE: an index of a particle or a count
  *         is too large; SPRING_EUNSUPPORTED: the methods include the exact solution, or RKN8 or SRKN6 for a scene with a
- *         damped link, tension-only links or a callback that may use velocities; or tension-only links on one axis
+ *         damped link, tension-only links, colliders or a callback that may use velocities; or tension-only links or
+ *         colliders on one axis
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
 
@@ -207,6 +235,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * after steps of another method. With a callback that may use velocities, leapfrog keeps no force and evaluates twice
  * per step, because what the callback reads may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
+ * Contacts, see spring_scene_set_colliders(), have order 2 with leapfrog and RK4, also across impacts, and order 1 with
+ * symplectic Euler. They change no stable step.
+ *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
  * @param[in] m   one of the methods in the definition
@@ -214,7 +245,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *                rounds to 0 in the precision of the scene; a negative step integrates backwards, where leapfrog with
  *                drag has a pole at dt = -2 mass/drag, and symplectic Euler at half of this
  * @return SPRING_OK; SPRING_EINVAL; SPRING_EDISABLED: a method that is not in the definition; SPRING_EUNSUPPORTED: the
- *         exact solution, or RKN8 or SRKN6 if forces now use velocities; SPRING_ENONFINITE: the state or the time would
+ *         exact solution, RKN8 or SRKN6 if forces now use velocities, or Euler with colliders; SPRING_ENONFINITE: the state or the time would
  *         become infinite or NaN, detected in the step where it happens; SPRING_EUNSTABLE: the same, or a particle would
  *         be faster than max_speed, if the definition has one
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
@@ -287,7 +318,8 @@ typedef struct spring_scene_energies {
 SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
 /** Returns whether every speed is at most v_tol [m/s] and the acceleration of every free particle is at most a_tol
-    [m/s^2]. May evaluate the forces. False for invalid input. */
+    [m/s^2]. Acceleration that a collider in spring_scene_touching() balances, by its normal force or by static friction,
+    does not count. May evaluate the forces. False for invalid input. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
 /** @} */
@@ -327,6 +359,41 @@ SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, co
 /** Changes gravity [m/s^2]. Elements beyond the axes are ignored. SPRING_EINVAL for NULL or values that are not
    finite. */
 SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
+
+/**
+ * Replaces all colliders of a scene.
+ *
+ * Colliders are given at their pose now, and then move at their velocities without end. A game sets them once a frame with
+ * velocities that bring them to their next pose. A particle that is inside a collider is moved to its surface in the next
+ * step, without a change of velocity. Pinned particles pass through colliders.
+ *
+ * An impact with the relative velocity u reverses the normal component times the restitution, and reduces the tangential one
+ * by at most friction (1 + restitution) |u_normal|. The time of an impact within a step is found, so no particle passes
+ * through a collider at any speed, and a bounce has order 2. Friction does not depend on the step: a particle that friction
+ * can hold is held exactly. Colliders act in the order of their indices; in a wedge of several a particle may be inside one of
+ * them by a fraction of its motion in a step. Links are not tested: a collider thinner than the distance between particles
+ * passes between them. A step with negative dt is not the inverse of a step.
+ *
+ * With restitution 1, no friction and no damping, energy is not conserved exactly and may grow; see docs/evidence.md.
+ *
+ * @param[in] c      [count]; may be NULL if count is 0, which removes all colliders
+ * @param[in] count  at most `colliders` of the definition
+ * @return SPRING_OK; SPRING_EINVAL: NULL, an unknown shape, a number that is not finite in the precision of the scene, a
+ *         negative radius, half size or friction, restitution outside 0 ... 1, axes that are not orthonormal to 1e-6;
+ *         SPRING_ERANGE: count is too large; SPRING_EDISABLED: the definition has room for none
+ */
+SPRING_API spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count);
+
+/**
+ * Copies which colliders particles first ... first + count - 1 touched in the last step: bit i stands for collider i. The
+ * bits are 0 after spring_scene_set_colliders(), after spring_scene_transform(), and for particles whose position or pin was
+ * set.
+ *
+ * @param[out] mask  [count]
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: there are not that many particles; SPRING_EDISABLED: the scene has
+ *         no room for colliders
+ */
+SPRING_API spring_status spring_scene_touching(const spring_scene *s, uint32_t *mask, size_t first, size_t count);
 
 /** Changes the callback; NULL: none. */
 SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *force, void *user);
@@ -369,7 +436,7 @@ SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, cons
 
 /**
  * Moves all particles, pinned ones too, by an affine map: x1 = A x + b, v1 = A v. It teleports, turns, reflects or scales
- * a scene. Rest lengths, gravity and held forces stay as they are.
+ * a scene. Rest lengths, gravity, held forces and colliders stay as they are.
  *
  * @param[in] matrix  the rows of [A b]: A_xx A_xy A_xz b_x, A_yx ... With two axes the third row and the third column are
  *                    ignored, with one axis the second, too
@@ -453,6 +520,8 @@ typedef struct spring_scenef_def {
     spring_scenef_force_fn *force;
     void *user;
     double max_speed;
+    uint32_t colliders;
+    double particle_radius;
     /** @} */
 } spring_scenef_def;
 
@@ -493,6 +562,8 @@ SPRING_API spring_status spring_scenef_set_links(spring_scenef *s, size_t first,
 SPRING_API spring_status spring_scenef_tear(spring_scenef *s, double stretch, const double *limit, uint32_t *torn,
                                             size_t room, size_t *count);
 SPRING_API spring_status spring_scenef_transform(spring_scenef *s, const double matrix[12]);
+SPRING_API spring_status spring_scenef_set_colliders(spring_scenef *s, const spring_collider *c, uint32_t count);
+SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t *mask, size_t first, size_t count);
 /** @} */
 
 /** @} */

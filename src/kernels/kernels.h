@@ -20,6 +20,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #include "bands.h"
 #include "directions.h"
 #include "particles.h"
+#include "contacts.h"
 #include "stretch.h"
 #if SPRING_VECTOR < 64
 #include "unbanded.h"
@@ -56,6 +57,7 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .damping_term = move_damping_term,
     .last_damping_term = move_last_damping_term,
     .stretched = any_stretched,
+    .contact_normal = find_contact_normal,
     .kick_damped_drift = move_kick_damped_drift,
 };
 #endif

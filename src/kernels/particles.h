@@ -104,6 +104,10 @@ SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c
 
 enum { ENDS_STEP = 1, PREDICTS = 2 };
 
+/* In contacts.h, with all axes of a particle at once. */
+static particle_kernel move_kick_drift_contact, move_implicit_kick_contact, move_implicit_kick_drift_contact,
+    move_last_stage_contact;
+
 SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
@@ -129,6 +133,8 @@ SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_
 
 static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
+    if (m->contacts != NULL)
+        return move_kick_drift_contact(p, m, from, to);
     if (p->held_stride != 0)
         return move_kick_drift_held(p, m, from, to);
     if (m->predicted == NULL)
@@ -153,6 +159,8 @@ SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const sce
 
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
+    if (m->contacts != NULL)
+        return move_implicit_kick_contact(p, m, from, to);
     return p->held_stride != 0 ? move_implicit_kick_held(p, m, from, to)
                                : for_each_vector(p, m, from, to, update_implicit_kick, 0, false);
 }
@@ -167,6 +175,8 @@ SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coord
 
 static bool move_implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
+    if (m->contacts != NULL)
+        return move_implicit_kick_drift_contact(p, m, from, to);
     return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0, true);
 }
 
@@ -216,6 +226,8 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
 
 static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
+    if (m->contacts != NULL)
+        return move_last_stage_contact(p, m, from, to);
     return for_each_vector(p, m, from, to, update_last_stage, 0, true);
 }
 

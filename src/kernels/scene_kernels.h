@@ -114,6 +114,36 @@ typedef struct scene_chebyshev {
     scalar coefficient, before_weight, second_weight;
 } scene_chebyshev;
 
+/* A collider during a step, or during a part of it with a drift. Radius and offset include the radius of particles. */
+typedef struct scene_collider {
+    spring_shape shape;
+    bool spins;
+    scalar at[3], to[3], at_end[3], to_end[3]; /* [m] at the start and at the end of the step */
+    scalar shift[3], shift_to[3];              /* [m] the differences */
+    scalar offset, offset_end, offset_shift;   /* [m] plane: its normal times `at`, plus the radius */
+    scalar axis[3][3], half[3], radius;
+    scalar velocity[3], velocity_to[3], spin[3];
+    scalar friction, restitution;
+    scalar reach;          /* [m^2] see may_touch() */
+    scalar inverse_square; /* [1/m^2] capsule: of its axis at the start */
+} scene_collider;
+
+/* Computes the normal of a collider nearest to x, at its pose at the start of the step. */
+typedef void normal_kernel(const scene_collider *, const scalar x[3], scalar normal[3]);
+
+/* The contacts of a step. */
+typedef struct scene_contacts {
+    unsigned count;                 /* of colliders */
+    const scene_collider *collider; /* [count] */
+    uint32_t axes;
+    bool quads;             /* a small scene */
+    bool adds;              /* to `touched`: the second drift of a step */
+    scalar h;               /* [s] */
+    const scalar *x;        /* [m] positions at the end */
+    const uint32_t *before; /* by particle: bit i says that collider i was touched in the step before */
+    uint32_t *touched;      /* written: in this step; may be `before` */
+} scene_contacts;
+
 /* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
 typedef struct scene_motion {
     scalar kick, drift;    /* [s] how long forces act on v, and v on x */
@@ -128,7 +158,8 @@ typedef struct scene_motion {
     scalar weight;         /* of this stage */
     const scene_nystrom *nystrom;
     const scene_chebyshev *chebyshev;
-    const scalar *span, *loss; /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
+    const scene_contacts *contacts; /* NULL: no colliders */
+    const scalar *span, *loss;      /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
 } scene_motion;
 
 /* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN, or if
@@ -165,6 +196,7 @@ typedef struct scene_kernels {
                                              + kick force/mass */
     particle_kernel *last_damping_term;   /* the same, if no particle is pinned; pinned ones keep v0 */
     stretch_kernel *stretched;            /* see above */
+    normal_kernel *contact_normal;        /* see above */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
 } scene_kernels;
 

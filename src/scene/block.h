@@ -41,6 +41,10 @@ typedef enum scene_array {
     ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
     ARRAY_SUMS,          /* work space of the stable step, by particle */
     ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
+    ARRAY_COLLIDERS,     /* spring_collider, as set */
+    ARRAY_PLACED,        /* scene_collider, in the present step */
+    ARRAY_TOUCHED_0,     /* by particle: bits of the colliders that it touches in buffer 0 */
+    ARRAY_TOUCHED_1,
     ARRAY_COUNT
 } scene_array;
 
@@ -54,7 +58,7 @@ typedef struct band_layout {
 } band_layout;
 
 typedef struct scene_layout {
-    uint32_t axes, flags, methods;
+    uint32_t axes, flags, methods, colliders;
     size_t particles, links;
     bool small;             /* quantities are arrays of quads, and no link lies in a band */
     size_t stride;          /* elements from one axis of a quantity to the next */
@@ -103,8 +107,18 @@ struct spring_scene {
     known_force known; /* in the force array of that buffer */
     bool lost;         /* an advance without rollback failed */
     bool bounds_known;
+    uint32_t colliders;     /* at most layout.colliders */
+    double colliders_set;   /* [s] time of their poses */
+    double particle_radius; /* [m] */
     scene_bounds bounds;
 };
+
+/* Places the colliders for a step from t0 to t1, into ARRAY_PLACED. */
+SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
+
+/* Removes from the acceleration of a particle what the colliders that it touches balance, as placed. Returns the rest. */
+SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, spring_scene *s, size_t particle,
+                                             double accel[3]);
 
 /* The bounds for the present links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
@@ -163,6 +177,19 @@ static inline scene_array velocities_in(uint32_t buffer)
 static inline scene_array forces_in(uint32_t buffer)
 {
     return buffer == 0 ? ARRAY_FORCE_0 : ARRAY_FORCE_1;
+}
+
+static inline scene_array touched_in(uint32_t buffer)
+{
+    return buffer == 0 ? ARRAY_TOUCHED_0 : ARRAY_TOUCHED_1;
+}
+
+/* The state no longer says that these particles touch colliders. */
+static inline void scene_clear_touched(spring_scene *s, size_t first, size_t count)
+{
+    uint32_t *const touched = scene_memory(s, touched_in(s->buffer));
+    if (touched != NULL)
+        memset(touched + first, 0, count * sizeof *touched);
 }
 
 /* The array that holds a quantity of the state. */

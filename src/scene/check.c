@@ -24,6 +24,16 @@ static def_error check_methods(uint32_t methods)
     return methods >> SPRING_METHOD_COUNT == 0 ? no_error : invalid("methods", 0);
 }
 
+static def_error check_contacts(const spring_scene_def *def)
+{
+    const uint32_t most_colliders = 32; /* bits of a mask */
+    if (def->colliders > 0 && axes_of(def) == 1)
+        return (def_error){SPRING_EUNSUPPORTED, "colliders", 0};
+    if (def->colliders > most_colliders)
+        return (def_error){SPRING_ERANGE, "colliders", 0};
+    return scene_not_negative(def->particle_radius) ? no_error : invalid("particle_radius", 0);
+}
+
 static def_error check_head(const spring_scene_def *def)
 {
     const uint32_t flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_NO_UNDO | SPRING_SCENE_FORCE_IGNORES_VELOCITY |
@@ -53,7 +63,7 @@ static def_error check_head(const spring_scene_def *def)
             return invalid("gravity", a);
     if (!scene_not_negative(def->drag))
         return invalid("drag", 0);
-    return scene_not_negative(def->max_speed) ? no_error : invalid("max_speed", 0);
+    return scene_not_negative(def->max_speed) ? check_contacts(def) : invalid("max_speed", 0);
 }
 
 static def_error check_particles(const spring_scene_def *def)
@@ -94,11 +104,11 @@ static def_error check_links(const spring_scene_def *def)
     return no_error;
 }
 
-/* Methods that evaluate forces at positions alone and need smooth forces, in a scene whose forces depend on velocities or
-   have a kink. */
+/* Methods that evaluate forces at positions alone and need smooth motion, in a scene whose forces depend on velocities or
+   have a kink, or with contacts. */
 static def_error check_velocities(const spring_scene_def *def)
 {
-    const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0 || def->colliders > 0;
     const bool called = def->force != NULL && (def->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
         if ((def->methods & 1u << m) != 0 && spring_method_describe((spring_method)m)->positions_only &&

@@ -147,6 +147,8 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         const scalar inverse = free_inverse_mass(s, p, i);
         for (uint32_t a = 0; a < s->layout.axes && pinned && !is_pinned_now(s, i); a++)
             scene_set_state(s, SPRING_VELOCITY, a)[s->layout.particle_stride * i] = 0;
+        if (pinned != is_pinned_now(s, i))
+            scene_clear_touched(s, i, 1);
         freed[i] = inverse;
         scene_set_inverse_mass(s, i, pinned ? 0 : inverse);
     }

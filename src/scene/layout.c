@@ -157,6 +157,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
     const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
+    const bool collides = l->colliders > 0;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
@@ -189,6 +190,10 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
+        [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
+        [ARRAY_PLACED] = {sizeof(scene_collider), l->colliders, collides},
+        [ARRAY_TOUCHED_0] = {sizeof(uint32_t), l->particles + padding, collides},
+        [ARRAY_TOUCHED_1] = {sizeof(uint32_t), l->particles + padding, collides && rollback},
     };
     memcpy(row, rows, sizeof rows);
 }
@@ -223,6 +228,7 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
         .axes = axes_of(def),
         .flags = def->flags,
         .methods = methods_of(def),
+        .colliders = def->colliders,
         .particles = def->particles,
         .links = def->links,
         .unbanded = def->links,
@@ -357,6 +363,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
+        .particle_radius = def->particle_radius,
         .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : SCALAR_MAX,
     };
     s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);

@@ -31,6 +31,7 @@ struct scene_step {
     known_force known;   /* the forces at the start */
     bool predicts;       /* see scene_stepper */
     chebyshev_series damping;
+    scene_contacts contacts;
 };
 
 static inline scalar *x_at(const scene_step *s, uint32_t buffer)
@@ -89,7 +90,22 @@ static inline scene_motion whole_step(const scene_step *s)
         .v = v_at(s, s->to),
         .stage_v = v_at(s, s->from),
         .max_speed = s->scene->max_speed,
+        .contacts = s->contacts.count > 0 ? &s->contacts : NULL,
     };
+}
+
+/* Places the colliders for a drift between two fractions of the step. */
+static inline void place_colliders(scene_step *s, double from, double to)
+{
+    scene_contacts *const c = &s->contacts;
+    if (c->count == 0)
+        return;
+    spring_scene_place_colliders(s->scene, s->t0 + (s->done + from) * s->dt, s->t0 + (s->done + to) * s->dt);
+    c->h = s->h * (scalar)(to - from);
+    c->adds = from > 0;
+    c->x = x_at(s, s->to);
+    c->before = scene_read(s->scene, touched_in(s->from));
+    c->touched = scene_memory(s->scene, touched_in(s->to));
 }
 
 /* ----------------------------------------------------------------------------------------------------- preparation */

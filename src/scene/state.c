@@ -123,6 +123,8 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
         for (size_t i = 0; i < count; i++)
             to[s->layout.particle_stride * i] = (scalar)in[i * stride + a];
     }
+    if (q == SPRING_POSITION)
+        scene_clear_touched(s, first, count);
     if (q != SPRING_FORCE) /* held forces are no part of the stored force */
         s->known = NO_FORCE;
     return SPRING_OK;

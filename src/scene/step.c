@@ -58,7 +58,7 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
         return spring_scene_steppers[m].step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;
     if (spring_method_describe(m)->positions_only && scene_forces_use_velocity(s))
         return SPRING_EUNSUPPORTED;
-    return SPRING_OK;
+    return s->colliders > 0 && m == SPRING_EULER ? SPRING_EUNSUPPORTED : SPRING_OK;
 }
 
 /* Takes n steps. A run is a sequence of calls with the same dt; `before` is the number of its steps before this call.
@@ -71,6 +71,7 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
         step->done = (double)(before + i);
         step->first = i == 0;
         step->last = i + 1 == n;
+        place_colliders(step, 0, 1);
         const scene_outcome outcome = stepper->step(step);
         *finite = outcome.finite;
         if (!outcome.finite)
@@ -123,7 +124,11 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .t0 = t0,
                        .dt = dt,
                        .predicts = spring_scene_steppers[m].predicts,
-                       .damping = damping};
+                       .damping = damping,
+                       .contacts = {.count = s->colliders,
+                                    .collider = scene_read(s, ARRAY_PLACED),
+                                    .axes = s->layout.axes,
+                                    .quads = s->layout.small}};
     bool finite = true;
     const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
     if (!finite) {
@@ -171,17 +176,21 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         return false;
     const scalar *all = forces_of_state(s);
     const size_t stride = s->layout.particle_stride;
+    if (s->colliders > 0)
+        spring_scene_place_colliders(s, time_of(s), time_of(s));
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
-        double speed = 0, acceleration = 0;
+        double speed = 0, acceleration = 0, accel[3] = {0};
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
             const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[stride * i] : 0;
             const double force = (double)all[a * s->layout.stride + stride * i] + held - s->drag * v;
-            const double accel = inverse > 0 ? inverse * force + s->gravity[a] : 0;
+            accel[a] = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed = spring_hypot(speed, fabs(v));
-            acceleration = spring_hypot(acceleration, fabs(accel));
+            acceleration = spring_hypot(acceleration, fabs(accel[a]));
         }
+        if (s->colliders > 0)
+            acceleration = spring_scene_balanced(best_scene_kernels(), s, i, accel);
         if (!(speed <= v_tol) || !(acceleration <= a_tol))
             return false;
     }

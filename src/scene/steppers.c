@@ -43,6 +43,14 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
+/* Damping changes velocities: again they lose their components into the colliders that are touched. */
+static bool stop_at_contacts(scene_step *s, const scene_motion *last_kick)
+{
+    scene_motion m = *last_kick;
+    m.kick = 0;
+    return s->contacts.count == 0 || move(s, s->kernels->implicit_kick, &m);
+}
+
 /* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each half
    is kick, drift, evaluate, implicit kick, as in scene_leapfrog(), and so is the way to treat callbacks: the forces of one
    that uses velocities are not kept, and are evaluated at predicted velocities. */
@@ -60,9 +68,11 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     last_kick.max_speed = SCALAR_MAX; /* not yet the end of the step */
     const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
     particle_kernel *const implicit_kick = s->kernels->implicit_kick;
+    place_colliders(s, 0, 0.5);
     if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||
-        !damp_links(s, kick_drift.x, kick_drift.v))
+        !damp_links(s, kick_drift.x, kick_drift.v) || !stop_at_contacts(s, &last_kick))
         return (scene_outcome){.finite = false};
+    place_colliders(s, 0.5, 1);
     if (!keeps)
         evaluate(s, kick_drift.x, kick_drift.v, 0.5);
     kick_drift.x0 = kick_drift.x;

@@ -43,5 +43,6 @@ spring_status spring_scene_transform(spring_scene *s, const double matrix[12])
     transform_quantity(s, SPRING_POSITION, matrix, 1, true);
     transform_quantity(s, SPRING_VELOCITY, matrix, 0, true);
     s->known = NO_FORCE;
+    scene_clear_touched(s, 0, s->layout.particles);
     return SPRING_OK;
 }

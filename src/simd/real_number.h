@@ -44,6 +44,18 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
+/* Lanes whose number has one of these bits. */
+SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
+{
+    return (numbers[0] & bits) != 0;
+}
+
+/* Sets bit k of the numbers of these lanes. */
+SPRING_INLINE void add_bit(uint32_t *numbers, unsigned k, mask where)
+{
+    numbers[0] |= (uint32_t)where << k;
+}
+
 SPRING_INLINE real vec_sqrt(real a)
 {
     return scalar_sqrt(a);

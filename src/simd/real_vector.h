@@ -94,6 +94,22 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
 #endif
 }
 
+/* Lanes whose number has one of these bits. */
+SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
+{
+    mask t = {0};
+    for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
+        t[i] = -(scalar_bits)((numbers[i] & bits) != 0);
+    return t;
+}
+
+/* Sets bit k of the numbers of these lanes. */
+SPRING_INLINE void add_bit(uint32_t *numbers, unsigned k, mask where)
+{
+    for (size_t i = 0; i < sizeof where / sizeof(scalar); i++)
+        numbers[i] |= (uint32_t)(where[i] & 1) << k;
+}
+
 SPRING_INLINE real vec_sqrt(real a)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)

@@ -68,7 +68,20 @@ AT(spring_link, rest, 8, 8);
 AT(spring_link, stiffness, 16, 16);
 AT(spring_link, damping, 24, 24);
 
-SIZE(spring_scene_def, 136, 96);
+SIZE(spring_collider, 248, 248);
+AT(spring_collider, shape, 0, 0);
+AT(spring_collider, at, 8, 8);
+AT(spring_collider, to, 32, 32);
+AT(spring_collider, axis, 56, 56);
+AT(spring_collider, half, 128, 128);
+AT(spring_collider, radius, 152, 152);
+AT(spring_collider, velocity, 160, 160);
+AT(spring_collider, velocity_to, 184, 184);
+AT(spring_collider, spin, 208, 208);
+AT(spring_collider, friction, 232, 232);
+AT(spring_collider, restitution, 240, 240);
+
+SIZE(spring_scene_def, 152, 112);
 AT(spring_scene_def, axes, 0, 0);
 AT(spring_scene_def, flags, 4, 4);
 AT(spring_scene_def, methods, 8, 8);
@@ -85,13 +98,15 @@ AT(spring_scene_def, drag, 104, 72);
 AT(spring_scene_def, force, 112, 80);
 AT(spring_scene_def, user, 120, 84);
 AT(spring_scene_def, max_speed, 128, 88);
+AT(spring_scene_def, colliders, 136, 96);
+AT(spring_scene_def, particle_radius, 144, 104);
 
 SIZE(spring_scene_energies, 24, 24);
 AT(spring_scene_energies, kinetic, 0, 0);
 AT(spring_scene_energies, elastic, 8, 8);
 AT(spring_scene_energies, gravity, 16, 16);
 
-SIZE(spring_scenef_def, 136, 96);
+SIZE(spring_scenef_def, 152, 112);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
@@ -108,6 +123,8 @@ AT(spring_scenef_def, drag, 104, 72);
 AT(spring_scenef_def, force, 112, 80);
 AT(spring_scenef_def, user, 120, 84);
 AT(spring_scenef_def, max_speed, 128, 88);
+AT(spring_scenef_def, colliders, 136, 96);
+AT(spring_scenef_def, particle_radius, 144, 104);
 
 SIZE(spring_grid, 72, 72);
 AT(spring_grid, count, 0, 0);
@@ -128,6 +145,7 @@ AT(spring_clock, dropped, 8, 8);
 SIZE(spring_method, 4, 4);
 SIZE(spring_status, 4, 4);
 SIZE(spring_quantity, 4, 4);
+SIZE(spring_shape, 4, 4);
 
 #define VALUE(name, value) _Static_assert((name) == (value), #name)
 
@@ -159,6 +177,11 @@ VALUE(SPRING_EUNSTABLE, 12);
 VALUE(SPRING_POSITION, 0);
 VALUE(SPRING_VELOCITY, 1);
 VALUE(SPRING_FORCE, 2);
+
+VALUE(SPRING_PLANE, 0);
+VALUE(SPRING_SPHERE, 1);
+VALUE(SPRING_CAPSULE, 2);
+VALUE(SPRING_BOX, 3);
 
 VALUE(SPRING_CHECK_INTERVAL, 4096);
 

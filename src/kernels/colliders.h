@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Distances from colliders: the signed gap between a particle and the surface of a plane, sphere, capsule or box, and the
+ * normal there.
+ *
+ * Method    All shapes except planes are cores with a radius: a point, a segment, a box. The gap is the distance from the
+ *           core minus the radius; inside the core of a box, minus the distance from its nearest face.
+ * Accuracy  a few eps (|x|_1 + radius), see contact_slop(). Planes are stored by their offset normal . at, so the distance
+ *           of `at` does not matter.
+ */
+#ifndef SPRINGSTEP_COLLIDERS_H
+#define SPRINGSTEP_COLLIDERS_H
+
+#include "../simd/real.h"
+#include "../simd/real3.h"
+#include "scene_kernels.h"
+
+/* When the pose of a collider is wanted. */
+typedef enum pose_time {
+    STEP_START,
+    STEP_END,
+    WITHIN_STEP /* at a fraction of the step */
+} pose_time;
+
+SPRING_INLINE real3 place_of(pose_time when, real fraction, const scalar start[3], const scalar end[3],
+                             const scalar shift[3])
+{
+    return when == WITHIN_STEP ? plus_scaled3(splat3(start), fraction, splat3(shift))
+                               : splat3(when == STEP_END ? end : start);
+}
+
+/* The place on a collider that is nearest to a particle. */
+typedef struct contact_point {
+    real gap;     /* [m] negative inside */
+    real3 normal; /* unit vector, out of the collider */
+    real3 arm;    /* [m] from the centre, for a capsule from the nearest point of its axis, to the particle */
+    real along;   /* capsule: that point, 0 at `at` to 1 at `to`; else 0 */
+} contact_point;
+
+/* From a core at distance `arm`. At the core itself the normal is any. */
+SPRING_INLINE void set_round(contact_point *p, real3 from_core, scalar radius)
+{
+    const real distance = vec_sqrt(dot3(from_core, from_core));
+    const mask apart = distance > 0;
+    const real inverse = 1 / select_real(apart, distance, splat(1));
+    p->normal = select3(apart, times3(inverse, from_core), (real3){splat(0), splat(1), splat(0)});
+    p->gap = distance - radius;
+}
+
+SPRING_INLINE real nearest_on_axis(real3 axis, real3 from_at)
+{
+    const real square = dot3(axis, axis);
+    const real along = dot3(from_at, axis) / select_real(square > 0, square, splat(1));
+    return vec_min(vec_not_negative(along), splat(1));
+}
+
+SPRING_INLINE void set_box(contact_point *p, const scene_collider *c)
+{
+    real3 outside = {splat(0), splat(0), splat(0)}, face = outside;
+    real square = splat(0), depth = splat(-SCALAR_MAX);
+    SPRING_UNROLL
+    for (int i = 0; i < 3; i++) {
+        const real3 axis = splat3(c->axis[i]);
+        const real side = dot3(p->arm, axis), beyond = vec_abs(side) - c->half[i];
+        const real sign = select_real(side < 0, splat(-1), splat(1));
+        const real over = vec_not_negative(beyond);
+        outside = plus_scaled3(outside, sign * over, axis);
+        square += over * over;
+        face = select3(beyond > depth, times3(sign, axis), face);
+        depth = select_real(beyond > depth, beyond, depth);
+    }
+    set_round(p, outside, c->radius);
+    const mask in_core = not_mask(square > 0);
+    p->normal = select3(in_core, face, p->normal);
+    p->gap = select_real(in_core, depth - c->radius, p->gap);
+}
+
+/* fraction: of the step, for WITHIN_STEP */
+SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real fraction, const real3 *x,
+                                  contact_point *p)
+{
+    const real3 at = place_of(when, fraction, c->at, c->at_end, c->shift);
+    p->along = splat(0);
+    p->arm = minus3(*x, at);
+    switch (c->shape) {
+    case SPRING_PLANE: {
+        const real offset = when == WITHIN_STEP ? c->offset + fraction * c->offset_shift
+                                                : splat(when == STEP_END ? c->offset_end : c->offset);
+        p->normal = splat3(c->axis[0]);
+        p->gap = dot3(*x, p->normal) - offset;
+        break;
+    }
+    case SPRING_CAPSULE: {
+        const real3 axis = minus3(place_of(when, fraction, c->to, c->to_end, c->shift_to), at);
+        p->along = nearest_on_axis(axis, p->arm);
+        p->arm = plus_scaled3(p->arm, -p->along, axis);
+        set_round(p, p->arm, c->radius);
+        break;
+    }
+    case SPRING_BOX:
+        set_box(p, c);
+        break;
+    default:
+        set_round(p, p->arm, c->radius);
+    }
+}
+
+/* Below it a gap is a rounding error. */
+SPRING_INLINE real contact_slop(const scene_collider *c, real3 x)
+{
+    const scalar eps = sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
+    return 8 * eps * (vec_abs(x.x) + vec_abs(x.y) + vec_abs(x.z) + c->radius);
+}
+
+/* [m] how far the collider moves in the step, at the contact. */
+SPRING_INLINE real3 shift_at(const scene_collider *c, const contact_point *p)
+{
+    const real3 at = splat3(c->shift);
+    return c->shape == SPRING_CAPSULE ? plus_scaled3(at, p->along, minus3(splat3(c->shift_to), at)) : at;
+}
+
+/* [m/s] velocity of the surface at the contact. */
+SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_point *p)
+{
+    real3 v = splat3(c->velocity);
+    if (c->shape == SPRING_CAPSULE)
+        v = plus_scaled3(v, p->along, minus3(splat3(c->velocity_to), v));
+    return c->spins ? plus3(v, cross3(splat3(c->spin), p->arm)) : v;
+}
+
+/* Lanes whose particle may touch the collider on its way from x to x + d. A few of the others are found, too: with the radius
+   R that includes the way of the collider, (R + |d|)^2 <= 17/16 R^2 + 17 d^2, and `reach` has the first term. */
+SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_squared)
+{
+    if (c->shape == SPRING_PLANE) {
+        const real3 normal = splat3(c->axis[0]);
+        const real gap = dot3(x, normal) - c->offset, change = dot3(d, normal) - c->offset_shift;
+        return not_mask(gap >= 0) | not_mask(gap + change >= 0);
+    }
+    real3 arm = minus3(x, splat3(c->at));
+    real square = splat(0);
+    if (c->shape == SPRING_CAPSULE) {
+        const real3 axis = minus3(splat3(c->to), splat3(c->at));
+        const real along = vec_min(vec_not_negative(dot3(arm, axis) * c->inverse_square), splat(1));
+        arm = plus_scaled3(arm, -along, axis);
+    }
+    if (c->shape == SPRING_BOX) {
+        SPRING_UNROLL
+        for (int i = 0; i < 3; i++) {
+            const real over = vec_not_negative(vec_abs(dot3(arm, splat3(c->axis[i]))) - c->half[i]);
+            square += over * over;
+        }
+    } else
+        square = dot3(arm, arm);
+    return not_mask(square > c->reach + (scalar)17.1 * d_squared);
+}
+
+#endif

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/* Colliders of a scene: setting them, their poses during a step, and what touches them. The formulas of contacts are in
+   kernels/contacts.h. */
+#include "block.h"
+#include "../spring/roots.h"
+
+/* ------------------------------------------------------------------------------------------------------- valid values */
+
+static bool fits3(const double v[3], uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        if (!spring_finite((scalar)v[a]))
+            return false;
+    return true;
+}
+
+static bool fits_not_negative(double value)
+{
+    return value >= 0 && spring_finite((scalar)value);
+}
+
+static double dot_of(const double a[3], const double b[3], uint32_t axes)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < axes; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* Whether the first `count` axes are unit vectors, orthogonal to each other. */
+static bool orthonormal(const spring_collider *c, uint32_t count, uint32_t axes)
+{
+    const double tolerance = 1e-6;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j = 0; j <= i; j++)
+            if (!(fabs(dot_of(c->axis[i], c->axis[j], axes) - (i == j)) <= tolerance))
+                return false;
+    return true;
+}
+
+static bool shape_valid(const spring_collider *c, uint32_t axes)
+{
+    switch (c->shape) {
+    case SPRING_PLANE:
+        return orthonormal(c, 1, axes);
+    case SPRING_SPHERE:
+        return fits_not_negative(c->radius);
+    case SPRING_CAPSULE:
+        return fits_not_negative(c->radius) && fits3(c->to, axes) && fits3(c->velocity_to, axes);
+    case SPRING_BOX:
+        for (uint32_t a = 0; a < axes; a++)
+            if (!fits_not_negative(c->half[a]))
+                return false;
+        return fits_not_negative(c->radius) && orthonormal(c, axes, axes);
+    default:
+        return false;
+    }
+}
+
+static bool collider_valid(const spring_collider *c, uint32_t axes)
+{
+    const bool spin_fits = axes == 2 ? spring_finite((scalar)c->spin[2]) : fits3(c->spin, axes);
+    return shape_valid(c, axes) && fits3(c->at, axes) && fits3(c->velocity, axes) && spin_fits &&
+           fits_not_negative(c->friction) && c->restitution >= 0 && c->restitution <= 1;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- poses */
+
+/* Where a point is after `time`, in the precision of the scene. */
+static void place_point(const double at[3], const double velocity[3], double time, uint32_t axes, scalar out[3])
+{
+    for (uint32_t a = 0; a < 3; a++)
+        out[a] = a < axes ? (scalar)(at[a] + time * velocity[a]) : 0;
+}
+
+static scalar plane_offset(const spring_collider *c, double time, double thickness, uint32_t axes)
+{
+    return (scalar)(dot_of(c->axis[0], c->at, axes) + time * dot_of(c->axis[0], c->velocity, axes) + thickness);
+}
+
+static scalar length_of_shift(const scalar shift[3])
+{
+    const double square =
+        (double)shift[0] * (double)shift[0] + (double)shift[1] * (double)shift[1] + (double)shift[2] * (double)shift[2];
+    return (scalar)spring_sqrt(square);
+}
+
+/* Copies what the third axis of a scene with two axes must not change. */
+static void copy_shape(scene_collider *to, const spring_collider *c, double thickness, uint32_t axes)
+{
+    const bool flat = axes == 2;
+    to->shape = c->shape;
+    to->radius = (scalar)((c->shape == SPRING_PLANE ? 0 : c->radius) + thickness);
+    to->friction = (scalar)c->friction;
+    to->restitution = (scalar)c->restitution;
+    for (uint32_t i = 0; i < 3; i++) {
+        for (uint32_t a = 0; a < 3; a++)
+            to->axis[i][a] = flat && (i == 2 || a == 2) ? (scalar)(i == a) : (scalar)c->axis[i][a];
+        to->half[i] = flat && i == 2 ? SCALAR_MAX : (scalar)c->half[i];
+        to->velocity[i] = flat && i == 2 ? 0 : (scalar)c->velocity[i];
+        to->velocity_to[i] = flat && i == 2 ? 0 : (scalar)c->velocity_to[i];
+        to->spin[i] = flat && i < 2 ? 0 : (scalar)c->spin[i];
+    }
+    to->spins = to->spin[0] != 0 || to->spin[1] != 0 || to->spin[2] != 0;
+}
+
+static void place_collider(scene_collider *to, const spring_collider *c, double time0, double time1, double thickness,
+                           uint32_t axes)
+{
+    copy_shape(to, c, thickness, axes);
+    place_point(c->at, c->velocity, time0, axes, to->at);
+    place_point(c->at, c->velocity, time1, axes, to->at_end);
+    place_point(c->to, c->velocity_to, time0, axes, to->to);
+    place_point(c->to, c->velocity_to, time1, axes, to->to_end);
+    scalar square = 0;
+    for (uint32_t a = 0; a < 3; a++) {
+        to->shift[a] = to->at_end[a] - to->at[a];
+        to->shift_to[a] = to->to_end[a] - to->to[a];
+        square += (to->to[a] - to->at[a]) * (to->to[a] - to->at[a]);
+    }
+    to->inverse_square = square > 0 ? 1 / square : 0;
+    to->offset = plane_offset(c, time0, thickness, axes);
+    to->offset_end = plane_offset(c, time1, thickness, axes);
+    to->offset_shift = to->offset_end - to->offset;
+    scalar shift = length_of_shift(to->shift);
+    if (c->shape == SPRING_CAPSULE && length_of_shift(to->shift_to) > shift)
+        shift = length_of_shift(to->shift_to);
+    to->reach = (scalar)1.07 * (to->radius + shift) * (to->radius + shift);
+}
+
+void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
+{
+    const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
+    scene_collider *placed = scene_memory(s, ARRAY_PLACED);
+    for (uint32_t i = 0; i < s->colliders; i++)
+        place_collider(&placed[i], &c[i], t0 - s->colliders_set, t1 - s->colliders_set, s->particle_radius,
+                       s->layout.axes);
+}
+
+/* ----------------------------------------------------------------------------------------------------- public functions */
+
+spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count)
+{
+    if (s == NULL || (c == NULL && count > 0))
+        return SPRING_EINVAL;
+    if (s->layout.colliders == 0)
+        return SPRING_EDISABLED;
+    if (count > s->layout.colliders)
+        return SPRING_ERANGE;
+    for (uint32_t i = 0; i < count; i++)
+        if (!collider_valid(&c[i], s->layout.axes))
+            return SPRING_EINVAL;
+    if (count > 0)
+        memcpy(scene_memory(s, ARRAY_COLLIDERS), c, count * sizeof *c);
+    s->colliders = count;
+    s->colliders_set = spring_scene_time(s);
+    scene_clear_touched(s, 0, s->layout.particles);
+    return SPRING_OK;
+}
+
+spring_status spring_scene_touching(const spring_scene *s, uint32_t *bits, size_t first, size_t count)
+{
+    if (s == NULL || bits == NULL)
+        return SPRING_EINVAL;
+    if (s->layout.colliders == 0)
+        return SPRING_EDISABLED;
+    if (first > s->layout.particles || count > s->layout.particles - first)
+        return SPRING_ERANGE;
+    const uint32_t *touched = scene_read(s, touched_in(s->buffer));
+    memcpy(bits, touched + first, count * sizeof *bits);
+    return SPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- at rest */
+
+/* Removes from the acceleration of particle i what one collider balances. */
+static void balance(const scene_kernels *kernels, const spring_scene *s, const scene_collider *c, size_t i,
+                    double accel[3])
+{
+    scalar at[3] = {0}, n[3];
+    for (uint32_t a = 0; a < s->layout.axes; a++)
+        at[a] = scene_state(s, SPRING_POSITION, a)[s->layout.particle_stride * i];
+    kernels->contact_normal(c, at, n);
+    const double normal[3] = {(double)n[0], (double)n[1], (double)n[2]};
+    const double pressing = -dot_of(accel, normal, 3);
+    if (!(pressing > 0))
+        return;
+    double speed = 0;
+    for (int a = 0; a < 3; a++) {
+        accel[a] += pressing * normal[a];
+        speed = spring_hypot(speed, fabs(accel[a]));
+    }
+    const double limit = (double)c->friction * pressing, rest = speed > limit ? 1 - limit / speed : 0;
+    for (int a = 0; a < 3; a++)
+        accel[a] *= rest;
+}
+
+double spring_scene_balanced(const scene_kernels *kernels, spring_scene *s, size_t i, double accel[3])
+{
+    enum { rounds = 8 }; /* in a wedge each collider presses the particle into the other */
+    const uint32_t *touched = scene_read(s, touched_in(s->buffer));
+    const scene_collider *placed = scene_read(s, ARRAY_PLACED);
+    for (int round = 0; round < rounds && touched[i] != 0; round++)
+        for (uint32_t k = 0; k < s->colliders; k++)
+            if ((touched[i] >> k & 1) != 0)
+                balance(kernels, s, &placed[k], i, accel);
+    return spring_hypot(spring_hypot(fabs(accel[0]), fabs(accel[1])), fabs(accel[2]));
+}

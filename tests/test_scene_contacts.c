@@ -1,0 +1,674 @@
+/* SPDX-License-Identifier: MIT */
+/* Contacts against closed forms: bounces, friction, time of impact, order, wedges, energy. tests/test_scene_colliders.c has
+   the rules of the functions. */
+#include "test_scene.h"
+
+#define PI 3.14159265358979323846
+
+static const double gravity = 9.81;
+
+static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
+enum { method_count = 3, second_order = 2 }; /* the first two */
+
+enum { in_double = sizeof(scalar) == sizeof(double) };
+
+/* One particle. With fillers, pinned and far away, the scene has the layout of many particles. */
+enum { fillers = 20 };
+
+typedef struct setting {
+    double x[3], v[3];
+    double gravity[3], mass;
+    spring_link link; /* stiffness > 0: from a pinned particle at `pin` */
+    double pin[3];
+    bool many;
+    uint32_t colliders;
+    spring_collider collider[6];
+} setting;
+
+static spring_scene *scene_for(const setting *w)
+{
+    const size_t particles = w->many ? 2 + fillers : 2;
+    double x[(2 + fillers) * 3], v[(2 + fillers) * 3] = {0}, mass[2 + fillers];
+    uint8_t pinned[2 + fillers] = {0, 1};
+    for (size_t i = 0; i < particles; i++) {
+        mass[i] = w->mass;
+        for (size_t a = 0; a < 3; a++)
+            x[3 * i + a] = 1000.0 + (double)i;
+        pinned[i] = i > 0;
+    }
+    memcpy(x, w->x, sizeof w->x);
+    memcpy(x + 3, w->pin, sizeof w->pin);
+    memcpy(v, w->v, sizeof w->v);
+    spring_scene_def def = {
+        .particles = particles,
+        .position = x,
+        .velocity = v,
+        .mass = mass,
+        .pinned = pinned,
+        .links = w->link.stiffness > 0,
+        .link = &w->link,
+        .colliders = 6,
+        .methods = 1u << SPRING_SYMPLECTIC_EULER | 1u << SPRING_LEAPFROG | 1u << SPRING_RK4,
+    };
+    memcpy(def.gravity, w->gravity, sizeof def.gravity);
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_set_colliders(s, w->collider, w->colliders) == SPRING_OK, "valid colliders");
+    return s;
+}
+
+static void step_once(spring_scene *s, spring_method method, double dt, double x[3], double v[3])
+{
+    CHECK(spring_scene_advance(s, method, dt, 1) == SPRING_OK, "finite");
+    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 1);
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+}
+
+static void run_to(const setting *w, spring_method method, double dt, double end, double x[3], double v[3])
+{
+    spring_scene *s = scene_for(w);
+    CHECK(spring_scene_advance(s, method, dt, (uint64_t)lround(end / dt)) == SPRING_OK, "finite");
+    spring_scene_get(s, SPRING_POSITION, x, 0, 0, 1);
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+    free(s);
+}
+
+static const spring_collider floor_below = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+
+/* ------------------------------------------------------------------------------------------------------------ geometry */
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The distance from a collider at `time` after it was set, from the definition of each shape: independent of the library. */
+static double gap_of(const spring_collider *c, double time, const double x[3], uint32_t axes)
+{
+    double from[3] = {0}, axis[3] = {0}, square = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        from[a] = x[a] - c->at[a] - time * c->velocity[a];
+        axis[a] = c->to[a] - c->at[a] + time * (c->velocity_to[a] - c->velocity[a]);
+    }
+    if (c->shape == SPRING_PLANE)
+        return dot(from, c->axis[0]);
+    if (c->shape == SPRING_CAPSULE) {
+        const double along = fmin(fmax(dot(from, axis) / dot(axis, axis), 0), 1);
+        for (int a = 0; a < 3; a++)
+            from[a] -= along * axis[a];
+    }
+    if (c->shape != SPRING_BOX)
+        return sqrt(dot(from, from)) - c->radius;
+    double deepest = -INFINITY;
+    for (uint32_t a = 0; a < axes; a++) {
+        const double beyond = fabs(dot(from, c->axis[a])) - c->half[a];
+        deepest = fmax(deepest, beyond);
+        square += beyond > 0 ? beyond * beyond : 0;
+    }
+    return (square > 0 ? sqrt(square) : deepest) - c->radius;
+}
+
+/* Acceleration of a particle that slides on a unit sphere: gravity, the normal force N, and friction mu N. Returns N. */
+static double sliding_acceleration(const double x[3], const double v[3], double mu, double a[3])
+{
+    const double r = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+    const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], normal = gravity * x[1] / r - square / r;
+    for (int i = 0; i < 3; i++)
+        a[i] = normal * x[i] / r - mu * normal * v[i] / sqrt(square);
+    a[1] -= gravity;
+    return normal;
+}
+
+/* The same motion by RK4 along the constraint, and free flight from where N becomes 0. */
+static void slide_exactly(const setting *w, double mu, double end, double x[3])
+{
+    enum { steps = 100000 };
+    const double h = end / steps;
+    double v[3];
+    memcpy(x, w->x, sizeof w->x);
+    memcpy(v, w->v, sizeof v);
+    for (int step = 0; step < steps; step++) {
+        double kx[4][3], kv[4][3], y[3], u[3], a[3];
+        static const double at[4] = {0, 0.5, 0.5, 1};
+        if (sliding_acceleration(x, v, mu, a) <= 0) {
+            const double t = end - step * h;
+            for (int i = 0; i < 3; i++)
+                x[i] += t * v[i] - (i == 1 ? gravity * t * t / 2 : 0);
+            return;
+        }
+        for (int k = 0; k < 4; k++) {
+            for (int i = 0; i < 3; i++) {
+                y[i] = x[i] + (k > 0 ? at[k] * h * kx[k - 1][i] : 0);
+                u[i] = v[i] + (k > 0 ? at[k] * h * kv[k - 1][i] : 0);
+            }
+            sliding_acceleration(y, u, mu, kv[k]);
+            memcpy(kx[k], u, sizeof u);
+        }
+        for (int i = 0; i < 3; i++) {
+            x[i] += h / 6 * (kx[0][i] + 2 * kx[1][i] + 2 * kx[2][i] + kx[3][i]);
+            v[i] += h / 6 * (kv[0][i] + 2 * kv[1][i] + 2 * kv[2][i] + kv[3][i]);
+        }
+    }
+}
+
+/* The slope of an error between steps of 1/240 s and 1/3840 s, of the runs that `error` makes. */
+static double slope(double (*error)(const setting *, spring_method, double), const setting *w, spring_method method)
+{
+    const double coarse = error(w, method, 1.0 / 240), fine = error(w, method, 1.0 / 3840);
+    return log2(coarse / fine) / 4;
+}
+
+/* Drops bounce to e^2, e^4 and e^6 of the height; at the end the particle lies still. The bound is twice the error of the
+   prototype of this scheme. */
+static void bounce(void)
+{
+    const double e = 0.8, dt = 1.0 / 480;
+    for (int many = 0; many < 2; many++)
+        for (double drop = 0.5; drop <= 2; drop += 0.25) {
+            setting w = {.x = {0, drop, 0},
+                         .gravity = {0, -gravity, 0},
+                         .mass = 0.7,
+                         .many = many,
+                         .colliders = 1,
+                         .collider = {floor_below}};
+            w.collider[0].restitution = e;
+            spring_scene *s = scene_for(&w);
+            double x[3], v[3], ratio = 1;
+            bool down = true;
+            int found = 0;
+            for (int i = 0; i < 480 * 12; i++) {
+                step_once(s, SPRING_LEAPFROG, dt, x, v);
+                if (!down && v[1] <= 0 && found < 3) {
+                    ratio *= e * e;
+                    const double height = x[1] + v[1] * v[1] / (2 * gravity);
+                    CHECK_CLOSE(height / (drop * ratio), 1, in_double ? 3e-5 : 1e-3,
+                                "the time of impact is found, so the error is of second order");
+                    found++;
+                }
+                down = v[1] <= 0;
+            }
+            CHECK(found == 3, "three bounces");
+            CHECK_BELOW(fabs(x[1]), in_double ? 1e-15 : 1e-6, "on the floor, to the rounding of a step there");
+            CHECK(v[1] == 0, "at rest");
+            free(s);
+        }
+}
+
+static double spring_on_plane_error(const setting *w, spring_method method, double dt)
+{
+    const double omega = 2 * PI, end = 1.5, e = w->collider[0].restitution;
+    double t = 0, y = 1, v = 0, got[3], speed[3];
+    for (;;) { /* between impacts y = -0.5 + A cos(omega t + phase) */
+        const double amplitude = hypot(y + 0.5, v / omega), phase = atan2(-v / omega, y + 0.5);
+        const double q = acos(0.5 / amplitude);
+        double until_impact = fmod(q - phase + 4 * PI, 2 * PI) / omega;
+        if (until_impact < 1e-12)
+            until_impact += 2 * (PI - q) / omega;
+        if (t + until_impact > end) {
+            y = -0.5 + amplitude * cos(omega * (end - t) + phase);
+            v = -amplitude * omega * sin(omega * (end - t) + phase);
+            break;
+        }
+        t += until_impact;
+        v = e * amplitude * omega * sin(q);
+        y = 0;
+    }
+    run_to(w, method, dt, end, got, speed);
+    return hypot(got[1] - y, (speed[1] - v) / omega);
+}
+
+/* A mass on a spring, whose rest position is inside the floor. */
+static void spring_on_plane(void)
+{
+    const double omega = 2 * PI, mass = 1.3;
+    for (int i = 0; i < 2; i++) {
+        setting w = {.x = {0, 1, 0},
+                     .mass = mass,
+                     .pin = {0, -10, 0},
+                     .link = {0, 1, 9.5, mass * omega * omega, 0},
+                     .colliders = 1,
+                     .collider = {floor_below}};
+        w.collider[0].restitution = i == 0 ? 1 : 0.8;
+        for (int m = 0; m < second_order; m++)
+            CHECK(!in_double || slope(spring_on_plane_error, &w, with_contacts[m]) >= 1.8,
+                  "second order across impacts");
+        CHECK_CLOSE(slope(spring_on_plane_error, &w, SPRING_SYMPLECTIC_EULER), 1, 0.1, "first order");
+    }
+}
+
+static double oblique_error(const setting *w, spring_method method, double dt)
+{
+    const double e = w->collider[0].restitution, mu = w->collider[0].friction, end = 2;
+    double t = 0, x = 0, y = w->x[1], vx = w->v[0], vy = 0, got[3], v[3];
+    for (;;) {
+        const double flight = (vy + sqrt(vy * vy + 2 * gravity * y)) / gravity;
+        if (t + flight > end)
+            break;
+        t += flight;
+        x += vx * flight;
+        const double normal = gravity * flight - vy;
+        vy = e * normal;
+        y = 0;
+        vx = fmax(0, vx - mu * (1 + e) * normal);
+    }
+    const double rest = end - t;
+    run_to(w, method, dt, end, got, v);
+    return hypot(got[0] - x - vx * rest, got[1] - y - vy * rest + gravity * rest * rest / 2);
+}
+
+/* Each bounce takes mu (1 + e) of the normal speed from the tangential one. */
+static void oblique_bounces(void)
+{
+    setting w = {.x = {0, 1, 0},
+                 .v = {4, 0, 0},
+                 .gravity = {0, -gravity, 0},
+                 .mass = 0.4,
+                 .colliders = 1,
+                 .collider = {floor_below}};
+    w.collider[0].restitution = 0.7;
+    w.collider[0].friction = 0.1;
+    for (int m = 0; m < second_order; m++) {
+        CHECK_BELOW(oblique_error(&w, with_contacts[m], 1.0 / 240), in_double ? 1e-5 : 1e-3,
+                    "twice the prototype's error");
+        CHECK(!in_double || slope(oblique_error, &w, with_contacts[m]) >= 1.8, "second order");
+    }
+}
+
+static double slide_error(const setting *w, spring_method method, double dt)
+{
+    double x[3], v[3], exact[3];
+    slide_exactly(w, w->collider[0].friction, 1, exact);
+    run_to(w, method, dt, 1, x, v);
+    return hypot(x[0] - exact[0], hypot(x[1] - exact[1], x[2] - exact[2]));
+}
+
+/* Over the top of a sphere, then free flight. */
+static void slide_over_sphere(void)
+{
+    const double start = PI / 9;
+    for (int many = 0; many < 2; many++) {
+        const setting w = {.x = {sin(start), cos(start), 0},
+                           .v = {0.5 * cos(start), -0.5 * sin(start), 0.7},
+                           .gravity = {0, -gravity, 0},
+                           .mass = 0.4,
+                           .many = many,
+                           .colliders = 1,
+                           .collider = {{.shape = SPRING_SPHERE, .radius = 1, .friction = 0.3}}};
+        for (int m = 0; m < second_order && in_double; m++) {
+            CHECK_BELOW(slide_error(&w, with_contacts[m], 1.0 / 240), 5e-5, "twice the prototype's error");
+            CHECK(slope(slide_error, &w, with_contacts[m]) >= 1.8, "second order with friction, also where it leaves");
+        }
+        CHECK_BELOW(slide_error(&w, SPRING_LEAPFROG, 1.0 / 240), in_double ? 5e-5 : 5e-3,
+                    "in float by rounding errors");
+    }
+}
+
+/* Static friction holds a block exactly. With less friction it slides by g (sin - mu cos) t^2/2. */
+static void incline(void)
+{
+    const double angle = PI / 6, n[3] = {-sin(angle) * cos(0.7), cos(angle), -sin(angle) * sin(0.7)};
+    for (int m = 0; m < method_count; m++)
+        for (int many = 0; many < 2; many++)
+            for (int steps = 4; steps <= 32; steps *= 2)
+                for (int slides = 0; slides < 2; slides++) {
+                    const double mu = slides ? 0.3 : 1.001 * tan(angle), dt = 1.0 / 60 / steps;
+                    setting w = {.gravity = {0, -gravity, 0},
+                                 .mass = 2.3,
+                                 .many = many,
+                                 .colliders = 1,
+                                 .collider = {{.shape = SPRING_PLANE, .friction = mu}}};
+                    memcpy(w.collider[0].axis[0], n, sizeof n);
+                    double x[3], v[3];
+                    run_to(&w, with_contacts[m], dt, 2, x, v);
+                    const double slid = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]),
+                                 a = gravity * (sin(angle) - mu * cos(angle));
+                    if (slides) /* symplectic Euler: positions of half a step later */
+                        CHECK_CLOSE(slid / (a * 2 * (m < second_order ? 1 : 1 + dt / 2)), 1, in_double ? 1e-12 : 2e-4,
+                                    "a constant force is integrated exactly");
+                    else
+                        CHECK(slid == 0 && v[0] == 0 && v[1] == 0 && v[2] == 0, "held, to the bit");
+                }
+}
+
+/* A block stops after v^2/(2 mu g), within the mu g h^2/8 by which its last step may differ. */
+static void stopping_distance(void)
+{
+    const double mu = 0.4, dt = 1.0 / 240;
+    for (int i = 0; i < 40; i++) {
+        const double speed = 0.1 + 0.07 * i;
+        setting w = {.v = {speed, 0, 0.5 * speed},
+                     .gravity = {0, -gravity, 0},
+                     .mass = 0.3,
+                     .colliders = 1,
+                     .collider = {floor_below}};
+        w.collider[0].friction = mu;
+        double x[3], v[3];
+        run_to(&w, SPRING_LEAPFROG, dt, 2, x, v);
+        CHECK_CLOSE(hypot(x[0], x[2]), 1.25 * speed * speed / (2 * mu * gravity),
+                    mu * gravity * dt * dt / 8 + 1e3 * EPS, "the last step");
+        CHECK(v[0] == 0 && v[2] == 0, "at rest");
+    }
+}
+
+/* A belt takes a particle along: it is behind by u^2/(2 mu g). A turning disc, the spin of a plane, likewise. */
+static void conveyor(void)
+{
+    const double mu = 0.3, speed = 1;
+    setting w = {.gravity = {0, -gravity, 0}, .mass = 0.3, .colliders = 1, .collider = {floor_below}};
+    w.collider[0].friction = mu;
+    w.collider[0].velocity[0] = speed;
+    double x[3], v[3];
+    run_to(&w, SPRING_LEAPFROG, 1.0 / 480, 2, x, v);
+    CHECK_CLOSE(2 * speed - x[0], speed * speed / (2 * mu * gravity), 1e-5, "as a block that stops");
+    CHECK_CLOSE(v[0], speed, 2 * EPS, "as fast as the belt");
+    w.collider[0].velocity[0] = 0;
+    w.collider[0].spin[1] = -2; /* the surface at (0, 0, -0.5) has the velocity spin x arm = (1, 0, 0) */
+    w.x[2] = -0.5;
+    spring_scene *s = scene_for(&w);
+    step_once(s, SPRING_LEAPFROG, 1e-3, x, v);
+    CHECK_CLOSE(v[0], mu * gravity * 1e-3, 100 * EPS, "pulled along by friction");
+    CHECK_BELOW(fabs(v[2]), 1e-8 + 100 * EPS, "in its direction, which turns by 2/s times the way in a step");
+    free(s);
+}
+
+/* ------------------------------------------------------------------------------------------------------ many particles */
+
+/* A rope over a cylinder, drawn slowly at one end and loaded at the other: the tensions have the ratio e^(mu angle). */
+static double capstan(int steps_per_frame)
+{
+    enum { count = 64 };
+    const double radius = 0.5, thick = 0.01, around = radius + thick, angle = PI, tail = 0.6, mu = 0.3, load = 5;
+    const double length = angle * around + 2 * tail, spacing = length / (count - 1), stiffness = 500 / spacing;
+    const double mass = 16 * stiffness / (480.0 * 480), damping = 0.3 * sqrt(stiffness * mass),
+                 dt = 1.0 / 60 / steps_per_frame;
+    static double x[3 * count], force[3 * count];
+    static spring_link link[count - 1];
+    uint8_t pinned[count] = {0};
+    memset(force, 0, sizeof force);
+    for (int i = 0; i < count; i++) {
+        const double along = i * spacing, phi = fmin(fmax(along - tail, 0), angle * around) / around;
+        const double beyond = along < tail ? tail - along : fmax(along - length + tail, 0);
+        x[3 * i] = -around * cos(phi);
+        x[3 * i + 1] = around * sin(phi) - beyond;
+        x[3 * i + 2] = 0;
+        if (i + 1 < count)
+            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping};
+    }
+    pinned[count - 1] = 1;
+    const spring_scene_def def = {.flags = SPRING_SCENE_FORCES | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                                  .particles = count,
+                                  .links = count - 1,
+                                  .position = x,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .colliders = 1,
+                                  .particle_radius = thick};
+    spring_scene *s = scene_of(&def);
+    const spring_collider cylinder = {
+        .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = mu};
+    CHECK(spring_scene_set_colliders(s, &cylinder, 1) == SPRING_OK, "a capsule");
+    const double speed = 0.01, end = 16, velocity[3] = {0, -speed, 0};
+    spring_scene_set(s, SPRING_VELOCITY, velocity, 0, count - 1, 1);
+    double pulled = 0, loaded = 0;
+    const int frames = (int)(end * 60);
+    int used = 0;
+    for (int frame = 0; frame < frames; frame++) {
+        double v[3];
+        spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+        force[1] = -load - 20 * mass * v[1];
+        spring_scene_set(s, SPRING_FORCE, force, 0, 0, 1);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)steps_per_frame) == SPRING_OK, "stable");
+        if (frame > frames / 2) {
+            const double moving = mass / spacing * speed * speed; /* momentum that the rope carries along */
+            pulled += spring_scene_tension(s, count - 3) - moving;
+            loaded += spring_scene_tension(s, 1) - moving;
+            used++;
+        }
+    }
+    CHECK(used > 0, "frames");
+    free(s);
+    return pulled / loaded;
+}
+
+static void capstan_equation(void)
+{
+    const double ratio = capstan(8);
+    CHECK_CLOSE(ratio / exp(0.3 * PI), 1, 5e-3, "the rope is a polygon: 0.2 % at 64 particles");
+    for (int steps = 16; steps <= 32 && in_double; steps *= 2)
+        CHECK_CLOSE(capstan(steps) / ratio, 1, 1e-3, "friction does not depend on the step");
+}
+
+/* The least gap of a free particle, with the poses `since` after they were set. */
+static double least_gap(const spring_scene *s, const spring_collider *c, uint32_t colliders, double radius,
+                        double since)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < s->layout.particles; i++) {
+        double x[3] = {0};
+        spring_scene_get(s, SPRING_POSITION, x, 0, i, 1);
+        for (uint32_t k = 0; k < colliders && inverse_mass_at(s, i) > 0; k++)
+            least = fmin(least, gap_of(&c[k], since, x, s->layout.axes) - radius);
+    }
+    return least;
+}
+
+static double random_unit(double axis[3], uint32_t axes)
+{
+    double square;
+    do {
+        square = 0;
+        for (uint32_t a = 0; a < 3; a++) {
+            axis[a] = a < axes ? random_uniform(-1, 1) : 0;
+            square += axis[a] * axis[a];
+        }
+    } while (square > 1 || square < 0.01);
+    for (int a = 0; a < 3; a++)
+        axis[a] /= sqrt(square);
+    return square;
+}
+
+/* Of any shape, moving and spinning, about the origin. */
+static spring_collider random_collider(uint32_t axes)
+{
+    spring_collider c = {.shape = (spring_shape)(random_bits() % 4),
+                         .radius = random_uniform(0.2, 0.5),
+                         .friction = random_bits() % 3 ? random_uniform(0, 1) : 0,
+                         .restitution = random_bits() % 3 ? random_uniform(0, 1) : 0};
+    for (uint32_t a = 0; a < axes; a++) {
+        c.at[a] = random_uniform(-0.5, 0.5);
+        c.to[a] = random_uniform(-0.5, 0.5);
+        c.half[a] = random_uniform(0.2, 0.6);
+        c.velocity[a] = random_uniform(-1, 1);
+        c.velocity_to[a] = c.velocity[a] + random_uniform(-0.5, 0.5);
+        c.spin[a] = random_uniform(-3, 3);
+    }
+    random_unit(c.axis[0], axes);
+    const double *const u = c.axis[0];
+    if (axes == 2) {
+        c.axis[1][0] = -u[1];
+        c.axis[1][1] = u[0];
+    } else {
+        double other[3], along;
+        do {
+            random_unit(other, 3);
+            along = u[0] * other[0] + u[1] * other[1] + u[2] * other[2];
+        } while (fabs(along) > 0.9);
+        const double rest = sqrt(1 - along * along);
+        for (int a = 0; a < 3; a++)
+            c.axis[1][a] = (other[a] - along * u[a]) / rest;
+        for (int a = 0; a < 3; a++)
+            c.axis[2][a] = u[(a + 1) % 3] * c.axis[1][(a + 2) % 3] - u[(a + 2) % 3] * c.axis[1][(a + 1) % 3];
+    }
+    return c;
+}
+
+/* With one collider no particle is inside it at the end of any step, beyond rounding errors. */
+static void never_inside(void)
+{
+    static model m;
+    static const uint32_t shapes[][3] = {{5, 1, 1}, {20, 1, 1}, {6, 5, 1}, {4, 3, 3}};
+    for (int run = 0; run < 1000; run++) {
+        const uint32_t axes = run % 2 == 0 ? 2 : 3;
+        build(&m, shapes[run / 2 % 4], axes, (unsigned)random_bits() % feature_masks & ~(unsigned)PINNED);
+        m.def.colliders = 1;
+        m.def.particle_radius = 0.02;
+        m.def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_SYMPLECTIC_EULER | 1u << SPRING_RK4;
+        spring_scene *s = scene_of(&m.def);
+        const spring_collider c = random_collider(axes);
+        CHECK(spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "a valid collider");
+        const double bound = 32 * EPS * (10 + c.radius); /* four times the slop, at most 10 m from the origin */
+        for (int step = 0; step < 20; step++) {
+            CHECK(spring_scene_advance(s, with_contacts[run % method_count], 0.01, 1) == SPRING_OK, "stable");
+            CHECK_BELOW(fmax(0, -least_gap(s, &c, 1, m.def.particle_radius, spring_scene_time(s))), bound, "outside");
+        }
+        free(s);
+    }
+}
+
+/* A thin plate catches all particles at any speed. */
+static void tunnelling(void)
+{
+    enum { count = 1000 };
+    static double x[3 * count], v[3 * count];
+    for (double speed = 80; speed <= 500; speed += 420)
+        for (int m = 0; m < method_count; m++) {
+            for (int i = 0; i < count; i++) {
+                x[3 * i] = random_uniform(-0.3, 0.3);
+                v[3 * i] = random_uniform(-5, 0);
+                for (int a = 1; a < 3; a++) {
+                    x[3 * i + a] = random_uniform(-0.15, 0.15);
+                    v[3 * i + a] = random_uniform(0, 1);
+                }
+            }
+            const spring_scene_def def = {.methods = 1u << with_contacts[m],
+                                          .particles = count,
+                                          .position = x,
+                                          .velocity = v,
+                                          .colliders = 1,
+                                          .particle_radius = 0.01};
+            spring_scene *s = scene_of(&def);
+            const spring_collider plate = {.shape = SPRING_BOX,
+                                           .at = {-1, 0, 0},
+                                           .half = {0.05, 1, 1},
+                                           .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                           .velocity = {speed, 0, 0},
+                                           .friction = 0.3};
+            spring_scene_set_colliders(s, &plate, 1);
+            while (spring_scene_time(s) < 2 / speed)
+                CHECK(spring_scene_advance(s, with_contacts[m], 1.0 / 240, 1) == SPRING_OK, "finite");
+            int behind = 0;
+            for (size_t i = 0; i < count; i++) {
+                double now[3];
+                spring_scene_get(s, SPRING_POSITION, now, 0, i, 1);
+                behind += now[0] < -1 + speed * spring_scene_time(s);
+            }
+            CHECK(behind == 0, "none passed through the plate");
+            free(s);
+        }
+}
+
+/* In wedges between a sphere, a capsule and two planes a particle may be inside by a part of its motion in a step. */
+static void wedges(void)
+{
+    enum { count = 2000 };
+    static double x[3 * count], v[3 * count];
+    for (int i = 0; i < count; i++) {
+        x[3 * i] = random_uniform(-1, 1);
+        x[3 * i + 1] = random_uniform(1, 2);
+        x[3 * i + 2] = random_uniform(-1, 1);
+        v[3 * i] = random_uniform(-2, 2);
+        v[3 * i + 2] = random_uniform(-2, 2);
+    }
+    const spring_collider c[4] = {
+        {.shape = SPRING_SPHERE, .at = {0, 0.3, 0}, .radius = 0.3, .friction = 0.3},
+        {.shape = SPRING_CAPSULE, .at = {0.5, 0.1, -1}, .to = {0.5, 0.1, 1}, .radius = 0.15, .friction = 0.3},
+        {.shape = SPRING_PLANE, .axis = {{0.3, sqrt(1 - 0.09), 0}}, .at = {-0.5, 0, 0}, .friction = 0.3},
+        floor_below,
+    };
+    const spring_scene_def def = {.particles = count,
+                                  .position = x,
+                                  .velocity = v,
+                                  .gravity = {0, -gravity, 0},
+                                  .colliders = 4,
+                                  .particle_radius = 0.01};
+    spring_scene *s = scene_of(&def);
+    spring_scene_set_colliders(s, c, 4);
+    double deepest = 0;
+    for (int i = 0; i < 480 * 2; i++) {
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1.0 / 480, 1) == SPRING_OK, "finite");
+        if (i % 16 == 0)
+            deepest = fmax(deepest, -least_gap(s, c, 4, 0.01, 0));
+    }
+    CHECK_BELOW(deepest, 1e-3, "a twentieth of the way in a step at 8 m/s");
+    free(s);
+}
+
+/* A soft body thrown about in a box of six planes: without restitution 1, contacts never add energy. */
+static void energy_in_box(void)
+{
+    static double x[81], v[81];
+    static spring_link link[400];
+    const spring_grid g = {.count = {3, 3, 3},
+                           .spacing = 0.2,
+                           .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                           .stiffness = 100,
+                           .damping = 0.05};
+    size_t particles, links;
+    spring_grid_size(&g, &particles, &links);
+    spring_grid_fill(&g, x, NULL, link);
+    for (int i = 0; i < 27; i++) {
+        const double n[3] = {i % 3, i / 3 % 3, i / 9};
+        x[3 * i] += 0.3, x[3 * i + 1] += 0.2, x[3 * i + 2] += 0.25;
+        v[3 * i] = 2 + n[1] - n[2], v[3 * i + 1] = 1 - n[0], v[3 * i + 2] = 2 * n[0] - 1;
+    }
+    const double side = 1.5;
+    for (double e = 0; e <= 0.9; e += 0.45) {
+        const spring_scene_def def = {.particles = particles,
+                                      .links = links,
+                                      .position = x,
+                                      .velocity = v,
+                                      .mass_all = 0.05,
+                                      .link = link,
+                                      .gravity = {0, -gravity, 0},
+                                      .colliders = 6};
+        spring_scene *s = scene_of(&def);
+        spring_collider c[6] = {{0}};
+        for (int k = 0; k < 6; k++) {
+            c[k] = (spring_collider){.shape = SPRING_PLANE, .restitution = e, .friction = 0.2};
+            c[k].axis[0][k % 3] = k < 3 ? 1 : -1;
+            c[k].at[k % 3] = k < 3 ? 0 : side;
+        }
+        spring_scene_set_colliders(s, c, 6);
+        const double dt = 0.99 * spring_scene_stable_step(s, SPRING_LEAPFROG);
+        const spring_scene_energies start = spring_scene_energy(s);
+        const double first = start.kinetic + start.elastic + start.gravity;
+        for (int i = 0; i * dt < 60; i++) {
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "stable");
+            if (i % 8 != 0)
+                continue;
+            const spring_scene_energies now = spring_scene_energy(s);
+            CHECK_BELOW((now.kinetic + now.elastic + now.gravity) / first, 1.002, "contacts add no energy");
+        }
+        free(s);
+    }
+}
+
+static const test tests[] = {
+    {"bounce heights", bounce},
+    {"spring on a plane", spring_on_plane},
+    {"oblique bounces", oblique_bounces},
+    {"slide over a sphere", slide_over_sphere},
+    {"incline", incline},
+    {"stopping distance", stopping_distance},
+    {"conveyor belt", conveyor},
+    {"capstan", capstan_equation},
+    {"never inside one collider", never_inside},
+    {"no tunnelling", tunnelling},
+    {"wedges", wedges},
+    {"energy in a box", energy_in_box},
+};
+
+int main(void)
+{
+    return RUN_TESTS("contacts", tests);
+}
