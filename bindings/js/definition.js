@@ -7,7 +7,7 @@ const flags = { editable: 1, noUndo: 2, tensionOnly: 8, heldForces: 16 };
 const forceIgnoresVelocity = 4;
 const names = [
     ..."axes position velocity mass pinned links gravity drag maxSpeed methods".split(" "),
-    ..."force forceUsesVelocity component base".split(" "),
+    ..."force forceUsesVelocity component base colliders particleRadius".split(" "),
     ...Object.keys(flags),
 ];
 
@@ -120,6 +120,8 @@ const wanted = {
     gravity: "3 finite numbers",
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
+    particleRadius: "a finite number >= 0",
+    colliders: "a number of colliders up to 32",
     position: "finite numbers",
     velocity: "finite numbers",
     mass: "a finite number > 0 with a finite reciprocal",
@@ -130,12 +132,75 @@ const wanted = {
     damping: "a finite number >= 0, also when it is divided by a mass",
 };
 
+/** Numbers of a collider, in the order of spring_collider: name, how many, and what it is by default. */
+const fields = [
+    ["at", 3, [0, 0, 0]],
+    ["to", 3, [0, 0, 0]],
+    ["axes", 9, [1, 0, 0, 0, 1, 0, 0, 0, 1]],
+    ["half", 3, [0, 0, 0]],
+    ["radius", 1, 0],
+    ["velocity", 3, [0, 0, 0]],
+    ["velocityTo", 3, null], // that of `at`
+    ["spin", 3, [0, 0, 0]],
+    ["friction", 1, 0],
+    ["restitution", 1, 0],
+];
+const shapes = ["plane", "sphere", "capsule", "box"];
+const colliderBytes = 8 * 31;
+
+/** Colliders in the layout of spring_collider. */
+export function lendColliders(take, colliders) {
+    const pointer = take(colliderBytes * colliders.length);
+    colliders.forEach((collider, i) => {
+        const name = `colliders[${i}]`;
+        check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
+        checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
+        const shape = shapes.indexOf(collider.shape);
+        check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
+        const numbers = [];
+        for (const [field, count, usual] of fields) {
+            const value = collider[field] ?? usual ?? collider.velocity ?? [0, 0, 0];
+            const list = count === 1 ? [value] : value;
+            if (count > 1) checkArray(`${name}.${field}`, list);
+            for (let k = 0; k < count; k++) {
+                const number = k < list.length ? list[k] : 0;
+                checkFinite(count > 1 ? `${name}.${field}[${k}]` : `${name}.${field}`, number);
+                numbers.push(number);
+            }
+            if (field === "axes" && shape === 0) {
+                const normal = collider.normal ?? [0, 1, 0];
+                checkArray(`${name}.normal`, normal);
+                const size = Math.hypot(...normal);
+                check(
+                    size > 0 && size < Infinity,
+                    `${name}.normal`,
+                    "a direction",
+                    String(normal),
+                    RangeError,
+                );
+                for (let k = 0; k < 3; k++) numbers[6 + k] = (normal[k] ?? 0) / size;
+            }
+        }
+        for (const field of ["radius", "friction", "restitution"]) {
+            const value = collider[field] ?? 0;
+            const most = field === "restitution" ? 1 : Infinity;
+            const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
+            check(value >= 0 && value <= most, `${name}.${field}`, what, value);
+        }
+        memory.uint32(pointer + colliderBytes * i, 1)[0] = shape;
+        memory.float64(pointer + colliderBytes * i + 8, 30).set(numbers);
+    });
+    return pointer;
+}
+
 /** Throws what def_check() has found in a definition. */
 function refuse(definition, axes) {
     const field = text(library().failure_field());
     const i = library().failure_index();
     if (field === "methods")
-        throw new TypeError("rkn8 and srkn6 require undamped links, no tensionOnly and no forceUsesVelocity");
+        throw new TypeError(
+            "rkn8 and srkn6 require undamped links, no tensionOnly, no colliders and no forceUsesVelocity",
+        );
     if (field === "flags") throw new TypeError("tensionOnly requires 2 or 3 axes");
     if (field === "particles" || field === "links") throw new RangeError(`too many ${field} for a scene`);
     const [array, part] = field.split(".");
@@ -143,7 +208,8 @@ function refuse(definition, axes) {
         const value = linkValue(definition.links, i, part);
         check(false, `links[${i}].${part}`, wanted[part], value);
     }
-    const name = { mass_all: "mass", max_speed: "maxSpeed" }[field] ?? field;
+    const name =
+        { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" }[field] ?? field;
     let value = definition[name];
     let place = name;
     if (name === "position" || name === "velocity") {
@@ -160,6 +226,7 @@ export function define(take, definition) {
     const { axes = 3, position, velocity, mass = 1, pinned, links = [] } = definition;
     const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
     const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
+    const { colliders = 0, particleRadius = 0 } = definition;
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     checkArray("position", position);
     check(
@@ -202,7 +269,15 @@ export function define(take, definition) {
         optional(pins, "uint8", 1),
     );
     def_links(linkCount, linkPointer);
-    for (const [name, value] of Object.entries({ drag, maxSpeed })) checkFinite(name, value);
+    for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius })) checkFinite(name, value);
+    check(
+        colliders >= 0 && colliders <= 32 && Number.isInteger(colliders),
+        "colliders",
+        "an integer from 0 to 32",
+        colliders,
+    );
+    check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
+    library().def_contacts(colliders, particleRadius);
     const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);
     if (def_check() !== 0) refuse({ ...definition, mass }, axes);

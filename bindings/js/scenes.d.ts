@@ -58,6 +58,33 @@ export type Force = (
     velocity: readonly Float64Array[] | undefined,
 ) => void;
 
+/** A convex body. Particles stay outside it. */
+export interface Collider {
+    shape: "plane" | "sphere" | "capsule" | "box";
+    /** [m] a point of the plane; the centre; or one end of a capsule */
+    at?: ArrayLike<number>;
+    /** [m] the other end of a capsule */
+    to?: ArrayLike<number>;
+    /** of a plane, out of the body; of any length; default [0, 1, 0] */
+    normal?: ArrayLike<number>;
+    /** of a box: 9 numbers, its unit axes; default: those of the scene */
+    axes?: ArrayLike<number>;
+    /** [m] of a box: half of its size along each axis, without the radius */
+    half?: ArrayLike<number>;
+    /** [m] of a sphere or capsule; also rounds a box */
+    radius?: number;
+    /** [m/s] */
+    velocity?: ArrayLike<number>;
+    /** [m/s] of the other end of a capsule; default: as `velocity` */
+    velocityTo?: ArrayLike<number>;
+    /** [rad/s] of its surface: enters friction only. With two axes spin[2] */
+    spin?: ArrayLike<number>;
+    /** Coulomb coefficient >= 0 */
+    friction?: number;
+    /** 0 to 1 */
+    restitution?: number;
+}
+
 export interface SceneDefinition {
     /** default 3 */
     axes?: 1 | 2 | 3;
@@ -84,6 +111,10 @@ export interface SceneDefinition {
     tensionOnly?: boolean;
     /** enables set("force", ...) */
     heldForces?: boolean;
+    /** room for so many colliders, at most 32; default 0 */
+    colliders?: number;
+    /** [m] of every particle, for contacts */
+    particleRadius?: number;
     /** no second copy of the state: a step that fails loses it */
     noUndo?: boolean;
     force?: Force | null;
@@ -213,4 +244,9 @@ export declare class Scene {
     findLink(a: number, b: number): number;
     /** [N]; > 0 pulls */
     tension(link: number): number;
+
+    /** Replaces all colliders. They are given at their pose now, and move at their velocities until they are set again. */
+    setColliders(colliders: readonly Collider[]): void;
+    /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
+    touching(first?: number, count?: number): Uint32Array;
 }

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Mass-spring systems: the scenes of the C library.
-import { checkArray, checkCount, define, lend, lendLinks, linksAt, methodNumber } from "./definition.js";
+import {
+    checkArray,
+    checkCount,
+    define,
+    lend,
+    lendColliders,
+    lendLinks,
+    linksAt,
+    methodNumber,
+} from "./definition.js";
 import { components } from "./grid.js";
 import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
 import { check, checkFinite, isNumber } from "./options.js";
@@ -14,6 +23,7 @@ const quantities = ["position", "velocity", "force"];
 const notFinite = 2;
 const noMemory = 3;
 const disabled = 7;
+const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
 
@@ -294,6 +304,30 @@ export class Scene {
         return this.#call("spring_scene_tension", this.#scene, link);
     }
 
+    // --- contacts ---------------------------------------------------------------------------------------------------
+
+    setColliders(colliders) {
+        checkArray("colliders", colliders);
+        const list = Array.from(colliders);
+        borrowed((take) => {
+            const pointer = lendColliders(take, list);
+            const status = this.#call("spring_scene_set_colliders", this.#scene, pointer, list.length);
+            if (status === disabled) throw new TypeError("the scene is defined without colliders");
+            check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
+            check(status === 0, "colliders", "valid: the axes of a box are orthonormal", list, RangeError);
+        });
+    }
+
+    touching(first = 0, count = this.particles - first) {
+        this.#checkRange(first, count, this.particles);
+        return borrowed((take) => {
+            const pointer = take(4 * count);
+            const status = this.#call("spring_scene_touching", this.#scene, pointer, first, count);
+            if (status === disabled) throw new TypeError("the scene is defined without colliders");
+            return memory.uint32(pointer, count).slice();
+        });
+    }
+
     // --- how this calls the library ---------------------------------------------------------------------------------
 
     #call(name, ...values) {
@@ -363,7 +397,11 @@ export class Scene {
         if (status === 0) return;
         if (status === disabled) throw new TypeError(`the scene is defined without the method ${method}`);
         if (status === unsupported)
-            throw new TypeError(`the method ${method} requires forces that do not depend on velocities`);
+            throw new TypeError(
+                method === "euler"
+                    ? "the method euler does not support colliders"
+                    : `the method ${method} requires forces that do not depend on velocities`,
+            );
         if (dt === undefined) throw new RangeError("a position or velocity would not be finite");
         const what =
             status === unstable

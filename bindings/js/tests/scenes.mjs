@@ -264,6 +264,94 @@ await test("transform, by rows and as a Matrix4 has it; gravity; at rest; base a
     flat.free();
 });
 
+await test("contacts: shapes, motion, friction, which touch", () => {
+    const drop = (collider, more = {}) => {
+        const scene = new Scene({
+            position: [0.3, 1, 0],
+            gravity: [0, -10, 0],
+            colliders: 2,
+            particleRadius: 0.1,
+            ...more,
+        });
+        scene.setColliders(collider ? [collider] : []);
+        scene.advance("leapfrog", 1e-3, 2000);
+        const state = [...scene.get("position"), ...scene.get("velocity"), scene.touching()[0]];
+        scene.free();
+        return state;
+    };
+    const close = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a}, not ${b}`);
+    assert.ok(drop(null)[1] < -18);
+    const plane = drop({ shape: "plane", normal: [0, 7, 0] });
+    close(plane[1], 0.1);
+    assert.equal(plane[6], 1);
+    close(drop({ shape: "box", at: [0, -1, 0], half: [1, 0.5, 1], radius: 0.2 })[1], -0.2);
+    const lifted = drop({ shape: "plane", at: [0, -2, 0], velocity: [0, 1, 0] });
+    close(lifted[1], 0.1); // the plane has risen by 2 m
+    close(lifted[4], 1);
+    const ball = drop({ shape: "sphere", at: [0.3, 0, 0], radius: 0.5 }); // on its top
+    close(ball[1], 0.6);
+    close(
+        drop({ shape: "capsule", at: [-1, 0, 0], to: [1, 0, 0], radius: 0.5, velocity: [0, 0, 0] })[1],
+        0.6,
+    );
+    const slides = drop({ shape: "plane" }, { velocity: [1, 0, 0] });
+    close(slides[3], 1);
+    const stops = drop({ shape: "plane", friction: 1 }, { velocity: [1, 0, 0] });
+    close(stops[3], 0);
+    const flat = new Scene({ axes: 2, position: [0, 1], gravity: [0, -10], colliders: 1 });
+    flat.setColliders([{ shape: "plane", at: [0, 0], normal: [0, 1], restitution: 1 }]);
+    flat.advance("leapfrog", 1e-3, 500);
+    assert.ok(flat.get("velocity")[1] > 0);
+    for (const [collider, name, message] of [
+        [
+            { shape: "cone" },
+            "TypeError",
+            /^colliders\[0\].shape must be one of plane, sphere, capsule, box, got "cone"/,
+        ],
+        [
+            { shape: "sphere", radius: -1 },
+            "RangeError",
+            "colliders[0].radius must be a finite number >= 0, got -1",
+        ],
+        [
+            { shape: "plane", at: [0, NaN] },
+            "RangeError",
+            "colliders[0].at[1] must be a finite number, got NaN",
+        ],
+        [
+            { shape: "plane", normal: [0, 0, 0] },
+            "RangeError",
+            'colliders[0].normal must be a direction, got "0,0,0"',
+        ],
+        [
+            { shape: "plane", restitution: 2 },
+            "RangeError",
+            "colliders[0].restitution must be a number from 0 to 1, got 2",
+        ],
+        [
+            { shape: "box", axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
+            "RangeError",
+            /^colliders must be valid: the axes of a box/,
+        ],
+        [{ shape: "box", colour: 1 }, "TypeError", "the option colour is unknown"],
+    ])
+        assert.throws(() => flat.setColliders([collider]), { name, message });
+    const sphere = { shape: "sphere", radius: 1 };
+    assert.throws(() => flat.setColliders([sphere, sphere]), /^RangeError: colliders.length must be at most/);
+    assert.throws(() => flat.advance("euler", 1e-3), /euler does not support colliders/);
+    flat.free();
+    const none = rope();
+    assert.throws(() => none.setColliders([sphere]), /defined without colliders/);
+    assert.throws(() => none.touching(), /defined without colliders/);
+    assert.throws(
+        () => new Scene({ axes: 1, position: [0], colliders: 1 }),
+        /axes must be 2 or 3 with colliders, got 1/,
+    );
+    assert.throws(() => rope({ colliders: 33 }), /colliders must be an integer from 0 to 32, got 33/);
+    assert.throws(() => rope({ particleRadius: -1 }), /particleRadius must be a finite number >= 0, got -1/);
+    none.free();
+});
+
 await test("soften makes steps stable", () => {
     const definition = { ...grid({ count: [9, 9], spacing: 0.1, stiffness: 1e6 }), mass: 0.01 };
     const dt = 1 / 240;

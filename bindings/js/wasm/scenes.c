@@ -7,6 +7,7 @@
 #include <springstep/clock.h>
 #include <springstep/scene.h>
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,12 @@ __attribute__((import_module("springstep"), import_name("force"))) void call_for
                                                                                    const double *const *position,
                                                                                    const double *const *velocity,
                                                                                    double *const *force);
+
+/* definition.js fills these structures. */
+_Static_assert(sizeof(spring_link) == 32 && offsetof(spring_link, rest) == 8, "spring_link");
+_Static_assert(sizeof(spring_collider) == 8 * 31 && offsetof(spring_collider, axis) == 8 * 7 &&
+                   offsetof(spring_collider, velocity) == 8 * 20 && offsetof(spring_collider, restitution) == 8 * 30,
+               "spring_collider");
 
 /* A scene and what is shown of it. */
 typedef struct shown {
@@ -106,6 +113,12 @@ void def_forces(double x, double y, double z, double drag, double max_speed, boo
     def.drag = drag;
     def.max_speed = max_speed;
     def.force = called ? force_of_javascript : NULL;
+}
+
+EXPORT(def_contacts) void def_contacts(uint32_t colliders, double particle_radius)
+{
+    def.colliders = colliders;
+    def.particle_radius = particle_radius;
 }
 
 /* Checks the definition; failure_field() and failure_index() say what is wrong with it. */
