@@ -453,7 +453,7 @@ SPRING_INLINE real3 queued_value(const contact_queue *q, int quantity)
     return (real3){vec_load(value[0]), vec_load(value[1]), vec_load(value[2])};
 }
 
-SPRING_INLINE size_t group_size(const contact_queue *q)
+SPRING_INLINE size_t first_group(const contact_queue *q)
 {
     return q->count < (size_t)lanes ? q->count : (size_t)lanes;
 }
@@ -486,7 +486,7 @@ SPRING_INLINE void remove_group(contact_queue *q)
 /* Writes a quantity of the particles of the first group. */
 SPRING_INLINE void scatter(const contact_queue *q, const particle_vector *p, scalar *quantity, real3 value)
 {
-    const size_t each = p->quads ? quad_size : 1, stride = p->quads ? 1 : p->stride, count = group_size(q);
+    const size_t each = p->quads ? quad_size : 1, stride = p->quads ? 1 : p->stride, count = first_group(q);
     scalar on_axis[3][lanes];
     vec_store(on_axis[0], value.x);
     vec_store(on_axis[1], value.y);
@@ -501,7 +501,7 @@ SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, 
 {
     memset(touched, 0, lanes * sizeof *touched);
     collide_all(t, d, touched);
-    const size_t count = group_size(q);
+    const size_t count = first_group(q);
     for (size_t i = 0; i < count; i++)
         t->touched[q->particle[i]] |= touched[i];
 }

@@ -240,6 +240,8 @@ static void define(definition *d)
     d->def.link = choose(64) == 63 ? NULL : d->link;
     if (what & 128)
         d->def.force = choose(2) == 0 || d->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY ? still : moving;
+    d->def.colliders = choose(4) == 3 ? choose(34) : 0;
+    d->def.particle_radius = d->def.colliders > 0 ? size() : 0;
 }
 
 /* --------------------------------------------------------------------------------------------------------- a scene */
@@ -267,6 +269,7 @@ static void check_guards(const place *p)
 
 typedef struct state {
     double x[3 * most_particles], v[3 * most_particles], tension[most_links], time, held[3 * most_particles];
+    double touching[most_particles]; /* bits */
 } state;
 
 /* All that can be seen of a scene but its forces. */
@@ -282,6 +285,11 @@ static void look(const scene *s, const definition *d, state *y)
     must(spring_scene_get(s, SPRING_FORCE, y->held, 3, 0, d->def.particles) ==
              (d->def.flags & SPRING_SCENE_FORCES ? SPRING_OK : SPRING_EDISABLED),
          "held forces, too, if there is room");
+    uint32_t mask[most_particles] = {0};
+    must(spring_scene_touching(s, mask, 0, d->def.particles) == (d->def.colliders > 0 ? SPRING_OK : SPRING_EDISABLED),
+         "what is touched, if there is room for colliders");
+    for (size_t i = 0; i < most_particles; i++)
+        y->touching[i] = mask[i];
 }
 
 static bool same_numbers(const double *a, const double *b, size_t count)
@@ -311,6 +319,7 @@ typedef struct life {
     place one, other;
     uint32_t axes;
     bool broken; /* an advance without rollback has failed */
+    uint32_t colliders;
 } life;
 
 /* The other one becomes a copy, as a snapshot is taken. */
@@ -543,6 +552,60 @@ static void transform(life *l)
              "an error changes nothing");
 }
 
+/* Axes that turn about one axis are orthonormal; now and then others. */
+static void any_axes(double axis[3][3])
+{
+    memset(axis, 0, 9 * sizeof axis[0][0]);
+    const uint32_t up = choose(3), first = (up + 1) % 3, second = (up + 2) % 3;
+    const bool turned = choose(2) != 0;
+    axis[up][up] = 1;
+    axis[first][first] = axis[second][second] = turned ? 0.6 : 1;
+    axis[first][second] = turned ? 0.8 : 0;
+    axis[second][first] = turned ? -0.8 : 0;
+    if (choose(16) == 15)
+        axis[choose(3)][choose(3)] = number();
+}
+
+static spring_collider any_collider(void)
+{
+    spring_collider c = {.shape = (spring_shape)choose(choose(16) == 15 ? 6 : 4), .radius = size()};
+    any_axes(c.axis);
+    for (int a = 0; a < 3; a++) {
+        c.at[a] = number();
+        c.to[a] = number();
+        c.half[a] = size();
+        c.velocity[a] = choose(2) == 0 ? 0 : number();
+        c.velocity_to[a] = c.velocity[a];
+        c.spin[a] = choose(4) == 0 ? number() : 0;
+    }
+    c.friction = choose(2) == 0 ? 0 : size();
+    c.restitution = choose(9) / 8.0;
+    return c;
+}
+
+static void set_colliders(life *l)
+{
+    static state before, after;
+    spring_collider c[4];
+    const uint32_t count = choose(5), room = l->d->def.colliders;
+    for (uint32_t i = 0; i < count && i < 4; i++)
+        c[i] = any_collider();
+    look(l->one.s, l->d, &before);
+    const spring_status status = spring_scene_set_colliders(l->one.s, c, count);
+    must(spring_scene_set_colliders(l->other.s, c, count) == status, "the same answer");
+    look(l->one.s, l->d, &after);
+    if (status != SPRING_OK) {
+        must((status == SPRING_EDISABLED) == (room == 0), "room or none");
+        must(status == SPRING_EDISABLED || status == SPRING_EINVAL || status == SPRING_ERANGE, "no other status");
+        must(same(&before, &after), "an error changes nothing");
+        return;
+    }
+    l->colliders = count;
+    must(same_numbers(before.x, after.x, 6 * most_particles), "positions and velocities stay");
+    for (size_t i = 0; i < most_particles; i++)
+        must(after.touching[i] == 0, "nothing is touched yet");
+}
+
 /* Pins, or masses, of a range of particles, in order or beyond them. */
 static void set_pins_or_masses(life *l)
 {
@@ -691,7 +754,7 @@ static void remake(life *l)
 {
     static state y, made;
     look(l->one.s, l->d, &y);
-    if (l->broken || spring_scene_check(&l->d->def, NULL, NULL) != SPRING_OK)
+    if (l->broken || l->colliders > 0 || spring_scene_check(&l->d->def, NULL, NULL) != SPRING_OK)
         return;
     place p = place_for(l->one.bytes, 0xc3);
     must(spring_scene_init(p.all + guard, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
@@ -713,7 +776,7 @@ static void live(life *l)
 {
     for (int call = 0; call < most_calls && next < end; call++) {
         const uint32_t what = take(), old = 200;
-        switch (what < old ? what % 14 : 14 + what % 3) {
+        switch (what < old ? what % 14 : 14 + what % 4) {
         case 0:
             set(l);
             break;
@@ -752,6 +815,9 @@ static void live(life *l)
             break;
         case 16:
             transform(l);
+            break;
+        case 17:
+            set_colliders(l);
             break;
         default:
             advance(l);

@@ -243,6 +243,86 @@ static void print_slack_scenes(spring_method m)
             }
 }
 
+/* Colliders of all shapes that move and spin, in the way of a sheet, or of few particles. */
+#define CONTACT_BITS(type)                                                                                             \
+    static uint64_t type##_contact_bits(sheet s, spring_method m, size_t used)                                         \
+    {                                                                                                                  \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                             \
+        static const spring_collider c[4] = {                                                                          \
+            {.shape = SPRING_PLANE, .at = {0, -0.2, 0}, .axis = {{0.6, 0.8, 0}}, .friction = 0.4, .restitution = 0.3}, \
+            {.shape = SPRING_SPHERE,                                                                                   \
+             .at = {0.4, -0.25, 0},                                                                                    \
+             .radius = 0.2,                                                                                            \
+             .velocity = {0.1, 0.5, 0},                                                                                \
+             .friction = 0.2},                                                                                         \
+            {.shape = SPRING_CAPSULE,                                                                                  \
+             .at = {0.1, -0.1, -1},                                                                                    \
+             .to = {0.1, -0.2, 1},                                                                                     \
+             .radius = 0.07,                                                                                           \
+             .velocity_to = {0.2, 0, 0},                                                                               \
+             .friction = 0.7},                                                                                         \
+            {.shape = SPRING_BOX,                                                                                      \
+             .at = {0.2, 0.8, 0},                                                                                      \
+             .axis = {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}},                                                       \
+             .half = {0.1, 0.2, 0.3},                                                                                  \
+             .radius = 0.03,                                                                                           \
+             .velocity = {0, -1, 0},                                                                                   \
+             .spin = {0, 0, 4},                                                                                        \
+             .friction = 0.5,                                                                                          \
+             .restitution = 0.8}};                                                                                     \
+        double out[2][3 * particles] = {{0}};                                                                          \
+        uint32_t mask[particles] = {0}, ever[particles] = {0};                                                         \
+        const type##_def def = {.axes = s.axes,                                                                        \
+                                .methods = 1u << m,                                                                    \
+                                .particles = used,                                                                     \
+                                .links = used < particles ? 0 : s.links,                                               \
+                                .position = s.position,                                                                \
+                                .mass_all = 0.3,                                                                       \
+                                .pinned = s.pinned,                                                                    \
+                                .link = s.link,                                                                        \
+                                .gravity = {0.3, -9.81, 0.1},                                                          \
+                                .drag = 0.07,                                                                          \
+                                .colliders = 4,                                                                        \
+                                .particle_radius = 0.01};                                                              \
+        type *scene;                                                                                                   \
+        if (type##_init(memory, sizeof memory, &def, &scene) != SPRING_OK ||                                           \
+            type##_set_colliders(scene, c, 4) != SPRING_OK)                                                            \
+            return 0;                                                                                                  \
+        for (int call = 0; call < 30; call++) {                                                                        \
+            if (type##_advance(scene, m, 1e-3, 20) != SPRING_OK)                                                       \
+                return 0;                                                                                              \
+            type##_touching(scene, mask, 0, used);                                                                     \
+            for (size_t i = 0; i < used; i++)                                                                          \
+                ever[i] |= mask[i];                                                                                    \
+        }                                                                                                              \
+        type##_get(scene, SPRING_POSITION, out[0], 0, 0, used);                                                        \
+        type##_get(scene, SPRING_VELOCITY, out[1], 0, 0, used);                                                        \
+        uint64_t hash = digest(no_digest, out[0], 6 * particles);                                                      \
+        for (size_t i = 0; i < used; i++)                                                                              \
+            hash = digest_bits(hash, ever[i], 4);                                                                      \
+        return hash;                                                                                                   \
+    }
+
+CONTACT_BITS(spring_scene)
+CONTACT_BITS(spring_scenef)
+
+static void print_contacts(spring_method m)
+{
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (int damped = 0; damped < 3; damped++)
+            for (int few = 0; few < (damped ? 1 : 2); few++) {
+                sheet s = make_sheet(axes, false, damped > 0);
+                for (size_t i = 0; i < s.links; i++)
+                    s.link[i].damping *= damped == 2 ? 500 : 1;
+                printf("contacts-%s%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", few ? "few" : "rows",
+                       damped == 2 ? "-heavy"
+                       : damped    ? "-damped"
+                                   : "",
+                       axes, spring_method_name(m), spring_scene_contact_bits(s, m, few ? 9 : particles),
+                       spring_scenef_contact_bits(s, m, few ? 9 : particles));
+            }
+}
+
 /* Few steps, many that oscillate or do not, and a few periods of many. */
 static void print_accuracy(spring_method m)
 {
@@ -414,5 +494,8 @@ int main(void)
             print_slack_scenes(m);
     }
     print_heavy_damping();
+    print_contacts(SPRING_LEAPFROG);
+    print_contacts(SPRING_SYMPLECTIC_EULER);
+    print_contacts(SPRING_RK4);
     return 0;
 }

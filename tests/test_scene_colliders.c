@@ -1,0 +1,513 @@
+/* SPDX-License-Identifier: MIT */
+/* The rules of colliders: what is valid, the bits of all kernels and calls, rollback, touching and rest. */
+#include "test_scene.h"
+
+static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
+enum { method_count = 3 };
+
+static const uint32_t shapes[][3] = {{3, 1, 1}, {11, 1, 1}, {6, 5, 1}, {5, 4, 3}, {70, 4, 1}};
+enum { shape_count = sizeof shapes / sizeof shapes[0] };
+
+/* A model with room for colliders, and one of each shape in its way. */
+typedef struct colliding {
+    model m;
+    spring_collider c[4];
+} colliding;
+
+static void build_colliding(colliding *b, const uint32_t shape[3], uint32_t axes, unsigned features)
+{
+    build(&b->m, shape, axes, features);
+    b->m.def.colliders = 4;
+    b->m.def.particle_radius = 0.05;
+    b->m.def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_SYMPLECTIC_EULER;
+    const spring_collider c[4] = {
+        {.shape = SPRING_PLANE, .at = {0, -0.1, 0}, .axis = {{0.6, 0.8, 0}}, .friction = 0.4, .restitution = 0.3},
+        {.shape = SPRING_SPHERE, .at = {1, 1, 0}, .radius = 0.9, .velocity = {-0.3, 1, 0.2}, .friction = 0.2},
+        {.shape = SPRING_CAPSULE,
+         .at = {3, -1, -1},
+         .to = {3, 3, 1},
+         .radius = 0.5,
+         .velocity_to = {-1, 0, 0},
+         .friction = 0.7},
+        {.shape = SPRING_BOX,
+         .at = {2, 2, 0.5},
+         .axis = {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}},
+         .half = {0.4, 0.6, 0.2},
+         .radius = 0.1,
+         .spin = {0, 0, 4},
+         .friction = 0.5,
+         .restitution = 0.8},
+    };
+    memcpy(b->c, c, sizeof c);
+}
+
+static spring_scene *scene_with(const colliding *b)
+{
+    spring_scene *s = scene_of(&b->m.def);
+    CHECK(spring_scene_set_colliders(s, b->c, 4) == SPRING_OK, "valid colliders");
+    return s;
+}
+
+static size_t count_touching(const spring_scene *s, size_t particles)
+{
+    uint32_t mask[most];
+    size_t count = 0;
+    CHECK(spring_scene_touching(s, mask, 0, particles) == SPRING_OK, "room for colliders");
+    for (size_t i = 0; i < particles; i++)
+        count += mask[i] != 0;
+    return count;
+}
+
+static bool same_touching(const spring_scene *s, const spring_scene *other, size_t particles)
+{
+    uint32_t mask[most], of_other[most];
+    spring_scene_touching(s, mask, 0, particles);
+    spring_scene_touching(other, of_other, 0, particles);
+    return memcmp(mask, of_other, particles * sizeof *mask) == 0;
+}
+
+/* One step at a time and all at once, with every kernel, and from a snapshot: the same bits. */
+static void same_everywhere(void)
+{
+    static colliding b;
+    size_t touched = 0;
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (unsigned features = 0; features < feature_masks; features += 11)
+            for (int m = 0; m < method_count; m++) {
+                const size_t shape = features % shape_count;
+                build_colliding(&b, shapes[shape], axes, features | GRAVITY);
+                for (size_t i = 0; i < b.m.def.links && m == 0 && features % 3 == 0; i++)
+                    b.m.link[i].damping *= 300; /* a Chebyshev series */
+                const size_t particles = b.m.def.particles;
+                const double dt = 0.01;
+                spring_scene *first = scene_with(&b), *single = scene_with(&b);
+                CHECK(spring_scene_advance_with(kernels_of(0), first, with_contacts[m], dt, 12) == SPRING_OK, "stable");
+                for (int i = 0; i < 12; i++) {
+                    CHECK(spring_scene_advance_with(kernels_of(0), single, with_contacts[m], dt, 1) == SPRING_OK,
+                          "stable");
+                    touched += count_touching(single, particles);
+                }
+                CHECK(same_bits(first, single, particles, axes) && same_touching(first, single, particles),
+                      "advance(12) is 12 times advance(1)");
+                for (int k = 1; k < kernel_count; k++) {
+                    if (kernels_of(k) == NULL)
+                        continue;
+                    spring_scene *s = scene_with(&b);
+                    spring_scene_advance_with(kernels_of(k), s, with_contacts[m], dt, 12);
+                    CHECK(same_bits(first, s, particles, axes) && same_touching(first, s, particles),
+                          "lane by lane the same operations");
+                    free(s);
+                }
+                const size_t bytes = (size_t)first->layout.bytes;
+                void *copy = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+                memcpy(copy, first, bytes);
+                spring_scene_advance(first, with_contacts[m], dt, 3);
+                spring_scene_advance(copy, with_contacts[m], dt, 3);
+                CHECK(same_bits(first, copy, particles, axes) && same_touching(first, copy, particles),
+                      "a snapshot has the colliders");
+                free(copy);
+                free(single);
+                free(first);
+            }
+    CHECK(touched > 1000, "contacts took place");
+}
+
+/* Colliders that nothing touches change no bit. */
+static void far_away(void)
+{
+    static colliding b;
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (unsigned features = 0; features < feature_masks; features += 7)
+            for (int m = 0; m < method_count; m++) {
+                build_colliding(&b, shapes[features % shape_count], axes, features);
+                if (features % 5 == 0)
+                    b.m.def.flags |= SPRING_SCENE_FORCES;
+                for (int k = 0; k < 4; k++)
+                    b.c[k].at[0] = b.c[k].to[0] = -1000;
+                spring_scene *s = scene_with(&b);
+                b.m.def.colliders = 0;
+                spring_scene *without = scene_of(&b.m.def);
+                for (int call = 0; call < 2; call++)
+                    CHECK(spring_scene_advance(s, with_contacts[m], 1e-3, 7) == SPRING_OK &&
+                              spring_scene_advance(without, with_contacts[m], 1e-3, 7) == SPRING_OK,
+                          "stable");
+                CHECK(same_bits(s, without, b.m.def.particles, axes), "the operations of a scene without colliders");
+                CHECK(count_touching(s, b.m.def.particles) == 0, "nothing is near");
+                free(without);
+                free(s);
+            }
+}
+
+static void explode(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                    scalar *const force[3])
+{
+    (void)x, (void)v;
+    if (t > *(const double *)user)
+        for (size_t i = 0; i < particles; i++)
+            force[0][i] = (scalar)INFINITY;
+}
+
+/* A call that fails leaves the state and what is touched as they were. */
+static void rollback(void)
+{
+    static colliding b;
+    for (uint32_t axes = 2; axes <= 3; axes++)
+        for (size_t shape = 0; shape < shape_count; shape++)
+            for (int m = 0; m < method_count; m++) {
+                double until = 0.05;
+                build_colliding(&b, shapes[shape], axes, GRAVITY);
+                b.m.def.force = explode;
+                b.m.def.user = &until;
+                spring_scene *s = scene_with(&b), *before = scene_with(&b);
+                spring_scene_advance(s, with_contacts[m], 0.01, 4);
+                spring_scene_advance(before, with_contacts[m], 0.01, 4);
+                CHECK(spring_scene_advance(s, with_contacts[m], 0.01, 9) == SPRING_ENONFINITE, "explodes");
+                CHECK(same_bits(s, before, b.m.def.particles, axes) && same_touching(s, before, b.m.def.particles),
+                      "all or nothing");
+                free(before);
+                free(s);
+            }
+}
+
+/* The speed limit counts what is left after the contact, and a moving collider may exceed it. */
+static void speed_limit(void)
+{
+    const double x[] = {0, 0.001, 0}, v[] = {0, -5, 0};
+    spring_scene_def def = {
+        .particles = 1, .position = x, .velocity = v, .colliders = 1, .max_speed = 6, .gravity = {0, -2000, 0}};
+    spring_collider floor_below = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}};
+    spring_scene *s = scene_of(&def);
+    spring_scene_set_colliders(s, &floor_below, 1);
+    for (int i = 0; i < 3; i++)
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.001, 2) == SPRING_OK,
+              "a kick of 2 m/s, which the floor takes");
+    floor_below.velocity[1] = 7;
+    spring_scene_set_colliders(s, &floor_below, 1);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.001, 2) == SPRING_EUNSTABLE, "thrown up at 7 m/s");
+    free(s);
+}
+
+/* -------------------------------------------------------------------------------------------------------- valid input */
+
+static void check_refused(spring_scene *s, spring_collider c, spring_status status, const char *why)
+{
+    CHECK(spring_scene_set_colliders(s, &c, 1) == status, why);
+}
+
+static const spring_collider good_box = {
+    .shape = SPRING_BOX, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .half = {1, 1, 1}};
+static const spring_collider good_capsule = {.shape = SPRING_CAPSULE, .to = {1, 0, 0}, .radius = 1};
+
+/* Each field with each bad value, in turn. */
+static void bad_colliders(void)
+{
+    const double x[] = {0, 5, 0, 1, 5, 0}, bad[] = {NAN, INFINITY, -INFINITY, 1e308 * (sizeof(scalar) == 4 ? 1 : 10)};
+    const spring_scene_def def = {.particles = 2, .position = x, .colliders = 2};
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_set_colliders(s, &good_box, 1) == SPRING_OK, "a box");
+    for (int i = 0; i < 4; i++)
+        for (int a = 0; a < 3; a++) {
+            spring_collider *c = &(spring_collider){0};
+            const spring_collider start[2] = {good_box, good_capsule};
+            for (int k = 0; k < 2; k++) {
+                *c = start[k], c->at[a] = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "at");
+                *c = start[k], c->velocity[a] = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "velocity");
+                *c = start[k], c->spin[a] = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "spin");
+                *c = start[k], c->radius = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "radius");
+                *c = start[k], c->friction = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "friction");
+                *c = start[k], c->restitution = bad[i];
+                check_refused(s, *c, SPRING_EINVAL, "restitution");
+            }
+            *c = good_capsule, c->to[a] = bad[i];
+            check_refused(s, *c, SPRING_EINVAL, "to");
+            *c = good_capsule, c->velocity_to[a] = bad[i];
+            check_refused(s, *c, SPRING_EINVAL, "velocity_to");
+            *c = good_box, c->half[a] = bad[i];
+            check_refused(s, *c, SPRING_EINVAL, "half");
+            *c = good_box, c->axis[2][a] = bad[i];
+            check_refused(s, *c, SPRING_EINVAL, "axis");
+            *c = good_box, c->to[a] = c->velocity_to[a] = bad[i];
+            check_refused(s, *c, SPRING_OK, "a box has no second end");
+            *c = good_capsule, c->half[a] = c->axis[a][a] = bad[i];
+            check_refused(s, *c, SPRING_OK, "a capsule has no axes");
+        }
+    spring_collider c = good_box;
+    c.restitution = 1.001;
+    check_refused(s, c, SPRING_EINVAL, "above 1");
+    c = good_box, c.half[1] = -1e-9;
+    check_refused(s, c, SPRING_EINVAL, "negative");
+    c = good_box, c.axis[1][0] = 1e-5;
+    check_refused(s, c, SPRING_EINVAL, "not orthogonal");
+    c = good_box, c.axis[1][1] = 1 + 1e-7;
+    check_refused(s, c, SPRING_OK, "nearly a unit vector");
+    c = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1.01, 0}}};
+    check_refused(s, c, SPRING_EINVAL, "no unit vector");
+    c = (spring_collider){.shape = (spring_shape)4, .axis = {{0, 1, 0}}};
+    check_refused(s, c, SPRING_EINVAL, "no such shape");
+    c = (spring_collider){.shape = SPRING_SPHERE, .radius = -1};
+    check_refused(s, c, SPRING_EINVAL, "negative radius");
+    free(s);
+}
+
+/* What a call changes, and which statuses it returns. */
+static void statuses(void)
+{
+    const double x[] = {0, 0.5, 0, 1, 0.5, 0};
+    const spring_collider both[] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}}, good_capsule, good_box};
+    uint32_t mask[2];
+    spring_scene_def def = {.particles = 2,
+                            .position = x,
+                            .colliders = 2,
+                            .gravity = {0, -10, 0},
+                            .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG};
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_set_colliders(NULL, both, 1) == SPRING_EINVAL, "no scene");
+    CHECK(spring_scene_set_colliders(s, NULL, 1) == SPRING_EINVAL, "no colliders");
+    CHECK(spring_scene_set_colliders(s, both, 3) == SPRING_ERANGE, "room for two");
+    CHECK(spring_scene_set_colliders(s, NULL, 0) == SPRING_OK, "removes all");
+    CHECK(spring_scene_advance(s, SPRING_EULER, 0.01, 1) == SPRING_OK, "no colliders");
+    CHECK(spring_scene_set_colliders(s, both, 1) == SPRING_OK, "a floor");
+    CHECK(spring_scene_advance(s, SPRING_EULER, 0.01, 1) == SPRING_EUNSUPPORTED, "Euler has no drift");
+    CHECK(spring_scene_touching(NULL, mask, 0, 2) == SPRING_EINVAL &&
+              spring_scene_touching(s, NULL, 0, 2) == SPRING_EINVAL,
+          "NULL");
+    CHECK(spring_scene_touching(s, mask, 1, 2) == SPRING_ERANGE &&
+              spring_scene_touching(s, mask, 3, 0) == SPRING_ERANGE,
+          "too many");
+    free(s);
+    def.colliders = 0;
+    s = scene_of(&def);
+    CHECK(spring_scene_set_colliders(s, both, 1) == SPRING_EDISABLED &&
+              spring_scene_touching(s, mask, 0, 2) == SPRING_EDISABLED,
+          "no room");
+    free(s);
+}
+
+static void check_definition(const spring_scene_def *def, spring_status status, const char *field)
+{
+    const char *found;
+    CHECK(spring_scene_check(def, &found, NULL) == status && strcmp(found, field) == 0, field);
+}
+
+static void definitions(void)
+{
+    const double x[] = {0, 5, 0};
+    spring_scene_def def = {.particles = 1, .position = x, .colliders = 33};
+    check_definition(&def, SPRING_ERANGE, "colliders");
+    def.colliders = 32;
+    CHECK(spring_scene_check(&def, NULL, NULL) == SPRING_OK, "a bit for each");
+    def.axes = 1;
+    check_definition(&def, SPRING_EUNSUPPORTED, "colliders");
+    def.axes = 2;
+    def.particle_radius = -1;
+    check_definition(&def, SPRING_EINVAL, "particle_radius");
+    def.particle_radius = NAN;
+    check_definition(&def, SPRING_EINVAL, "particle_radius");
+    def.particle_radius = 0;
+    def.methods = 1u << SPRING_RKN8;
+    check_definition(&def, SPRING_EUNSUPPORTED, "methods");
+    def.methods = 1u << SPRING_SRKN6;
+    check_definition(&def, SPRING_EUNSUPPORTED, "methods");
+}
+
+/* With two axes the third elements do not count, whatever they are. */
+static void two_axes(void)
+{
+    const double x[] = {0, 0.9}, v[] = {1, 0};
+    const spring_scene_def def = {
+        .axes = 2, .particles = 1, .position = x, .velocity = v, .gravity = {0, -10}, .colliders = 1};
+    for (int shape = 0; shape < 4; shape++) {
+        spring_collider c = {.shape = (spring_shape)shape,
+                             .at = {0, -0.5},
+                             .to = {1, -0.6},
+                             .axis = {{0, 1}, {1, 0}},
+                             .half = {0.6, 1.1},
+                             .radius = 0.7,
+                             .friction = 0.3};
+        spring_scene *s = scene_of(&def), *other = scene_of(&def);
+        CHECK(spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "a flat collider");
+        c.at[2] = c.to[2] = c.half[2] = c.velocity[2] = c.velocity_to[2] = c.spin[0] = c.spin[1] = NAN;
+        for (int a = 0; a < 3; a++)
+            c.axis[2][a] = c.axis[a][2] = NAN;
+        CHECK(spring_scene_set_colliders(other, &c, 1) == SPRING_OK, "third elements are ignored");
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 200) == SPRING_OK &&
+                  spring_scene_advance(other, SPRING_LEAPFROG, 0.01, 200) == SPRING_OK,
+              "finite");
+        CHECK(same_bits(s, other, 1, 2), "third elements are ignored");
+        double now[2];
+        spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+        CHECK(shape != SPRING_PLANE || fabs(now[1] + 0.5) < 10 * EPS, "on the plane");
+        free(other);
+        free(s);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- touching and rest */
+
+/* Particles on a floor, one of them pinned below it. */
+static spring_scene *on_floor(double friction)
+{
+    const double x[] = {0, 0.3, 0, 1, 0.3, 0, 2, -0.3, 0};
+    const uint8_t pinned[] = {0, 0, 1};
+    const spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE,
+                                  .particles = 3,
+                                  .position = x,
+                                  .pinned = pinned,
+                                  .gravity = {0, -10, 0},
+                                  .colliders = 2};
+    const spring_collider c[] = {{.shape = SPRING_PLANE, .at = {0, -5, 0}, .axis = {{0, 1, 0}}},
+                                 {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = friction}};
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_set_colliders(s, c, 2) == SPRING_OK &&
+              spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 200) == SPRING_OK,
+          "falls");
+    return s;
+}
+
+static bool touches(const spring_scene *s, uint32_t first, uint32_t second, uint32_t third)
+{
+    uint32_t mask[3];
+    CHECK(spring_scene_touching(s, mask, 0, 3) == SPRING_OK, "room");
+    return mask[0] == first && mask[1] == second && mask[2] == third;
+}
+
+static void touching_is_cleared(void)
+{
+    const double x[] = {0, 1, 0}, identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    const spring_collider far = {.shape = SPRING_SPHERE, .at = {99, 0, 0}, .radius = 1};
+    spring_scene *s = on_floor(0);
+    CHECK(touches(s, 2, 2, 0), "the second collider; a pinned particle touches none");
+    spring_scene_set(s, SPRING_VELOCITY, x, 0, 0, 1);
+    CHECK(touches(s, 2, 2, 0), "its position is the same");
+    spring_scene_set(s, SPRING_POSITION, x, 0, 0, 1);
+    CHECK(touches(s, 0, 2, 0), "for the particle whose position was set");
+    spring_scene_set_pinned(s, 1, 1, &(uint8_t){0});
+    CHECK(touches(s, 0, 2, 0), "no change");
+    spring_scene_set_pinned(s, 1, 1, &(uint8_t){1});
+    CHECK(touches(s, 0, 0, 0), "a pin");
+    free(s);
+    s = on_floor(0);
+    spring_scene_transform(s, identity);
+    CHECK(touches(s, 0, 0, 0), "a transform");
+    free(s);
+    s = on_floor(0);
+    spring_scene_set_colliders(s, &far, 1);
+    CHECK(touches(s, 0, 0, 0), "other colliders");
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1);
+    CHECK(touches(s, 0, 0, 0), "the floor is gone");
+    free(s);
+}
+
+static void rests(void)
+{
+    spring_scene *s = on_floor(0);
+    CHECK(spring_scene_at_rest(s, 1e-9, 1e-9), "the floor balances gravity");
+    const double pull[] = {4, 0, 0};
+    spring_scene_set_gravity(s, pull);
+    CHECK(!spring_scene_at_rest(s, 1e-9, 1e-9), "pulled sideways");
+    free(s);
+    s = on_floor(0.5);
+    const double held[] = {4.9, -10, 0}, slips[] = {5.1, -10, 0}, up[] = {0, 1, 0};
+    spring_scene_set_gravity(s, held);
+    CHECK(spring_scene_at_rest(s, 1e-9, 1e-9), "static friction balances up to mu times the normal force");
+    spring_scene_set_gravity(s, slips);
+    CHECK(!spring_scene_at_rest(s, 1e-9, 0.09) && spring_scene_at_rest(s, 1e-9, 0.11), "0.1 m/s^2 are left");
+    spring_scene_set_gravity(s, up);
+    CHECK(!spring_scene_at_rest(s, 1e-9, 0.9), "a floor does not pull");
+    free(s);
+}
+
+/* In a groove each plane presses the particle against the other. */
+static void rests_in_a_groove(void)
+{
+    const double x[] = {0.1, 1, 0};
+    const spring_scene_def def = {.particles = 1, .position = x, .gravity = {0, -10, 0}, .drag = 1, .colliders = 2};
+    const spring_collider c[] = {{.shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}},
+                                 {.shape = SPRING_PLANE, .axis = {{-0.8, 0.6, 0}}}};
+    spring_scene *s = scene_of(&def);
+    spring_scene_set_colliders(s, c, 2);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 2000) == SPRING_OK, "falls into it");
+    CHECK(spring_scene_at_rest(s, 1e-6, 1e-6), "both planes balance it");
+    free(s);
+}
+
+/* A particle that a collider was set around comes out at its surface, and gains no velocity. Pinned particles stay. */
+static void inside_at_first(void)
+{
+    for (int shape = 0; shape < 4; shape++)
+        for (int m = 0; m < method_count; m++) {
+            const double x[] = {0.1, 0.2, 0.05, 0.2, 0.3, 0.1};
+            const uint8_t pinned[] = {0, 1};
+            const spring_scene_def def = {
+                .methods = 1u << with_contacts[m], .particles = 2, .position = x, .pinned = pinned, .colliders = 1};
+            spring_collider c = good_box;
+            c.shape = (spring_shape)shape;
+            c.radius = c.to[2] = 1;
+            spring_scene *s = scene_of(&def);
+            CHECK(spring_scene_set_colliders(s, &c, 1) == SPRING_OK &&
+                      spring_scene_advance(s, with_contacts[m], 0.01, 1) == SPRING_OK,
+                  "out");
+            double now[6], v[3];
+            spring_scene_get(s, SPRING_POSITION, now, 0, 0, 2);
+            spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+            CHECK_BELOW(fabs(v[0]) + fabs(v[1]) + fabs(v[2]), 1e3 * EPS, "position only");
+            if (shape == SPRING_SPHERE)
+                CHECK_CLOSE(sqrt(now[0] * now[0] + now[1] * now[1] + now[2] * now[2]), 1, 10 * EPS, "at the surface");
+            if (shape == SPRING_BOX)
+                CHECK_CLOSE(now[1], 2, 10 * EPS, "through the nearest face");
+            CHECK(now[3] == (double)(scalar)x[3] && now[4] == (double)(scalar)x[4], "a pinned particle passes through");
+            free(s);
+        }
+}
+
+/* A heavily damped cloth on a floor: its velocities after damping do not enter it. */
+static void heavy_damping(void)
+{
+    static model m;
+    build(&m, (uint32_t[]){8, 8, 1}, 3, DAMPED);
+    for (size_t i = 0; i < m.def.links; i++)
+        m.link[i].damping = 500;
+    m.def.gravity[1] = -9.81;
+    m.def.colliders = 1;
+    const spring_collider ground = {.shape = SPRING_PLANE, .at = {0, -0.5, 0}, .axis = {{0, 1, 0}}, .friction = 0.5};
+    spring_scene *s = scene_of(&m.def);
+    spring_scene_set_colliders(s, &ground, 1);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 300) == SPRING_OK, "stable");
+    uint32_t mask[most];
+    CHECK(count_touching(s, m.def.particles) > 30, "lies on the floor");
+    spring_scene_touching(s, mask, 0, m.def.particles);
+    for (size_t i = 0; i < m.def.particles; i++) {
+        double x[3], v[3];
+        spring_scene_get(s, SPRING_POSITION, x, 0, i, 1);
+        spring_scene_get(s, SPRING_VELOCITY, v, 0, i, 1);
+        CHECK_BELOW(fmax(0, -0.5 - x[1]), 100 * EPS, "above the floor");
+        CHECK(mask[i] == 0 || v[1] >= 0, "and not moving into it");
+    }
+    free(s);
+}
+
+static const test tests[] = {
+    {"the same bits", same_everywhere},
+    {"far away", far_away},
+    {"rollback", rollback},
+    {"speed limit", speed_limit},
+    {"bad colliders", bad_colliders},
+    {"statuses", statuses},
+    {"definitions", definitions},
+    {"two axes", two_axes},
+    {"touching is cleared", touching_is_cleared},
+    {"rests", rests},
+    {"rests in a groove", rests_in_a_groove},
+    {"inside at first", inside_at_first},
+    {"heavy damping", heavy_damping},
+};
+
+int main(void)
+{
+    return RUN_TESTS("colliders", tests);
+}
