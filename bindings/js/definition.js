@@ -117,13 +117,13 @@ export function linksAt(pointer, count) {
 }
 
 const wanted = {
-    gravity: "3 finite numbers",
+    gravity: "a finite number",
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
     particleRadius: "a finite number >= 0",
     colliders: "a number of colliders up to 32",
-    position: "finite numbers",
-    velocity: "finite numbers",
+    position: "a finite number",
+    velocity: "a finite number",
     mass: "a finite number > 0 with a finite reciprocal",
     a: "the index of a particle",
     b: "the index of another particle",
