@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Puts the live page into one file: scripts bundled by esbuild, styles, and both WebAssembly modules.
+// Puts the live page into one file: scripts bundled by esbuild, with the WebAssembly that is in them, and styles.
 //
-// usage: node bundle.mjs FOLDER     with lab.wasm and lab-nosimd.wasm; writes FOLDER/index.html
+// usage: node bundle.mjs FOLDER     writes FOLDER/index.html
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -33,12 +33,7 @@ function bundled(entry, format, values = {}) {
     );
 }
 
-const base64 = (name) => JSON.stringify(readFileSync(join(folder, name)).toString("base64"));
-const script = bundled("main.mjs", "esm", {
-    WORKER: JSON.stringify(bundled("worker.mjs", "iife")),
-    MODULE: base64("lab.wasm"),
-    MODULE_WITHOUT_SIMD: base64("lab-nosimd.wasm"),
-});
+const script = bundled("main.mjs", "esm", { WORKER: JSON.stringify(bundled("worker.mjs", "iife")) });
 const styles = [join(page, "../node_modules/uplot/dist/uPlot.min.css"), join(page, "style.css")];
 // What would end the element or the template is written otherwise; a function, for a string would read "$&".
 const safe = script.replaceAll("</script", "<\\/script");

@@ -6,11 +6,7 @@ import { Physics } from "./physics.mjs";
 import { commandOf, heavyEnd, heavySteps, presets } from "./presets.mjs";
 import { Stage } from "./stage.mjs";
 
-/* global WORKER, MODULE, MODULE_WITHOUT_SIMD */ // put in by bundle.mjs
-
-function bytesOf(base64) {
-    return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
-}
+/* global WORKER */ // put in by bundle.mjs
 
 function newStage() {
     try {
@@ -24,7 +20,7 @@ function newStage() {
 }
 
 const stage = newStage();
-const physics = new Physics(WORKER, [bytesOf(MODULE), bytesOf(MODULE_WITHOUT_SIMD)]);
+const physics = new Physics(WORKER);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 const state = {

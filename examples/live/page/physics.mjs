@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The page's end of the worker: orders go out as soon as it is ready, one tick is under way at a time, questions get a
 // Promise. After an exception in it nothing goes out until start().
+import { hasSimd } from "springstep/scenes";
 
 export class Physics {
-    /** source: of the worker; modules: [with SIMD, without], each a Uint8Array */
-    constructor(source, modules) {
+    /** source: of the worker */
+    constructor(source) {
         this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-        this.simd = WebAssembly.validate(modules[0]);
-        this.bytes = this.simd ? modules[0] : modules[1];
+        this.simd = hasSimd();
         this.asked = 0;
         this.onmade = this.onframe = this.onfailed = () => {};
         this.start();
@@ -22,7 +22,7 @@ export class Physics {
         this.waiting = new Map();
         this.underWay = this.failed = false;
         this.ready = new Promise((resolve) => (this.isReady = resolve));
-        this.worker.postMessage({ kind: "start", bytes: this.bytes });
+        this.worker.postMessage({ kind: "start", simd: this.simd });
     }
 
     fail(message) {

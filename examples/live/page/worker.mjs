@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Physics, in a worker so that it never waits for drawing, nor drawing for it. The page asks for one tick at a time; a
 // tick advances every pane by what is due and sends back what is drawn of it.
-import { Module } from "./module.mjs";
+import { ready } from "springstep/scenes";
+import { Lab, listMethods, methodTable } from "./lab.mjs";
 import { presets } from "./presets.mjs";
 
 const longestTick = 0.1; // [s]; beyond, the scene falls behind
 const tooFar = 15; // lengths of the scene: what has gone so far has exploded, though its numbers hold on for a while
 const tearing = 2.2; // lengths over rest lengths at which links tear while something is held
 
-let module;
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}
 let reference = null; // {lab, method}
@@ -25,29 +25,29 @@ function dropAll() {
 }
 
 function newPane(method) {
-    return { lab: module.make(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
+    return { lab: new Lab(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
 }
 
 // The most accurate method. Its steps divide those of the panes, so that all can be compared at the same times.
 function newReference() {
-    const lab = module.make(run);
-    const offered = module.methods.filter((method) => lab.takes(method));
-    const method = offered.reduce((a, b) => (module.orderOf(b) > module.orderOf(a) ? b : a));
-    return { lab, method };
+    const lab = new Lab(run);
+    const offered = [...methodTable.values()].filter(({ name }) => lab.takes(name));
+    const { name } = offered.reduce((a, b) => (b.order > a.order ? b : a));
+    return { lab, method: name };
 }
 
 function referenceSteps() {
-    const enough = presets[run.scene].steps * (module.orderOf(reference.method) > 4 ? 2 : 8);
+    const enough = presets[run.scene].steps * (methodTable.get(reference.method).order > 4 ? 2 : 8);
     return steps * Math.max(2, Math.ceil(enough / steps));
 }
 
 function describe() {
     const { lab } = panes[0];
     const { particles, links, count, length, massRatio, ends, pinned } = lab;
-    const methods = module.methods.map((name) => ({
+    const methods = Array.from(methodTable.values(), ({ name, order, forcesPerStep }) => ({
         name,
-        order: module.orderOf(name),
-        forces: module.forcesPerStep(name),
+        order,
+        forces: forcesPerStep,
         taken: lab.takes(name),
         stable: lab.takes(name) ? lab.stableStep(name) : NaN,
     }));
@@ -99,11 +99,11 @@ function tearHeld() {
 
 function picture(pane) {
     const { lab } = pane;
-    const { ball } = lab;
+    const ball = lab.ball?.place ?? null;
     const positions = lab.positions(steps);
     const { method, exploded, micros, held } = pane;
     const error = reference && !exploded ? lab.distance(reference.lab) : NaN;
-    const torn = run.scene === "cloth" ? lab.cut : new Uint8Array(0);
+    const torn = run.scene === "cloth" ? lab.cut.slice() : new Uint8Array(0);
     return {
         positions,
         torn,
@@ -148,8 +148,9 @@ const questions = {
 };
 
 const orders = {
-    async start({ bytes }) {
-        module = await Module.load(bytes);
+    async start({ simd }) {
+        await ready({ simd });
+        listMethods();
         postMessage({ kind: "ready" });
     },
     make,

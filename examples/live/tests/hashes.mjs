@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Has the module of the live page, with and without SIMD, the bits of spring-scene? Each scene with each method, 600
-// frames with a scripted poke, and scenes as the page's controls make them.
+// Do the labs of the live page have the bits of spring-scene? Each scene with each method, 600 frames with a scripted poke, and
+// scenes as the page's controls make them. tests/js compares the package without SIMD.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 
-import { Module } from "../page/module.mjs";
+import { Lab, methodTable } from "../page/lab.mjs";
 import { commandOf, heavyEnd, heavySteps, presets } from "../page/presets.mjs";
 import { Cases } from "./harness.mjs";
 
@@ -30,8 +28,8 @@ export function pokeOf(scene, length) {
     return [0.4 * length, along, scene === "water" ? 5e4 : 2, (length * length) / 20];
 }
 
-function inModule(module, run, method, steps) {
-    const lab = module.make({ ...run, calm: true }); // spring-scene pokes water that is not poked
+function inLab(run, method, steps) {
+    const lab = new Lab({ ...run, calm: true }); // spring-scene pokes water that is not poked
     lab.poke(...pokeOf(run.scene, lab.length), pokeAt / 60); // known from the start, as spring-scene knows it
     for (let frame = 0; frame < frames; frame++) if (lab.advance(method, steps, steps) < steps) break;
     const hash = lab.hash();
@@ -39,9 +37,7 @@ function inModule(module, run, method, steps) {
     return hash;
 }
 
-export async function testHashes(folder, tool) {
-    const load = (name) => Module.load(readFileSync(join(folder, name)));
-    const modules = { SIMD: await load("lab.wasm"), "no SIMD": await load("lab-nosimd.wasm") };
+export async function testHashes(tool) {
     const runs = Object.keys(presets).map((scene) => ({ scene }));
     const further = [
         { scene: "rope", ...heavyEnd },
@@ -50,25 +46,25 @@ export async function testHashes(folder, tool) {
     ];
     const cases = new Cases("bits");
     for (const run of [...runs, ...further]) {
-        const lab = modules.SIMD.make(run);
+        const lab = new Lab(run);
         const poke = ["--poke", [pokeAt / 60, ...pokeOf(run.scene, lab.length)].join(",")];
-        const methods = modules.SIMD.methods.filter((method) => lab.takes(method));
+        const methods = [...methodTable.keys()].filter((method) => lab.takes(method));
         lab.free();
         for (const method of methods)
             await cases.case(`${JSON.stringify(run)} ${method}`, async () => {
                 const steps = run.endMass ? heavySteps : presets[run.scene].steps;
                 const wanted = await native(tool, run, method, steps, frames / 60, poke);
                 assert.match(wanted, /^[0-9a-f]{16}$/);
-                assert.equal(inModule(modules.SIMD, run, method, steps), wanted, "SIMD");
-                if (runs.includes(run))
-                    assert.equal(inModule(modules["no SIMD"], run, method, steps), wanted, "no SIMD");
+                assert.equal(inLab(run, method, steps), wanted);
             });
     }
-    await cases.case("a scene that is not there is refused", () =>
-        assert.throws(() => modules.SIMD.make({ scene: "nonsense" }), /no scene/),
-    );
+    await cases.case("a scene that is not there is refused, and sizes that cannot be", () => {
+        assert.throws(() => new Lab({ scene: "nonsense" }), /no scene "nonsense"/);
+        for (const size of [1e5, -1, 0.5, 1])
+            assert.throws(() => new Lab({ scene: "cloth", size }), RangeError);
+    });
     await cases.case("a scene that explodes is drawn as it was last", () => {
-        const lab = modules.SIMD.make({ scene: "water" });
+        const lab = new Lab({ scene: "water" });
         const [steps, many] = [1, 1000];
         assert.ok(lab.advance("euler", steps, many) < many);
         const drawn = lab.positions(steps);

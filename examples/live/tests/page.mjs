@@ -465,6 +465,27 @@ async function testWindows(cases, page, browser, url, tool) {
         await until("it runs", async () => (await ask(frail, "time")) > 1);
         await frail.context().close();
     });
+    for (const size of [100000, -1, 20000])
+        await cases.case(`a size of ${size} that reaches the worker ends in a message`, async () => {
+            const attacked = await open(browser, url, {}, () => {
+                const Plain = Worker;
+                window.Worker = function (source) {
+                    return (window.lastWorker = new Plain(source));
+                };
+            });
+            await choose(attacked, "cloth", "leapfrog");
+            await attacked.evaluate((given) => {
+                const run = { scene: "cloth", size: given };
+                window.lastWorker.postMessage({ kind: "make", run, steps: 19, methods: ["leapfrog"] });
+            }, size);
+            const said = () => attacked.textContent("#notice");
+            await until("it says so", async () => /stopped: .*(count|no memory|too many)/.test(await said()));
+            await begin(attacked);
+            await ask(attacked, "step", 60);
+            const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
+            assert.equal(await ask(attacked, "hash"), wanted);
+            await attacked.context().close();
+        });
     await cases.case("without SIMD: the same bits", async () => {
         const plain = await open(browser, url, {}, () => (WebAssembly.validate = () => false));
         assert.equal(await plain.evaluate(() => window.springstepLab.simd), false);

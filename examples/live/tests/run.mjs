@@ -27,9 +27,7 @@ function beside() {
     );
 }
 
-const suites = alone
-    ? [await testHashes(folder, tool)]
-    : await Promise.all([testPage(folder, tool), beside()]);
+const suites = alone ? [await testHashes(tool)] : await Promise.all([testPage(folder, tool), beside()]);
 const [passed, failed] = ["passed", "failed"].map((key) =>
     suites.reduce((sum, suite) => sum + suite[key], 0),
 );

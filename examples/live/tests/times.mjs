@@ -4,20 +4,17 @@
 //
 // usage: node times.mjs FOLDER [SECONDS]     the folder that tools/live has written; on a quiet machine
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
 import { presets } from "../page/presets.mjs";
-import { Module } from "../page/module.mjs";
+import { Lab } from "../page/lab.mjs";
 import { launch, open } from "./browser.mjs";
 import { Plain } from "./plain.mjs";
 
 const [folder, seconds = "5"] = process.argv.slice(2);
 
 // --- steps, in Node.js: the engine is that of Chromium ------------------------------------------------------------------
-
-const module = await Module.load(readFileSync(join(resolve(folder), "lab.wasm")));
 
 // Ten frames a call: what the page asks for once a frame, energy and positions, is no step.
 const frames = 10;
@@ -26,7 +23,7 @@ const frames = 10;
 function framesOf(scene, size, mass, stiffness, gravity) {
     const { steps } = presets[scene];
     const dt = 1 / (60 * steps);
-    const lab = module.make({ scene, size, drag: 0, calm: true });
+    const lab = new Lab({ scene, size, drag: 0, calm: true });
     const plain = new Plain(lab, mass, stiffness, gravity);
     const both = [
         () => lab.advance("leapfrog", steps, frames * steps),
@@ -56,7 +53,7 @@ function compare(lab, plain, dt) {
     );
 }
 
-console.log("scene\tsize\tlinks\tsteps\tmodule_us\tplain_us\tspeedup");
+console.log("scene\tsize\tlinks\tsteps\tpackage_us\tplain_us\tspeedup");
 for (const size of [25, 35, 50]) {
     console.log(framesOf("cloth", size, 0.01, 500, 9.81).join("\t"));
     console.log(framesOf("water", size, 1, 25000, 0).join("\t"));

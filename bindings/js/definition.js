@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+// Definitions of scenes: from what users write to the one definition in the module, and messages about what is wrong.
+import { library, memory, text } from "./module.js";
+import { check, checkFinite } from "./options.js";
+
+const flags = { editable: 1, noUndo: 2, tensionOnly: 8, heldForces: 16 };
+const forceIgnoresVelocity = 4;
+const names = [
+    ..."axes position velocity mass pinned links gravity drag maxSpeed methods".split(" "),
+    ..."force forceUsesVelocity component base colliders particleRadius".split(" "),
+    ...Object.keys(flags),
+];
+
+export const checkCount = (name, value, least = 0) =>
+    check(Number.isSafeInteger(value) && value >= least, name, `an integer >= ${least}`, value);
+
+export function checkKnown(options, known) {
+    check(typeof options === "object" && options !== null, "definition", "an object", options, TypeError);
+    for (const name of Object.keys(options))
+        if (!known.includes(name)) throw new TypeError(`the option ${name} is unknown`);
+}
+
+export function checkArray(name, value, length) {
+    check(typeof value === "object" && value?.length >= 0, name, "an array", value, TypeError);
+    check(length === undefined || value.length === length, `${name}.length`, `${length}`, value?.length);
+}
+
+let table; // of methods, by name
+
+function known() {
+    if (table) return table;
+    table = new Map();
+    const { method_at, method_order, method_forces, spring_method_name } = library();
+    for (let i = 0, number; (number = method_at(i)) >= 0; i++) {
+        const name = text(spring_method_name(number));
+        const order = method_order(number); // 0: not for scenes
+        if (order) table.set(name, { number, name, order, forcesPerStep: method_forces(number) });
+    }
+    return table;
+}
+
+export const methods = () =>
+    Array.from(known().values(), ({ name, order, forcesPerStep }) => ({ name, order, forcesPerStep }));
+
+export function methodNumber(name) {
+    const method = known().get(name);
+    check(method, "method", `one of ${[...known().keys()].join(", ")}`, name, TypeError);
+    return method.number;
+}
+
+/** Copies numbers into the module. */
+export function lend(take, values, Type = "float64", size = 8) {
+    const pointer = take(size * values.length);
+    memory[Type](pointer, values.length).set(values);
+    return pointer;
+}
+
+const perLink = ["rest", "stiffness", "damping"];
+
+/** How many links there are: of { ends, rest, stiffness, damping } or of a list of { a, b, rest, stiffness, damping }. */
+function countOf(links) {
+    if (Array.isArray(links)) return links.length;
+    check(typeof links === "object" && links !== null, "links", "an object or an array", links, TypeError);
+    checkKnown(links, ["ends", ...perLink]);
+    checkArray("links.ends", links.ends);
+    check(links.ends.length % 2 === 0, "links.ends.length", "even", links.ends.length);
+    const count = links.ends.length / 2;
+    for (const name of perLink) {
+        const value = links[name];
+        if (typeof value !== "number" && (name !== "damping" || value !== undefined))
+            checkArray(`links.${name}`, value, count);
+    }
+    return count;
+}
+
+/** The value of a field of link i, as it is given. */
+function linkValue(links, i, field) {
+    if (Array.isArray(links)) return links[i][field] ?? (field === "damping" ? 0 : undefined);
+    if (field === "a" || field === "b") return links.ends[2 * i + (field === "a" ? 0 : 1)];
+    const value = links[field] ?? 0;
+    return typeof value === "number" ? value : value[i];
+}
+
+/** Links in the layout of spring_link: [pointer, count]. */
+export function lendLinks(take, links) {
+    const count = countOf(links);
+    const pointer = take(32 * count);
+    const ends = memory.uint32(pointer, 8 * count);
+    const values = memory.float64(pointer, 4 * count);
+    for (let i = 0; i < count; i++)
+        for (const [k, field] of ["a", "b"].entries()) {
+            const end = linkValue(links, i, field);
+            check(Number.isInteger(end) && end >= 0, `links[${i}].${field}`, "the index of a particle", end);
+            ends[8 * i + k] = Math.min(end, 0xffffffff);
+        }
+    for (const [k, field] of perLink.entries())
+        for (let i = 0; i < count; i++) {
+            const value = linkValue(links, i, field);
+            check(typeof value === "number", `links[${i}].${field}`, "a number", value, TypeError);
+            values[4 * i + 1 + k] = value;
+        }
+    return [pointer, count];
+}
+
+/** Links in the layout of spring_link as { ends, rest, stiffness, damping }. */
+export function linksAt(pointer, count) {
+    const words = memory.uint32(pointer, 8 * count);
+    const values = memory.float64(pointer, 4 * count);
+    const links = { ends: new Uint32Array(2 * count) };
+    for (const field of perLink) links[field] = new Float64Array(count);
+    for (let i = 0; i < count; i++) {
+        links.ends[2 * i] = words[8 * i];
+        links.ends[2 * i + 1] = words[8 * i + 1];
+        perLink.forEach((field, k) => (links[field][i] = values[4 * i + 1 + k]));
+    }
+    return links;
+}
+
+const wanted = {
+    gravity: "a finite number",
+    drag: "a finite number >= 0, also when it is divided by a mass",
+    maxSpeed: "a finite number >= 0",
+    particleRadius: "a finite number >= 0",
+    colliders: "a number of colliders up to 32",
+    position: "a finite number",
+    velocity: "a finite number",
+    mass: "a finite number > 0 with a finite reciprocal",
+    a: "the index of a particle",
+    b: "the index of another particle",
+    rest: "a finite number >= 0",
+    stiffness: "a finite number >= 0, also when it is divided by a mass",
+    damping: "a finite number >= 0, also when it is divided by a mass",
+};
+
+/** Numbers of a collider, in the order of spring_collider: name, how many, and what it is by default. */
+const fields = [
+    ["at", 3, [0, 0, 0]],
+    ["to", 3, [0, 0, 0]],
+    ["axes", 9, [1, 0, 0, 0, 1, 0, 0, 0, 1]],
+    ["half", 3, [0, 0, 0]],
+    ["radius", 1, 0],
+    ["velocity", 3, [0, 0, 0]],
+    ["velocityTo", 3, null], // that of `at`
+    ["spin", 3, [0, 0, 0]],
+    ["friction", 1, 0],
+    ["restitution", 1, 0],
+];
+const shapes = ["plane", "sphere", "capsule", "box"];
+const colliderBytes = 8 * 31;
+
+/** Colliders in the layout of spring_collider. */
+export function lendColliders(take, colliders) {
+    const pointer = take(colliderBytes * colliders.length);
+    colliders.forEach((collider, i) => {
+        const name = `colliders[${i}]`;
+        check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
+        checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
+        const shape = shapes.indexOf(collider.shape);
+        check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
+        const numbers = [];
+        for (const [field, count, usual] of fields) {
+            const value = collider[field] ?? usual ?? collider.velocity ?? [0, 0, 0];
+            const list = count === 1 ? [value] : value;
+            if (count > 1) checkArray(`${name}.${field}`, list);
+            for (let k = 0; k < count; k++) {
+                const number = k < list.length ? list[k] : 0;
+                checkFinite(count > 1 ? `${name}.${field}[${k}]` : `${name}.${field}`, number);
+                numbers.push(number);
+            }
+            if (field === "axes" && shape === 0) {
+                const normal = collider.normal ?? [0, 1, 0];
+                checkArray(`${name}.normal`, normal);
+                const size = Math.hypot(...normal);
+                check(
+                    size > 0 && size < Infinity,
+                    `${name}.normal`,
+                    "a direction",
+                    String(normal),
+                    RangeError,
+                );
+                for (let k = 0; k < 3; k++) numbers[6 + k] = (normal[k] ?? 0) / size;
+            }
+        }
+        for (const field of ["radius", "friction", "restitution"]) {
+            const value = collider[field] ?? 0;
+            const most = field === "restitution" ? 1 : Infinity;
+            const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
+            check(value >= 0 && value <= most, `${name}.${field}`, what, value);
+        }
+        memory.uint32(pointer + colliderBytes * i, 1)[0] = shape;
+        memory.float64(pointer + colliderBytes * i + 8, 30).set(numbers);
+    });
+    return pointer;
+}
+
+/** Throws what def_check() has found in a definition. */
+function refuse(definition, axes) {
+    const field = text(library().failure_field());
+    const i = library().failure_index();
+    if (field === "methods")
+        throw new TypeError(
+            "rkn8 and srkn6 require undamped links, no tensionOnly, no colliders and no forceUsesVelocity",
+        );
+    if (field === "flags") throw new TypeError("tensionOnly requires 2 or 3 axes");
+    if (field === "particles" || field === "links") throw new RangeError(`too many ${field} for a scene`);
+    const [array, part] = field.split(".");
+    if (array === "link") {
+        const value = linkValue(definition.links, i, part);
+        check(false, `links[${i}].${part}`, wanted[part], value);
+    }
+    const name =
+        { mass_all: "mass", max_speed: "maxSpeed", particle_radius: "particleRadius" }[field] ?? field;
+    let value = definition[name];
+    let place = name;
+    if (name === "position" || name === "velocity") {
+        let at = axes * i;
+        while (at < axes * i + axes - 1 && Number.isFinite(value[at])) at++;
+        [place, value] = [`${name}[${at}]`, value[at]];
+    } else if (typeof value === "object") [place, value] = [`${name}[${i}]`, value[i]];
+    check(false, place, wanted[name], value);
+}
+
+/** Fills the definition in the module, and returns what of it JavaScript needs. `take` as in borrowed(). */
+export function define(take, definition) {
+    checkKnown(definition, names);
+    const { axes = 3, position, velocity, mass = 1, pinned, links = [] } = definition;
+    const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
+    const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
+    const { colliders = 0, particleRadius = 0 } = definition;
+    check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
+    checkArray("position", position);
+    check(
+        position.length > 0 && position.length % axes === 0,
+        "position.length",
+        `a multiple of ${axes}`,
+        position.length,
+    );
+    const particles = position.length / axes;
+    if (velocity) checkArray("velocity", velocity, position.length);
+    if (pinned) checkArray("pinned", pinned, particles);
+    if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
+    else checkArray("mass", mass, particles);
+    checkArray("gravity", gravity);
+    checkArray("methods", methods);
+    if (base) checkArray("base", base, 3 * particles);
+    check(
+        component >= 0 && component + axes <= 3 && Number.isInteger(component),
+        "component",
+        `an integer from 0 to ${3 - axes}`,
+        component,
+    );
+    check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
+    let set = forceUsesVelocity ? 0 : forceIgnoresVelocity;
+    for (const [name, flag] of Object.entries(flags)) if (definition[name]) set |= flag;
+    const bits = Array.from(methods, (name) => 1 << methodNumber(name)).reduce((all, bit) => all | bit, 0);
+    const optional = (values, Type, size) => (values ? lend(take, values, Type, size) : 0);
+    const [linkPointer, linkCount] = lendLinks(take, links);
+    const pins = pinned && Array.from(pinned, (pin) => (pin ? 1 : 0));
+    const { def_begin, def_links, def_forces, def_check } = library();
+    def_begin(
+        axes,
+        set,
+        bits,
+        particles,
+        lend(take, position),
+        optional(velocity),
+        typeof mass === "number" ? 0 : lend(take, mass),
+        typeof mass === "number" ? mass : 0,
+        optional(pins, "uint8", 1),
+    );
+    def_links(linkCount, linkPointer);
+    for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius })) checkFinite(name, value);
+    check(
+        colliders >= 0 && colliders <= 32 && Number.isInteger(colliders),
+        "colliders",
+        "an integer from 0 to 32",
+        colliders,
+    );
+    check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
+    library().def_contacts(colliders, particleRadius);
+    const [x = 0, y = 0, z = 0] = gravity;
+    def_forces(x, y, z, drag, maxSpeed, force !== null);
+    if (def_check() !== 0) refuse({ ...definition, mass }, axes);
+    return {
+        axes,
+        particles,
+        links: linkCount,
+        linkPointer,
+        force,
+        forceUsesVelocity,
+        component,
+        base: optional(base, "float32", 4),
+    };
+}

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+/// <reference lib="esnext.disposable" />
+
+/**
+ * Compiles the WebAssembly in the background. Without it, the first use compiles and waits. `simd` chooses the version, by
+ * default that with SIMD if the engine has it; results are the same.
+ */
+export declare function ready(options?: { simd?: boolean }): Promise<void>;
+
+/** Whether the engine has SIMD for WebAssembly. Compiles nothing. */
+export declare function hasSimd(): boolean;
+
+export type Method = "euler" | "symplectic-euler" | "leapfrog" | "rk4" | "rkn8" | "srkn6";
+
+/** The methods for scenes. `forcesPerStep` is the number of force evaluations where forces do not depend on velocities. */
+export declare function methods(): { name: Method; order: number; forcesPerStep: number }[];
+
+export type Quantity = "position" | "velocity" | "force";
+
+/** A spring between particles a and b. */
+export interface Link {
+    a: number;
+    b: number;
+    /** [m] rest length >= 0 */
+    rest: number;
+    /** [N/m] >= 0 */
+    stiffness: number;
+    /** [N s/m] >= 0, along the link; default 0 */
+    damping?: number;
+}
+
+/** All links as arrays. A number applies to every link. */
+export interface Links {
+    /** a and b of each link in turn */
+    ends: ArrayLike<number>;
+    rest: number | ArrayLike<number>;
+    stiffness: number | ArrayLike<number>;
+    /** default 0 */
+    damping?: number | ArrayLike<number>;
+}
+
+/** What get functions return. */
+export interface LinkArrays {
+    ends: Uint32Array;
+    rest: Float64Array;
+    stiffness: Float64Array;
+    damping: Float64Array;
+}
+
+/**
+ * Adds forces to force[axis][particle] [N] at the time t [s]. It must depend only on its arguments and on what has not changed
+ * since `scene.force` was set. It must not call its own scene. If it throws, the call fails and the scene stays as it was.
+ */
+export type Force = (
+    t: number,
+    position: readonly Float64Array[],
+    force: readonly Float64Array[],
+    velocity: readonly Float64Array[] | undefined,
+) => void;
+
+/** A convex body. Particles stay outside it. */
+export interface Collider {
+    shape: "plane" | "sphere" | "capsule" | "box";
+    /** [m] a point of the plane; the centre; or one end of a capsule */
+    at?: ArrayLike<number>;
+    /** [m] the other end of a capsule */
+    to?: ArrayLike<number>;
+    /** of a plane, out of the body; of any length; default [0, 1, 0] */
+    normal?: ArrayLike<number>;
+    /** of a box: 9 numbers, its unit axes; default: those of the scene */
+    axes?: ArrayLike<number>;
+    /** [m] of a box: half of its size along each axis, without the radius */
+    half?: ArrayLike<number>;
+    /** [m] of a sphere or capsule; also rounds a box */
+    radius?: number;
+    /** [m/s] */
+    velocity?: ArrayLike<number>;
+    /** [m/s] of the other end of a capsule; default: as `velocity` */
+    velocityTo?: ArrayLike<number>;
+    /** [rad/s] of its surface: enters friction only. With two axes spin[2] */
+    spin?: ArrayLike<number>;
+    /** Coulomb coefficient >= 0 */
+    friction?: number;
+    /** 0 to 1 */
+    restitution?: number;
+}
+
+export interface SceneDefinition {
+    /** default 3 */
+    axes?: 1 | 2 | 3;
+    /** [axes per particle] [m] */
+    position: ArrayLike<number>;
+    /** [axes per particle] [m/s]; default: at rest */
+    velocity?: ArrayLike<number>;
+    /** [kg] of every particle, or of each; default 1 */
+    mass?: number | ArrayLike<number>;
+    /** for each particle whether it ignores forces; default: none does */
+    pinned?: ArrayLike<number | boolean>;
+    links?: Links | readonly Link[];
+    /** [m/s^2] */
+    gravity?: ArrayLike<number>;
+    /** [N s/m] >= 0, on every particle */
+    drag?: number;
+    /** [m/s] a step after which a particle is faster along an axis fails; 0: no limit */
+    maxSpeed?: number;
+    /** methods to be used; default: "euler", "symplectic-euler" and "leapfrog" */
+    methods?: readonly Method[];
+    /** enables pin, unpin, setMass, setLink, setLinks, cut and tear */
+    editable?: boolean;
+    /** links pull and never push: rope, net, sail */
+    tensionOnly?: boolean;
+    /** enables set("force", ...) */
+    heldForces?: boolean;
+    /** room for so many colliders, at most 32; default 0 */
+    colliders?: number;
+    /** [m] of every particle, for contacts */
+    particleRadius?: number;
+    /** no second copy of the state: a step that fails loses it */
+    noUndo?: boolean;
+    force?: Force | null;
+    /** Pass velocities to `force`. Leapfrog then evaluates forces twice a step. */
+    forceUsesVelocity?: boolean;
+    /** the component of `positions` that receives the first axis; default 0 */
+    component?: number;
+    /** [3 per particle] first contents of `positions`, for components that no axis writes; default 0 */
+    base?: ArrayLike<number>;
+}
+
+export interface GridDefinition {
+    /** particles along x, y, z */
+    count:
+        readonly [number] | readonly [number, number] | readonly [number, number, number] | readonly number[];
+    /** default 3; 1 for a height field */
+    axes?: 1 | 2 | 3;
+    /** one axis, across the grid: height-field water */
+    height?: boolean;
+    /** [m] from one particle to the next */
+    spacing: number;
+    /** length over rest length of every link; default 1 */
+    stretch?: number;
+    /** default: structural links only */
+    families?: readonly ("structural" | "shear" | "bend")[];
+    /** [N/m] of every link */
+    stiffness: number;
+    /** [N s/m] of every link; default 0 */
+    damping?: number;
+    /** faces whose particles are pinned */
+    pinned?: readonly ("firstX" | "lastX" | "firstY" | "lastY" | "firstZ" | "lastZ")[];
+}
+
+export interface Grid {
+    axes: 1 | 2 | 3;
+    position: Float64Array;
+    pinned: Uint8Array;
+    links: LinkArrays;
+    component?: number;
+    base?: Float32Array;
+}
+
+/** A rope, a sheet or a soft body: a part of a definition. Particle (i, j, k) has index i + count[0] (j + count[1] k). */
+export declare function grid(definition: GridDefinition): Grid;
+
+/** The links of a definition, softened until dt is at most `fraction`, by default 0.5, of the stable step of leapfrog. */
+export declare function soften(definition: SceneDefinition, dt: number, fraction?: number): LinkArrays;
+
+/** Connected components. component[i] is that of particle i. Links without stiffness and damping do not connect. */
+export declare function components(
+    particles: number,
+    links: Links | readonly Link[],
+): { count: number; component: Uint32Array };
+
+/** The state of a scene at one time, for Scene.restore(). */
+export interface Snapshot {
+    readonly time: number;
+}
+
+/**
+ * A mass-spring system. Bad input throws a RangeError or TypeError and changes nothing. Steps that fail throw a RangeError with
+ * the code "SPRING_ENONFINITE" or "SPRING_EUNSTABLE" and leave the scene as it was.
+ *
+ * Memory is released by free(), by `using`, or when the scene is collected as garbage.
+ */
+export declare class Scene {
+    constructor(definition: SceneDefinition);
+    free(): void;
+    [Symbol.dispose](): void;
+
+    readonly axes: 1 | 2 | 3;
+    readonly particles: number;
+    readonly links: number;
+
+    /** x, y, z of each particle: the same array for the life of the scene, refilled by everything that moves particles. */
+    readonly positions: Float32Array;
+
+    /** Advances by a number of steps, by default 1, of dt seconds. */
+    advance(method: Method, dt: number, steps?: number): void;
+
+    /**
+     * Takes the steps of dt that are due after `elapsed` more seconds and returns their number. `positions` are interpolated
+     * between the last two steps. If more than `mostSteps` are due, by default those of 0.25 s, the rest of the time is dropped.
+     */
+    frame(method: Method, dt: number, elapsed: number, mostSteps?: number): number;
+
+    /** A lower bound of the stability limit [s] */
+    stableStep(method?: Method): number;
+    /** [s] */
+    readonly time: number;
+    /** [J]; `gravity` is 0 at the origin */
+    readonly energy: { kinetic: number; elastic: number; gravity: number; total: number };
+    /** Whether no particle is faster than `speed` or accelerates by more than `acceleration`. */
+    atRest(speed: number, acceleration: number): boolean;
+
+    /** A copy of the values of `count` particles, by default of all from `first` on, in double precision. */
+    get(quantity: Quantity, first?: number, count?: number): Float64Array;
+    set(quantity: Quantity, values: ArrayLike<number>, first?: number): void;
+
+    /** Moves all particles by an affine map: the rows of [A b], 12 numbers, or the 16 elements of a Matrix4 of three.js. */
+    transform(matrix: ArrayLike<number>): void;
+    setGravity(gravity: ArrayLike<number>): void;
+
+    /** Set it again after a change of what it reads. */
+    force: Force | null;
+
+    snapshot(): Snapshot;
+    /** Returns to a snapshot of this scene. */
+    restore(snapshot: Snapshot): void;
+
+    pin(first: number, count?: number): void;
+    unpin(first: number, count?: number): void;
+    /** Gives a pinned particle the velocity with which it reaches `target` after `duration` seconds. null: it stops. */
+    drive(particle: number, target: ArrayLike<number> | null, duration?: number): void;
+    setMass(mass: ArrayLike<number>, first?: number): void;
+
+    getLink(index: number): Required<Link>;
+    getLinks(): LinkArrays;
+    setLink(index: number, changes: { rest?: number; stiffness?: number; damping?: number }): void;
+    setLinks(links: Links | readonly Link[], first?: number): void;
+    /** Removes stiffness and damping. */
+    cut(index: number): void;
+    /** Cuts links longer than `stretch` times their rest length, one limit or one per link, and returns their indices. */
+    tear(stretch: number | ArrayLike<number>): Uint32Array;
+    components(): { count: number; component: Uint32Array };
+    /** The first link between two particles; -1: none */
+    findLink(a: number, b: number): number;
+    /** [N]; > 0 pulls */
+    tension(link: number): number;
+
+    /** Replaces all colliders. They are given at their pose now, and move at their velocities until they are set again. */
+    setColliders(colliders: readonly Collider[]): void;
+    /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
+    touching(first?: number, count?: number): Uint32Array;
+}

@@ -1,0 +1,565 @@
+// SPDX-License-Identifier: MIT
+// Scenes: the bits of spring-scene, with and without SIMD; what a scene offers; errors; memory.
+//     node scenes.mjs SPRING-SCENE [scalar]
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { hashOf, preset, presetNames, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
+import { done, note, test } from "./tap.mjs";
+
+const [program, scalar] = process.argv.slice(2);
+const { validate } = WebAssembly;
+let compiled = 0;
+if (scalar) WebAssembly.validate = () => false;
+for (const name of ["Module", "instantiate"]) {
+    const plain = WebAssembly[name];
+    WebAssembly[name] = function (...values) {
+        compiled++;
+        return new.target ? new plain(...values) : plain(...values);
+    };
+}
+const { components, grid, hasSimd, methods: offered, ready, Scene, soften } = await import("../scenes.js");
+const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
+
+function offers(definition, method) {
+    try {
+        new Scene({ ...definition, methods: [method] }).free();
+        return true;
+    } catch (error) {
+        assert.equal(error.name, "TypeError");
+        return false;
+    }
+}
+
+function native(words) {
+    return new Promise((resolve, reject) =>
+        execFile(program, words, (error, out, complaint) => {
+            if (error && error.code !== 1) reject(new Error(complaint));
+            else resolve(out.trim());
+        }),
+    );
+}
+
+/** A rope of n links in a plane, held at one end. */
+function rope(more = {}) {
+    return new Scene({
+        ...grid({ count: [5], axes: 2, spacing: 0.5, stiffness: 300, damping: 0.2, pinned: ["firstX"] }),
+        mass: 0.1,
+        gravity: [0, -9.81],
+        ...more,
+    });
+}
+
+await test("nothing is compiled by an import", () => assert.equal(compiled, 0));
+await test("the first use compiles, ready() once more does not", async () => {
+    assert.equal(hasSimd(), !scalar);
+    rope().free();
+    assert.equal(compiled, 1);
+    await ready();
+    assert.equal(compiled, 1);
+});
+if (scalar) WebAssembly.validate = validate;
+
+const steps = { rope: 7, cloth: 19, jelly: 9, chain: 5, water: 13 };
+const usual = presetNames.flatMap((scene) => methods.map((method) => [{ scene }, method]));
+const further = [
+    [{ scene: "rope", mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 }, "leapfrog"],
+    [{ scene: "cloth", size: 12, damping: 0.01, drag: 0.02 }, "leapfrog"],
+    [{ scene: "cloth", size: 12, damping: 3 }, "leapfrog"],
+    [{ scene: "jelly", damping: 0.03 }, "rk4"],
+    [{ scene: "water", size: 40, drag: 2 }, "srkn6"],
+];
+let compared = 0;
+for (const [settings, method] of [...usual, ...further]) {
+    const made = preset(grid, settings);
+    const { scene: name, endMass } = settings;
+    if (!offers(made.definition, method)) continue;
+    compared++;
+    await test(`the hash of spring-scene: ${Object.values(settings).join(" ")}, ${method}`, async () => {
+        const n = endMass ? 150 : steps[name];
+        const words = [
+            "--scene",
+            name,
+            "--method",
+            method,
+            "--steps-per-frame",
+            n,
+            "--duration",
+            2,
+            "--hash",
+        ];
+        const names = {
+            size: "size",
+            damping: "damping",
+            drag: "drag",
+            mass: "mass",
+            stiffness: "stiffness",
+        };
+        names.endMass = "end-mass";
+        for (const [key, option] of Object.entries(names))
+            if (settings[key] !== undefined) words.push(`--${option}`, settings[key]);
+        const { start, settings: all } = made;
+        const poke = [
+            0.3,
+            0.4 * all.length,
+            start.at(-2) * 0.3,
+            name === "water" ? 5e4 : 2,
+            all.length ** 2 / 20,
+        ];
+        const pushes = new Pushes(made);
+        if (name === "chain") {
+            const scene = new Scene({ ...made.definition, methods: [method] });
+            takeSteps(scene, method, 1 / (60 * n), 120 * n);
+            assert.equal(hashOf(scene), await native(words));
+            return scene.free();
+        }
+        words.push("--poke", poke.join(","));
+        const [at, x, y, peak, area] = poke;
+        pushes.add({ start: at, x, y, peak, area });
+        const scene = new Scene({ ...made.definition, methods: [method, "leapfrog"], force: pushes.force });
+        for (let frame = 0; frame < 120; frame++) if (takeSteps(scene, method, 1 / (60 * n), n) < n) break;
+        assert.equal(hashOf(scene), await native(words));
+        scene.free();
+    });
+}
+note(`${compared} scenes and methods`);
+
+await test("methods have an order and a number of force evaluations", () => {
+    assert.deepEqual(
+        offered()
+            .map(({ name }) => name)
+            .sort(),
+        [...methods].sort(),
+    );
+    const { order, forcesPerStep } = offered().find(({ name }) => name === "rk4");
+    assert.deepEqual([order, forcesPerStep], [4, 4]);
+});
+
+await test("positions are one array, refilled, also when memory grows", () => {
+    const scene = rope();
+    const { positions } = scene;
+    const before = positions.slice();
+    const large = new Scene({ ...grid({ count: [300, 300], spacing: 0.1, stiffness: 1 }) });
+    scene.advance("leapfrog", 1e-3, 100);
+    assert.equal(scene.positions, positions);
+    assert.notDeepEqual(positions, before);
+    const exact = scene.get("position");
+    for (let i = 0; i < scene.particles; i++)
+        assert.deepEqual(
+            [...positions.slice(3 * i, 3 * i + 3)],
+            [Math.fround(exact[2 * i]), Math.fround(exact[2 * i + 1]), 0],
+        );
+    large.free();
+    scene.free();
+});
+
+await test("advance(n) is n times advance(1); frames take the same steps and interpolate", () => {
+    const [a, b, c] = [rope(), rope(), rope()];
+    a.advance("leapfrog", 1e-3, 100);
+    for (let i = 0; i < 100; i++) b.advance("leapfrog", 1e-3);
+    assert.equal(hashOf(a), hashOf(b));
+    let taken = 0;
+    for (let i = 0; i < 67; i++) taken += c.frame("leapfrog", 1e-3, 0.0015);
+    assert.equal(taken, 100);
+    assert.equal(hashOf(a), hashOf(c));
+    const now = Float64Array.from(c.get("position"));
+    c.frame("leapfrog", 1e-3, 0.0005); // the next step, of which nothing has passed yet
+    c.frame("leapfrog", 1e-3, 0.00025);
+    const next = c.get("position");
+    const middle = c.positions[3 * 4 + 1];
+    assert.ok(Math.abs(middle - (0.75 * now[9] + 0.25 * next[9])) < 1e-7, `${middle} ${now[9]} ${next[9]}`);
+    assert.equal(c.frame("leapfrog", 1e-3, 10), 250, "what is beyond 0.25 s is dropped");
+    assert.equal(c.frame("leapfrog", 1e-3, 10, 20), 20);
+    for (const scene of [a, b, c]) scene.free();
+});
+
+await test("a frame that fails changes nothing", () => {
+    const scene = rope({ maxSpeed: 1 });
+    for (let i = 0; i < 5; i++) scene.frame("leapfrog", 1e-3, 0.01);
+    const hash = hashOf(scene);
+    assert.throws(() => scene.frame("leapfrog", 1e-3, 0.2), {
+        code: "SPRING_EUNSTABLE",
+        message: /maxSpeed; dt is 0.001/,
+    });
+    assert.equal(hashOf(scene), hash);
+    assert.equal(scene.frame("leapfrog", 1e-3, 0.001), 1);
+    scene.free();
+});
+
+await test("pins, drive, masses", () => {
+    const scene = rope({ editable: true });
+    scene.pin(4);
+    scene.drive(4, [1, 1], 0.1);
+    scene.advance("leapfrog", 1e-3, 100);
+    const [x, y] = scene.get("position", 4);
+    assert.ok(Math.abs(x - 1) < 1e-12 && Math.abs(y - 1) < 1e-12, `${x} ${y}`);
+    scene.drive(4, null);
+    scene.advance("leapfrog", 1e-3, 100);
+    assert.deepEqual([...scene.get("velocity", 4)], [0, 0]);
+    scene.unpin(4);
+    scene.setMass([1e6], 3);
+    const [, before] = scene.get("velocity", 3);
+    scene.advance("leapfrog", 1e-3);
+    assert.ok(Math.abs(scene.get("velocity", 3)[1] - before + 9.81e-3) < 1e-6);
+    scene.free();
+});
+
+await test("links: get, set, cut, tear, tension, pieces", () => {
+    const scene = rope({ editable: true });
+    assert.deepEqual(scene.getLink(2), { a: 2, b: 3, rest: 0.5, stiffness: 300, damping: 0.2 });
+    assert.equal(scene.findLink(3, 2), 2);
+    assert.equal(scene.findLink(0, 2), -1);
+    scene.setLink(2, { rest: 0.4 });
+    assert.equal(scene.tension(2), 300 * (0.5 - 0.4));
+    const links = scene.getLinks();
+    links.stiffness.fill(600);
+    scene.setLinks(links);
+    assert.equal(scene.getLink(0).stiffness, 600);
+    assert.deepEqual([...scene.tear(1.2)], [2]);
+    assert.deepEqual([...scene.tear(Infinity)], []);
+    assert.deepEqual([...scene.tear([0.5, Infinity, 0.5, Infinity])], [0]);
+    scene.cut(3);
+    assert.deepEqual([...scene.components().component], [0, 1, 1, 2, 3]);
+    assert.equal(components(3, [{ a: 0, b: 2, rest: 1, stiffness: 1 }]).count, 2);
+    scene.free();
+});
+
+await test("slack links do not push", () => {
+    const two = { axes: 2, position: [0, 0, 1, 0], pinned: [1, 0] };
+    for (const tensionOnly of [false, true]) {
+        const scene = new Scene({ ...two, links: [{ a: 0, b: 1, rest: 2, stiffness: 5 }], tensionOnly });
+        scene.advance("leapfrog", 1e-3, 10);
+        assert.equal(scene.get("velocity", 1)[0] > 0, !tensionOnly);
+        scene.free();
+    }
+});
+
+await test("held forces act until they are changed", () => {
+    const scene = new Scene({ axes: 1, position: [0, 0], mass: [1, 2], heldForces: true });
+    scene.set("force", [3], 1);
+    scene.advance("leapfrog", 0.5, 4);
+    assert.deepEqual([...scene.get("velocity")], [0, 3]);
+    assert.deepEqual([...scene.get("force")], [0, 3]);
+    scene.free();
+});
+
+await test("transform, by rows and as a Matrix4 has it; gravity; at rest; base and component", () => {
+    const scene = new Scene({
+        axes: 1,
+        position: [1, 2],
+        component: 1,
+        base: [5, 0, 6, 7, 0, 8],
+    });
+    assert.deepEqual([...scene.positions], [5, 1, 6, 7, 2, 8]);
+    assert.ok(scene.atRest(0, 0));
+    scene.setGravity([2]);
+    assert.ok(!scene.atRest(0, 1));
+    scene.advance("euler", 1);
+    assert.deepEqual([...scene.get("velocity")], [2, 2]);
+    scene.free();
+    const flat = new Scene({ position: [1, 2, 3] });
+    flat.transform([0, -1, 0, 10, 1, 0, 0, 20, 0, 0, 1, 30]);
+    assert.deepEqual([...flat.positions], [8, 21, 33]);
+    flat.transform([0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1]);
+    assert.deepEqual([...flat.get("position")], [-11, 28, 63]);
+    flat.free();
+});
+
+await test("contacts: shapes, motion, friction, which touch", () => {
+    const drop = (collider, more = {}) => {
+        const scene = new Scene({
+            position: [0.3, 1, 0],
+            gravity: [0, -10, 0],
+            colliders: 2,
+            particleRadius: 0.1,
+            ...more,
+        });
+        scene.setColliders(collider ? [collider] : []);
+        scene.advance("leapfrog", 1e-3, 2000);
+        const state = [...scene.get("position"), ...scene.get("velocity"), scene.touching()[0]];
+        scene.free();
+        return state;
+    };
+    const close = (a, b) => assert.ok(Math.abs(a - b) < 1e-9, `${a}, not ${b}`);
+    assert.ok(drop(null)[1] < -18);
+    const plane = drop({ shape: "plane", normal: [0, 7, 0] });
+    close(plane[1], 0.1);
+    assert.equal(plane[6], 1);
+    close(drop({ shape: "box", at: [0, -1, 0], half: [1, 0.5, 1], radius: 0.2 })[1], -0.2);
+    const lifted = drop({ shape: "plane", at: [0, -2, 0], velocity: [0, 1, 0] });
+    close(lifted[1], 0.1); // the plane has risen by 2 m
+    close(lifted[4], 1);
+    const ball = drop({ shape: "sphere", at: [0.3, 0, 0], radius: 0.5 }); // on its top
+    close(ball[1], 0.6);
+    close(
+        drop({ shape: "capsule", at: [-1, 0, 0], to: [1, 0, 0], radius: 0.5, velocity: [0, 0, 0] })[1],
+        0.6,
+    );
+    const slides = drop({ shape: "plane" }, { velocity: [1, 0, 0] });
+    close(slides[3], 1);
+    const stops = drop({ shape: "plane", friction: 1 }, { velocity: [1, 0, 0] });
+    close(stops[3], 0);
+    const flat = new Scene({ axes: 2, position: [0, 1], gravity: [0, -10], colliders: 1 });
+    flat.setColliders([{ shape: "plane", at: [0, 0], normal: [0, 1], restitution: 1 }]);
+    flat.advance("leapfrog", 1e-3, 500);
+    assert.ok(flat.get("velocity")[1] > 0);
+    for (const [collider, name, message] of [
+        [
+            { shape: "cone" },
+            "TypeError",
+            /^colliders\[0\].shape must be one of plane, sphere, capsule, box, got "cone"/,
+        ],
+        [
+            { shape: "sphere", radius: -1 },
+            "RangeError",
+            "colliders[0].radius must be a finite number >= 0, got -1",
+        ],
+        [
+            { shape: "plane", at: [0, NaN] },
+            "RangeError",
+            "colliders[0].at[1] must be a finite number, got NaN",
+        ],
+        [
+            { shape: "plane", normal: [0, 0, 0] },
+            "RangeError",
+            'colliders[0].normal must be a direction, got "0,0,0"',
+        ],
+        [
+            { shape: "plane", restitution: 2 },
+            "RangeError",
+            "colliders[0].restitution must be a number from 0 to 1, got 2",
+        ],
+        [
+            { shape: "box", axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
+            "RangeError",
+            /^colliders must be valid: the axes of a box/,
+        ],
+        [{ shape: "box", colour: 1 }, "TypeError", "the option colour is unknown"],
+    ])
+        assert.throws(() => flat.setColliders([collider]), { name, message });
+    const sphere = { shape: "sphere", radius: 1 };
+    assert.throws(() => flat.setColliders([sphere, sphere]), /^RangeError: colliders.length must be at most/);
+    assert.throws(() => flat.advance("euler", 1e-3), /euler does not support colliders/);
+    flat.free();
+    const none = rope();
+    assert.throws(() => none.setColliders([sphere]), /defined without colliders/);
+    assert.throws(() => none.touching(), /defined without colliders/);
+    assert.throws(
+        () => new Scene({ axes: 1, position: [0], colliders: 1 }),
+        /axes must be 2 or 3 with colliders, got 1/,
+    );
+    assert.throws(() => rope({ colliders: 33 }), /colliders must be an integer from 0 to 32, got 33/);
+    assert.throws(() => rope({ particleRadius: -1 }), /particleRadius must be a finite number >= 0, got -1/);
+    none.free();
+});
+
+await test("soften makes steps stable", () => {
+    const definition = { ...grid({ count: [9, 9], spacing: 0.1, stiffness: 1e6 }), mass: 0.01 };
+    const dt = 1 / 240;
+    const scene = new Scene({ ...definition, links: soften(definition, dt) });
+    assert.ok(dt <= 0.5 * scene.stableStep() * (1 + 1e-12) && 0.5 * scene.stableStep() <= 1.4 * dt);
+    scene.free();
+});
+
+await test("a callback: forces by position and velocity; what it throws; it cannot call its scene", () => {
+    const seen = [];
+    const scene = new Scene({
+        axes: 2,
+        position: [1, 0],
+        velocity: [0, 3],
+        forceUsesVelocity: true,
+        force(t, [x, y], [fx, fy], [vx, vy]) {
+            seen.push([t, x[0], y[0], vx[0], vy[0]]);
+            fx[0] -= 4 * x[0];
+            fy[0] -= 4 * y[0];
+        },
+    });
+    scene.advance("leapfrog", 1e-3);
+    assert.deepEqual(seen[0], [0, 1, 0, 0, 3]);
+    assert.ok(Math.abs(scene.get("velocity")[0] + 4e-3) < 1e-8);
+    const hash = hashOf(scene);
+    scene.force = (t) => {
+        new Scene({ ...grid({ count: [200, 200], spacing: 1, stiffness: 1 }) }).free(); // memory grows
+        if (t > 0.002) throw new SyntaxError("mine");
+    };
+    assert.throws(() => scene.advance("leapfrog", 1e-3, 5), { name: "SyntaxError", message: "mine" });
+    assert.equal(hashOf(scene), hash);
+    for (const call of [() => scene.time, () => scene.free(), () => scene.advance("leapfrog", 1)]) {
+        scene.force = call;
+        assert.throws(() => scene.advance("leapfrog", 1e-3), /must not call its own scene/);
+    }
+    scene.force = null;
+    scene.advance("leapfrog", 1e-3);
+    scene.free();
+});
+
+await test("snapshots: back to them, with the callback; none of another scene", () => {
+    const push = (t, x, [fx]) => fx.fill(1);
+    const scene = rope({ force: push });
+    const saved = scene.snapshot();
+    scene.advance("leapfrog", 1e-3, 50);
+    const hash = hashOf(scene);
+    scene.force = null;
+    scene.advance("leapfrog", 1e-3, 50);
+    scene.restore(saved);
+    assert.equal(scene.time, 0);
+    assert.equal(scene.force, push);
+    scene.advance("leapfrog", 1e-3, 50);
+    assert.equal(hashOf(scene), hash);
+    const other = rope();
+    assert.throws(() => other.restore(saved), /snapshot must be a snapshot of this scene/);
+    assert.throws(() => other.restore({}), TypeError);
+    scene.free();
+    other.free();
+});
+
+await test("errors name field and value, and change nothing", () => {
+    const good = { axes: 2, position: [0, 0, 1, 0], links: [{ a: 0, b: 1, rest: 1, stiffness: 5 }] };
+    const refused = (run, name, message) => assert.throws(run, { name, message });
+    const scene = (more) => () => new Scene({ ...good, ...more });
+    const finite = "a finite number >= 0, also when it is divided by a mass";
+    for (const [more, name, message] of [
+        [{ axes: 4 }, "RangeError", "axes must be 1, 2 or 3, got 4"],
+        [{ position: [0, 0, 1] }, "RangeError", "position.length must be a multiple of 2, got 3"],
+        [{ position: 3 }, "TypeError", "position must be an array, got 3"],
+        [{ position: [0, 0, NaN, 0] }, "RangeError", "position[2] must be a finite number, got NaN"],
+        [{ velocity: [0, 0, 0, Infinity] }, "RangeError", "velocity[3] must be a finite number, got Infinity"],
+        [{ velocity: [0] }, "RangeError", "velocity.length must be 4, got 1"],
+        [
+            { mass: [1, -2] },
+            "RangeError",
+            "mass[1] must be a finite number > 0 with a finite reciprocal, got -2",
+        ],
+        [{ mass: 0 }, "RangeError", "mass must be a finite number > 0 with a finite reciprocal, got 0"],
+        [{ pinned: [1] }, "RangeError", "pinned.length must be 2, got 1"],
+        [{ gravity: [0, NaN] }, "RangeError", "gravity[1] must be a finite number, got NaN"],
+        [{ drag: -1 }, "RangeError", `drag must be ${finite}, got -1`],
+        [{ drag: "1" }, "TypeError", 'drag must be a finite number, got "1"'],
+        [{ maxSpeed: -1 }, "RangeError", "maxSpeed must be a finite number >= 0, got -1"],
+        [{ methods: ["rk5"] }, "TypeError", /^method must be one of euler, .* got "rk5"$/],
+        [{ methods: ["rkn8"], tensionOnly: true }, "TypeError", /^rkn8 and srkn6 require undamped links/],
+        [{ axes: 1, tensionOnly: true }, "TypeError", "tensionOnly requires 2 or 3 axes"],
+        [{ colour: 1 }, "TypeError", "the option colour is unknown"],
+        [{ force: 1 }, "TypeError", "force must be a function or null, got 1"],
+        [{ component: 2 }, "RangeError", "component must be an integer from 0 to 1, got 2"],
+        [
+            { links: [{ a: 0, b: 2, rest: 1, stiffness: 1 }] },
+            "RangeError",
+            /^links\[0\].b must be the index of ano/,
+        ],
+        [
+            { links: [{ a: -1, b: 1, rest: 1, stiffness: 1 }] },
+            "RangeError",
+            /^links\[0\].a must be .* got -1$/,
+        ],
+        [
+            { links: [{ a: 0, b: 1, rest: 1, stiffness: -3 }] },
+            "RangeError",
+            `links[0].stiffness must be ${finite}, got -3`,
+        ],
+        [
+            { links: [{ a: 0, b: 1, rest: 1 }] },
+            "TypeError",
+            "links[0].stiffness must be a number, got undefined",
+        ],
+        [
+            { links: { ends: [0, 1], rest: [1, 2], stiffness: 1 } },
+            "RangeError",
+            "links.rest.length must be 1, got 2",
+        ],
+        [
+            { links: { ends: [0], rest: 1, stiffness: 1 } },
+            "RangeError",
+            "links.ends.length must be even, got 1",
+        ],
+    ])
+        refused(scene(more), name, message);
+    refused(
+        () => grid({ count: [0], spacing: 1, stiffness: 1 }),
+        "RangeError",
+        "count[0] must be an integer >= 1, got 0",
+    );
+    refused(
+        () => grid({ count: [3], spacing: -1, stiffness: 1 }),
+        "RangeError",
+        "spacing must be a finite number > 0, got -1",
+    );
+    refused(
+        () => grid({ count: [1e5, 1e5], spacing: 1, stiffness: 1 }),
+        "RangeError",
+        /^count must be small enough/,
+    );
+    refused(() => grid({ count: [2e4, 2e4], spacing: 1, stiffness: 1 }), "RangeError", /^no memory for/);
+    refused(
+        () => grid({ count: [3], spacing: 1, stiffness: 1, pinned: ["top"] }),
+        "TypeError",
+        /^pinned must be a list of/,
+    );
+    const one = scene({})();
+    const hash = hashOf(one);
+    for (const [run, name, message] of [
+        [() => one.advance("leapfrog", NaN), "RangeError", "dt must be a finite number, got NaN"],
+        [() => one.advance("leapfrog", 0.1, -1), "RangeError", "steps must be an integer >= 0, got -1"],
+        [() => one.advance("rk4", 0.1), "TypeError", "the scene is defined without the method rk4"],
+        [() => one.frame("leapfrog", 0, 1), "RangeError", "dt must be a finite number > 0, got 0"],
+        [() => one.frame("leapfrog", 1, -1), "RangeError", "elapsed must be a finite number >= 0, got -1"],
+        [() => one.set("position", [1, NaN]), "RangeError", "position[1] must be a finite number, got NaN"],
+        [() => one.set("position", [1, 2], 2), "RangeError", "first + count must be at most 2, got 3"],
+        [() => one.set("speed", [1, 2]), "TypeError", /^quantity must be one of/],
+        [() => one.set("force", [1, 2]), "TypeError", "the scene is defined without heldForces"],
+        [() => one.get("position", -1), "RangeError", "first must be an integer >= 0, got -1"],
+        [() => one.pin(0), "TypeError", "the scene is defined without editable"],
+        [() => one.tear(1), "TypeError", "the scene is defined without editable"],
+        [
+            () => one.drive(0, [1, 1], 1),
+            "RangeError",
+            "particle must be pinned, and its velocity finite, got 0",
+        ],
+        [() => one.drive(7, null), "RangeError", "particle must be an index below 2, got 7"],
+        [() => one.getLink(1), "RangeError", "link must be an index below 1, got 1"],
+        [() => one.transform([1]), "RangeError", "matrix.length must be 12 or 16, got 1"],
+    ])
+        refused(run, name, message);
+    assert.equal(hashOf(one), hash);
+    one.free();
+    one.free();
+    refused(() => one.time, "TypeError", "the scene has been freed");
+});
+
+await test("an explosion throws with a code, and the state is the one before", () => {
+    const scene = rope();
+    scene.advance("leapfrog", 1e-3, 10);
+    const hash = hashOf(scene);
+    assert.throws(() => scene.advance("euler", 1, 1e4), {
+        code: "SPRING_ENONFINITE",
+        message: /dt is 1, the stable step of euler is/,
+    });
+    assert.equal(hashOf(scene), hash);
+    scene.free();
+});
+
+await test("1000 scenes share an instance; memory is released by free, using and the garbage collector", async () => {
+    const size = { count: [40, 40], spacing: 0.1, stiffness: 1 };
+    const bytes = () => process.memoryUsage().arrayBuffers + process.memoryUsage().external;
+    const make = () => new Scene(grid(size));
+    for (let i = 0; i < 20; i++) make().free();
+    const before = bytes();
+    for (let i = 0; i < 1000; i++) {
+        const scene = make();
+        if (i % 2) scene.free();
+        else scene[Symbol.dispose ?? Symbol.for("Symbol.dispose")]();
+    }
+    const grown = bytes() - before;
+    assert.ok(grown < 2e7, `grown by ${grown} bytes`);
+    assert.equal(compiled, 1);
+    if (!globalThis.gc) return;
+    const held = [];
+    for (let round = 0; round < 20; round++) {
+        for (let i = 0; i < 50; i++) make();
+        globalThis.gc();
+        await new Promise((resolve) => setTimeout(resolve, 5));
+        held.push(bytes());
+    }
+    assert.ok(held[19] - held[9] < 5e7, `from ${held[9]} to ${held[19]} bytes`);
+});
+
+done();

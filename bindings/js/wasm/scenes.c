@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What springstep/scenes calls besides the functions of the library: definitions and grids from numbers, frames with
+ * interpolation, positions as floats. With the library it makes the WebAssembly module, whose one import is the callback of
+ * scenes in JavaScript.
+ */
+#include <springstep/clock.h>
+#include <springstep/scene.h>
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPORT(name) __attribute__((export_name(#name), used))
+
+/* The callback of the scene that is being called, in JavaScript. */
+__attribute__((import_module("springstep"), import_name("force"))) void call_force(double t,
+                                                                                   const double *const *position,
+                                                                                   const double *const *velocity,
+                                                                                   double *const *force);
+
+/* definition.js fills these structures. */
+_Static_assert(sizeof(spring_link) == 32 && offsetof(spring_link, rest) == 8, "spring_link");
+_Static_assert(sizeof(spring_collider) == 8 * 31 && offsetof(spring_collider, axis) == 8 * 7 &&
+                   offsetof(spring_collider, velocity) == 8 * 20 && offsetof(spring_collider, restitution) == 8 * 30,
+               "spring_collider");
+
+/* A scene and what is shown of it. */
+typedef struct shown {
+    spring_scene *scene;
+    size_t bytes;
+    void *saved; /* [bytes] during a frame; NULL before the first */
+    uint32_t axes;
+    uint32_t component; /* of an element of `positions` that receives the first axis */
+    size_t particles, links;
+    spring_clock clock;
+    double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
+    float *positions;     /* [3*particles] */
+} shown;
+
+/* What def_check() found. */
+static struct {
+    const char *field;
+    uint32_t index;
+} failure;
+
+EXPORT(failure_field) const char *failure_field(void)
+{
+    return failure.field;
+}
+
+EXPORT(failure_index) uint32_t failure_index(void)
+{
+    return failure.index;
+}
+
+static void force_of_javascript(void *user, double t, size_t particles, const double *const position[3],
+                                const double *const velocity[3], double *const force[3])
+{
+    (void)user;
+    (void)particles;
+    call_force(t, position, velocity, force);
+}
+
+EXPORT(scene_set_force) spring_status scene_set_force(shown *s, bool called)
+{
+    return spring_scene_set_force(s->scene, called ? force_of_javascript : NULL, NULL);
+}
+
+EXPORT(scene_free) void scene_free(shown *s)
+{
+    if (s == NULL)
+        return;
+    free(s->scene);
+    free(s->saved);
+    free(s->before);
+    free(s->now);
+    free(s->positions);
+    free(s);
+}
+
+/* The one definition that is being filled. */
+static spring_scene_def def;
+
+/* A new definition. All arrays are those of JavaScript's heap in this module, and copied by scene_new(). */
+EXPORT(def_begin)
+void def_begin(uint32_t axes, uint32_t flags, uint32_t methods, size_t particles, const double *position,
+               const double *velocity, const double *mass, double mass_all, const uint8_t *pinned)
+{
+    def = (spring_scene_def){.axes = axes,
+                             .flags = flags,
+                             .methods = methods,
+                             .particles = particles,
+                             .position = position,
+                             .velocity = velocity,
+                             .mass = mass,
+                             .mass_all = mass_all,
+                             .pinned = pinned};
+}
+
+EXPORT(def_links) void def_links(size_t links, const spring_link *link)
+{
+    def.links = links;
+    def.link = link;
+}
+
+EXPORT(def_forces)
+void def_forces(double x, double y, double z, double drag, double max_speed, bool called)
+{
+    def.gravity[0] = x;
+    def.gravity[1] = y;
+    def.gravity[2] = z;
+    def.drag = drag;
+    def.max_speed = max_speed;
+    def.force = called ? force_of_javascript : NULL;
+}
+
+EXPORT(def_contacts) void def_contacts(uint32_t colliders, double particle_radius)
+{
+    def.colliders = colliders;
+    def.particle_radius = particle_radius;
+}
+
+/* Checks the definition; failure_field() and failure_index() say what is wrong with it. */
+EXPORT(def_check) spring_status def_check(void)
+{
+    size_t index;
+    const spring_status status = spring_scene_check(&def, &failure.field, &index);
+    failure.index = index;
+    return status;
+}
+
+EXPORT(def_soften) spring_status def_soften(double dt, double fraction, spring_link *link)
+{
+    return spring_links_soften(&def, dt, fraction, link);
+}
+
+EXPORT(scene_show) const float *scene_show(shown *s)
+{
+    spring_scene_getf(s->scene, SPRING_POSITION, s->positions + s->component, 3, 0, s->particles);
+    return s->positions;
+}
+
+/* The defined scene, valid by def_check(); NULL: no memory. `base`, which may be NULL, is what positions contain where no
+   axis writes. */
+EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
+{
+    shown *s = calloc(1, sizeof *s);
+    if (s == NULL)
+        return NULL;
+    s->axes = def.axes > 0 ? def.axes : 3;
+    s->component = component;
+    s->particles = def.particles;
+    s->links = def.links;
+    spring_scene_bytes(&def, &s->bytes);
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, s->bytes);
+    s->positions = calloc(3 * s->particles, sizeof *s->positions);
+    if (memory != NULL && s->positions != NULL && spring_scene_init(memory, s->bytes, &def, &s->scene) == SPRING_OK) {
+        if (base != NULL)
+            memcpy(s->positions, base, 3 * s->particles * sizeof *base);
+        scene_show(s);
+        return s;
+    }
+    if (s->scene == NULL)
+        free(memory);
+    scene_free(s);
+    return NULL;
+}
+
+EXPORT(scene_positions) const float *scene_positions(const shown *s)
+{
+    return s->positions;
+}
+
+EXPORT(scene_of) spring_scene *scene_of(const shown *s)
+{
+    return s->scene;
+}
+
+EXPORT(scene_bytes) size_t scene_bytes(const shown *s)
+{
+    return s->bytes;
+}
+
+EXPORT(scene_advance) spring_status scene_advance(shown *s, spring_method m, double dt, double n)
+{
+    return spring_scene_advance(s->scene, m, dt, (uint64_t)n);
+}
+
+/* Positions have changed otherwise than by steps: frames do not interpolate across that. */
+EXPORT(scene_moved) const float *scene_moved(shown *s)
+{
+    if (s->before != NULL) {
+        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+        memcpy(s->before, s->now, s->particles * s->axes * sizeof *s->now);
+    }
+    return scene_show(s);
+}
+
+static bool begin_frames(shown *s)
+{
+    const size_t numbers = s->particles * s->axes;
+    s->saved = aligned_alloc(SPRING_SCENE_ALIGN, s->bytes);
+    s->before = calloc(numbers, sizeof *s->before);
+    s->now = calloc(numbers, sizeof *s->now);
+    if (s->saved != NULL && s->before != NULL && s->now != NULL) {
+        scene_moved(s);
+        return true;
+    }
+    free(s->saved);
+    free(s->before);
+    free(s->now);
+    s->saved = NULL;
+    s->before = s->now = NULL;
+    return false;
+}
+
+static spring_status take_frame(shown *s, spring_method m, double dt, uint64_t n)
+{
+    memcpy(s->saved, s->scene, s->bytes);
+    spring_status status = spring_scene_advance(s->scene, m, dt, n - 1);
+    if (status == SPRING_OK) {
+        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+        status = spring_scene_advance(s->scene, m, dt, 1);
+    }
+    if (status == SPRING_OK) {
+        double *const before = s->before;
+        s->before = s->now;
+        s->now = before;
+    } else {
+        memcpy(s->scene, s->saved, s->bytes);
+    }
+    spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+    return status;
+}
+
+/* Takes the steps that are due after `elapsed` seconds, at most `most`, and shows the positions at the time of the clock,
+   between the last two states. *steps is their number. After an error, the scene and the clock are as before. */
+EXPORT(scene_frame)
+spring_status scene_frame(shown *s, spring_method m, double dt, double elapsed, double most, uint32_t *steps)
+{
+    if (s->before == NULL && !begin_frames(s))
+        return SPRING_ENOMEM;
+    double alpha;
+    spring_clock clock = s->clock;
+    const uint64_t n = spring_clock_tick(&clock, elapsed, dt, (uint64_t)most, &alpha);
+    const spring_status status = n > 0 ? take_frame(s, m, dt, n) : SPRING_OK;
+    if (status != SPRING_OK)
+        return status;
+    s->clock = clock;
+    *steps = (uint32_t)n;
+    for (size_t i = 0, k = 0; i < s->particles; i++)
+        for (uint32_t a = 0; a < s->axes; a++, k++)
+            s->positions[3 * i + s->component + a] = (float)(s->before[k] + alpha * (s->now[k] - s->before[k]));
+    return SPRING_OK;
+}
+
+/* The present links of a scene. */
+EXPORT(scene_links) void scene_links(const shown *s, spring_link *link)
+{
+    for (size_t i = 0; i < s->links; i++)
+        spring_scene_get_link(s->scene, i, &link[i]);
+}
+
+static spring_grid grid;
+
+EXPORT(grid_begin)
+spring_status grid_begin(uint32_t x, uint32_t y, uint32_t z, uint32_t axes, bool height, double spacing, double stretch,
+                         uint32_t families, double stiffness, double damping, uint32_t pinned, size_t size[2])
+{
+    grid = (spring_grid){.count = {x, y, z},
+                         .axes = axes,
+                         .height = height,
+                         .spacing = spacing,
+                         .stretch = stretch,
+                         .families = families,
+                         .stiffness = stiffness,
+                         .damping = damping,
+                         .pinned = pinned};
+    return spring_grid_size(&grid, &size[0], &size[1]);
+}
+
+EXPORT(grid_fill) spring_status grid_fill(double *position, uint8_t *pinned, spring_link *link)
+{
+    return spring_grid_fill(&grid, position, pinned, link);
+}
+
+/* Methods in the order of tables: a number, or -1 behind the last. */
+EXPORT(method_at) int32_t method_at(uint32_t i)
+{
+    return i < SPRING_METHOD_COUNT ? (int32_t)spring_method_at(i) : -1;
+}
+
+EXPORT(method_order) int32_t method_order(spring_method m)
+{
+    const spring_method_info *info = spring_method_describe(m);
+    return info->scenes ? info->order : 0;
+}
+
+EXPORT(method_forces) int32_t method_forces(spring_method m)
+{
+    return spring_method_describe(m)->forces_per_step;
+}

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// A lab is a pane of the page: a preset scene, what disturbs it, and what is drawn of it.
+import { grid, methods, Scene } from "springstep/scenes";
+import { hashOf, preset, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
+import { Hand } from "./grip.mjs";
+import { Ball, peakOfDrop, random, wind } from "./weather.mjs";
+
+const frameRate = 60;
+
+export const methodTable = new Map(); // by name, in the order of tables
+
+/** Fills methodTable, which compiles the library if it is not compiled yet. */
+export function listMethods() {
+    for (const method of methods()) methodTable.set(method.name, method);
+}
+
+function takes(definition, method) {
+    try {
+        new Scene({ ...definition, methods: [method] }).free();
+        return true;
+    } catch (error) {
+        if (error instanceof TypeError) return false;
+        throw error;
+    }
+}
+
+export class Lab {
+    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene may be left out. */
+    constructor(run) {
+        if (methodTable.size === 0) listMethods();
+        this.preset = preset(grid, { ...run, calm: undefined, size: run.size || undefined });
+        const { definition, count, settings } = this.preset;
+        this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
+        // Of water nothing is edited, and links that cannot be edited take less memory.
+        const editable = run.scene !== "water";
+        this.scene = new Scene({ ...definition, editable, methods: [...this.taken] });
+        const { particles, links } = this.scene;
+        Object.assign(this, { particles, links, count, length: settings.length });
+        this.massRatio = settings.endMass === undefined ? 1 : settings.endMass / settings.mass;
+        this.ends = definition.links.ends;
+        this.pinned = definition.pinned;
+        this.cut = new Uint8Array(links);
+        this.pushes = new Pushes(this.preset);
+        this.hand = new Hand(this);
+        this.ball = null;
+        this.windSpeed = this.dropRate = this.nextDrop = this.pending = 0;
+        this.random = random(1);
+        this.now = this.xyz();
+        this.before = this.now;
+        if (run.scene === "water" && !run.calm) this.pushes.pokeWater();
+        this.feel();
+    }
+
+    free() {
+        this.scene.free();
+    }
+
+    // Without a callback steps take one pass over memory, with the same bits. But leapfrog keeps the force of damped links from
+    // step to step as a part of the state, and evaluates it again after a change of the callback. So there the callback stays.
+    feel() {
+        const needed = this.windSpeed > 0 || this.preset.settings.damping > 0 || this.pushes.any;
+        if (needed !== (this.scene.force !== null)) this.scene.force = needed ? this.force : null;
+    }
+
+    force = (t, position, force) => {
+        this.pushes.force(t, position, force);
+        if (this.windSpeed > 0) wind(this.windSpeed, this.count, t, position, force);
+    };
+
+    /** Positions as x y z with z up, in double precision. */
+    xyz() {
+        const { axes } = this.preset.definition;
+        const position = this.scene.get("position");
+        if (axes === 3) return position;
+        const xyz = this.preset.start.slice();
+        for (let i = 0; i < this.particles; i++) {
+            if (axes === 2) [xyz[3 * i], xyz[3 * i + 2]] = [position[2 * i], position[2 * i + 1]];
+            else xyz[3 * i + 2] = position[i];
+        }
+        return xyz;
+    }
+
+    takes(method) {
+        return this.taken.has(method);
+    }
+
+    // All of n steps, and what is drawn before the last of them. If the scene explodes, false, and it is as it was.
+    take(method, dt, n) {
+        const saved = this.scene.snapshot();
+        try {
+            this.scene.advance(method, dt, n - 1);
+            this.before = this.xyz();
+            this.scene.advance(method, dt, 1);
+            if (Number.isFinite(this.energies.total)) return true;
+        } catch (error) {
+            if (!error.code) throw error;
+        }
+        this.scene.restore(saved);
+        return false;
+    }
+
+    /** Takes n steps of 1/(60 stepsPerFrame) s, or as many as the scene survives; returns how many. */
+    advance(method, stepsPerFrame, n) {
+        if (n === 0) return 0;
+        const dt = 1 / (frameRate * stepsPerFrame);
+        const duration = n * dt;
+        this.hand.pull(duration);
+        this.letItRain(this.time + duration);
+        this.ball?.advance(duration);
+        const all = this.take(method, dt, n);
+        const taken = all ? n : takeSteps(this.scene, method, dt, n);
+        this.now = this.xyz();
+        if (!all) this.before = this.now; // what take() has seen is not a state of this scene
+        this.pushes.forget(this.time);
+        this.feel();
+        return taken;
+    }
+
+    /** How many steps are due after so many seconds; what is beyond the most is dropped. */
+    due(seconds, stepsPerFrame, most) {
+        if (!(seconds >= 0)) return 0; // the first frame may have begun before the page
+        const dt = 1 / (frameRate * stepsPerFrame);
+        const total = this.pending + seconds;
+        this.pending = total % dt;
+        return Math.min(Math.round((total - this.pending) / dt), most);
+    }
+
+    /** x y z of all particles, between the last two states: at the time of the clock. */
+    positions(stepsPerFrame) {
+        const alpha = Math.min(this.pending * frameRate * stepsPerFrame, 1);
+        const { before, now } = this;
+        return Float32Array.from(now, (to, i) => before[i] + alpha * (to - before[i]));
+    }
+
+    get time() {
+        return this.scene.time;
+    }
+
+    get energies() {
+        return this.scene.energy;
+    }
+
+    /** The largest distance of a particle from its start [m]. */
+    get farthest() {
+        const { start } = this.preset;
+        let most = 0;
+        for (let i = 0; i < start.length; i += 3)
+            most = Math.max(
+                most,
+                Math.hypot(
+                    this.now[i] - start[i],
+                    this.now[i + 1] - start[i + 1],
+                    this.now[i + 2] - start[i + 2],
+                ),
+            );
+        return most;
+    }
+
+    stableStep(method) {
+        return this.scene.stableStep(method);
+    }
+
+    hash() {
+        return hashOf(this.scene);
+    }
+
+    /** Root mean square of the distances to the particles of another lab [m]. */
+    distance(other) {
+        const sum = this.now.reduce((all, x, i) => all + (x - other.now[i]) ** 2, 0);
+        return Math.sqrt(sum / this.particles);
+    }
+
+    /** A push of `peak` newtons at most, as spring-scene --poke. */
+    poke(x, y, peak, area, start = this.time) {
+        this.pushes.add({ start, x, y, peak, area });
+        this.feel();
+    }
+
+    grab(particle) {
+        this.hand.grab(particle);
+    }
+
+    drag(x, y, z) {
+        this.hand.target = [x, y, z];
+    }
+
+    release() {
+        this.hand.release();
+    }
+
+    /** Cuts the links that are longer than `most` times their rest length. */
+    tear(most) {
+        for (const link of this.scene.tear(most)) this.cut[link] = 1;
+    }
+
+    /** Cuts all links of a particle. */
+    snip(particle) {
+        for (let i = 0; i < this.links; i++)
+            if (!this.cut[i] && (this.ends[2 * i] === particle || this.ends[2 * i + 1] === particle)) {
+                this.scene.cut(i);
+                this.cut[i] = 1;
+            }
+    }
+
+    wind(speed) {
+        this.windSpeed = this.preset.definition.axes === 3 ? speed : 0;
+        this.feel();
+        if (this.scene.force) this.scene.force = this.force; // a kept force is of the wind before
+    }
+
+    rain(dropsPerSecond) {
+        this.dropRate = dropsPerSecond;
+        this.nextDrop = this.time;
+    }
+
+    letItRain(until) {
+        if (!(this.dropRate > 0)) return;
+        const gap = 1 / this.dropRate;
+        const { start, settings } = this.preset;
+        for (; this.nextDrop < until; this.nextDrop += gap)
+            this.pushes.add({
+                start: this.nextDrop + gap * this.random(),
+                x: start.at(-3) * this.random(),
+                y: start.at(-2) * this.random(),
+                peak: peakOfDrop(settings.mass),
+                area: (settings.length / 16) ** 2,
+            });
+        this.feel();
+    }
+
+    dropBall(x, y, height) {
+        this.ball = new Ball(this, x, y, height);
+    }
+
+    /** [m] of the water at a place. */
+    level(x, y) {
+        const spacing = this.length / (this.count[0] - 1);
+        const [i, j] = [x, y].map((each) => Math.round(each / spacing));
+        return this.now[3 * (i + this.count[0] * j) + 2];
+    }
+}
