@@ -436,7 +436,8 @@ static void rests_in_a_groove(void)
     free(s);
 }
 
-/* A particle that a collider was set around comes out at its surface, and gains no velocity. Pinned particles stay. */
+/* A particle that a collider was set around comes out at its surface, and gains no velocity, neither at rest nor when it
+   moves inwards. Pinned particles stay. */
 static void inside_at_first(void)
 {
     for (int shape = 0; shape < 4; shape++)
@@ -460,6 +461,12 @@ static void inside_at_first(void)
                 CHECK_CLOSE(sqrt(now[0] * now[0] + now[1] * now[1] + now[2] * now[2]), 1, 10 * EPS, "at the surface");
             if (shape == SPRING_BOX)
                 CHECK_CLOSE(now[1], 2, 10 * EPS, "through the nearest face");
+            const double inwards[] = {-0.1, -0.2, -0.05};
+            spring_scene_set(s, SPRING_POSITION, x, 0, 0, 1);
+            spring_scene_set(s, SPRING_VELOCITY, inwards, 0, 0, 1);
+            CHECK(spring_scene_advance(s, with_contacts[m], 0.01, 1) == SPRING_OK, "out");
+            spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+            CHECK_BELOW(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 0.25, "at most the speed that it had");
             CHECK(now[3] == (double)(scalar)x[3] && now[4] == (double)(scalar)x[4], "a pinned particle passes through");
             free(s);
         }
@@ -491,6 +498,30 @@ static void heavy_damping(void)
     free(s);
 }
 
+/* A heavy damper presses a particle into the floor. Restitution does not throw it back: it is no impact. */
+static void pressed_by_damping(void)
+{
+    const double x[] = {0, 0, 0, 0, 1, 0}, v[] = {0, 0, 0, 0, -1, 0};
+    const spring_link link = {0, 1, 1, 10, 1000};
+    const spring_scene_def def = {.particles = 2,
+                                  .links = 1,
+                                  .position = x,
+                                  .velocity = v,
+                                  .link = &link,
+                                  .gravity = {0, -9.81, 0},
+                                  .colliders = 1};
+    const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .restitution = 0.9};
+    spring_scene *s = scene_of(&def);
+    spring_scene_set_colliders(s, &ground, 1);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1) == SPRING_OK, "stable");
+    double now[3], speed[3];
+    spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+    spring_scene_get(s, SPRING_VELOCITY, speed, 0, 0, 1);
+    CHECK_CLOSE(now[1], 0, 10 * EPS, "stays on the floor");
+    CHECK_BELOW(fabs(speed[1]), 10 * EPS, "at rest");
+    free(s);
+}
+
 static const test tests[] = {
     {"the same bits", same_everywhere},
     {"far away", far_away},
@@ -505,6 +536,7 @@ static const test tests[] = {
     {"rests in a groove", rests_in_a_groove},
     {"inside at first", inside_at_first},
     {"heavy damping", heavy_damping},
+    {"pressed by damping", pressed_by_damping},
 };
 
 int main(void)
