@@ -4,8 +4,8 @@ import { Plot } from "./plots.mjs";
 import { presets, sentences } from "./presets.mjs";
 
 const $ = (id) => document.getElementById(id);
-const names = { water: "Water", cloth: "Cloth", rope: "Rope", jelly: "Jelly" };
-const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01 }; // [N s/m] a notch
+const names = { water: "Water", cloth: "Cloth", rope: "Rope", jelly: "Jelly", curtain: "Curtain" };
+const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01, curtain: 0.01 }; // [N s/m] a notch
 const report = "../report/index.html"; // beside the page, where tools/report writes it
 const drawEvery = 150; // [ms] numbers and plots
 
@@ -148,7 +148,8 @@ export class Controls {
     }
 
     sizeText(size) {
-        return { water: `${size}²`, cloth: `${size}²`, rope: `${size}`, jelly: `${size}³` }[this.state.scene];
+        const { scene } = this.state;
+        return scene === "rope" ? `${size}` : scene === "jelly" ? `${size}³` : `${size}²`;
     }
 
     buildActions() {
@@ -169,6 +170,12 @@ export class Controls {
             rope: () => [
                 button("poke", "Poke", () => actions.poke(side, 0, 30, 0.1)),
                 button("heavy", "Heavy end, 1 : 10⁴", () => actions.remakeWith("heavy", !state.heavy)),
+            ],
+            curtain: () => [
+                button("push", "Push a sphere through", () => {
+                    actions.push(side / 2, -side / 2);
+                    actions.letGo();
+                }),
             ],
             jelly: () => [
                 button("poke", "Poke", () => actions.poke(side / 2, side / 2, 250, (side * side) / 3)),

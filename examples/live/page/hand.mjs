@@ -7,7 +7,7 @@ const pokeEvery = 70; // [ms] while a pointer is drawn over the water
 const reach = 56; // [CSS px] from a particle that is grabbed
 
 export class Hand {
-    /** act: {poke(x, y), grab(particle), drag([x, y, z]), release(), snip(particle)}; scissors(): is cutting chosen? */
+    /** act: {poke(x, y), push(x, z), letGo(), grab(particle), drag([x, y, z]), release(), snip(particle)}; scissors(): is cutting chosen? */
     constructor(stage, cursor, act, scissors) {
         Object.assign(this, { stage, cursor, act, scissors });
         this.doing = null;
@@ -55,6 +55,13 @@ export class Hand {
             Object.assign(this.doing, { kind: "poke", last: performance.now() });
             return;
         }
+        if (stage.scene === "curtain") {
+            const at = stage.onCurtain(pane, ray);
+            if (!at) return;
+            act.push(...at);
+            this.doing.kind = "push";
+            return;
+        }
         const particle = stage.nearest(pane, ray, reach);
         if (this.scissors()) {
             this.doing.kind = "cut";
@@ -80,6 +87,9 @@ export class Hand {
                 act.poke(...at);
                 doing.last = performance.now();
             }
+        } else if (doing.kind === "push") {
+            const at = stage.onCurtain(doing.pane, ray);
+            if (at) act.push(...at);
         } else if (doing.kind === "cut") {
             const particle = stage.nearest(doing.pane, ray, reach / 3);
             if (particle !== null) act.snip(particle);
@@ -92,6 +102,7 @@ export class Hand {
     up(by) {
         if (!this.doing || this.doing.by !== by) return;
         if (this.doing.kind === "hold") this.act.release();
+        if (this.doing.kind === "push") this.act.letGo();
         this.doing = null;
     }
 
@@ -112,7 +123,7 @@ export class Hand {
             this.move(...this.place, "keyboard");
         } else if (event.key === "Enter" && !this.doing) {
             this.begin(...this.place, "keyboard");
-            if (this.doing.kind !== "hold") this.doing = null;
+            if (this.doing.kind !== "hold" && this.doing.kind !== "push") this.doing = null;
         } else this.up("keyboard");
         this.cursor.classList.toggle("holds", this.doing?.by === "keyboard");
         this.cursor.style.left = `${this.place[0]}px`;

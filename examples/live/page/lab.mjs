@@ -2,6 +2,7 @@
 // A lab is a pane of the page: a preset scene, what disturbs it, and what is drawn of it.
 import { grid, methods, Scene } from "springstep/scenes";
 import { hashOf, preset, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
+import { curtain, Sphere } from "./curtain.mjs";
 import { Hand } from "./grip.mjs";
 import { Ball, peakOfDrop, random, wind } from "./weather.mjs";
 
@@ -15,6 +16,7 @@ export function listMethods() {
 }
 
 function takes(definition, method) {
+    if (definition.colliders && method === "euler") return false; // it has no contacts, and fails when it advances
     try {
         new Scene({ ...definition, methods: [method] }).free();
         return true;
@@ -28,7 +30,8 @@ export class Lab {
     /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene may be left out. */
     constructor(run) {
         if (methodTable.size === 0) listMethods();
-        this.preset = preset(grid, { ...run, calm: undefined, size: run.size || undefined });
+        const asked = { ...run, calm: undefined, size: run.size || undefined };
+        this.preset = run.scene === "curtain" ? curtain(grid, asked) : preset(grid, asked);
         const { definition, count, settings } = this.preset;
         this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
         // Of water nothing is edited, and links that cannot be edited take less memory.
@@ -43,6 +46,7 @@ export class Lab {
         this.pushes = new Pushes(this.preset);
         this.hand = new Hand(this);
         this.ball = null;
+        this.sphere = null;
         this.windSpeed = this.dropRate = this.nextDrop = this.pending = 0;
         this.random = random(1);
         this.now = this.xyz();
@@ -105,6 +109,7 @@ export class Lab {
         const dt = 1 / (frameRate * stepsPerFrame);
         const duration = n * dt;
         this.hand.pull(duration);
+        if (this.sphere) this.scene.setColliders([this.sphere.advance(duration)]);
         this.letItRain(this.time + duration);
         this.ball?.advance(duration);
         const all = this.take(method, dt, n);
@@ -113,6 +118,10 @@ export class Lab {
         if (!all) this.before = this.now; // what take() has seen is not a state of this scene
         this.pushes.forget(this.time);
         this.feel();
+        if (this.sphere?.gone) {
+            this.sphere = null;
+            this.scene.setColliders([]);
+        }
         return taken;
     }
 
@@ -186,6 +195,17 @@ export class Lab {
 
     release() {
         this.hand.release();
+    }
+
+    /** A sphere comes from the viewer, or goes on at (x, z) [m]. */
+    push(x, z) {
+        this.sphere ??= new Sphere(x, z);
+        Object.assign(this.sphere, { target: [x, z], held: true });
+    }
+
+    /** Without a pointer the sphere goes on to where it vanishes. */
+    letGo() {
+        if (this.sphere) this.sphere.held = false;
     }
 
     /** Cuts the links that are longer than `most` times their rest length. */

@@ -133,11 +133,13 @@ const actions = {
         touch("rain", { rate });
         controls.show();
     },
+    push: (x, z) => touch("push", { x, z }),
+    letGo: () => physics.order("letGo"),
     ball: (x, y, height) => touch("ball", { x, y, height }),
     hash: () => physics.ask("hash"),
     /** That prints the hash of the first pane; "": there is none. */
     command() {
-        if (touched || state.wind > 0 || state.rain > 0) return "";
+        if (touched || presets[state.scene].own || state.wind > 0 || state.rain > 0) return "";
         return commandOf(run(), state.method, state.steps, controls.time).join(" ");
     },
 };
@@ -148,6 +150,8 @@ const hand = new Hand(
     document.getElementById("cursor"),
     {
         poke: (x, y) => actions.poke(x, y, 4e4, (stage.info.length ** 2 / 64) * 0.7),
+        push: actions.push,
+        letGo: actions.letGo,
         grab: (particle) => touch("grab", { particle }),
         drag: (to) => physics.order("drag", { to }),
         release: () => physics.order("release"),
@@ -219,9 +223,15 @@ window.springstepLab = {
         actions.poke(x, y, force, area);
         return physics.ask("time");
     },
+    push: async (x, z) => {
+        actions.push(x, z);
+        actions.letGo();
+        return physics.ask("time");
+    },
     position: (particle) => physics.ask("position", particle),
     pixel: (particle) => stage.pixelOf(0, particle),
     difference: () => physics.ask("difference"),
+    sphere: () => physics.ask("sphere"),
     tornLinks: () => physics.ask("tornLinks"),
     command: () => actions.command(),
     times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The scenes of the page: what they begin with, what they say, and the command that gives the same bits.
 
-/** steps: a frame of 1/60 s, half the stable step of leapfrog and as spring-scene takes them; speed: of the playback. */
+/** steps: a frame of 1/60 s, half the stable step of leapfrog and as spring-scene takes them; speed: of the playback; own:
+    spring-scene has no such scene. */
 export const presets = {
     water: { steps: 13, speed: 1 / 8, sizes: [17, 25, 33, 49] },
     cloth: { steps: 19, speed: 1, sizes: [13, 25, 33] },
     rope: { steps: 7, speed: 1, sizes: [10, 20, 40] },
     jelly: { steps: 9, speed: 1, sizes: [5, 8, 10] },
+    curtain: { steps: 15, speed: 1, sizes: [19, 25, 33], own: true },
 };
 
 /** A rope whose end is 10^4 times as heavy as its other particles; it takes stiff links, and many steps. */
@@ -47,5 +49,9 @@ export const sentences = {
     jelly: [
         "Pull a corner and let go. Put Euler beside leapfrog: the same springs, the same steps, and one of them tears itself apart.",
         "scene-energy",
+    ],
+    curtain: [
+        "Press on it to push a sphere through, and drag it to the sides. Links pull and never push, they tear where they get too long, and no particle passes through the sphere, however fast it is.",
+        "contacts",
     ],
 };

@@ -13,11 +13,12 @@ import {
 } from "three";
 
 import { Cloth } from "./scenes/cloth.mjs";
+import { Curtain } from "./scenes/curtain.mjs";
 import { Jelly } from "./scenes/jelly.mjs";
 import { Rope } from "./scenes/rope.mjs";
 import { Water } from "./scenes/water.mjs";
 
-const views = { water: Water, cloth: Cloth, rope: Rope, jelly: Jelly };
+const views = { water: Water, cloth: Cloth, rope: Rope, jelly: Jelly, curtain: Curtain };
 
 function themeOf(element) {
     const style = getComputedStyle(element);
@@ -209,6 +210,15 @@ export class Stage {
         const { length } = this.info;
         const [x, y] = [hit.x + length / 2, hit.y + length / 2];
         return x >= 0 && x <= length && y >= 0 && y <= length ? [x, y] : null;
+    }
+
+    /** Where the ray meets the plane of a curtain, [x, z] of the scene, or null beside it. */
+    onCurtain(pane, ray) {
+        const hit = ray.intersectPlane(new Plane(new Vector3(0, 1, 0), 0), new Vector3());
+        if (!hit) return null;
+        const [x, , z] = this.toScene(pane, hit);
+        const { length } = this.info;
+        return x > -0.1 && x < length + 0.1 && z > -length - 0.1 && z < 0.1 ? [x, z] : null;
     }
 
     /** The particle nearest to the ray, if it is within so many CSS pixels; of those that are alike the foremost. */

@@ -8,6 +8,7 @@ import { presets } from "./presets.mjs";
 const longestTick = 0.1; // [s]; beyond, the scene falls behind
 const tooFar = 15; // lengths of the scene: what has gone so far has exploded, though its numbers hold on for a while
 const tearing = 2.2; // lengths over rest lengths at which links tear while something is held
+const frail = 1.25; // at which those of a curtain tear
 
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}
@@ -92,18 +93,20 @@ function advanceAll(n, evenExploded) {
     if (due > 0) reference.lab.advance(reference.method, referenceSteps(), due);
 }
 
-function tearHeld() {
+function tear() {
+    if (run.scene === "curtain") for (const lab of everyLab()) lab.tear(frail);
     if (run.scene === "cloth")
         for (const pane of panes) if (pane.held && !pane.exploded) pane.lab.tear(tearing);
 }
 
 function picture(pane) {
     const { lab } = pane;
-    const ball = lab.ball?.place ?? null;
+    const ball = lab.ball?.place ?? lab.sphere?.place ?? null;
     const positions = lab.positions(steps);
     const { method, exploded, micros, held } = pane;
     const error = reference && !exploded ? lab.distance(reference.lab) : NaN;
-    const torn = run.scene === "cloth" ? lab.cut.slice() : new Uint8Array(0);
+    const tears = run.scene === "cloth" || run.scene === "curtain";
+    const torn = tears ? lab.cut.slice() : new Uint8Array(0);
     return {
         positions,
         torn,
@@ -127,15 +130,17 @@ function show(kind, more) {
 function tick(elapsed) {
     const due = panes.map((pane) => pane.lab.due(Math.min(elapsed, longestTick), steps, 10 * steps));
     advanceAll(due[0], false);
-    tearHeld();
+    tear();
     show("frame");
 }
 
 // What the page's tests and buttons ask for, with an answer.
 const questions = {
     step(frames) {
-        for (let frame = 0; frame < frames; frame++) advanceAll(steps, true);
-        tearHeld();
+        for (let frame = 0; frame < frames; frame++) {
+            advanceAll(steps, true);
+            tear();
+        }
         show("frame", { asked: true });
         return panes[0].lab.time;
     },
@@ -144,6 +149,7 @@ const questions = {
     energy: () => panes[0].lab.energies.total,
     position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
     difference: () => (reference ? panes[0].lab.distance(reference.lab) : NaN),
+    sphere: () => panes[0].lab.sphere?.place ?? null,
     tornLinks: () => panes[0].lab.cut.reduce((sum, each) => sum + each, 0),
 };
 
@@ -165,6 +171,8 @@ const orders = {
     rain: ({ rate }) => everyLab().forEach((lab) => lab.rain(rate)),
     wind: ({ speed }) => everyLab().forEach((lab) => lab.wind(speed)),
     ball: ({ x, y, height }) => everyLab().forEach((lab) => lab.dropBall(x, y, height)),
+    push: ({ x, z }) => everyLab().forEach((lab) => lab.push(x, z)),
+    letGo: () => everyLab().forEach((lab) => lab.letGo()),
     grab: ({ particle }) => {
         for (const pane of panes) pane.held = true;
         everyLab().forEach((lab) => lab.grab(particle));
