@@ -113,7 +113,7 @@ typedef enum spring_shape {
 /** A convex body that particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored, and with two
  * axes so are the third elements. */
 typedef struct spring_collider {
-    spring_shape shape;
+    spring_shape shape;    /**< of the body */
     double at[3];          /**< [m] a point of the plane; the centre; or one end of the axis of a capsule */
     double to[3];          /**< [m] capsule: the other end */
     double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body. Box: its unit axes */
