@@ -20,7 +20,7 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 #include "bands.h"
 #include "directions.h"
 #include "particles.h"
-#include "contacts.h"
+#include "contact_kernels.h"
 #include "stretch.h"
 #if SPRING_VECTOR < 64
 #include "unbanded.h"

@@ -104,7 +104,7 @@ SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c
 
 enum { ENDS_STEP = 1, PREDICTS = 2 };
 
-/* In contacts.h, with all axes of a particle at once. */
+/* In contact_kernels.h, with all axes of a particle at once. */
 static particle_kernel move_kick_drift_contact, move_implicit_kick_contact, move_implicit_kick_drift_contact,
     move_last_stage_contact;
 
