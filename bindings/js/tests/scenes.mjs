@@ -422,7 +422,11 @@ await test("errors name field and value, and change nothing", () => {
         [{ position: [0, 0, 1] }, "RangeError", "position.length must be a multiple of 2, got 3"],
         [{ position: 3 }, "TypeError", "position must be an array, got 3"],
         [{ position: [0, 0, NaN, 0] }, "RangeError", "position[2] must be a finite number, got NaN"],
-        [{ velocity: [0, 0, 0, Infinity] }, "RangeError", "velocity[3] must be a finite number, got Infinity"],
+        [
+            { velocity: [0, 0, 0, Infinity] },
+            "RangeError",
+            "velocity[3] must be a finite number, got Infinity",
+        ],
         [{ velocity: [0] }, "RangeError", "velocity.length must be 4, got 1"],
         [
             { mass: [1, -2] },
