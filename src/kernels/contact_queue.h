@@ -34,30 +34,30 @@ SPRING_INLINE real load_axis(const particle_vector *p, const scalar *quantity, u
     return vec_load(each);
 }
 
-SPRING_INLINE void store_axis(const particle_vector *p, scalar *quantity, uint32_t axis, real value)
-{
-    if (!p->quads) {
-        vec_store(quantity + axis * p->stride + p->first, value);
-        return;
-    }
-    scalar each[lanes];
-    vec_store(each, value);
-    for (size_t i = 0; i < lanes; i++)
-        quantity[quad_size * (p->first + i) + axis] = each[i];
-}
-
 SPRING_INLINE real3 load_axes(const particle_vector *p, const scalar *quantity)
 {
     return (real3){load_axis(p, quantity, 0), load_axis(p, quantity, 1),
                    p->axes > 2 ? load_axis(p, quantity, 2) : splat(0)};
 }
 
+/* Of a quad all four numbers are set: what a call that failed left in the unused ones could be NaN. */
 SPRING_INLINE void store_axes(const particle_vector *p, scalar *quantity, real3 value)
 {
-    store_axis(p, quantity, 0, value.x);
-    store_axis(p, quantity, 1, value.y);
-    if (p->axes > 2)
-        store_axis(p, quantity, 2, value.z);
+    if (!p->quads) {
+        vec_store(quantity + p->first, value.x);
+        vec_store(quantity + p->stride + p->first, value.y);
+        if (p->axes > 2)
+            vec_store(quantity + 2 * p->stride + p->first, value.z);
+        return;
+    }
+    scalar each[quad_size][lanes];
+    vec_store(each[0], value.x);
+    vec_store(each[1], value.y);
+    vec_store(each[2], value.z);
+    vec_store(each[3], splat(0));
+    for (size_t i = 0; i < lanes; i++)
+        for (size_t a = 0; a < quad_size; a++)
+            quantity[quad_size * (p->first + i) + a] = each[a][i];
 }
 
 /* The operations of the following functions are those of particles.h, so that a particle that touches nothing has the
