@@ -254,6 +254,9 @@ static void bad_colliders(void)
     check_refused(s, c, SPRING_EINVAL, "no unit vector");
     c = (spring_collider){.shape = (spring_shape)4, .axis = {{0, 1, 0}}};
     check_refused(s, c, SPRING_EINVAL, "no such shape");
+    c = (spring_collider){
+        .shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}, .at = {(double)SCALAR_MAX, (double)SCALAR_MAX, 0}};
+    check_refused(s, c, SPRING_EINVAL, "its distance from the origin is infinite");
     c = (spring_collider){.shape = SPRING_SPHERE, .radius = -1};
     check_refused(s, c, SPRING_EINVAL, "negative radius");
     free(s);
@@ -406,6 +409,14 @@ static void touching_is_cleared(void)
     spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1);
     CHECK(touches(s, 0, 0, 0), "the floor is gone");
     free(s);
+    s = on_floor(0);
+    spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1); /* both buffers have bits */
+    spring_scene_set_colliders(s, NULL, 0);
+    for (int i = 0; i < 3; i++) {
+        CHECK(touches(s, 0, 0, 0), "no colliders");
+        spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 1);
+    }
+    free(s);
 }
 
 static void rests(void)
@@ -430,15 +441,42 @@ static void rests(void)
 /* In a groove each plane presses the particle against the other. */
 static void rests_in_a_groove(void)
 {
-    const double x[] = {0.1, 1, 0};
-    const spring_scene_def def = {.particles = 1, .position = x, .gravity = {0, -10, 0}, .drag = 1, .colliders = 2};
-    const spring_collider c[] = {{.shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}},
-                                 {.shape = SPRING_PLANE, .axis = {{-0.8, 0.6, 0}}}};
-    spring_scene *s = scene_of(&def);
-    spring_scene_set_colliders(s, c, 2);
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 2000) == SPRING_OK, "falls into it");
-    CHECK(spring_scene_at_rest(s, 1e-6, 1e-6), "both planes balance it");
-    free(s);
+    static const double slope[] = {15, 30, 45, 60, 75}; /* degrees */
+    for (int k = 0; k < 5; k++) {
+        const double x[] = {0.1, 1, 0}, angle = slope[k] / 180 * 3.14159265358979, c0 = cos(angle), s0 = sin(angle);
+        const spring_scene_def def = {.particles = 1, .position = x, .gravity = {0, -10, 0}, .drag = 1, .colliders = 2};
+        const spring_collider c[] = {{.shape = SPRING_PLANE, .axis = {{s0, c0, 0}}},
+                                     {.shape = SPRING_PLANE, .axis = {{-s0, c0, 0}}}};
+        spring_scene *s = scene_of(&def);
+        spring_scene_set_colliders(s, c, 2);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 4000) == SPRING_OK, "falls into it");
+        CHECK(spring_scene_at_rest(s, 1e-3, 1e-3), "both planes balance it");
+        free(s);
+    }
+}
+
+/* Deflected by the floor into a wall, whichever comes first in the list. */
+static void floor_and_wall(void)
+{
+    for (int order = 0; order < 2; order++)
+        for (int m = 0; m < method_count; m++) {
+            const double x[] = {0, 0.02, 0}, v[] = {12, -4.8, 0};
+            const spring_scene_def def = {
+                .methods = 1u << with_contacts[m], .particles = 1, .position = x, .velocity = v, .colliders = 2};
+            spring_collider c[2];
+            c[order] = (spring_collider){.shape = SPRING_BOX,
+                                         .at = {0.15, 0.49, 0},
+                                         .half = {0.005, 0.5, 1},
+                                         .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+            c[1 - order] = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .restitution = 0.5};
+            spring_scene *s = scene_of(&def);
+            spring_scene_set_colliders(s, c, 2);
+            CHECK(spring_scene_advance(s, with_contacts[m], 1.0 / 60, 3) == SPRING_OK, "finite");
+            double now[3];
+            spring_scene_get(s, SPRING_POSITION, now, 0, 0, 1);
+            CHECK(now[0] <= 0.145 + 10 * EPS && now[1] >= -10 * EPS, "before the wall, above the floor");
+            free(s);
+        }
 }
 
 /* A particle that a collider was set around comes out at its surface, and gains no velocity, neither at rest nor when it
@@ -539,6 +577,7 @@ static const test tests[] = {
     {"touching is cleared", touching_is_cleared},
     {"rests", rests},
     {"rests in a groove", rests_in_a_groove},
+    {"floor and wall", floor_and_wall},
     {"inside at first", inside_at_first},
     {"heavy damping", heavy_damping},
     {"pressed by damping", pressed_by_damping},

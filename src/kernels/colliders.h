@@ -15,7 +15,7 @@
 #include "../simd/real3.h"
 #include "scene_kernels.h"
 
-/* When the pose of a collider is wanted. */
+/* The time of a pose. */
 typedef enum pose_time {
     STEP_START,
     STEP_END,
@@ -37,7 +37,7 @@ typedef struct contact_point {
     real along;   /* capsule: that point, 0 at `at` to 1 at `to`; else 0 */
 } contact_point;
 
-/* From a core at distance `arm`. At the core itself the normal is any. */
+/* From a core at distance `arm`. In the core itself the normal is +y. */
 SPRING_INLINE void set_round(contact_point *p, real3 from_core, scalar radius)
 {
     const real distance = vec_sqrt(dot3(from_core, from_core));
@@ -105,7 +105,7 @@ SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real 
     }
 }
 
-/* Below it a gap is a rounding error. */
+/* [m] Gaps below this are rounding errors. */
 SPRING_INLINE real contact_slop(const scene_collider *c, real3 x)
 {
     const scalar eps = sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
@@ -128,7 +128,7 @@ SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_poin
     return c->spins ? plus3(v, cross3(splat3(c->spin), p->arm)) : v;
 }
 
-/* Lanes whose particle may touch the collider on its way from x to x + d. A few of the others are found, too: with the radius
+/* Lanes whose particle may touch the collider on its way from x to x + d. It is conservative: with the radius
    R that includes the way of the collider, (R + |d|)^2 <= 17/16 R^2 + 17 d^2, and `reach` has the first term. */
 SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_squared)
 {

@@ -189,10 +189,10 @@ SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_ve
     const scalar h = m->contacts->h;
     const real3 x0 = queued_value(q, QUEUED_X0), v0 = queued_value(q, QUEUED_V0);
     const real3 x1 = queued_value(q, QUEUED_THIRD), v1 = queued_value(q, QUEUED_FOURTH);
-    const real3 way = minus3(x1, x0), w = times3(splat(1 / h), way), second_kick = minus3(v1, w);
+    const real3 way = minus3(x1, x0), w = over3(way, splat(h)), second_kick = minus3(v1, w);
     drifting d;
     d.x0 = x0;
-    d.accel = times3(splat(1 / h), minus3(v1, v0));
+    d.accel = over3(minus3(v1, v0), splat(h));
     d.d = way;
     d.w = w;
     d.free = p->free;

@@ -6,15 +6,16 @@
  *           kick, d = h w the displacement, V the velocity of the surface, n the normal, theta the fraction of the step
  *           before the contact; w holds the fraction kappa of the kick of the step (leapfrog 1/2, symplectic Euler 1).
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
- *           2. Time of impact, by Newton's method on the gap along the path. The gap to a convex body is a convex function
- *              of the fraction, so the method never overshoots: theta <- theta + gap/(rate of approach).
+ *           2. Time of impact, by Newton's method on the gap along the path. The gap to a convex body that does not turn is a
+ *              convex function of the fraction, so the method never overshoots: theta <- theta + gap/(rate of approach).
  *           3. Impact, with u = w + (theta - kappa) h a - V, if n.u < 0: the impulse -(1 + e) n.u n, and friction of at
  *              most mu times that along -u_t. The rest of the path, (1 - theta) h, has the changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. A contact in the first half of the step: lambda n with
  *              the lambda for which the path ends on the surface, and friction of at most mu lambda. Static friction holds
  *              a particle exactly: w = V, d = h V. In the second half, or at a second contact in the step: the path is
  *              projected to the tangent plane, and w loses its component into the collider.
- *           5. What is inside a collider at the end (corners, turning capsules) is moved to its surface, likewise.
+ *           5. Colliders before the last one that a particle touched are tested again, with its new path. A particle that
+ *              is still inside at the end (corners, turning capsules) is moved to the surface, likewise.
  *           Last kick, for colliders that were touched: v loses its component into the collider, with friction of at most mu
  *           times that; static friction gives v = V exactly.
  * Order     2 with leapfrog, also across impacts and with sliding friction; see docs/evidence.md.
@@ -26,7 +27,7 @@
 
 #include "colliders.h"
 
-enum { impact_iterations = 4, friction_passes = 2, surface_iterations = 2, corner_passes = 2 };
+enum { impact_iterations = 8, friction_passes = 2, surface_iterations = 2, corner_passes = 2, stop_rounds = 32 };
 
 /* A fraction of a step that is a rounding error. */
 static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON);
@@ -43,14 +44,14 @@ typedef struct drifting {
     scalar kappa; /* fraction of the kick of the step that w holds */
 } drifting;
 
-/* 1 for 0. */
+/* 1/a; 1 unless a > 0. */
 SPRING_INLINE real inverse_of(real a)
 {
     return 1 / select_real(a > 0, a, splat(1));
 }
 
-/* The change of a tangential velocity by friction, against it and at most `limit`. */
-SPRING_INLINE real3 slowed_by(real3 tangential, real limit)
+/* The part of a tangential velocity that friction removes, at most `limit`. */
+SPRING_INLINE real3 friction_loss(real3 tangential, real limit)
 {
     const real speed = vec_sqrt(dot3(tangential, tangential));
     return select3(speed > limit, times3(limit * inverse_of(speed), tangential), tangential);
@@ -66,7 +67,7 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
 {
     const real3 u = minus3(w, surface);
     const real rate = dot3(u, normal), lost = select_real(rate * h < 0, -rate, splat(0));
-    *slip = slowed_by(tangential_to(normal, u), c->friction * vec_abs(lost));
+    *slip = friction_loss(tangential_to(normal, u), c->friction * vec_abs(lost));
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
@@ -176,7 +177,7 @@ SPRING_NOINLINE mask collide(const scene_collider *c, drifting *p)
     const mask bounces = hit & (rate * p->h < -contact_slop(c, p->x0)) & not_mask(p->touched & (fraction <= 0));
     if (any(bounces)) {
         const real impulse = -(1 + c->restitution) * rate;
-        const real3 friction = slowed_by(tangential_to(n, u), c->friction * vec_abs(impulse));
+        const real3 friction = friction_loss(tangential_to(n, u), c->friction * vec_abs(impulse));
         const real3 change = minus3(times3(impulse, n), friction);
         p->w = select3(bounces, plus3(p->w, change), p->w);
         p->d = select3(bounces, plus_scaled3(p->d, left, change), p->d);
@@ -232,7 +233,15 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t 
         add_bit(touched, i, hit);
         p->touched |= hit;
     }
-    mask moved = p->free;
+    const mask all_free = p->free;
+    for (unsigned i = 0; i + 1 < t->count; i++) {
+        p->free = all_free & with_bits(touched, UINT32_MAX << i << 1); /* deflected by a later collider */
+        if (!any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
+            continue;
+        add_bit(touched, i, collide(&t->collider[i], p));
+    }
+    p->free = all_free;
+    mask moved = all_free;
     for (int pass = 0; pass < corner_passes && any(moved); pass++) {
         const mask before = moved;
         moved = p->free & not_mask(p->free);
@@ -248,27 +257,43 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t 
     }
 }
 
-/* The last kick: velocities lose their components into the colliders that were touched. */
+/* The last kick: velocities lose their components into the colliders that were touched. With several colliders, projected
+   Gauss-Seidel: in further rounds each takes back what is too much, and adds what is missing. Friction acts in the first. */
 SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, const uint32_t *touched, pose_time when, mask free,
                                        const real3 *x, real3 *v)
 {
+    real3 normal[most_colliders], surface[most_colliders];
+    real pressed[most_colliders]; /* [m/s] along the normal */
+    mask touches[most_colliders], several = {0}, any_yet = {0};
     for (unsigned i = 0; i < t->count; i++) {
         const scene_collider *const c = &t->collider[i];
-        const mask touches = free & with_bits(touched, UINT32_C(1) << i);
-        if (!any(touches))
+        touches[i] = free & with_bits(touched, UINT32_C(1) << i);
+        if (!any(touches[i]))
             continue;
+        several |= any_yet & touches[i];
+        any_yet |= touches[i];
         contact_point at;
         find_contact(c, when, splat(0), x, &at);
-        const real3 surface = surface_velocity(c, &at), u = minus3(*v, surface);
-        const real rate = dot3(u, at.normal);
-        const mask enters = touches & (rate * t->h < 0);
-        const real3 tangential = tangential_to(at.normal, u);
-        const real limit = c->friction * vec_abs(rate);
+        normal[i] = at.normal;
+        surface[i] = surface_velocity(c, &at);
+        const real3 u = minus3(*v, surface[i]), tangential = tangential_to(at.normal, u);
+        const real rate = dot3(u, at.normal), limit = c->friction * vec_abs(rate);
+        const mask enters = touches[i] & (rate * t->h < 0);
         const mask slides = vec_sqrt(dot3(tangential, tangential)) > limit;
-        const real3 slip = slowed_by(tangential, limit);
-        const real3 slid = minus3(plus_scaled3(*v, -rate, at.normal), slip);
-        *v = select3(enters, select3(slides, slid, surface), *v);
+        const real3 slid = minus3(plus_scaled3(*v, -rate, at.normal), friction_loss(tangential, limit));
+        *v = select3(enters, select3(slides, slid, surface[i]), *v);
+        pressed[i] = select_real(enters, -rate, splat(0));
     }
+    for (int round = 1; round < stop_rounds && any(several); round++)
+        for (unsigned i = 0; i < t->count; i++) {
+            const mask again = several & touches[i];
+            if (!any(again))
+                continue;
+            const real wanted = pressed[i] - dot3(minus3(*v, surface[i]), normal[i]);
+            const real now = select_real(wanted * t->h > 0, wanted, splat(0));
+            *v = select3(again, plus_scaled3(*v, now - pressed[i], normal[i]), *v);
+            pressed[i] = select_real(again, now, pressed[i]);
+        }
 }
 
 /* See normal_kernel. */

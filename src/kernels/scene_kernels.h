@@ -13,10 +13,11 @@
 #include <stddef.h>
 
 enum {
-    padding = 16,       /* elements of the longest SIMD vector; every quantity has so many before and behind it */
-    most_bands = 32,    /* a block with shear and bend springs has 16 */
-    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
-    tile = 64           /* slots of a band whose forces are computed together, in the first-level cache */
+    padding = 16,        /* elements of the longest SIMD vector; every quantity has so many before and behind it */
+    most_colliders = 32, /* bits of a mask */
+    most_bands = 32,     /* a block with shear and bend springs has 16 */
+    nystrom_stages = 7,  /* of a Runge-Kutta-Nystrom method, after the first */
+    tile = 64            /* slots of a band whose forces are computed together, in the first-level cache */
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 

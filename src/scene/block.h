@@ -116,8 +116,8 @@ struct spring_scene {
 /* Places the colliders for a step from t0 to t1, into ARRAY_PLACED. */
 SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
 
-/* Removes from the acceleration of a particle what the colliders that it touches balance, as placed. Returns the rest. */
-SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, spring_scene *s, size_t particle,
+/* Removes from the acceleration of a particle the part that the colliders it touches balance. Returns the size of the rest. */
+SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t particle,
                                              double accel[3]);
 
 /* The bounds for the present links and masses. */
@@ -184,7 +184,7 @@ static inline scene_array touched_in(uint32_t buffer)
     return buffer == 0 ? ARRAY_TOUCHED_0 : ARRAY_TOUCHED_1;
 }
 
-/* The state no longer says that these particles touch colliders. */
+/* Clears the touched bits of these particles. */
 static inline void scene_clear_touched(spring_scene *s, size_t first, size_t count)
 {
     uint32_t *const touched = scene_memory(s, touched_in(s->buffer));

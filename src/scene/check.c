@@ -26,7 +26,6 @@ static def_error check_methods(uint32_t methods)
 
 static def_error check_contacts(const spring_scene_def *def)
 {
-    const uint32_t most_colliders = 32; /* bits of a mask */
     if (def->colliders > 0 && axes_of(def) == 1)
         return (def_error){SPRING_EUNSUPPORTED, "colliders", 0};
     if (def->colliders > most_colliders)

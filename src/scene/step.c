@@ -46,6 +46,7 @@ static void invalidate(spring_scene *s)
         for (size_t i = 0; i < s->layout.particles; i++)
             x[stride * i] = v[stride * i] = axis ? (scalar)NAN : 0;
     }
+    scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;
 }
 
@@ -180,17 +181,17 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         spring_scene_place_colliders(s, time_of(s), time_of(s));
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
-        double speed = 0, acceleration = 0, accel[3] = {0};
+        double speed = 0, accel[3] = {0};
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
             const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[stride * i] : 0;
             const double force = (double)all[a * s->layout.stride + stride * i] + held - s->drag * v;
             accel[a] = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed = spring_hypot(speed, fabs(v));
-            acceleration = spring_hypot(acceleration, fabs(accel[a]));
         }
-        if (s->colliders > 0)
-            acceleration = spring_scene_balanced(best_scene_kernels(), s, i, accel);
+        const double acceleration = s->colliders > 0
+                                        ? spring_scene_balanced(best_scene_kernels(), s, i, accel)
+                                        : spring_hypot(spring_hypot(fabs(accel[0]), fabs(accel[1])), fabs(accel[2]));
         if (!(speed <= v_tol) || !(acceleration <= a_tol))
             return false;
     }
