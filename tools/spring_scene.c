@@ -142,7 +142,7 @@ static const cli_program program = {
     .meaning = "energy_J is the sum of its parts kinetic_J, elastic_J and gravity_J (0 at the origin),\n"
                "max_displacement_m the largest distance of a particle from its start. A row for each frame, at\n"
                "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
-               "With --collider there is a column more, touching: the particles that touch a collider.\n\n"
+               "With --collider there is one more column, touching: the number of particles that touch a collider.\n\n"
                "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
     .shown = {"t_s", "energy_J"},
     .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o c.tsv",

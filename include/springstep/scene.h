@@ -110,7 +110,7 @@ typedef enum spring_shape {
     SPRING_BOX      /**< a box in any orientation; with a radius its edges are rounded */
 } spring_shape;
 
-/** A convex body that particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored, and with two
+/** A convex body that free particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored, and with two
  * axes so are the third elements. */
 typedef struct spring_collider {
     spring_shape shape;    /**< of the body */
@@ -121,9 +121,9 @@ typedef struct spring_collider {
     double radius;         /**< [m] >= 0 of a sphere or capsule; also rounds a box */
     double velocity[3];    /**< [m/s] of `at` */
     double velocity_to[3]; /**< [m/s] of `to` */
-    double
-        spin[3]; /**< [rad/s] angular velocity of the surface about `at` (capsule: about its axis). It enters friction
-                              only and does not turn the body. With two axes spin[2] */
+    /** [rad/s] angular velocity of the surface about `at` (capsule: about its axis), for friction only: the body does not
+        turn. With two axes spin[2] */
+    double spin[3];
     double friction;    /**< Coulomb coefficient >= 0 */
     double restitution; /**< 0 to 1: normal speed after an impact over that before */
 } spring_collider;
@@ -147,7 +147,7 @@ typedef struct spring_scene_def {
     void *user;                   /**< passed to force */
     double max_speed;             /**< [m/s] a step after which a free particle is faster along an axis fails with
                                      SPRING_EUNSTABLE; 0: no limit */
-    uint32_t colliders;           /**< room for so many colliders, at most 32; 0: none */
+    uint32_t colliders;           /**< maximum number of colliders, at most 32; 0: none */
     double particle_radius;       /**< [m] >= 0 of every particle, for contacts */
 } spring_scene_def;
 
@@ -236,7 +236,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * per step, because what the callback reads may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
  * Contacts, see spring_scene_set_colliders(), have order 2 with leapfrog and RK4, also across impacts, and order 1 with
- * symplectic Euler. They change no stable step.
+ * symplectic Euler. The stable step is the same with colliders.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
@@ -363,29 +363,34 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
 /**
  * Replaces all colliders of a scene.
  *
- * Colliders are given at their pose now, and then move at their velocities without end. A game sets them once a frame with
- * velocities that bring them to their next pose. A particle that is inside a collider is moved to its surface in the next
+  * Colliders are given at their pose now, and then move at their velocities until they are set again. In a game, set them once
+ * per frame, with the velocities that bring them to their next pose. A particle that is inside a collider is moved to its surface in the next
  * step, without a change of velocity. Pinned particles pass through colliders.
  *
- * An impact with the relative velocity u reverses the normal component times the restitution, and reduces the tangential one
- * by at most friction (1 + restitution) |u_normal|. The time of an impact within a step is found, so no particle passes
- * through a collider at any speed, and a bounce has order 2. Friction does not depend on the step: a particle that friction
- * can hold is held exactly. Colliders act in the order of their indices; in a wedge of several a particle may be inside one of
- * them by a fraction of its motion in a step. Links are not tested: a collider thinner than the distance between particles
- * passes between them. A step with negative dt is not the inverse of a step.
+  * An impact with the relative velocity u multiplies the normal component by -restitution and reduces the tangential
+ * component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is found, so a bounce has
+ * order 2, and no particle passes through a single collider that does not turn, at any speed. A capsule whose ends have
+ * different velocities turns: let it turn by a small angle per step. A particle that static friction can hold is held exactly,
+ * at any time step. An impact that moves less than 8 eps (|x| + radius) into the collider in a step is a rounding error, and
+ * does not bounce.
  *
- * With restitution 1, no friction and no damping, energy is not conserved exactly and may grow; see docs/evidence.md.
+ * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of them by a
+ * fraction of its motion in a step. Make a floor of one plane or box: at the seam of two boxes a particle can be caught. Links
+ * are not tested, so a thin collider can pass between two particles. A step with negative dt does not undo a step.
+ *
+  * With restitution 1, no friction and no damping, energy is not conserved: it grows, and faster in longer steps. See
+ * docs/evidence.md.
  *
  * @param[in] c      [count]; may be NULL if count is 0, which removes all colliders
  * @param[in] count  at most `colliders` of the definition
- * @return SPRING_OK; SPRING_EINVAL: NULL, an unknown shape, a number that is not finite in the precision of the scene, a
- *         negative radius, half size or friction, restitution outside 0 ... 1, axes that are not orthonormal to 1e-6;
- *         SPRING_ERANGE: count is too large; SPRING_EDISABLED: the definition has room for none
+ * @return SPRING_OK; SPRING_EINVAL: NULL, an unknown shape, a number that is not finite in the precision of the scene
+ *         (with the radius of particles, and for a plane axis[0] . at), a negative radius, half size or friction, restitution outside 0 ... 1, axes that are not orthonormal to 1e-6;
+ *         SPRING_ERANGE: count is too large; SPRING_EDISABLED: the definition has no colliders
  */
 SPRING_API spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count);
 
 /**
- * Copies which colliders particles first ... first + count - 1 touched in the last step: bit i stands for collider i. The
+ * Copies the masks of the colliders that particles first ... first + count - 1 touched in the last step. Bit i stands for collider i. The
  * bits are 0 after spring_scene_set_colliders(), after spring_scene_transform(), and for particles whose position or pin was
  * set.
  *
