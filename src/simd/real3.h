@@ -7,6 +7,9 @@
 
 typedef struct real3 {
     real x, y, z;
+#ifdef __TINYC__
+    real in_memory[2]; /* tcc 0.9.27 returns a structure of three floats wrongly, and one of five by its address */
+#endif
 } real3;
 
 SPRING_INLINE real3 splat3(const scalar v[3])
