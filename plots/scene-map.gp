@@ -17,7 +17,7 @@ row(s, m) = strcol("scene") eq scenes[s] && strcol("method") eq names[m]
 x(s, m, v) = row(s, m) && strcol("verdict") eq verdicts[v] ? 1000*column("dt_s") : NaN
 microseconds(step) = step > 0 ? sprintf("%.2g µs", 1e6*step) : "none"
 
-set xtics ("0.25" 0.25, "" 0.5, "1" 1, "" 2, "4" 4, "" 8, "16" 16, "" 32)
+set xtics ("0.25" 0.25, "" 0.5, "1" 1, "" 2, "4" 4, "" 8, "16" 16, "" 32, "64" 64, "" 128)
 set xlabel "step / ms"
 set ytics () scale 0
 longest = 0 # of the labels, in letters
@@ -38,7 +38,7 @@ do for [s = 1:5] {
     }
 }
 set logscale x
-set xrange [least:50]
+set xrange [least:200]
 set yrange [at(5, methods) + 0.7:-0.6]
 unset key
 unset grid

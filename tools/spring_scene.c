@@ -180,13 +180,14 @@ static void refuse_methods_without_contacts(void)
 {
     const spring_method m = (spring_method)method;
     if (colliders.count > 0 && (m == SPRING_EULER || spring_method_describe(m)->positions_only))
-        cli_fail(CLI_USAGE, "--collider: \"%s\" has no contacts; --method should be another", spring_method_name(m));
+        cli_fail(CLI_USAGE, "--collider: the method \"%s\" does not support contacts; --method should be another",
+                 spring_method_name(m));
 }
 
 static void set_colliders(spring_scene *scene, const spring_collider *c)
 {
     if (colliders.count > 0 && spring_scene_set_colliders(scene, c, (uint32_t)colliders.count) != SPRING_OK)
-        cli_fail(CLI_USAGE, "--collider: \"%s\" or one that follows has numbers that are too large", colliders.word[0]);
+        cli_fail(CLI_USAGE, "--collider: a number in \"%s\" or in a later collider is too large", colliders.word[0]);
 }
 
 /* What has no effect is a mistake. */

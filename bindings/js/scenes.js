@@ -411,7 +411,8 @@ export class Scene {
                   : "the step is not valid";
         const stable = this.stableStep(method);
         const error = new RangeError(`${what}; dt is ${dt}, the stable step of ${method} is ${stable}`);
-        error.code = status === unstable ? "SPRING_EUNSTABLE" : "SPRING_ENONFINITE";
+        if (status === unstable) error.code = "SPRING_EUNSTABLE";
+        if (status === notFinite) error.code = "SPRING_ENONFINITE";
         throw error;
     }
 }

@@ -328,11 +328,11 @@ static void draw_trouble(app *a, int width, int height)
         snprintf(what, sizeof what, "%s has exploded.", label);
         snprintf(then, sizeof then, "R starts again. Before that: M for another method, Up for shorter steps.");
     } else if (world_has_bodies(&a->world)) {
-        snprintf(what, sizeof what, "%s has no contacts.", label);
-        snprintf(then, sizeof then, "M takes another method.");
+        snprintf(what, sizeof what, "%s does not support contacts.", label);
+        snprintf(then, sizeof then, "Press M for another method.");
     } else { /* SPRING_EUNSUPPORTED: see positions_only in spring_method_info */
         snprintf(what, sizeof what, "%s is not for damped links.", label);
-        snprintf(then, sizeof then, "Left takes damping away, M takes another method.");
+        snprintf(then, sizeof then, "Press Left for less damping, M for another method.");
     }
     const int wide = 8 * (int)(strlen(what) > strlen(then) ? strlen(what) : strlen(then)) + 40;
     const SDL_Rect box = {(width - wide) / 2, height - 160, wide, 80};

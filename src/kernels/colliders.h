@@ -5,8 +5,8 @@
  *
  * Method    All shapes except planes are cores with a radius: a point, a segment, a box. The gap is the distance from the
  *           core minus the radius; inside the core of a box, minus the distance from its nearest face.
- * Accuracy  a few eps (|x|_1 + radius), see contact_slop(). Planes are stored by their offset normal . at, so the distance
- *           of `at` does not matter.
+ * Accuracy  a few eps (|x|_1 + radius), for capsules plus their length, see contact_slop(). Planes are stored by their
+ *           offset normal . at, so the distance of `at` does not matter.
  */
 #ifndef SPRINGSTEP_COLLIDERS_H
 #define SPRINGSTEP_COLLIDERS_H
@@ -33,17 +33,22 @@ SPRING_INLINE real3 place_of(pose_time when, real fraction, const scalar start[3
 typedef struct contact_point {
     real gap;     /* [m] negative inside */
     real3 normal; /* unit vector, out of the collider */
-    real3 arm;    /* [m] from the centre, for a capsule from the nearest point of its axis, to the particle */
+    real3 arm;    /* [m] from `at`, for a capsule from the nearest point of its axis, to the particle */
     real along;   /* capsule: that point, 0 at `at` to 1 at `to`; else 0 */
 } contact_point;
 
-/* From a core at distance `arm`. In the core itself the normal is +y. */
+/* 1/a; 1 unless a > 0. */
+SPRING_INLINE real inverse_of(real a)
+{
+    return 1 / select_real(a > 0, a, splat(1));
+}
+
+/* from_core: from the nearest point of the core. In the core itself the normal is +y. */
 SPRING_INLINE void set_round(contact_point *p, real3 from_core, scalar radius)
 {
     const real distance = vec_sqrt(dot3(from_core, from_core));
     const mask apart = distance > 0;
-    const real inverse = 1 / select_real(apart, distance, splat(1));
-    p->normal = select3(apart, times3(inverse, from_core), (real3){splat(0), splat(1), splat(0)});
+    p->normal = select3(apart, times3(inverse_of(distance), from_core), (real3){splat(0), splat(1), splat(0)});
     p->gap = distance - radius;
 }
 

@@ -44,12 +44,6 @@ typedef struct drifting {
     scalar kappa; /* fraction of the kick of the step that w holds */
 } drifting;
 
-/* 1/a; 1 unless a > 0. */
-SPRING_INLINE real inverse_of(real a)
-{
-    return 1 / select_real(a > 0, a, splat(1));
-}
-
 /* The part of a tangential velocity that friction removes, at most `limit`. */
 SPRING_INLINE real3 friction_loss(real3 tangential, real limit)
 {
@@ -62,7 +56,7 @@ SPRING_INLINE real3 tangential_to(real3 normal, real3 u)
     return plus_scaled3(u, -dot3(u, normal), normal);
 }
 
-/* w without its component into a surface that moves at `surface`, and with friction. *slip: what friction took away. */
+/* w without its component into a surface that moves at `surface`, and with friction. *slip: the part that friction removed. */
 SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface, real3 w, scalar h, real3 *slip)
 {
     const real3 u = minus3(w, surface);
@@ -116,7 +110,7 @@ SPRING_NOINLINE void press_from_start(const scene_collider *c, drifting *p, mask
     const int passes = c->friction > 0 ? friction_passes : 0;
     real lambda = vec_not_negative(-inward) * inverse_duration;
     real3 slip = {splat(0), splat(0), splat(0)}, x = x1;
-    mask stuck = where & not_mask(where);
+    mask stuck = {0};
     for (int pass = 0;; pass++) {
         const int iterations = c->shape == SPRING_PLANE ? 0 : pass == passes ? surface_iterations : 1;
         for (int i = 0; i < iterations; i++) { /* Newton's method, with 2 - cosine for 1/cosine, which is never less */
@@ -224,7 +218,7 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, drifting *p, mask w
 /* The contacts of a vector of particles in a drift. touched: [lanes] gets a bit for each collider. */
 SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t *touched)
 {
-    p->touched = p->free & not_mask(p->free);
+    p->touched = (mask){0};
     for (unsigned i = 0; i < t->count; i++) {
         const scene_collider *const c = &t->collider[i];
         if (!any(p->free & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
@@ -244,7 +238,7 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t 
     mask moved = all_free;
     for (int pass = 0; pass < corner_passes && any(moved); pass++) {
         const mask before = moved;
-        moved = p->free & not_mask(p->free);
+        moved = (mask){0};
         for (unsigned i = 0; i < t->count; i++) {
             const scene_collider *const c = &t->collider[i];
             if (!any(before & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
@@ -258,7 +252,7 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t 
 }
 
 /* The last kick: velocities lose their components into the colliders that were touched. With several colliders, projected
-   Gauss-Seidel: in further rounds each takes back what is too much, and adds what is missing. Friction acts in the first. */
+   Gauss-Seidel: in further rounds each collider corrects its impulse, which stays non-negative. Friction acts in the first round. */
 SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, const uint32_t *touched, pose_time when, mask free,
                                        const real3 *x, real3 *v)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* spring-contacts: contacts of scenes against closed forms, beside the two schemes that engines use. */
+/* spring-contacts: contacts of scenes against closed forms, compared with two schemes of game engines. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -355,18 +355,18 @@ static bool quick;
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &part, .choices = parts, .value = "P",
      .help = "closed forms, the energy in a box, or a list of the cases"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps, for a look"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps; rough results"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-contacts",
-    .summary = "Contacts of scenes against closed forms, beside the two schemes that engines use.",
+    .summary = "Contacts of scenes against closed forms, compared with two schemes of game engines.",
     .details =
         "The method is leapfrog. The scheme library is spring_scene_set_colliders(). projection moves particles\n"
         "that are inside a collider to its surface after each step, and changes their velocities there. penalty\n"
         "pushes them out with damped springs.\n\n"
-        "The part energy throws a soft body about in a box of six planes for a minute, with the library alone.",
+        "In the part energy a soft body bounces in a box of six planes for a minute, with the library alone.",
     .columns = "case scheme dt_s value exact error order",
     .meaning =
         "error is the distance of value from exact, relative to exact if this is not 0. order is the mean slope\n"

@@ -181,7 +181,7 @@ static spring_collider read_collider(const char *word, uint32_t axes)
 void collider_words_read(const cli_words *words, uint32_t axes, spring_collider c[MOST_COLLIDERS])
 {
     if (words->count > MOST_COLLIDERS)
-        cli_fail(CLI_USAGE, "--collider: \"%s\" is number %d; a scene has at most %d", words->word[MOST_COLLIDERS],
+        cli_fail(CLI_USAGE, "--collider: \"%s\" is collider %d; a scene has at most %d", words->word[MOST_COLLIDERS],
                  MOST_COLLIDERS + 1, MOST_COLLIDERS);
     for (size_t i = 0; i < words->count; i++)
         c[i] = read_collider(words->word[i], axes);

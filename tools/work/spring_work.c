@@ -30,28 +30,29 @@ static const char *table_file, *forces_file;
 static const cli_option options[] = {
     {"problem", CLI_CHOICE, .choice = &only_problem, .choices = problem_names, .value = "NAME",
      .help = "only this problem"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer points, none that takes long"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter runs"},
     {"table", CLI_FILE, .file = &table_file, .value = "FILE",
-     .help = "write the cheapest stepper and external solver for every error, too"},
+     .help = "also write the cheapest stepper and external solver for each error"},
     {"forces", CLI_FILE, .file = &forces_file, .value = "FILE",
-     .help = "write what one evaluation of forces takes in each problem, too"},
+     .help = "also write the time of one force evaluation for each problem"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-work",
     .summary = "Time against error of every stepper, compared with GSL, SUNDIALS and odeint, in one run.",
-    .details = "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
-               "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
-               "times as heavy) and damped-cloth (16 x 16) have such links that sqrt(L)/60 Hz = 50, where L is the\n"
-               "bound of spring_scene_stable_step(); damped-cloth has damping/mass/60 Hz = 100, too.\n\n"
-               "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
-               "the duration, which evaluates no forces; leapfrog-softened lowers stiffness until the step is 0.95\n"
-               "of the stable step; xpbd takes substeps of one iteration over all links, as game engines do; both in\n"
-               "scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
-               "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are there if Boost was when this was built.\n"
-               "odeint-sb3a-m4 is symplectic, for problems without drag and damping.\n"
-               "A run that explodes, or is off by more than three times the size of the motion, has no row.",
+    .details =
+        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
+        "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
+        "times as heavy) and damped-cloth (16 x 16) have such links that sqrt(L)/60 Hz = 50, where L is the\n"
+        "bound of spring_scene_stable_step(); damped-cloth has damping/mass/60 Hz = 100, too.\n\n"
+        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
+        "the duration, which evaluates no forces; leapfrog-softened lowers stiffness until the step is 0.95\n"
+        "of the stable step; xpbd takes substeps of one iteration over all links, as game engines do; both in\n"
+        "scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
+        "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are available if Boost was found at build time.\n"
+        "odeint-sb3a-m4 is symplectic, for problems without drag and damping.\n"
+        "A run that explodes, or is off by more than three times the size of the motion, has no row.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
     .meaning =
@@ -67,9 +68,10 @@ static const cli_program program = {
         "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
         "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL, SUNDIALS and odeint (peer,\n"
         "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.\n\n"
-        "--forces: time_ns is one evaluation: of springstep a step of leapfrog over its evaluations, of others the\n"
-        "function that GSL, SUNDIALS and odeint evaluate, of xpbd a substep. links is the number of links (1: a\n"
-        "spring), ratio is time_ns over that of springstep.",
+        "--forces: time_ns is the time of one force evaluation. springstep: a step of leapfrog, or of symplectic\n"
+        "Euler if links are damped, divided by its evaluations. others: the function that GSL, SUNDIALS and odeint\n"
+        "call. xpbd: one substep. links is the number of links (1 for a spring), ratio is time_ns divided by that\n"
+        "of springstep.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
