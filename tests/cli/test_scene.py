@@ -551,7 +551,7 @@ def test_colliders_without_effect_have_the_same_bits():
     ('plane:z=nan', ['z=nan']),
     ('plane:nx=0', ['no normal']),
     ('plane:x=1e999', ['x=1e999']),
-    (' '.join(33 * ['plane:']), ['number 33', 'at most 32']),
+    (' '.join(33 * ['plane:']), ['collider 33', 'at most 32']),
     ('plane: --method rkn8', ['rkn8']),
     ('plane: --method euler', ['euler']),
     ('plane: --scene chain', ['chain']),
