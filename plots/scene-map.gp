@@ -11,7 +11,7 @@ array marks[4] = [7, 11, 9, 13]
 # Told apart by their shapes, too; to be seen on white and on black.
 array colours[4] = ["#2A86C8", "#9A7FC0", "#E08A00", "#DB4A38"]
 
-least = 0.03 # [ms] at the left
+least = 0.015 # [ms] at the left
 at(s, m) = (methods + 1)*(s - 1) + m
 row(s, m) = strcol("scene") eq scenes[s] && strcol("method") eq names[m]
 x(s, m, v) = row(s, m) && strcol("verdict") eq verdicts[v] ? 1000*column("dt_s") : NaN
