@@ -293,9 +293,8 @@ SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, const uint32_t *
 /* See normal_kernel. */
 static void find_contact_normal(const scene_collider *c, const scalar x[3], scalar normal[3])
 {
-    const real3 at = splat3(x);
     contact_point p;
-    find_contact(c, STEP_START, splat(0), &at, &p);
+    find_contact(c, STEP_START, splat(0), &(const real3){splat(x[0]), splat(x[1]), splat(x[2])}, &p);
     scalar each[3][lanes];
     vec_store(each[0], p.normal.x);
     vec_store(each[1], p.normal.y);
