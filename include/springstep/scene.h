@@ -4,6 +4,9 @@
  *
  *     mass x'' = link forces + mass gravity - drag x' + F(t, x, x')
  *
+ * F is the sum of the held forces (SPRING_FORCE) and the forces of the callback. Contacts with colliders act in
+ * addition.
+ *
  *     static spring_scene_def def;                                      // all zero: every feature is off
  *     def.particles = 3, def.links = 2, def.position = p, def.pinned = pinned, def.link = links;
  *     def.gravity[1] = -9.81;
@@ -17,20 +20,23 @@
  *
  * These rules hold for every function in this file, in addition to those in spring.h:
  *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
- *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY takes more memory. docs/scenes.md lists the bytes of each
- *    feature, docs/performance.md the time.
+ *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY needs more memory. docs/scenes.md lists the bytes of each
+ *    feature, and docs/performance.md the time.
  *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO.
- *  - A scene begins at the first byte of its memory and holds no pointer to itself. After a memcpy() of its bytes to
- *    another place with the same alignment, in the same build, (spring_scene *)place is a working scene. So a snapshot
- *    is a memcpy(), and so is a rollback. The callback and its user pointer are copied unchanged.
- *  - Threads may use different scenes concurrently. They may also read one scene concurrently, with functions that take
- *    a const scene, while no thread changes it.
- *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the callback's are.
- *  - Particles collide with colliders (planes, spheres, capsules, boxes), not with each other, and links do not collide.
+ *  - Snapshots. A scene begins at the first byte of its memory and holds no pointer to itself. To take or restore a
+ *    snapshot, copy its bytes with memcpy(). The copy is a working scene at any address with the same alignment, in the
+ *    same build of the library. The pointers to the callback and its user data are copied unchanged.
+ *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
+ *    accept a const scene, while no thread changes it.
+ *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
+ *    callback are.
+ *  - Particles collide with colliders: planes, spheres, capsules and boxes. They do not collide with each other. Links
+ *    do not collide.
  *
- * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float:
- * half the memory and nearly twice the speed. Definitions, times, energies and spring_scenef_get() stay in double; only
- * its callback receives floats.
+ * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float,
+ * which halves the memory; docs/performance.md compares the time. Definitions, colliders, times, energies and
+ * tolerances are double, as are the arrays of spring_scenef_get() and spring_scenef_set(). The callback and
+ * spring_scenef_getf() use float arrays.
  */
 #ifndef SPRINGSTEP_SCENE_H
 #define SPRINGSTEP_SCENE_H
@@ -50,11 +56,16 @@ extern "C" {
 
 /** A spring between two particles.
  *
- * With two or three axes, it pulls both ends along the line between them with the tension stiffness (length - rest) +
- * damping rate, where rate is the derivative of the length. If both ends are at the same place, this line has no
- * direction and there is no force. If the square of the length underflows (below about 1e-160 m, in float 1e-21 m), the
- * force is not meaningful. With one axis it is linear: it pulls a with stiffness ((x_b - x_a) - rest) +
- * damping (v_b - v_a). */
+ * With two or three axes, a link pulls its ends towards each other with the tension
+ *
+ *     stiffness (length - rest) + damping rate
+ *
+ * where rate is the time derivative of the length. A negative tension pushes. If both ends are at the same place, the
+ * link has no direction and its force is 0. If the square of the length underflows (lengths below about 1e-160 m, in
+ * single precision 1e-21 m), the force is meaningless.
+ *
+ * With one axis, the link is linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
+ * force on b is its opposite. */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
     uint32_t b;       /**<         index of another particle */
@@ -65,90 +76,95 @@ typedef struct spring_link {
 
 /** A callback that adds forces to force[axis][particle] [N].
  *
- * It is called once per force evaluation, with the time t [s] of the positions [m] and velocities [m/s]. All positions
- * and velocities are finite. Arrays of axes that the scene does not have are NULL. With
+ * It is called once per force evaluation. t [s] is the time of position[axis][particle] [m] and
+ * velocity[axis][particle] [m/s], which are all finite. Arrays of axes that the scene does not have are NULL. With
  * SPRING_SCENE_FORCE_IGNORES_VELOCITY the contents of the velocity arrays are unspecified: do not read them.
  *
- * The callback must depend only on its arguments and *user; otherwise advance(10) is not 10 times advance(1). It must
- * not call a function on its own scene. After a change of *user, call spring_scene_set_force() again, because a force
- * may have been kept (SPRING_SCENE_FORCE_IGNORES_VELOCITY).
+ * The callback must depend only on its arguments and *user. Otherwise 10 steps in one call differ from 10 calls of one
+ * step. It must not call a function on its own scene. After a change of *user, call spring_scene_set_force() again,
+ * because the scene may keep forces from one step to the next (see SPRING_SCENE_FORCE_IGNORES_VELOCITY).
  *
- * If the force on a free particle is not finite, the call fails with SPRING_ENONFINITE. RKN8 keeps the last force of a
- * call without using it, so with RKN8 the next call fails. Forces on pinned particles are ignored. */
+ * If the force on a free particle is not finite, spring_scene_advance() fails with SPRING_ENONFINITE, or
+ * SPRING_EUNSTABLE in a scene with max_speed. RKN8 uses the last force of a call only in the next call, so the next
+ * call fails. Forces on pinned particles are ignored. */
 typedef void spring_scene_force_fn(void *user, double t, size_t particles, const double *const position[3],
                                    const double *const velocity[3], double *const force[3]);
 /** The callback of a single-precision scene. */
 typedef void spring_scenef_force_fn(void *user, double t, size_t particles, const float *const position[3],
                                     const float *const velocity[3], float *const force[3]);
 
-/** Enables spring_scene_set_link(), _set_links(), _tear(), _set_pinned() and _set_mass(). Each link and each particle then has its own stored
-   numbers, even if they are equal. */
+/** Enables spring_scene_set_link(), spring_scene_set_links(), spring_scene_tear(), spring_scene_set_pinned() and
+   spring_scene_set_mass(). The scene then stores the coefficients of every link and the mass of every particle, even if
+   they are all equal. */
 #define SPRING_SCENE_EDITABLE UINT32_C(1)
 
-/** The scene has no second copy of the state. A call of spring_scene_advance() that fails in a step loses the state:
-   positions and velocities become NaN, and no step succeeds until spring_scene_set() has set all of them. */
+/** Saves the memory of a second copy of the state. If spring_scene_advance() then fails in a step, the state is lost:
+   all positions and velocities become NaN, and no step succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/** Promises that the callback does not use velocities; also for scenes that never have a callback. The velocities that
-   the callback receives are unspecified. Leapfrog then keeps the force at the end of a step for the next step, which
-   halves its work. If no link is damped or editable, leapfrog also needs no memory for predicted velocities. */
+/** Promises that the callback does not use velocities. Set it too for a scene that never has a callback. Leapfrog then
+   keeps the forces at the end of a step for the next step, which halves the calls of the callback. Leapfrog also needs
+   no memory for predicted velocities, unless a link is damped or the scene is editable. The velocities that the
+   callback receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
-/** Links pull and never push: rope, net, sail. A link that is not longer than its rest length is slack: it has no tension
-   and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so damping never pushes
-   either. Requires two or three axes. Leapfrog and RK4 have order 2 where a link becomes taut or slack. */
+/** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
+   it has no tension and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so
+   damping does not push either. (Exception: beyond the limit of explicit link damping, see spring_scene_advance(), the
+   damping of a taut link that becomes shorter may push.) Requires two or three axes. Leapfrog and RK4 have order 2
+   where a link becomes taut or slack. */
 #define SPRING_SCENE_TENSION_ONLY UINT32_C(8)
 
-/** Room for held forces, see SPRING_FORCE. */
+/** Enables held forces, see SPRING_FORCE. */
 #define SPRING_SCENE_FORCES UINT32_C(16)
 
 /** The shapes of colliders. */
 typedef enum spring_shape {
     SPRING_PLANE,   /**< a half-space */
-    SPRING_SPHERE,  /**< a ball */
-    SPRING_CAPSULE, /**< all points within a distance of a line segment */
+    SPRING_SPHERE,  /**< a solid sphere */
+    SPRING_CAPSULE, /**< all points within a distance `radius` of a line segment */
     SPRING_BOX      /**< a box in any orientation; with a radius its edges are rounded */
 } spring_shape;
 
-/** A convex body that free particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored, and with two
- * axes so are the third elements. */
+/** A convex body that free particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored.
+ * With two axes, the third elements are ignored too, except spin[2]. */
 typedef struct spring_collider {
-    spring_shape shape;    /**< of the body */
-    double at[3];          /**< [m] a point of the plane; the centre; or one end of the axis of a capsule */
-    double to[3];          /**< [m] capsule: the other end */
-    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body. Box: its unit axes */
-    double half[3];        /**< [m] box: half of its size along each axis >= 0, without the radius */
-    double radius;         /**< [m] >= 0 of a sphere or capsule; also rounds a box */
-    double velocity[3];    /**< [m/s] of `at` */
-    double velocity_to[3]; /**< [m/s] of `to` */
-    /** [rad/s] angular velocity of the surface about `at` (capsule: about its axis), for friction only: the body does not
-        turn. With two axes spin[2] */
+    spring_shape shape;    /**< shape of the body */
+    double at[3];          /**< [m] plane: a point on it; sphere, box: the centre; capsule: one end of the segment */
+    double to[3];          /**< [m] capsule: the other end of the segment */
+    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes */
+    double half[3];        /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
+    double radius;         /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
+    double velocity[3];    /**< [m/s] velocity of `at` */
+    double velocity_to[3]; /**< [m/s] capsule: velocity of `to` */
+    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It enters friction only: the
+        body does not turn. With two axes, only spin[2] is used. */
     double spin[3];
     double friction;    /**< Coulomb coefficient >= 0 */
-    double restitution; /**< 0 to 1: normal speed after an impact over that before */
+    double restitution; /**< 0 to 1: ratio of the normal speeds after and before an impact */
 } spring_collider;
 
 /** The definition of a scene. Leave features that you do not use at zero. Every array is copied. */
 typedef struct spring_scene_def {
     uint32_t axes;                /**< 1, 2 or 3; 0 means 3 */
-    uint32_t flags;               /**< SPRING_SCENE_... */
-    uint32_t methods;             /**< methods to be used, 1u << SPRING_EULER | ...; 0: all except RK4, RKN8, SRKN6 */
-    size_t particles;             /**< 1 to nearly 2^32; at most 2^23 - 1 if addresses have 32 bits */
-    size_t links;                 /**< less than 2^29; at most 2^23 - 1 if addresses have 32 bits */
+    uint32_t flags;               /**< SPRING_SCENE_... | ... */
+    uint32_t methods;             /**< methods to enable, 1u << SPRING_EULER | ...; 0: all except RK4, RKN8, SRKN6 */
+    size_t particles;             /**< number, 1 to nearly 2^32; on 32-bit systems at most 2^23 - 1 */
+    size_t links;                 /**< number, less than 2^29; on 32-bit systems at most 2^23 - 1 */
     const double *position;       /**< [particles*axes] x0 y0 z0 x1 ... [m] */
     const double *velocity;       /**< [particles*axes] [m/s]; NULL: at rest */
     const double *mass;           /**< [particles] [kg] > 0 unless pinned; NULL: mass_all for every particle */
     double mass_all;              /**< [kg]; 0 means 1 */
-    const uint8_t *pinned;        /**< [particles]; non-zero: ignores forces, keeps its velocity; NULL: none */
+    const uint8_t *pinned;        /**< [particles]; non-zero: keeps its velocity whatever forces act; NULL: none */
     const spring_link *link;      /**< [links]; sorted links are fastest, see docs/scenes.md */
     double gravity[3];            /**< [m/s^2]; elements beyond the axes are ignored */
     double drag;                  /**< [N s/m] >= 0, on every particle */
     spring_scene_force_fn *force; /**< callback; NULL: none */
-    void *user;                   /**< passed to force */
-    double max_speed;             /**< [m/s] a step after which a free particle is faster along an axis fails with
-                                     SPRING_EUNSTABLE; 0: no limit */
+    void *user;                   /**< passed to the callback */
+    double max_speed;             /**< [m/s] if a free particle is faster than this along an axis after a step, the call
+                                     fails with SPRING_EUNSTABLE; 0: no limit */
     uint32_t colliders;           /**< maximum number of colliders, at most 32; 0: none */
-    double particle_radius;       /**< [m] >= 0 of every particle, for contacts */
+    double particle_radius;       /**< [m] >= 0, radius of every particle in contacts */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */
@@ -159,28 +175,35 @@ typedef struct spring_scene spring_scene;
  *
  * @param[out] field  name of the first invalid field, such as "mass" or "link.a"; NULL if the definition is valid. May
  *                    be NULL
- * @param[out] index  index of the particle or link; the axis of gravity; else 0. May be NULL
- * @return SPRING_OK; SPRING_EINVAL: an invalid value, or a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or
- *         drag/mass that is not finite in the precision of the scene; SPRING_ERANGE: an index of a particle or a count
- *         is too large; SPRING_EUNSUPPORTED: the methods include the exact solution, or RKN8 or SRKN6 for a scene with a
- *         damped link, tension-only links, colliders or a callback that may use velocities; or tension-only links or
- *         colliders on one axis
+ * @param[out] index  index of the invalid particle or link, or of the axis of gravity; otherwise 0. May be NULL
+ * @return SPRING_OK.
+ *         SPRING_EINVAL: NULL, an invalid value, or a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or
+ *         drag/mass that is not finite in the precision of the scene.
+ *         SPRING_ERANGE: an index of a particle or a count is too large.
+ *         SPRING_EUNSUPPORTED: the methods include the exact solution; they include RKN8 or SRKN6, and the scene has a
+ *         damped link, tension-only links, colliders or a callback that may use velocities; or the scene has one axis
+ *         and tension-only links or colliders
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
 
 /**
- * Computes the size of a scene [bytes], a multiple of SPRING_SCENE_ALIGN.
+ * Computes the size of the memory that a scene needs.
  *
- * @return as spring_scene_check()
+ * @param[out] bytes  size [bytes], a multiple of SPRING_SCENE_ALIGN; not written after an error
+ * @return as spring_scene_check(); SPRING_EINVAL also if bytes is NULL; SPRING_ERANGE also if the size does not fit in
+ *         size_t
  */
 SPRING_API spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes);
 
 /**
  * Creates a scene in the given memory. Its time is 0.
  *
+ * The memory belongs to the caller and must stay valid as long as the scene is used. There is no function to destroy a
+ * scene: release its memory.
+ *
  * @param[out] memory  aligned to SPRING_SCENE_ALIGN
- * @param[in]  bytes   size of memory, at least that of spring_scene_bytes()
- * @param[out] scene   the scene; NULL after an error. Only its memory needs to be released
+ * @param[in]  bytes   size of the memory, at least the result of spring_scene_bytes()
+ * @param[out] scene   the scene; NULL after an error
  * @return SPRING_OK; SPRING_ENOMEM; SPRING_EALIGN; otherwise as spring_scene_check()
  */
 SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def,
@@ -197,57 +220,66 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *     Euler             x1 = x + dt v;   v1 = v + dt a(t, x, v)
  *     symplectic Euler  v1 = v + dt a(t, x, v);   x1 = x + dt v1
  *     leapfrog          v' = v + dt/2 a(t, x, v);   x1 = x + dt v';   v1 = v' + dt/2 a(t + dt, x1, v1)
- *     RK4               the four stages
+ *     RK4               the four stages of the classical Runge-Kutta method
  *     RKN8              X_i = x + c_i dt v + dt^2 sum a_ij A_j,   A_i = a(t + c_i dt, X_i),   i = 1 ... 8
  *                       x1 = x + dt v + dt^2 sum b_j A_j,   v1 = v + dt sum b'_j A_j
  *     SRKN6             v += dt b_i a(x),   x += dt a_i v,   i = 1 ... 11;   v1 = v + dt b_12 a(x1)
  *
- * Drag is implicit in the kick of symplectic Euler and in the last half kick of leapfrog. Link damping and callbacks
- * use predicted velocities in that half kick: v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), where a* is the acceleration
- * by the forces of the first half kick and by the implicit drag at v*. This is still second order. Held forces act like
- * gravity, in every kick and stage.
+ * Here a is the acceleration of a particle, and each line is evaluated from left to right.
  *
- * Leapfrog with heavy link damping. This explicit damping is stable for dt <= 2/(G + sqrt(G^2 + L)), with L and G as in
- * spring_scene_stable_step(). For a larger dt a step is leapfrog without link damping for dt/2, link damping for dt, and
- * leapfrog for dt/2. Damping for a time dt multiplies velocities by e^(-dt C/mass), with the directions of links at
- * dt/2, computed as a Chebyshev series. So leapfrog is stable for dt < 2/sqrt(L) at any link damping, and damping never
- * adds energy. The step is of second order for dt G up to about 3; beyond, motion that damping slows down has an error
- * of first order. A step costs two force evaluations and about 1.4 sqrt(dt G) evaluations of damping alone, each half
- * as expensive; at most 12 500 of them (single precision: 760), so that for dt G above 8e7 (3e5) damping acts for a
- * shorter time.
+ * Drag is implicit in the kick of symplectic Euler and in the last half kick of leapfrog. In the same half kick of
+ * leapfrog, link damping and callbacks use predicted velocities: v* = v' + dt/2 a*, v1 = v' + dt/2 a(x1, v*), where a*
+ * is the acceleration by the forces of the first half kick and by the implicit drag at v*. Leapfrog is still second
+ * order. Held forces act like gravity, in every kick and stage.
  *
- * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. Drag enters through
- * y = e^(drag t/(2 mass)) (x - x0), to which the method is applied, so the order stays 8: with drag alone, the error is
- * 3e-11 of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a contact or a
- * force that starts suddenly reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in
+ * Leapfrog with heavy link damping. Explicit link damping is stable for dt <= 2/(G + sqrt(G^2 + L)), with L and G as in
+ * spring_scene_stable_step(). For a larger dt, one step is leapfrog without link damping for dt/2, link damping for dt,
+ * and leapfrog without link damping for dt/2. Link damping for a time dt multiplies the velocities by the exponential
+ * of -dt M^-1 C (M: masses, C: damping matrix of the links in their directions at dt/2), computed as a Chebyshev
+ * series. Leapfrog is therefore stable for dt < 2/sqrt(L) at any link damping, and damping never adds energy. The step
+ * has order 2 for dt G up to about 3. For larger dt G, motion that is strongly damped has an error of order 1. A step
+ * costs two force evaluations, and about 1.4 sqrt(dt G) evaluations of damping alone, each half as expensive as a force
+ * evaluation. At most 12 500 evaluations of damping are made (single precision: 760). For dt G above 8e7 (single
+ * precision: 3e5), damping therefore acts for a shorter time than dt.
+ *
+ * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
+ * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
+ * of the distance for dt drag/mass = 1, and 2e-6 for dt drag/mass = 4. Forces must be smooth: a contact, or a force
+ * that starts suddenly, reduces the order. RKN8 is not symplectic: for dt sqrt(L) = 0.4 (L as in
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
- * SRKN6 has order 6, is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs with
- * three to six significant digits: without drag the energy error stays bounded. It needs fewer force evaluations than
- * leapfrog, and for such errors about as many as RKN8. Drag is solved exactly together with the drift, so the order
- * stays 6.
+ * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
+ * with three to six significant digits: without drag the energy error stays bounded. At such errors it needs fewer
+ * force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the drift, so the
+ * order is still 6.
  *
- * Force evaluations per step: one for both Euler methods and leapfrog (two with heavy link damping), four for RK4, eight
- * for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the force at the end of a step for the start of the next.
- * With damped links, the force that leapfrog keeps is
- * the one at v*. This force is then part of the state, and a snapshot contains it. It is evaluated again, at v, after
- * spring_scene_set(), after a change of links, pins, masses, the callback or the velocity of a pinned particle, and
- * after steps of another method. With a callback that may use velocities, leapfrog keeps no force and evaluates twice
- * per step, because what the callback reads may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
+ * Force evaluations per step: one for both Euler methods and leapfrog (two with heavy link damping), four for RK4,
+ * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
+ * next step. With damped links, leapfrog keeps the forces at v*. These forces are then part of the state, and a
+ * snapshot contains them. They are evaluated again, at v, after spring_scene_set() and spring_scene_transform(), after
+ * a change of links, pins, masses, the callback or the velocity of a pinned particle, and after steps of another
+ * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because
+ * the data of the callback may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
- * Contacts, see spring_scene_set_colliders(), have order 2 with leapfrog and RK4, also across impacts, and order 1 with
- * symplectic Euler. The stable step is the same with colliders.
+ * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler; see
+ * spring_scene_set_colliders(). Colliders do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
- * @param[in] m   one of the methods in the definition
- * @param[in] dt  time step [s], finite in the precision of the scene; 0 does nothing, and neither does a step that
- *                rounds to 0 in the precision of the scene; a negative step integrates backwards, where leapfrog with
- *                drag has a pole at dt = -2 mass/drag, and symplectic Euler at half of this
- * @return SPRING_OK; SPRING_EINVAL; SPRING_EDISABLED: a method that is not in the definition; SPRING_EUNSUPPORTED: the
- *         exact solution, RKN8 or SRKN6 if forces now use velocities, or Euler with colliders; SPRING_ENONFINITE: the state or the time would
- *         become infinite or NaN, detected in the step where it happens; SPRING_EUNSTABLE: the same, or a particle would
- *         be faster than max_speed, if the definition has one
+ * @param[in] m   method, enabled in the definition
+ * @param[in] dt  time step [s], finite in the precision of the scene. A step that is 0, or rounds to 0 in the precision
+ *                of the scene, changes nothing. A negative step integrates backwards. Leapfrog with drag then has a
+ *                pole at dt = -2 mass/drag, and symplectic Euler at dt = -mass/drag
+ * @param[in] n   number of steps; 0 changes nothing
+ * @return SPRING_OK.
+ *         SPRING_EINVAL: NULL, an unknown method, or dt is not finite.
+ *         SPRING_EDISABLED: the definition does not enable the method.
+ *         SPRING_EUNSUPPORTED: the exact solution; RKN8 or SRKN6 in a scene with link damping or a callback that may
+ *         use velocities; Euler in a scene that has colliders now.
+ *         SPRING_ENONFINITE: the state or the time would become infinite or NaN; detected in the step in which it
+ *         happens.
+ *         SPRING_EUNSTABLE, only in a scene with max_speed: the state would become infinite or NaN, or a free particle
+ *         would be faster than max_speed along an axis
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1; Hairer, Norsett, Wanner,
  *                Solving Ordinary Differential Equations I (1993), section II.1; Dormand, El-Mikkawy, Prince,
  *                High-order embedded Runge-Kutta-Nystrom formulae, IMA J. Numer. Anal. 7 (1987); Blanes, Moan,
@@ -257,69 +289,86 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
 SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, uint64_t n);
 
 /**
- * Returns a lower bound of the stability limit, from the stiffness of the links: below it, motion about rest does not
- * grow, if no link is compressed below half its rest length. Tension-only links may be compressed further.
+ * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow.
  *
- * L is the largest sum of (2/mass) stiffness over the links of a particle, with 1/mass for links whose other end is
- * pinned. G is the same sum of damping, plus drag/mass. K is the largest sum of 2 stiffness, counted
- * likewise. The bounds are:
+ * The bound holds while no link is compressed below half its rest length. Tension-only links may be compressed further.
+ * The bound follows from three sums over the links of a particle, each the largest of all free particles. A link counts
+ * once instead of twice if its other end is pinned.
+ *
+ *     L [1/s^2]  sum of 2 stiffness/mass
+ *     G [1/s]    sum of 2 damping/mass, plus drag/mass
+ *     K [N/m]    sum of 2 stiffness
+ *
+ * The bounds are:
  *
  *     leapfrog          2/sqrt(L)
  *     RK4               2.61/max(sqrt(L), G)
  *     RKN8              min(3.14/sqrt(L), 40/G)
  *     SRKN6             min(9.07/sqrt(L), 20/G)
  *     Euler             min(drag/K, 2/G) with drag, else 0
- *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G of the links alone) - drag/(largest mass)
+ *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G without drag) - drag/(largest mass)
  *
- * Without link damping the limit itself is 1.2 to 1.3 times larger for a height field, 1.5 to 1.8 times for cloth and 2
- * times for a soft body. With heavy damping it may be several times larger, except for leapfrog. Closer to the bound, links that rotate or
- * swing far can gain energy by resonance with the step: use half of the bound, and less if a link rotates faster than
- * it would oscillate. Forces of the callback are not considered.
+ * In practice, use half of the bound. Close to the bound, links that rotate or oscillate with a large amplitude can
+ * gain energy by resonance with the step. Use an even smaller step if a link rotates faster than it would oscillate.
+ * The forces of the callback are not considered.
  *
- * With SRKN6 an undamped mode of frequency omega grows by up to 0.07 % per step in two narrow ranges of dt omega below
- * this bound, 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag of dt drag/mass > 0.0014 suppresses this growth.
+ * Without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field, 1.5 to 1.8
+ * times for cloth and 2 times for a soft body. With heavy damping it may be several times larger, except for leapfrog.
  *
- * @return time step [s]. 0: no stable step is known. INFINITY: no links or drag that could become unstable. NaN for
- *         invalid input and for the exact solution
+ * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
+ * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
+ * growth.
+ *
+ * The sums are stored in the scene and computed again after a change of links, pins or masses, in time proportional to
+ * particles + links.
+ *
+ * @return time step [s]. 0: no stable step is known. INFINITY: the scene has no links and no drag that could make the
+ *         method unstable. NaN for NULL, an unknown method and the exact solution
  * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures the distance to the limit
  */
 SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 
 /**
- * Lowers the stiffness of links until leapfrog is stable with a given time step, for scenes that are too stiff for the
- * steps that a frame can pay for. Softened links stretch more; damping stays as it is.
+ * Lowers the stiffness of links until leapfrog is stable with a given time step.
  *
- * Each link gets the smaller of the factors min(1, (2 fraction/dt)^2 mass/K) of its two ends, where K is the sum of 2
- * stiffness over the links of a particle, or stiffness for links whose other end is pinned. Afterwards
- * dt <= fraction spring_scene_stable_step(..., SPRING_LEAPFROG), and if a link was softened, this step is nearly
- * dt/fraction. Drag and callbacks are not considered.
+ * Use it for a scene that is too stiff for the time step that you can afford. Softened links stretch more under load.
+ * Their damping does not change.
  *
- * @param[in]  def       the definition of the scene
+ * For each particle, let K be the sum of 2 stiffness over its links, where a link counts once if its other end is
+ * pinned. The particle allows the factor min(1, (2 fraction/dt)^2 mass/K). The stiffness of a link is multiplied by the
+ * smaller factor of its two ends. Afterwards dt <= fraction spring_scene_stable_step(..., SPRING_LEAPFROG). If a link
+ * was softened, this stable step is nearly dt/fraction. Drag and callbacks are not considered.
+ *
+ * The time is proportional to links (1 + particles/1024).
+ *
+ * @param[in]  def       definition of the scene
  * @param[in]  dt        time step > 0 [s]
- * @param[in]  fraction  of the stable step, 0 to 1; 0.5 is on the safe side, see spring_scene_stable_step()
- * @param[out] link      [links]; may be def->link
+ * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1; 0.5 is safe, see
+ *                       spring_scene_stable_step()
+ * @param[out] link      [links] the softened links; may be def->link
  * @return SPRING_OK; SPRING_EINVAL; otherwise as spring_scene_check(). Nothing is written after an error
- * @par Accuracy  time is proportional to links (1 + particles/1024)
  */
 SPRING_API spring_status spring_links_soften(const spring_scene_def *def, double dt, double fraction,
                                              spring_link *link);
 
-/** Returns the time [s] since spring_scene_init(); NaN for NULL. */
+/** Returns the simulated time [s] since spring_scene_init(). NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
 
 /** The energies of a scene, as spring_scene_energy() returns them. */
 typedef struct spring_scene_energies {
-    double kinetic; /**< [J] of all free particles */
-    double elastic; /**< [J] of all links; slack tension-only links have none */
-    double gravity; /**< [J] of all free particles; 0 at the origin */
+    double kinetic; /**< [J] kinetic energy of all free particles */
+    double elastic; /**< [J] elastic energy of all links; 0 for a slack tension-only link */
+    double gravity; /**< [J] potential energy of all free particles in gravity; 0 at the origin */
 } spring_scene_energies;
 
-/** Returns the energies of the links and of the free particles; NaN for NULL. Held forces and callbacks have none. */
+/** Returns the energies of the links and of the free particles. All are NaN for NULL. The work of held forces,
+    callbacks and colliders is not included. */
 SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
-/** Returns whether every speed is at most v_tol [m/s] and the acceleration of every free particle is at most a_tol
-    [m/s^2]. Acceleration that a collider in spring_scene_touching() balances, by its normal force or by static friction,
-    does not count. May evaluate the forces. False for invalid input. */
+/** Returns whether the scene is at rest: the speed of every particle, also of pinned particles, is at most v_tol [m/s],
+    and the acceleration of every free particle is at most a_tol [m/s^2]. Acceleration that is balanced by the normal
+    force or the static friction of a touched collider does not count. False for invalid input. May evaluate the
+    forces. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
 /** @} */
@@ -329,23 +378,27 @@ SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol
 
 /** The quantities that spring_scene_get() and spring_scene_set() copy. */
 typedef enum spring_quantity {
-    SPRING_POSITION, /**< [m] */
-    SPRING_VELOCITY, /**< [m/s] */
-    SPRING_FORCE     /**< [N] held forces of a scene with SPRING_SCENE_FORCES: at first 0, constant until they are set
-                        again. Wind, for example, is found from the state once a frame, and held for its steps. They are
-                        part of snapshots, and a call that fails leaves them alone, also with SPRING_SCENE_NO_UNDO. They
-                        do not act on a pinned particle until it is freed. Setting them costs no force evaluation */
+    SPRING_POSITION, /**< [m] positions */
+    SPRING_VELOCITY, /**< [m/s] velocities */
+    SPRING_FORCE     /**< [N] held forces of a scene with SPRING_SCENE_FORCES. A held force is 0 at first, and constant
+                        until it is set again. Use held forces for wind, for example: compute them from the state once
+                        per frame. They are part of snapshots. A failed call does not change them, even with
+                        SPRING_SCENE_NO_UNDO. The held force of a pinned particle acts once the particle is freed.
+                        Setting held forces causes no force evaluation */
 } spring_quantity;
 
 /**
- * Copies the state of particles first ... first + count - 1 out of a scene, or into it.
+ * Copies a quantity of particles first ... first + count - 1 out of a scene (get, getf) or into it (set).
  *
- * spring_scene_getf() fills a float vertex buffer, which may hold other data between the positions. To move a pinned
- * particle, use spring_scene_drive(): spring_scene_set() makes it jump, and link damping does not see the motion.
+ * Element stride*i + a of the array belongs to particle first + i and axis a. spring_scene_getf() fills a float vertex
+ * buffer; with a larger stride, the buffer may hold other data between the positions. To move a pinned particle, use
+ * spring_scene_drive(). With spring_scene_set() the particle jumps, and link damping does not see the motion.
  *
+ * @param[in] q       quantity
  * @param[in] stride  elements from one particle to the next >= axes; 0 means axes
- * @return SPRING_OK; SPRING_EINVAL: NULL, unknown quantity, stride below axes, a new value that is not finite;
- *         SPRING_ERANGE: there are not that many particles; SPRING_EDISABLED: SPRING_FORCE without SPRING_SCENE_FORCES
+ * @return SPRING_OK; SPRING_EINVAL: NULL, an unknown quantity, a stride below axes, or a new value that is not finite
+ *         in the precision of the scene; SPRING_ERANGE: the particles do not exist; SPRING_EDISABLED: SPRING_FORCE
+ *         without SPRING_SCENE_FORCES
  * @{
  */
 SPRING_API spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double *out, size_t stride,
@@ -356,148 +409,167 @@ SPRING_API spring_status spring_scene_set(spring_scene *s, spring_quantity q, co
                                           size_t first, size_t count);
 /** @} */
 
-/** Changes gravity [m/s^2]. Elements beyond the axes are ignored. SPRING_EINVAL for NULL or values that are not
-   finite. */
+/** Changes gravity [m/s^2]. Elements beyond the axes are ignored. Returns SPRING_EINVAL for NULL and for values that
+   are not finite in the precision of the scene. */
 SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3]);
 
 /**
  * Replaces all colliders of a scene.
  *
-  * Colliders are given at their pose now, and then move at their velocities until they are set again. In a game, set them once
- * per frame, with the velocities that bring them to their next pose. A particle that is inside a collider is moved to its surface in the next
- * step, without a change of velocity. Pinned particles pass through colliders.
+ * The colliders are given at their present pose, at the present time of the scene. They then move at their velocities
+ * until they are set again. In a game, set them once per frame, with the velocities that bring them to their next pose.
+ * A particle that is inside a collider is moved to its surface in the next step, without a change of velocity. Pinned
+ * particles pass through colliders.
  *
-  * An impact with the relative velocity u multiplies the normal component by -restitution and reduces the tangential
- * component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is found, so a bounce has
- * order 2, and no particle passes through a single collider that does not turn, at any speed. A capsule whose ends have
- * different velocities turns: let it turn by a small angle per step. A particle that static friction can hold is held exactly,
- * at any time step. An impact that moves less than 8 eps (|x| + radius) into the collider in a step is a rounding error, and
- * does not bounce.
+ * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
+ * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed.
+ * A bounce therefore has order 2, and no particle passes through a single collider that does not turn, at any speed. A
+ * capsule whose ends have different velocities turns: let it turn by a small angle per step. A particle that static
+ * friction can hold is held exactly, at any time step. If an impact moves the particle less than 8 eps (|x| + radius)
+ * into the collider in a step, this is taken for a rounding error, and the particle does not bounce.
  *
- * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of them by a
- * fraction of its motion in a step. Make a floor of one plane or box: at the seam of two boxes a particle can be caught. Links
- * are not tested, so a thin collider can pass between two particles. A step with negative dt does not undo a step.
+ * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of the
+ * colliders by a fraction of its motion in a step. Make a floor of one plane or box: a particle can be caught at the
+ * seam of two boxes. Links do not collide, so a thin collider can pass between two particles. A step with negative dt
+ * does not undo a step.
  *
-  * With restitution 1, no friction and no damping, energy is not conserved: it grows, and faster in longer steps. See
- * docs/evidence.md.
+ * With restitution 1, no friction and no damping, energy is not conserved: it grows, and it grows faster with longer
+ * steps. See docs/evidence.md.
  *
- * @param[in] c      [count]; may be NULL if count is 0, which removes all colliders
- * @param[in] count  at most `colliders` of the definition
- * @return SPRING_OK; SPRING_EINVAL: NULL, an unknown shape, a number that is not finite in the precision of the scene
- *         (with the radius of particles, and for a plane axis[0] . at), a negative radius, half size or friction, restitution outside 0 ... 1, axes that are not orthonormal to 1e-6;
- *         SPRING_ERANGE: count is too large; SPRING_EDISABLED: the definition has no colliders
+ * @param[in] c      [count] colliders; may be NULL if count is 0
+ * @param[in] count  number of colliders, at most `colliders` of the definition; 0 removes all colliders
+ * @return SPRING_OK.
+ *         SPRING_EINVAL: NULL; an unknown shape; a number that is not finite in the precision of the scene (also after
+ *         particle_radius is added to a radius, or to axis[0] . at of a plane); a negative radius, half size or
+ *         friction; a restitution outside 0 ... 1; axes that are not orthonormal to 1e-6.
+ *         SPRING_ERANGE: count is too large.
+ *         SPRING_EDISABLED: `colliders` of the definition is 0
  */
 SPRING_API spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count);
 
-/**
- * Copies the masks of the colliders that particles first ... first + count - 1 touched in the last step. Bit i stands for collider i. The
- * bits are 0 after spring_scene_set_colliders(), after spring_scene_transform(), and for particles whose position or pin was
- * set.
+/** Copies, for particles first ... first + count - 1, a mask of the colliders that the particle touched in the last
+ * step.
+ *
+ * Bit i stands for collider i. All bits are 0 after spring_scene_set_colliders() and spring_scene_transform(). The bits
+ * of a particle are 0 after its position is set, and after it is pinned or freed.
  *
  * @param[out] mask  [count]
- * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: there are not that many particles; SPRING_EDISABLED: the scene has
- *         no room for colliders
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the particles do not exist; SPRING_EDISABLED: `colliders` of
+ *         the definition is 0
  */
 SPRING_API spring_status spring_scene_touching(const spring_scene *s, uint32_t *mask, size_t first, size_t count);
 
-/** Changes the callback; NULL: none. */
+/** Changes the callback and its user pointer. A NULL callback removes it. Returns SPRING_EINVAL if the scene is
+    NULL. */
 SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *force, void *user);
 
 /**
- * Changes a link of an editable scene. Stiffness 0 and damping 0 cut it.
+ * Changes a link of an editable scene. To cut the link, set its stiffness and damping to 0.
  *
- * @param[in] link  a and b as defined. They may be swapped; with one axis this reverses the link
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: no such link; SPRING_EDISABLED: the scene is not editable
+ * @param[in] link  the new values. The ends a and b must be those of the definition, and may be swapped; with one axis,
+ *                  a swap reverses the link
+ * @return SPRING_OK; SPRING_EINVAL: NULL, other ends, or values that spring_scene_check() rejects; SPRING_ERANGE: the
+ *         link does not exist; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, const spring_link *link);
 
-/**
- * Changes links first ... first + count - 1 of an editable scene, all of them or none; as spring_scene_set_link(). To
- * reel in a rope, set the rest lengths of its links once a frame.
+/** Changes links first ... first + count - 1 of an editable scene, as spring_scene_set_link() does. If one of the new
+ * links is invalid, none is changed. To reel in a rope, set the rest lengths of its links once per frame.
  *
  * @param[in] link  [count]
- * @return as spring_scene_set_link(); SPRING_ERANGE: there are not that many links
+ * @return as spring_scene_set_link(); SPRING_ERANGE: the links do not exist
  */
 SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count, const spring_link *link);
 
 /**
- * Cuts all links of an editable scene that are longer than a limit. Call it once a frame: what tears depends on how often
- * the lengths are compared.
+ * Cuts all links of an editable scene that are longer than a limit.
  *
- * Links are compared in double precision and in the order of their indices. Cut links and links of rest length 0 are left
- * alone. With one axis the length is x_b - x_a. A scene whose banded links all hold takes less than a nanosecond for each
- * of them. spring_links_components() finds the pieces.
+ * Call it at a fixed interval, such as once per frame: which links tear depends on how often the lengths are compared.
+ * Links are compared in double precision and visited in the order of their indices. Links that are already cut, and
+ * links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Use spring_links_components() to find
+ * the pieces.
  *
- * @param[in]  stretch  a link is cut if length > stretch rest; >= 0, INFINITY: none is. Ignored if limit is given
- * @param[in]  limit    [links] the same for each link; NULL: stretch for all
- * @param[out] torn     [room] the first `room` of the links that are cut now; may be NULL if room is 0
- * @param[in]  room     elements of torn
- * @param[out] count    number of links that are cut now, which may be larger than room; may be NULL
- * @return SPRING_OK; SPRING_EINVAL: NULL, a limit that is negative or NaN; SPRING_EDISABLED: the scene is not editable.
- *         torn and count are written only with SPRING_OK
+ * If no banded link tears, the lengths of banded links are compared with SIMD, which costs much less than a step; for
+ * bands see spring_links_renumber().
+ *
+ * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
+ *                      NULL
+ * @param[in]  limit    [links] a value of `stretch` for each link; NULL: `stretch` for all links
+ * @param[out] torn     [room] the indices of the links that this call cuts, at most the first `room` of them; may be
+ *                      NULL if room is 0
+ * @param[in]  room     number of elements of torn
+ * @param[out] count    number of links that this call cuts, which may be larger than room; may be NULL
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a stretch or limit that is negative or NaN; SPRING_EDISABLED: the scene is
+ *         not editable. torn and count are written only with SPRING_OK
  */
 SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, const double *limit, uint32_t *torn,
                                            size_t room, size_t *count);
 
 /**
- * Moves all particles, pinned ones too, by an affine map: x1 = A x + b, v1 = A v. It teleports, turns, reflects or scales
- * a scene. Rest lengths, gravity, held forces and colliders stay as they are.
+ * Transforms all particles, also pinned particles, by an affine map: x1 = A x + b, v1 = A v.
  *
- * @param[in] matrix  the rows of [A b]: A_xx A_xy A_xz b_x, A_yx ... With two axes the third row and the third column are
- *                    ignored, with one axis the second, too
- * @return SPRING_OK; SPRING_EINVAL: NULL, an element that is not finite; SPRING_ENONFINITE: a position or velocity would
- *         not be finite
+ * Use it to teleport, rotate, reflect or scale a scene. Rest lengths, gravity, held forces and colliders do not change.
+ *
+ * @param[in] matrix  the rows of [A b], with b in [m]: A_xx A_xy A_xz b_x, A_yx ... With two axes, the third row and
+ *                    the third column are ignored; with one axis, the second row and column too
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or an element that is not finite; SPRING_ENONFINITE: a position or velocity
+ *         would not be finite
  */
 SPRING_API spring_status spring_scene_transform(spring_scene *s, const double matrix[12]);
 
-/**
- * Copies the present values of a link, in the precision of the scene. With two or three axes a and b may be swapped.
+/** Copies the present values of a link, rounded to the precision of the scene. With two or three axes, the ends a and b
+ * may be swapped compared with the definition.
  *
- * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: no such link
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
  */
 SPRING_API spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link);
 
-/** Returns the smallest index of a link between two particles, in either order. Cut links are included. SIZE_MAX if
-    there is none, and for NULL. Searches all links. */
+/** Returns the smallest index of a link between particles a and b, in either order. Cut links are included. Returns
+    SIZE_MAX if there is no such link, and for NULL. The search visits all links. */
 SPRING_API size_t spring_scene_find_link(const spring_scene *s, uint32_t a, uint32_t b);
 
 /**
- * Pins and frees particles first ... first + count - 1 of an editable scene. To grab a particle, pin it and move it
- * with spring_scene_drive(). To release it, free it; it keeps its velocity.
+ * Pins or frees particles first ... first + count - 1 of an editable scene.
  *
- * A free particle that is pinned stops where it is. A particle that is already pinned keeps its velocity, and a
- * particle whose pin does not change is not affected. A freed particle has the mass that was last set, or else that of
- * the definition: mass[i] if it is positive, otherwise mass_all. May visit all links.
+ * To drag a particle, pin it and move it with spring_scene_drive(). To release it, free it: it keeps its velocity.
  *
- * @param[in] pinned  [count]; non-zero: pinned
+ * A free particle that becomes pinned stops where it is. A particle that is already pinned keeps its velocity. A freed
+ * particle gets the mass that was last set with spring_scene_set_mass(). If none was set, it gets the mass of the
+ * definition: mass[i] if this is positive, otherwise mass_all. The call may visit all links.
+ *
+ * @param[in] pinned  [count]; non-zero: pinned, 0: free
  * @return SPRING_OK; SPRING_EINVAL: NULL, or a particle would be freed with a mass that spring_scene_check() rejects;
- *         SPRING_ERANGE: there are not that many particles; SPRING_EDISABLED: the scene is not editable
+ *         SPRING_ERANGE: the particles do not exist; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_pinned(spring_scene *s, size_t first, size_t count, const uint8_t *pinned);
 
 /**
  * Changes the masses of particles first ... first + count - 1 of an editable scene. The mass of a pinned particle takes
- * effect when the particle is freed. May visit all links.
+ * effect when the particle is freed. The call may visit all links.
  *
- * @param[in] mass  [count] [kg]
- * @return SPRING_OK; SPRING_EINVAL: NULL, or a mass that spring_scene_check() rejects; SPRING_ERANGE: there are not
- *         that many particles; SPRING_EDISABLED: the scene is not editable
+ * @param[in] mass  [count] [kg] > 0
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or a mass that spring_scene_check() rejects; SPRING_ERANGE: the particles do
+ *         not exist; SPRING_EDISABLED: the scene is not editable
  */
 SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, size_t count, const double *mass);
 
 /**
- * Sets a pinned particle's velocity so that it reaches `target` after `duration`, in any scene. Link damping sees this
- * velocity. The particle keeps moving at it until it is changed.
+ * Moves a pinned particle: sets its velocity so that it reaches `target` after `duration`.
  *
- * @param[in] target    [axes] [m]; NULL: the particle stops
- * @param[in] duration  > 0 [s]: that of the next steps, n dt; ignored without a target
- * @return SPRING_OK; SPRING_EINVAL: NULL, a value, distance or velocity that is not finite, or a particle that is not
- *         pinned; SPRING_ERANGE: no such particle
+ * The scene need not be editable. Link damping sees this velocity. The particle keeps moving at this velocity until the
+ * velocity is changed.
+ *
+ * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
+ * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(); ignored if target
+ *                      is NULL
+ * @return SPRING_OK; SPRING_EINVAL: the scene is NULL, the particle is not pinned, the duration is not positive and
+ *         finite, or the distance or velocity is not finite; SPRING_ERANGE: the particle does not exist
  */
 SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration);
 
-/** Returns the force along a link [N], including its damping; > 0 pulls. At length 0 no force acts, and the result is
-    the force of the stiffness. 0 for slack tension-only links. NaN for invalid input. */
+/** Returns the tension of a link [N], including its damping, as in spring_link: positive if the link pulls. At length 0
+    no force acts, and the result is the tension of the stiffness alone. 0 for a slack tension-only link. NaN for NULL
+    and for a link that does not exist. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */
@@ -505,7 +577,7 @@ SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 /** @defgroup scenef The single-precision version
  * @{ */
 
-/** As spring_scene_def, except for the type of the callback. */
+/** The definition of a single-precision scene: as spring_scene_def, except for the type of the callback. */
 typedef struct spring_scenef_def {
     /** As in spring_scene_def.
      * @{ */
@@ -535,7 +607,7 @@ typedef struct spring_scenef spring_scenef;
 /** The energies of a single-precision scene, in double. */
 typedef spring_scene_energies spring_scenef_energies;
 
-/** As spring_scene_..., for a single-precision scene.
+/** As the functions spring_scene_... and spring_links_soften(), for a single-precision scene.
  * @{ */
 SPRING_API spring_status spring_scenef_check(const spring_scenef_def *def, const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_t *bytes);
@@ -578,13 +650,13 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
 
 /** @name The springs of a grid
  * @{ */
-#define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural: to the next particle along each edge */
-#define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear: across the faces and through the middle of each cell */
-#define SPRING_GRID_BEND       UINT32_C(4) /**< bend: to the particle after the next */
+#define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural springs: to the next particle along each axis */
+#define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear springs: the diagonals of the faces and body of each cell */
+#define SPRING_GRID_BEND       UINT32_C(4) /**< bend springs: to the second next particle along each axis */
 /** @} */
 
-/** The faces of a grid whose particles are pinned: first or last along x, y or z. In a sheet, the first and the last
- * face along z contain all particles.
+/** The faces of a grid whose particles are pinned: the first or last face along x, y or z. In a sheet in the plane of x
+ * and y, both faces along z contain all particles.
  * @{ */
 #define SPRING_GRID_FIRST_X UINT32_C(1)
 #define SPRING_GRID_LAST_X  UINT32_C(2)
@@ -594,11 +666,11 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
 #define SPRING_GRID_LAST_Z  UINT32_C(32)
 /** @} */
 
-/** A grid of cubes with a particle at each corner. One row of particles is a rope, one layer is a sheet, more layers
- * are a soft body. Particle (i, j, k) has index i + count[0] (j + count[1] k). Zero-initialise.
+/** A grid of cubes with a particle at each corner: a row of particles is a rope, a layer is a sheet, and several layers
+ * are a soft body. Particle (i, j, k) has the index i + count[0] (j + count[1] k). Zero-initialise.
  *
- * Stretch under gravity g. The stretch of a link is its length over its rest length, minus 1. Under a weight it is
- * weight/(stiffness spacing). With n links below each other and particles of mass m:
+ * Stretch under gravity g. In the formulas below, the stretch of a link is length/rest - 1, which is
+ * weight/(stiffness spacing) for a link that carries a weight. For n links in a vertical row and particles of mass m:
  *
  *     rope, or sheet of structural springs, that hangs by an edge
  *         elongation                  m g n (n + 1)/(2 stiffness)
@@ -606,83 +678,88 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
  *
  * A sheet that hangs by two corners, with the weight W of all free particles and q = W/(stiffness spacing):
  *
- *     structural springs only: the row between the corners is a cable that carries the whole sheet
+ *     structural springs only (the row between the corners carries the sheet, like a cable)
  *         largest stretch of a link   (q^2/24)^(1/3)
- *         depth of this row           (distance of the corners) (3 q/64)^(1/3)
+ *         sag of this row             (distance of the corners) (3 q/64)^(1/3)
  *     with shear springs
  *         largest stretch of a link   0.30 q, at the corners; with shear and bend springs 0.175 q
  *
- * The formulas for two corners are within 5 % of settled square sheets with 12 to 32 particles along an edge and a
- * stretch of 1 to 4 %, and with shear springs from 8 to 24 particles and 1 % (tests/test_scene_hanging.c). For other scenes,
- * spring-plan --sag finds the stiffness. */
+ * The formulas for two corners agree within 5 % with square sheets at rest: without shear springs for 12 to 32
+ * particles along an edge and a stretch of 1 to 4 %, with shear springs for 8 to 24 particles and a stretch of 1 %
+ * (tests/test_scene_hanging.c). For other scenes, use spring-plan --sag to find the stiffness. */
 typedef struct spring_grid {
     uint32_t count[3]; /**< particles along x, y, z; 0 means 1 */
-    uint32_t axes;     /**< of the positions: 1, 2 or 3; the grid extends along no other axes; 0 means 3 */
-    bool height;       /**< height field: axes = 1, across the grid; positions and rest lengths are 0 */
-    double spacing;    /**< [m] > 0 from one particle to the next, also in a height field */
-    double stretch;    /**< length over rest length of every link > 0; 0 means 1; tension if above 1 */
-    uint32_t families; /**< springs, SPRING_GRID_STRUCTURAL | ...; 0 means structural only */
-    double stiffness;  /**< [N/m] of every link */
-    double damping;    /**< [N s/m] of every link */
-    uint32_t pinned;   /**< SPRING_GRID_FIRST_X | ... */
+    uint32_t axes;     /**< axes of the positions, 1, 2 or 3; the grid extends along no other axes; 0 means 3 */
+    bool height;       /**< height field: positions have one axis, normal to the grid, and are 0, as rest lengths are */
+    double spacing;    /**< [m] > 0, distance of neighbours along an axis, also in a height field */
+    double stretch;    /**< > 0, length/rest of every link; 0 means 1; links are under tension above 1 */
+    uint32_t families; /**< springs, SPRING_GRID_STRUCTURAL | ...; 0 means structural springs only */
+    double stiffness;  /**< [N/m] >= 0, of every link */
+    double damping;    /**< [N s/m] >= 0, of every link */
+    uint32_t pinned;   /**< pinned faces, SPRING_GRID_FIRST_X | ...; 0: none */
 } spring_grid;
 
 /**
- * Computes the number of particles and links of a grid.
+ * Computes the numbers of particles and links of a grid.
  *
- * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: too many for 32-bit indices
+ * @return SPRING_OK; SPRING_EINVAL: NULL or an invalid grid; SPRING_ERANGE: too many particles for 32-bit indices, or
+ *         too many links for size_t. Nothing is written after an error
  */
 SPRING_API spring_status spring_grid_size(const spring_grid *g, size_t *particles, size_t *links);
 
 /**
- * Fills the arrays of a definition, for either precision. The arrays are the caller's, who may change them before use.
+ * Fills the arrays of a definition, for either precision. The arrays belong to the caller, who may change them before
+ * creating a scene.
  *
  * Links have a < b and are sorted by a. Links with the same a are in the order structural, shear, bend. Shear springs
- * are in the order of the faces xy, xz, yz, then through the cell. Within these groups, links are sorted by b.
+ * are in the order of the faces xy, xz, yz, followed by the diagonals of the body. Within each group, links are sorted
+ * by b.
  *
- * @param[out] position  [particles*axes], from the origin along the axes
- * @param[out] pinned    [particles]; may be NULL
+ * @param[out] position  [particles*axes] [m]; the first particle is at the origin
+ * @param[out] pinned    [particles] 1: pinned, 0: free; may be NULL
  * @param[out] link      [links]; may be NULL
- * @return as spring_grid_size(); nothing is written after an error
+ * @return as spring_grid_size(); SPRING_EINVAL also if position is NULL. Nothing is written after an error
  */
 SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link);
 
 /**
- * Renumbers particles so that linked particles are near each other in memory, and sorts links by their lower, then
- * their upper ends. Use it before a scene of either precision is created from an unsorted mesh.
+ * Renumbers particles so that linked particles are near each other in memory, and sorts links by their lower, then by
+ * their upper ends. Call it before you create a scene, of either precision, from an unsorted mesh.
  *
  * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
- * unbanded links. Ropes get their order back and sheets their rows, which form bands, if the links along rows are at
- * least a fifth shorter than all other links, or if there are no other links. Other meshes get a small bandwidth.
+ * unbanded links. A rope gets the order of its particles back, and a sheet gets its rows back, so that their links form
+ * bands. A sheet requires for this that the links along its rows are at least a fifth shorter than all other links, or
+ * that there are no other links. Other meshes get a small bandwidth.
  *
- * The caller permutes other arrays: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
+ * Permute other arrays yourself: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *
- * Time is proportional to particles + links: ten passes over both ends of all links in random order, or fifteen if
- * there are no rows. The result depends only on the arguments.
+ * The time is proportional to particles + links: ten passes over both ends of all links, or fifteen if there are no
+ * rows. The result depends only on the arguments.
  *
  * @param[in]     particles   fewer than 2^32 - 1
  * @param[in]     links       fewer than 2^29
- * @param[in,out] link        [links]; a stays a, and b stays b. May be NULL if there are none
+ * @param[in,out] link        [links]; the ends a and b of a link are not swapped. May be NULL if links is 0
  * @param[out]    order       [particles]; order[new index] = old index
  * @param[out]    link_order  [links]; link_order[new index] = old index. May be NULL
- * @param         work        [4*particles + 2*links + 1], used only during the call
+ * @param         work        [4*particles + 2*links + 1] work space, used only during the call
  * @return SPRING_OK; SPRING_EINVAL: NULL, or a link from a particle to itself; SPRING_ERANGE: an index of a particle or
  *         a count is too large. Nothing is written after an error
- * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969), and chains through its
- *                numbering, src/mesh/renumber.c
+ * @par Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969); src/mesh/renumber.c
+ *                describes how the rows are found
  */
 SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, spring_link *link, uint32_t *order,
                                                uint32_t *link_order, uint32_t *work);
 
-/**
- * Finds the connected components of particles and links, such as the pieces of a torn scene. Links without stiffness and
- * damping do not connect.
+/** Finds the connected components of particles and links, such as the pieces of a torn scene. A link without stiffness
+ * and damping, such as a cut link, does not connect its ends.
  *
  * @param[in]  particles  fewer than 2^32
- * @param[in]  link       [links]; may be NULL if there are none
- * @param[out] component  [particles]; components have the numbers 0, 1, ... in the order of their least particles
- * @return number of components; 0 for invalid input (NULL, an index that is too large, a link from a particle to itself,
- *         negative stiffness or damping, or not finite), where nothing is written
+ * @param[in]  links      number of links
+ * @param[in]  link       [links]; may be NULL if links is 0
+ * @param[out] component  [particles] the number of the component of each particle. Components are numbered 0, 1, ... in
+ *                        the order of their smallest particle indices
+ * @return number of components. 0, and nothing is written, for invalid input: NULL, an index that is too large, a link
+ *         from a particle to itself, or stiffness or damping that is negative or not finite
  */
 SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link, uint32_t *component);
 
