@@ -47,7 +47,7 @@ typedef struct spring_batch {
     uint32_t shared;      /**< SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL */
 } spring_batch;
 
-/** The single-precision version of spring_batch: half the memory, half the time. */
+/** The single-precision version of spring_batch, with half the memory. docs/performance.md compares the time. */
 typedef struct spring_batchf {
     /** As in spring_batch.
      * @{ */
@@ -64,15 +64,15 @@ typedef struct spring_batchf {
  * Advances every spring of a batch by n steps.
  *
  * The batch as a whole is checked first; if it is invalid, nothing changes. Otherwise each spring succeeds or fails
- * alone. A spring that would become non-finite keeps its state, and all others advance. The same holds for a spring
- * that spring_advance() would reject, because its state or one of its own parameters is not finite or a parameter is
- * negative. With a count of 0, n = 0 or dt = 0, nothing changes and the springs are not checked.
+ * alone. A spring that would become non-finite keeps its state, and all other springs advance. The same holds for a
+ * spring that spring_advance() would reject, because its state or one of its own parameters is not finite or a
+ * parameter is negative. With a count of 0, n = 0 or dt = 0, nothing changes and the springs are not checked.
  *
  * SPRING_EXACT is one evaluation over n dt. If omega2 is shared, and gamma is shared or NULL, its coefficients are
  * computed once, and a spring costs six multiplications and two additions. Otherwise each spring has its own
  * coefficients, also computed with SIMD. In single precision, shared coefficients are computed in double and rounded
  * once, while a spring with its own coefficients is advanced in double and rounded at the end. This is the only case in
- * which sharing changes the last bit.
+ * which sharing changes a result, by its last bit.
  *
  * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
  * processors. They are not set to zero, because that would change bits. Leave settled springs out of the batch, or let
@@ -102,8 +102,8 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
 /**
  * Advances a batch like spring_batch_advance(), and marks the springs that kept their state because they failed.
  *
- * It is as fast as spring_batch_advance() if no spring fails. Each group of some hundred springs with a failed spring
- * is advanced twice.
+ * It is as fast as spring_batch_advance() if no spring fails. Springs are advanced in groups of some hundred. A group
+ * in which a spring fails is advanced twice.
  *
  * @param[out] failed  [count] 1 if spring i failed by itself and kept its state, else 0; must not overlap another
  *                     array. Not written if nothing changed because of an error of the whole batch.
@@ -124,12 +124,13 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
  *
  * Spring i is advanced like the single spring {1, omega2[i], gamma[i], accel[i]} by spring_follow() with a target
  * velocity of 0, and lands by the same rule. In double precision the result is bit-identical. Its rest position is
- * target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring within x_tol of its rest
- * position whose speed is at most v_tol is placed at its rest position with v = 0. Without stiffness, a spring with a
- * load never rests, and one without load rests on its target only.
+ * target[i] + accel[i]/omega2[i], and exactly target[i] without accel. After the step, a spring within x_tol of its
+ * rest position whose speed is at most v_tol is placed at its rest position with v = 0. Without stiffness, a spring
+ * with a load never rests, and a spring without load rests on its target only.
  *
- * Coefficients are shared as in spring_batch_advance(). Springs fail one by one as there, also for a target that is not
- * finite. With dt = 0 nothing moves, and springs are counted as they are. With a count of 0 nothing happens.
+ * Coefficients are shared as in spring_batch_advance(). As in spring_batch_advance(), each spring fails alone; it also
+ * fails if its target is not finite. With dt = 0 nothing moves, and the springs are counted in their present state.
+ * With a count of 0, *moving is 0.
  *
  * @param[in,out] b       batch
  * @param[in]     target  [count] targets [m]; must not overlap x or v
@@ -146,8 +147,8 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
 SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double *target, double dt, double x_tol,
                                              double v_tol, size_t *moving);
 
-/** The single-precision version. Springs land with the ulp of float, and FLT_MIN for DBL_MIN. Rest positions are computed
-   in float and tolerances are rounded to float; dt is not rounded. */
+/** The single-precision version. Springs land with the ulp of float, and FLT_MIN for DBL_MIN. Rest positions are
+   computed in float and tolerances are rounded to float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
 

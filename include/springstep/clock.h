@@ -15,8 +15,8 @@ extern "C" {
 
 /** Accumulates frame time that is not yet simulated. Zero-initialise. */
 typedef struct spring_clock {
-    double pending; /**< [s] carried over to the next frame; always less than one step */
-    double dropped; /**< [s] total time dropped because a frame required more than max_steps */
+    double pending; /**< [s] time carried over to the next frame; always less than one step */
+    double dropped; /**< [s] total time dropped because frames required more than max_steps steps */
 } spring_clock;
 
 /**

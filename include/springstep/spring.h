@@ -38,7 +38,7 @@ extern "C" {
 /** @defgroup values State, parameters, statuses
  * @{ */
 
-/** The state of a spring. It is two numbers, so it is easy to copy, to send and to roll back. */
+/** The state of a spring: two numbers, which are easy to copy, to send over a network and to roll back. */
 typedef struct spring_state {
     double x; /**< [m]   displacement from the unloaded rest position; the value itself with spring_follow() */
     double v; /**< [m/s] velocity, at the same time as x */
@@ -50,7 +50,7 @@ typedef struct spring_state {
  * gives first order. No method exceeds second order with a load that is sampled once per step. */
 typedef struct spring_params {
     double mass;      /**< [kg]    > 0 */
-    double stiffness; /**< [N/m]   >= 0; 0 is a free particle */
+    double stiffness; /**< [N/m]   >= 0; 0: a free particle */
     double damping;   /**< [N s/m] >= 0; critical at 2 sqrt(mass stiffness) */
     double load;      /**< [N]     external force, constant over the step */
 } spring_params;
@@ -59,11 +59,11 @@ typedef struct spring_params {
 typedef enum spring_method {
     SPRING_EULER,    /**< order 1; for comparison: an undamped spring gains energy at every step size */
     SPRING_LEAPFROG, /**< order 2; one force per step, bounded energy error: the default for games and long runs */
-    SPRING_RK4,      /**< order 4; the smallest error for short runs; slowly loses energy */
-    SPRING_EXACT,    /**< the exact solution; for one linear spring, no stepper is better */
+    SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
+    SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
-    SPRING_RKN8,             /**< order 8; scenes without damped links: many significant digits of a smooth motion */
-    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links: long runs with 3 to 6 digits */
+    SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
+    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links; long runs with 3 to 6 digits */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is
@@ -202,7 +202,7 @@ SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, doubl
  *
  * The result is bit-identical to n calls of the kernel, and faster: values that depend only on the parameters are
  * computed once. SPRING_EXACT is the exception: it is one evaluation over n dt. dt = 0 or n = 0 changes nothing. There
- * is no limit on n: all steps are taken, however long that lasts.
+ * is no limit on n: the call takes all steps, however long this takes.
  *
  * @param[in,out] s   finite state; unchanged unless SPRING_OK is returned
  * @param[in]     p   parameters
@@ -226,13 +226,13 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  * or whose velocity you do not know, pass target_velocity = 0. A new target keeps x and v.
  *
  * The rest position is target + load/stiffness, and exactly `target` without load. A damped spring reaches it: it is
- * placed at rest there, x = rest position and v = target_velocity, as soon as rounding could keep it from coming closer.
- * That is if dt > 0 and
+ * placed at rest there, x = rest position and v = target_velocity, as soon as rounding could keep it from coming
+ * closer. That is if dt > 0 and
  *
  *     hypot(x - rest position, (v - T')/omega) min(1, slow dt) <= 9/8 ulp + DBL_MIN
  *
- * where slow is the decay rate of the slowest mode, and the ulp is that of x or of the rest position, whichever is
- * larger. Without stiffness, damping brings the velocity to T', and the position of the target has no effect.
+ * where slow is the decay rate [1/s] of the slowest mode, and ulp is the larger of the ulp of x and the ulp of the rest
+ * position. Without stiffness, damping brings the velocity to T', and the position of the target has no effect.
  *
  * @param[in,out] s                state; unchanged unless SPRING_OK is returned
  * @param[in]     p                parameters
@@ -240,13 +240,13 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  * @param[in]     target_velocity  velocity of the target during the step [m/s], finite
  * @param[in]     dt               finite time step [s]; a negative step integrates backwards; 0 changes nothing
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE
- * @par Accuracy  With y = x - rest position and u = v - T' before the step, the error of (x, v/omega) is at most the sum
- *                of
+ * @par Accuracy  With y = x - rest position and u = v - T' before the step, the error of (x, v/omega) is at most the
+ *                sum of
  *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(y, u/omega)| + DBL_MIN (1 + 1/omega)
  *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
  *                    9/8 ulp/min(1, slow dt), if the spring is placed on its target
- *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness, the
- *                error is that of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
+ *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness,
+ *                the error is that of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
  * @par Source    src/spring/follow_formula.h derives the condition
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -299,7 +299,7 @@ SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, 
 /**
  * Returns the error E of a given time step; see spring_accurate_step().
  *
- * @param[in] duration  > 0 [s]; of at least one step
+ * @param[in] duration  > 0 [s]; the error is that of at least one step
  * @param[in] dt        > 0 [s]
  * @return E without rounding error. 0 for the exact solution. INFINITY if E overflows, and for more than 2^53 steps.
  *         NaN for invalid input and a method that is not offered for one spring.
@@ -351,11 +351,12 @@ SPRING_API spring_params spring_params_bounce(double duration, double bounce);
 /**
  * Makes parameters from a settling time and a damping ratio, for mass 1 kg.
  *
- * A spring that is released at rest at distance 1 from its target stays within `tolerance` of it from `time` on.
+ * A spring that is released at rest at distance 1 from its target stays within `tolerance` of the target from `time`
+ * on.
  *
  * @param[in] time           settling time > 0 [s]
  * @param[in] damping_ratio  > 0; 1 is critical
- * @param[in] tolerance      0 < tolerance < 1, relative to the start; 0.001 looks settled
+ * @param[in] tolerance      0 < tolerance < 1, relative to the initial distance; 0.001 looks settled
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
  * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/test_follow.c)
  */
@@ -374,15 +375,16 @@ SPRING_API spring_params spring_params_settling(double time, double damping_rati
 SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
 
 /**
- * Returns the settling time: from then on, the exact solution stays within x_tol of its rest position load/stiffness.
+ * Returns the settling time, from which on the exact solution stays within x_tol of its rest position load/stiffness.
  *
  * Without stiffness and load, the rest position is where damping brings the particle to a stop.
  *
  * @param[in] x_tol  >= 0 [m]
- * @return time [s]. 0 if the spring is never farther away, INFINITY if it never settles, NaN for invalid input
+ * @return time [s]. 0 if the spring is never farther from its rest position than x_tol. INFINITY if it never settles.
+ *         NaN for invalid input
  * @par Accuracy  the result is where the computed exact solution crosses the tolerance. A tolerance of at most about
- *                10 eps (|x| + |v|/omega + |load/stiffness|) is within the rounding error of the state, and its time
- *                means little.
+ *                10 eps (|x| + |v|/omega + |load/stiffness|) is within the rounding error of the state, and the result
+ *                is then not significant.
  */
 SPRING_API double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol);
 
@@ -406,16 +408,16 @@ SPRING_API spring_status spring_self_test(void);
 /** @defgroup methods Properties of methods
  * @{ */
 
-/** Properties of a method, so that programs can offer methods without naming them. */
+/** Properties of a method, for programs that list the methods in tables or menus. */
 typedef struct spring_method_info {
-    const char *name;    /**< as on a command line: "leapfrog" */
-    int order;           /**< error C dt^order; 0: no error except rounding error */
+    const char *name;    /**< name on a command line, such as "leapfrog" */
+    int order;           /**< order p of the error C dt^p; 0: no error except rounding error */
     int forces_per_step; /**< force evaluations in scenes whose forces do not depend on velocities */
     bool symplectic;     /**< without damping: bounded energy error over any time */
     bool springs;        /**< offered for one spring and batches */
     bool scenes;         /**< offered for scenes */
-    const char *label;   /**< as in a text: "RK4" */
-    bool positions_only; /**< not for scenes with damped links or with a callback that may use velocities */
+    const char *label;   /**< name in a text, such as "RK4" */
+    bool positions_only; /**< not offered for scenes with damped links or a callback that may use velocities */
 } spring_method_info;
 
 /** One step of a method, without checks; see spring_method_kernel(). */
@@ -428,8 +430,8 @@ SPRING_API const spring_method_info *spring_method_describe(spring_method m);
    offered for one spring. */
 SPRING_API spring_step_fn *spring_method_kernel(spring_method m);
 
-/** Returns the method at a place, 0 <= place < SPRING_METHOD_COUNT, in the order of tables and menus. For any other
-   place it returns SPRING_METHOD_COUNT, which is no method. */
+/** Returns the method at a place, 0 <= place < SPRING_METHOD_COUNT, in the order of tables and menus. Any other place
+   returns SPRING_METHOD_COUNT, which is not a method. */
 SPRING_API spring_method spring_method_at(int place);
 
 /** Returns the name of a method, as in spring_method_info; NULL for an unknown method. */

@@ -6,7 +6,7 @@
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
 
-/** The version of these headers; spring_version() returns that of the linked library. */
+/** The version of these headers. spring_version() returns the version of the linked library. */
 #define SPRING_VERSION "0.3.0"
 
 /** The binary interface of the shared library. It changes when programs compiled for the last release would no longer

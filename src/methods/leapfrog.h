@@ -5,7 +5,7 @@
  * Method    kick   v' = v - (K x - A + q v)          K = w h/2,  A = a h/2,  q = g h/2
  *           drift  x1 = x + h v'
  *           kick   v1 = (v' - (K x1 - A)) / (1 + q)
- *           Kick and drift are shears: they keep the phase-space area whatever the rounding of K, so the energy error
+ *           Kick and drift are shears, which preserve the phase-space area at any rounding error of K. So the energy error
  *           of an undamped spring stays bounded over any number of steps.
  * Order     2. Undamped phase error after time T: w^(3/2) h^2 T/24; energy error at most z^2/4 of E,
  *           z^2 = w h^2, from a start at rest, and z^2/4/(1 - z^2/4) of E from any.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a method for springs consists of.
+ * The structure of a method for springs.
  *
  * A method has a file in this folder. Its formula is two functions on `real`, which is one number or a SIMD vector of
  * springs: prepare() computes coefficients from the rates of a spring and the step h, step() takes one step with them.

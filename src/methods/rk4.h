@@ -6,15 +6,16 @@
  *
  *               y1 = y + h (M y + b) + h Q (M y + b),   Q = Z/2 + Z^2/6 + Z^3/24,   Z = h M
  *
- *           Euler's step plus a correction, whose entries follow from two polynomials in W = w h^2, G = g h:
+ *           This is Euler's step plus a correction, whose entries follow from two polynomials in W = w h^2, G = g h:
  *
  *               Q (0, 1) = (h E, F):   E = 1/2 - G/6 + (G^2 - W)/24
  *                                      F = -G/2 + (G^2 - W)/6 + G (2 W - G^2)/24
  *               x1 = x + (h v           + (-W E x   + h F v         + h^2 E a))
  *               v1 = v + (h (a - w x - g v) + (-w h F x - (W E + G F) v + h F a))
  *
- *           Kept apart, the two parts round better than their sum: the correction's error is small because it is
- *           small, and h v is rounded once. (Summed coefficients carry one rounding error into every step.)
+ *           Euler's step and the correction are added separately, because this has smaller rounding errors: the correction
+ *           is small, so its error is small too, and h v is rounded once. (The rounding error of a summed coefficient
+ *           would be the same in every step, and would accumulate.)
  * Order     4. Undamped phase error after time T: w^(5/2) h^4 T/120; energy is lost at (w h^2)^3/72 a step.
  * Limit     |R(h r)| = 1 over the roots r of the spring, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: h omega = 2 sqrt 2
  *           without damping, h = 2.785.../(fast root) for real roots, Newton's method on |R|^2 = 1 in between.

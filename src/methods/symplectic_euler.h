@@ -3,11 +3,11 @@
  * Symplectic (semi-implicit) Euler for a damped, loaded spring. The damping is implicit.
  *
  * Method    v1 = (v - ((h w) x - h a)) / (1 + q),   x1 = x + h v1,   q = h g
- *           Without damping two shears: they keep the phase-space area whatever the rounding, so the energy error stays
- *           bounded over any number of steps. It is leapfrog seen half a step late: x and v + h/2 (a - w x) are a
- *           leapfrog run.
- * Order     1. Without damping it conserves v^2/2 + w x^2/2 - h w x v/2: the energy error is at most about z/2 of E,
- *           z = h sqrt(w), and the phase is leapfrog's.
+ *           Without damping the step is two shears, which preserve the phase-space area at any rounding error of their
+ *           coefficients. So the energy error stays bounded over any number of steps. The method is leapfrog with an
+ *           offset of half a step: x and v + h/2 (a - w x) are a leapfrog run.
+ * Order     1. Without damping the step conserves v^2/2 + w x^2/2 - h w x v/2. The energy error is at most about z/2 of E,
+ *           z = h sqrt(w), and the phase error is the same as with leapfrog.
  * Limit     trace 1 + (1 - h^2 w)/(1 + q), determinant 1/(1 + q): stable for h^2 w < 4 + 2 h g, that is
  *           h < (g + sqrt(g^2 + 4 w))/w.
  * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)

@@ -22,7 +22,7 @@ typedef enum scene_array {
     ARRAY_STAGES,         /* quantities that Runge-Kutta methods store */
     ARRAY_INVERSE_MASS,   /* [1/kg] 0: pinned */
     ARRAY_FREE_MASS,      /* [1/kg] the inverse mass of a particle once it is freed; 0: its mass is not valid */
-    ARRAY_MASS_FACTORS,   /* numbers that RKN8 stores for each mass, with drag */
+    ARRAY_MASS_FACTORS,   /* numbers that RKN8 and SRKN6 store for each mass, with drag */
     ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
     ARRAY_RINGS,          /* [N] bands: forces that are kept; see kernels/bands.h */
     ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */

@@ -24,7 +24,7 @@
 
 #include "pass.h"
 
-/* Terms are left out from the end of the series as long as their coefficients sum up to less than this part of all. More
+/* Terms are left out from the end of the series as long as their coefficients sum up to less than this fraction of the total. More
    terms make no scene more accurate, since the error of a step is that of the splitting (docs/accuracy.md). */
 static const double left_out = 0.05;
 

@@ -4,9 +4,9 @@
  *
  * Bands     Links with the same index offset, upper minus lower end, form a band as long as their lower ends ascend in the
  *           order of the links, so that no slot is used twice, and if at least a quarter of the slots from the first to
- *           the last is in use: then the band is faster than single links. Of more than most_bands the longest are kept.
+ *           the last is in use: then the band is faster than single links. If there are more than most_bands bands, the longest are kept.
  *           Offsets are counted in a small hash table. Links for which there is no room there or in their band are
- *           unbanded, as are the links of particles in no regular order.
+ *           unbanded, as are the links of particles without a regular order.
  */
 #include "definition.h"
 #include "steppers.h"

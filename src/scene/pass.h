@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Moving the particles of a scene and evaluating its forces: what the steppers are written with. */
+/* Functions from which the steppers are written: they move the particles of a scene and evaluate its forces. */
 #ifndef SPRINGSTEP_PASS_H
 #define SPRINGSTEP_PASS_H
 

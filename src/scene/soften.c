@@ -3,11 +3,11 @@
  * Lowering stiffness until a time step is stable.
  *
  * Method    Leapfrog is stable for dt < 2/sqrt(L), where L is the largest sum of (2/mass) stiffness over the links of a
- *           particle (stable_step.c). A particle allows the factor f = (2 fraction/dt)^2/sum, at most 1, and a link gets the
- *           smaller factor of its two ends. So no sum exceeds (2 fraction/dt)^2, and the sum of the particle with the least
+ *           particle (stable_step.c). A particle allows the factor f = (2 fraction/dt)^2/sum, at most 1. The stiffness of a
+ *           link is multiplied by the smaller factor of its two ends. So no sum exceeds (2 fraction/dt)^2, and the sum of the particle with the least
  *           factor reaches it.
- * Memory    None is needed besides the links: particles are taken in blocks, whose sums fit on the stack. A block sees the
- *           links as the blocks before have left them, which only lowers its sums.
+ * Memory    No memory is needed besides the links: particles are processed in blocks, whose sums fit on the stack. Previous
+ *           blocks may already have softened the links of a block, which only lowers its sums.
  */
 #include "definition.h"
 #include "steppers.h"

@@ -2,8 +2,9 @@
 /*
  * Advancing a scene: the loop over the steps of a call.
  *
- * Rollback  A state is in one of two buffers. The first step of a call reads it there and writes to the other buffer, and
- *           further steps stay in that one. It becomes the state when the call succeeds, so rolling back copies nothing.
+ * Rollback  The state is in one of two buffers. The first step of a call reads this buffer and writes to the other buffer.
+ *           Further steps read and write the other buffer, which becomes the state when the call succeeds. So a rollback
+ *           copies nothing.
  *           Without rollback there is one buffer.
  */
 #include "chebyshev.h"
@@ -36,7 +37,7 @@ static bool finite_scene(const spring_scene *s)
     return true;
 }
 
-/* After a failure without rollback the whole state becomes NaN, so that nobody uses the part that is finite. */
+/* After a failure without rollback the whole state becomes NaN, so that a caller cannot use the numbers that are still finite. */
 static void invalidate(spring_scene *s)
 {
     const size_t stride = s->layout.particle_stride;
@@ -50,7 +51,7 @@ static void invalidate(spring_scene *s)
     s->lost = true;
 }
 
-/* What cannot be advanced, and why. */
+/* Returns why a call cannot advance the scene, or SPRING_OK. */
 static spring_status check_advance(const spring_scene *s, spring_method m, double dt)
 {
     if (s == NULL || spring_method_describe(m) == NULL || !spring_finite((scalar)dt))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Reading and writing the links of a scene, and what makes a link or a mass valid. */
+/* Reading and writing the links of a scene, and checks of links and masses. */
 #ifndef SPRINGSTEP_STORED_LINKS_H
 #define SPRINGSTEP_STORED_LINKS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact solution of one spring: exact_formula.h on numbers. */
+/* The exact solution of one spring: exact_formula.h for one number instead of a SIMD vector. */
 #include "exact_formula.h"
 
 spring_propagator spring_propagator_of(const spring_quotients *r, double t, bool loaded)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One spring that follows a target: follow_formula.h on numbers. */
+/* One spring that follows a target: follow_formula.h for one number instead of a SIMD vector. */
 #include "follow_formula.h"
 #include "rates.h"
 

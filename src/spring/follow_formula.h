@@ -9,14 +9,14 @@
  *
  *               hypot(y, u/omega) min(1, r dt) <= 9/4 d,   r the decay rate of its slowest mode.
  *
- *           Wherever rounding can hold a spring, this holds. With an error of +-d in x after each step, (y, u/omega)
+ *           The condition is true wherever rounding can stop a spring. With an error of +-d in x after each step, (y, u/omega)
  *           ends up within the sum of +-d Phi(i dt) (1, 0) over i >= 1, Phi the propagator of (y, u/omega). The sum
  *           times r dt is largest at critical damping for dt -> 0, where it is the integral of Phi (1, 0) omega dt,
  *           d (2, 1), of norm sqrt(5) d = 2.236 d. (It tends to d for large damping ratios, to 2/pi d for small ones.)
  *           9/4 leaves room for the rounding errors of a step. v adds nothing, since it has a relative error. d is that
  *           of the larger of x and the rest position, between which a power of two may lie.
- * Special   No stiffness: only u decays. Near 0 an ulp may be as small as it likes; a spring lands where numbers would
- *           become denormal.
+ * Special   No stiffness: only u decays. Near 0 an ulp is arbitrarily small; a spring lands where numbers would become
+ *           denormal.
  */
 #ifndef SPRINGSTEP_FOLLOW_FORMULA_H
 #define SPRINGSTEP_FOLLOW_FORMULA_H

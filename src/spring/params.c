@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters of a spring of 1 kg from what people know: frequencies, durations, damping ratios. */
+/* Parameters of a spring of 1 kg from frequencies, durations and damping ratios. */
 #include "../simd/arithmetic.h"
 
 #include <math.h>

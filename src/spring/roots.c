@@ -2,8 +2,9 @@
 /*
  * The characteristic roots of a spring, r^2 + (c/m) r + k/m = 0, without cancellation.
  *
- * Method    Near critical damping w - b^2 is nothing but rounding error. So the exact rounding error of the square is added,
- *           and so are those of the quotients w = k/m and g = c/m: n/d = q + (n - q d)/d to twice the precision.
+ * Method    Near critical damping the computed w - b^2 consists of rounding errors only. So the exact rounding error of the
+ *           square is added, and also the rounding errors of the quotients w = k/m and g = c/m:
+ *           n/d = q + (n - q d)/d to twice the precision.
  * Accuracy  omega, b, and split: 2 eps, relative, at every damping ratio
  * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)

@@ -3,13 +3,13 @@
  * The settling time of a spring.
  *
  * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
- *           oscillating spring, at most one for an overdamped one. The swings at these turning points shrink by a fixed
- *           factor; after the last one beyond x_tol y enters the band for good. The first turning point and the crossing
+ *           oscillating spring, at most one for an overdamped one. The amplitude at these turning points decreases by a
+ *           fixed factor. After the last turning point beyond x_tol, |y| falls below x_tol and stays below. The first turning point and the crossing
  *           are found by bisection of time on the exact solution: the same solution gives the same time, bit for bit.
  * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load. At an infinite time the exact
  *           solution is NaN, which ends every search.
- * Accuracy  bisection ends at adjacent doubles; what it bisects is the exact solution as computed, so a tolerance
- *           within its rounding error of the state gives a time that means nothing
+ * Accuracy  bisection of the computed exact solution ends at adjacent doubles. For a tolerance within the rounding error
+ *           of the state, the result is not significant
  */
 #include <stddef.h>
 
