@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-/** How a spring feels: one of five ways. Times are in seconds. */
+/** Parameters of a spring, in one of five forms. Times are in seconds. */
 export type SpringParameters =
     | {
           /** >= 0 */
@@ -56,10 +56,10 @@ export declare class Spring {
 
     readonly value: number;
 
-    /** Per second. Set it when a gesture ends, for example. */
+    /** Velocity, in units of the value per second. Set it when a gesture ends, for example. */
     velocity: number;
 
-    /** Setting it keeps value and velocity. */
+    /** Target. A new target keeps value and velocity. */
     target: number;
 
     /** Whether the value is at rest on its target. step() has no effect then. */

@@ -39,7 +39,7 @@ export interface Links {
     damping?: number | ArrayLike<number>;
 }
 
-/** What get functions return. */
+/** Links as arrays, as getLinks() returns them. */
 export interface LinkArrays {
     ends: Uint32Array;
     rest: Float64Array;
@@ -48,8 +48,8 @@ export interface LinkArrays {
 }
 
 /**
- * Adds forces to force[axis][particle] [N] at the time t [s]. It must depend only on its arguments and on what has not changed
- * since `scene.force` was set. It must not call its own scene. If it throws, the call fails and the scene stays as it was.
+ * Adds forces to force[axis][particle] [N] at the time t [s]. It must depend only on its arguments and on data that has not
+ * changed since `scene.force` was set. It must not call its own scene. If it throws, the call fails and the scene stays as it was.
  */
 export type Force = (
     t: number,
@@ -88,7 +88,7 @@ export interface Collider {
 export interface SceneDefinition {
     /** default 3 */
     axes?: 1 | 2 | 3;
-    /** [axes per particle] [m] */
+    /** [axes per particle] [m] x0, y0, z0, x1, ... */
     position: ArrayLike<number>;
     /** [axes per particle] [m/s]; default: at rest */
     velocity?: ArrayLike<number>;
@@ -111,7 +111,7 @@ export interface SceneDefinition {
     tensionOnly?: boolean;
     /** enables set("force", ...) */
     heldForces?: boolean;
-    /** room for so many colliders, at most 32; default 0 */
+    /** maximum number of colliders, at most 32; default 0 */
     colliders?: number;
     /** [m] of every particle, for contacts */
     particleRadius?: number;
@@ -163,7 +163,7 @@ export declare function grid(definition: GridDefinition): Grid;
 /** The links of a definition, softened until dt is at most `fraction`, by default 0.5, of the stable step of leapfrog. */
 export declare function soften(definition: SceneDefinition, dt: number, fraction?: number): LinkArrays;
 
-/** Connected components. component[i] is that of particle i. Links without stiffness and damping do not connect. */
+/** Connected components. component[i] is the number of the component of particle i. Links without stiffness and damping do not connect. */
 export declare function components(
     particles: number,
     links: Links | readonly Link[],
@@ -218,7 +218,7 @@ export declare class Scene {
     transform(matrix: ArrayLike<number>): void;
     setGravity(gravity: ArrayLike<number>): void;
 
-    /** Set it again after a change of what it reads. */
+    /** The callback. Set it again after a change of the data that it reads. */
     force: Force | null;
 
     snapshot(): Snapshot;
@@ -227,7 +227,7 @@ export declare class Scene {
 
     pin(first: number, count?: number): void;
     unpin(first: number, count?: number): void;
-    /** Gives a pinned particle the velocity with which it reaches `target` after `duration` seconds. null: it stops. */
+    /** Sets a pinned particle's velocity so that it reaches `target` after `duration` seconds. null: it stops. */
     drive(particle: number, target: ArrayLike<number> | null, duration?: number): void;
     setMass(mass: ArrayLike<number>, first?: number): void;
 
@@ -242,7 +242,7 @@ export declare class Scene {
     components(): { count: number; component: Uint32Array };
     /** The first link between two particles; -1: none */
     findLink(a: number, b: number): number;
-    /** [N]; > 0 pulls */
+    /** Tension of a link [N], positive if the link pulls */
     tension(link: number): number;
 
     /** Replaces all colliders. They are given at their pose now, and move at their velocities until they are set again. */

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Springs through time: one, a million, or joined to ropes, cloth, jelly and water.
+"""Deterministic spring simulation: single springs, independent springs, and mass-spring systems such as rope and cloth.
 
-Spring is one spring, Batch many that are not joined, Scene particles joined by springs, Clock fixed steps from frames of
-any length. The numbers are those of the C library, bit for bit. ffi and lib are the library as it is in C, by cffi.
+Spring is a single spring. Batch is an array of independent springs. Scene is a system of particles joined by links. Clock
+returns fixed steps for frames of variable duration. Results are bit-identical to those of the C library. ffi and lib give
+access to the C functions with cffi.
 """
 from springstep._batch import Batch
 from springstep._clock import Clock

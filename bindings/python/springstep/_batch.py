@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Many springs that are not joined, as arrays."""
+"""Many independent springs, as arrays."""
 from __future__ import annotations
 
 from typing import Any, NoReturn
@@ -14,7 +14,7 @@ _PRECISIONS = {np.dtype(np.float64): ("spring_batch", "double[]"), np.dtype(np.f
 
 
 class Batch:
-    """Springs by the number: x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'.
+    """Many independent springs: x[i]'' = accel[i] - omega2[i] x[i] - gamma[i] x[i]'.
 
     x: [m] displacements from the unloaded rest position
     v: [m/s] velocities
@@ -59,7 +59,7 @@ class Batch:
                     raise ValueError(f"{field}: shares memory with {name}")
 
     def _as_lent(self, field: str, array: Any) -> Any:
-        """An array as C sees it, where it is."""
+        """Return a pointer to the data of an array, without a copy."""
         if not isinstance(array, np.ndarray) or array.dtype != self._x.dtype or not (
                 array.flags.c_contiguous and array.flags.aligned):
             raise TypeError(f"{field}: not a contiguous array of {self._x.dtype}")
@@ -69,10 +69,10 @@ class Batch:
         return ffi.from_buffer(self._pointer, array)
 
     def _lend(self, field: str, array: Any) -> None:
-        """Show an array to C as it is."""
+        """Let the C library use an array without a copy."""
         setattr(self._batch, field, self._as_lent(field, array))
 
-    x = property(lambda self: self._x, doc="[m] the array handed over")
+    x = property(lambda self: self._x, doc="[m] the array that was passed")
     v = property(lambda self: self._v, doc="[m/s] the array handed over")
     omega2 = property(lambda self: self._parameters["omega2"], doc="[1/s^2] the array handed over, or of one number")
     gamma = property(lambda self: self._parameters["gamma"], doc="[1/s] the array handed over, or of one number, or None")
@@ -83,7 +83,7 @@ class Batch:
         return self._batch.count
 
     def _first_invalid(self, index: int | None, target: np.ndarray | None = None) -> None:
-        """InvalidError for what is wrong with a spring, or with parameters that are shared."""
+        """Raise InvalidError for an invalid state or parameter of a spring, or an invalid shared parameter."""
         for field, values in (("x", self._x), ("v", self._v), ("target", target), *self._parameters.items()):
             if values is None or (index is None and values.ndim):
                 continue
@@ -103,8 +103,9 @@ class Batch:
     def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
         """Advance every spring by a number of steps of dt [s]; negative runs backwards.
 
-        Where springs fail, because what they hold is not valid or would become infinite or NaN, they keep their state and
-        all others advance; the exception tells of the first, and its `failed` has the indices of all. After any other
+        A spring fails if its state or parameters are invalid, or if its state would become infinite or NaN. It then keeps
+        its state, and all other springs advance. The exception describes the first spring that failed, and its attribute
+        `failed` has the indices of all springs that failed. After any other
         error nothing has changed, and `failed` is empty.
         """
         status, failed = self._guard.long(self._advance, method_number(method), dt, step_count(steps))
@@ -115,7 +116,7 @@ class Batch:
         self._fail(status, failed, dt)
 
     def _fail(self, status: int, failed: np.ndarray, dt: float, target: np.ndarray | None = None) -> NoReturn:
-        """Raise what belongs to a status, with the indices of the springs that have kept their state."""
+        """Raise the exception for a status, with the indices of the springs that have kept their state."""
         first = int(failed[0]) if len(failed) else None
         try:
             if status == lib.SPRING_EINVAL:
@@ -146,7 +147,7 @@ class Batch:
         return status, moving[0], np.array(failed, np.intp)
 
     def _fails(self, index: int, target: np.ndarray, dt: float) -> bool:
-        """Whether a spring alone would fail."""
+        """Return whether this spring would fail by itself."""
         part = slice(index, index + 1)
         parameters = (values if values is None or not values.ndim else values[part] for values in self._parameters.values())
         one = Batch(self._x[part].copy(), self._v[part].copy(), *parameters)
@@ -156,7 +157,7 @@ class Batch:
         """Advance every spring by dt [s] towards its target [m], by the exact solution; return how many still move.
 
         target: an array like x, or one number for all springs
-        x_tol, v_tol: [m], [m/s] a spring as near to rest on its target as this is placed there
+        x_tol, v_tol: [m], [m/s] a spring within both tolerances of rest on its target is placed there
 
         Springs that fail keep their state, are counted, and are named by the exception, as in advance().
         """
@@ -175,7 +176,7 @@ class Batch:
         return moving
 
     def stable_step(self, method: str = "leapfrog") -> float:
-        """The least stable step of all springs [s]: 0 if there is none, infinity if all are."""
+        """The smallest stable step of all springs [s]: 0 if no step is stable, infinity if every step is."""
         step = self._guard.short(getattr(lib, f"{self._name}_stable_step"), self._batch, springs_method(method))
         if np.isnan(step):
             for index in [None, *range(len(self))]:
@@ -187,14 +188,14 @@ class Batch:
         return self._guard.short(lambda: (self._x.copy(), self._v.copy()))
 
     def restore(self, snapshot: tuple[np.ndarray, np.ndarray]) -> None:
-        """Go back to a snapshot."""
+        """Return to a snapshot."""
         def restore() -> None:
             self._x[:], self._v[:] = snapshot
 
         self._guard.short(restore)
 
     def __reduce__(self) -> tuple:
-        """A copy is a batch of its own."""
+        """Copies are independent batches."""
         parameters = (None if values is None else values.copy() for values in self._parameters.values())
         return Batch, (*self.snapshot(), *parameters)
 

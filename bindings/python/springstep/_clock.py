@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fixed steps from frames of any length."""
+"""Fixed time steps from frames of variable duration."""
 from __future__ import annotations
 
 from springstep._common import finite, invalid, step_count
@@ -7,10 +7,10 @@ from springstep._native import ffi, lib
 
 
 class Clock:
-    """Takes the whole fixed steps out of frames of any length.
+    """Divides frames of variable duration into fixed steps.
 
     dt: length of a step > 0 [s]
-    max_steps: most steps of one frame; what a frame asks for beyond them is dropped
+    max_steps: largest number of steps per frame; further whole steps are dropped
     """
 
     def __init__(self, dt: float, max_steps: int = 8):
@@ -24,8 +24,8 @@ class Clock:
     def tick(self, frame_dt: float) -> tuple[int, float]:
         """Add a frame of frame_dt >= 0 [s].
 
-        Returns the steps to take now, and alpha in [0, 1): the part of a step that is left over, to draw between the
-        last two states.
+        Returns the number of steps to take now, and alpha in [0, 1): the remaining fraction of a step, for interpolation
+        between the last two states.
         """
         if finite("frame_dt", frame_dt) < 0:
             invalid("frame_dt", frame_dt)
@@ -34,12 +34,12 @@ class Clock:
 
     @property
     def pending(self) -> float:
-        """[s] waits for the next frame; always less than one step"""
+        """[s] time carried over to the next frame; always less than one step"""
         return self._clock.pending
 
     @property
     def dropped(self) -> float:
-        """[s] given up since the start, because a frame asked for more than max_steps"""
+        """[s] total time dropped because frames required more than max_steps steps"""
         return self._clock.dropped
 
     def snapshot(self) -> tuple[float, float]:
@@ -47,11 +47,11 @@ class Clock:
         return self.pending, self.dropped
 
     def restore(self, snapshot: tuple[float, float]) -> None:
-        """Go back to a snapshot."""
+        """Return to a snapshot."""
         self._clock.pending, self._clock.dropped = snapshot
 
     def __reduce__(self) -> tuple:
-        """A copy is a clock of its own."""
+        """Copies are independent clocks."""
         return Clock, (self.dt, self.max_steps), self.snapshot()
 
     def __setstate__(self, snapshot: tuple[float, float]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What all parts of the package share: the C library, its statuses as exceptions, its methods by name."""
+"""Common code of the package: the C library, its statuses as exceptions, and its methods by name."""
 from __future__ import annotations
 
 import math
@@ -12,11 +12,11 @@ from springstep._native import ffi, lib
 
 
 class SpringError(Exception):
-    """What the library refused, or could not do.
+    """An error of the library.
 
-    status: of the C function, such as lib.SPRING_EINVAL
-    field: name of the argument or field that is wrong, such as "mass" or "link.a"; None if it is none
-    value: what it is
+    status: status of the C function, such as lib.SPRING_EINVAL
+    field: name of the argument or field that is invalid, such as "mass" or "link.a", or None
+    value: the invalid value
     index: of the particle, link or spring; None where there are not many
     failed: of a batch, the indices of the springs that have kept their state
     """

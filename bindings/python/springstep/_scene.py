@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Particles joined by springs: rope, cloth, jelly, water."""
+"""Mass-spring systems: rope, cloth, soft bodies and height-field water."""
 from __future__ import annotations
 
 import operator
@@ -72,7 +72,7 @@ class _Called:
         self.function(t, self.arrays(self.constant, position), velocities, self.arrays(self.memory, force))
 
     def stop(self, force: Any) -> None:
-        """Forces that make C give up where it uses them."""
+        """Set all forces to NaN, so that the C function fails."""
         for array in self.arrays(self.memory, force):
             array[:] = np.nan
 
@@ -98,7 +98,7 @@ ffi.def_extern("springstep_forcef", onerror=_callback_raised)(_callback)
 
 
 def _bits(field: str, names: Iterable[str], known: Sequence[str]) -> int:
-    """Names as bits, in their order in C."""
+    """Return names as bits, in the order of the C library."""
     bits = 0
     for name in names_of(field, names):
         if name not in known:
@@ -193,7 +193,7 @@ def plane(at: Sequence[float], normal: Sequence[float], *, velocity: Sequence[fl
 
 def sphere(at: Sequence[float], radius: float, *, velocity: Sequence[float] = (0, 0, 0),
            spin: Sequence[float] | float = (0, 0, 0), friction: float = 0.0, restitution: float = 0.0) -> Collider:
-    """A ball, from its centre and its radius [m]."""
+    """A sphere, from its centre and its radius [m]."""
     return Collider("sphere", at, radius=radius, velocity=velocity, spin=spin, friction=friction, restitution=restitution)
 
 
@@ -215,25 +215,25 @@ def box(at: Sequence[float], half: Sequence[float], *, axis: Sequence[Sequence[f
 
 
 def _orthonormal(collider: Collider, axes: int) -> bool:
-    """As C asks: to 1e-6."""
+    """Whether the axes are orthonormal to 1e-6, as the C library requires."""
     count = 1 if collider.shape == "plane" else axes
     rows = np.array([axis[:axes] for axis in collider.axis[:count]], np.float64)
     return bool((abs(rows @ rows.T - np.eye(count)) <= 1e-6).all())
 
 
 class Snapshot:
-    """The state of a scene at a time, its force included. Scene.restore() goes back to it."""
+    """The state of a scene at a time, including its force, for Scene.restore()."""
 
     def __init__(self, scene: Scene, memory: bytes, called: _Called | None, pinned: np.ndarray):
         self._scene, self._memory, self._called, self._pinned = scene, memory, called, pinned
 
     def __len__(self) -> int:
-        """[bytes]"""
+        """Size of the snapshot [bytes]."""
         return len(self._memory)
 
 
 class Scene:
-    """Particles joined by springs: mass x'' = link forces + mass gravity - drag x' + force(t, x, x').
+    """A mass-spring system: mass x'' = link forces + mass gravity - drag x' + force(t, x, x').
 
     position: [m], (particles, axes); (particles,) for one axis
     links: tuples (a, b, rest [m], stiffness [N/m], damping [N s/m]), or an array of LINK. Any structured array with exactly
@@ -340,7 +340,7 @@ class Scene:
         return lib.springstep_force if self._prefix == "spring_scene" else lib.springstep_forcef
 
     def _take(self, size: int) -> None:
-        """Take memory, aligned as C wants it. The scene is at its start."""
+        """Allocate aligned memory. The scene starts at its first byte."""
         room = np.empty(size + lib.SPRING_SCENE_ALIGN, np.uint8)
         skip = -room.ctypes.data % lib.SPRING_SCENE_ALIGN
         self._memory = room[skip:skip + size]
@@ -375,7 +375,7 @@ class Scene:
 
     def _refuse(self, status: int, field: str | None, index: int, definition: Any, given: dict[str, np.ndarray],
                 methods: tuple[str, ...]) -> None:
-        """The exception for a definition that is not valid."""
+        """Raise the exception for an invalid definition."""
         name, _, part = (field or "").partition(".")
         if name in given and index < len(given[name]):
             value = given[name][index]
@@ -388,7 +388,7 @@ class Scene:
         fail(status, field, value if isinstance(value, (int, float)) else None)
 
     def _run(self, name: str, *arguments: Any) -> Any:
-        """Call a function of C that may call the force: its exception is the caller's."""
+        """Call a C function that may call the force, and raise the exception of the force."""
         result = self._c(name)(self._pointer, *arguments)
         if self._called is not None and self._called.error is not None:
             error, self._called.error = self._called.error, None
@@ -410,7 +410,7 @@ class Scene:
     # --- what it is
 
     def __len__(self) -> int:
-        """Particles."""
+        """The number of particles."""
         return self._particles
 
     axes = property(lambda self: self._axes, doc="1, 2 or 3")
@@ -419,12 +419,12 @@ class Scene:
 
     @property
     def nbytes(self) -> int:
-        """[bytes] of the scene, and of a snapshot"""
+        """Size of the scene and of a snapshot [bytes]."""
         return len(self._memory)
 
     @property
     def time(self) -> float:
-        """[s] since it was made"""
+        """Simulated time [s] since the scene was created."""
         return self._ask("time")
 
     def energy(self) -> Energies:
@@ -433,16 +433,16 @@ class Scene:
         return Energies(energies.kinetic, energies.elastic, energies.gravity)
 
     def at_rest(self, v_tol: float, a_tol: float) -> bool:
-        """Is every speed at most v_tol [m/s], and every acceleration of what is not pinned at most a_tol [m/s^2]?"""
+        """Whether every speed is at most v_tol [m/s] and every acceleration of a free particle at most a_tol [m/s^2]."""
         return self._guard.long(self._run, "at_rest", v_tol, a_tol)
 
     # --- steps
 
     def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
-        """Advance by a number of steps of dt [s]; negative runs backwards.
+        """Advance by a number of steps of dt [s]; a negative dt integrates backwards.
 
-        After an error, one of force() included, the scene is as it was, but see undo. Ctrl-C is noticed in force(), or
-        after the call: split a long run into several calls, which have the same bits.
+        After an error, including an exception of force(), the scene is unchanged, except without undo. Ctrl-C takes effect
+        in force() or after the call: split a long run into several calls, whose results are bit-identical.
         """
         status = self._guard.long(self._advance, method_number(method), dt, step_count(steps))
         if status == lib.SPRING_EINVAL:
@@ -453,7 +453,7 @@ class Scene:
             fail(status)
 
     def stable_step(self, method: str = "leapfrog") -> float:
-        """A stable step [s], from the stiffness of the links; 0: none is known, infinity: all are. Better take half."""
+        """A lower bound of the stability limit [s]; use half. 0: none is known; infinity: every step is stable."""
         step = self._ask("stable_step", method_number(method))
         if np.isnan(step):
             fail(lib.SPRING_EUNSUPPORTED, "method", method)
@@ -478,7 +478,7 @@ class Scene:
         return out
 
     def _fits(self, out: Any) -> bool:
-        """Can C write rows to it, at a stride?"""
+        """Whether the C library can write rows to the array, with a stride."""
         if not isinstance(out, np.ndarray) or out.ndim != 2 or out.shape[1] != self._axes or out.dtype not in _PREFIXES:
             return False
         if not (out.flags.writeable and out.flags.aligned):
@@ -512,7 +512,7 @@ class Scene:
         return self._get(lib.SPRING_VELOCITY, first, count, out)
 
     def set_position(self, values: ArrayLike, first: int = 0) -> None:
-        """Set positions [m] of particles from `first` on: (count, axes). To move a pin use drive()."""
+        """Set positions [m] of particles from `first` on: (count, axes). To move a pinned particle, use drive()."""
         self._set(lib.SPRING_POSITION, "position", values, first)
 
     def set_velocity(self, values: ArrayLike, first: int = 0) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One spring through time."""
+"""Simulation of one spring."""
 from __future__ import annotations
 
 import functools
@@ -101,7 +101,7 @@ class Spring:
         return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
 
     def _check_parameters(self) -> None:
-        """InvalidError for the first parameter that the library refuses."""
+        """Raise InvalidError for the first invalid parameter."""
         if lib.spring_params_valid(self._params):
             return
         if not self.mass > 0 or not math.isfinite(self.mass):
@@ -115,7 +115,7 @@ class Spring:
         fail(lib.SPRING_EINVAL)
 
     def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
-        """Advance by a number of steps of dt [s]; negative runs backwards. After an error nothing has changed."""
+        """Advance by a number of steps of dt [s]; a negative dt integrates backwards. An error changes nothing."""
         number = method_number(method)
         status = lib.spring_advance(self._state, self._params, number, dt, step_count(steps))
         if status == lib.SPRING_EINVAL:
@@ -129,8 +129,8 @@ class Spring:
     def follow(self, target: float, dt: float, target_velocity: float = 0.0) -> None:
         """Advance by dt [s] towards a target [m], by the exact solution. A damped spring lands on it, at rest.
 
-        target: where the target is at the end of the step
-        target_velocity: [m/s] its velocity during the step; 0 for a target that jumps
+        target: [m] position of the target at the end of the step
+        target_velocity: [m/s] velocity of the target during the step; 0 for a target that jumps
 
         After an error nothing has changed.
         """
@@ -148,7 +148,7 @@ class Spring:
         return lib.spring_energy(self._state, self._params)
 
     def stable_step(self, method: str = "leapfrog") -> float:
-        """The longest stable step [s]: 0 if there is none, infinity if all are."""
+        """The stability limit [s]: 0 if no step is stable, infinity if every step is."""
         self._check_parameters()
         return lib.spring_stable_step(self._params, springs_method(method))
 
@@ -176,11 +176,11 @@ class Spring:
         return error
 
     def at_rest(self, x_tol: float, v_tol: float) -> bool:
-        """Is it within x_tol [m] of its rest position, and not faster than v_tol [m/s]?"""
+        """Whether the spring is within x_tol [m] of its rest position and not faster than v_tol [m/s]."""
         return lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
 
     def settling_time(self, x_tol: float) -> float:
-        """[s] after it the exact solution stays within x_tol >= 0 [m] of the rest position; infinity if it never does."""
+        """Time [s] from which on the exact solution stays within x_tol >= 0 [m] of the rest position, or infinity."""
         self._check_parameters()
         time = lib.spring_settling_time(self._state, self._params, x_tol)
         if math.isnan(time):
@@ -194,11 +194,11 @@ class Spring:
         return self.x, self.v
 
     def restore(self, snapshot: tuple[float, float]) -> None:
-        """Go back to a snapshot."""
+        """Return to a snapshot."""
         self.x, self.v = snapshot
 
     def __reduce__(self) -> tuple:
-        """A copy is a spring of its own."""
+        """Copies are independent springs."""
         values = self.stiffness, self.mass, self.damping, self.load
         return functools.partial(Spring, x=self.x, v=self.v), values
 
