@@ -103,7 +103,7 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
 /** Promises that the callback does not use velocities. Set it too for a scene that never has a callback. Leapfrog then
-   keeps the forces at the end of a step for the next step, which halves the calls of the callback. Leapfrog also needs
+   keeps the forces at the end of a step for the next step, which halves the force evaluations. Leapfrog also needs
    no memory for predicted velocities, unless a link is damped or the scene is editable. The velocities that the
    callback receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
