@@ -124,6 +124,13 @@ SPRING_INLINE real3 shift_at(const scene_collider *c, const contact_point *p)
     return c->shape == SPRING_CAPSULE ? plus_scaled3(at, p->along, minus3(splat3(c->shift_to), at)) : at;
 }
 
+/* Whether the collider turns in the step: then the gap along a straight path is not convex. */
+SPRING_INLINE bool turns(const scene_collider *c)
+{
+    return c->shape == SPRING_CAPSULE &&
+           (c->shift[0] != c->shift_to[0] || c->shift[1] != c->shift_to[1] || c->shift[2] != c->shift_to[2]);
+}
+
 /* [m/s] velocity of the surface at the contact. */
 SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_point *p)
 {

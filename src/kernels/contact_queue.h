@@ -116,7 +116,7 @@ SPRING_INLINE mask touching(const uint32_t *bits)
     uint32_t all = 0;
     for (size_t i = 0; i < lanes; i++)
         all |= bits[i];
-    return SPRING_UNLIKELY(all != 0) ? with_bits(bits, UINT32_MAX) : (mask){0};
+    return SPRING_UNLIKELY(all != 0) ? has_bits(load_bits(bits), UINT32_MAX) : (mask){0};
 }
 
 /* Lanes whose particle may touch a collider during its motion d. */
@@ -147,8 +147,7 @@ SPRING_NOINLINE void enqueue(contact_queue *q, const particle_vector *p, const u
 {
     scalar each[queued_quantities][3][lanes], inverse_mass[lanes];
     uint32_t queued[lanes];
-    memset(queued, 0, sizeof queued);
-    add_bit(queued, 0, where);
+    store_bits(queued, bits_where(where, 1));
     q->quantities = quantities;
     vec_store(inverse_mass, p->inverse_mass);
     for (int k = 0; k < quantities; k++) {
@@ -218,11 +217,12 @@ SPRING_INLINE void scatter(const contact_queue *q, const particle_vector *p, sca
             quantity[a * stride + each * q->particle[i]] = on_axis[a][i];
 }
 
-/* The contacts of a group in a drift; touched: [lanes]. */
-SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, drifting *d, uint32_t *touched)
+/* The contacts of a group in a drift. */
+SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, drifting *d)
 {
-    memset(touched, 0, lanes * sizeof *touched);
-    collide_all(t, d, touched);
+    collide_all(t, d);
+    uint32_t touched[lanes];
+    store_bits(touched, d->touched);
     const size_t count = first_group(q);
     for (size_t i = 0; i < count; i++)
         t->touched[q->particle[i]] |= touched[i];

@@ -34,14 +34,17 @@ static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (sc
 
 /* A vector of particles in a drift. */
 typedef struct drifting {
-    real3 x0;     /* [m] */
-    real3 accel;  /* [m/s^2] of the kick before the drift */
-    real3 d;      /* [m] displacement */
-    real3 w;      /* [m/s] velocity during the drift */
-    mask free;    /* not pinned */
-    mask touched; /* some collider in this step */
-    scalar h;     /* [s] duration of the drift */
-    scalar kappa; /* fraction of the kick of the step that w holds */
+    real3 x0;          /* [m] */
+    real3 accel;       /* [m/s^2] of the kick before the drift */
+    real3 d;           /* [m] displacement */
+    real3 w;           /* [m/s] velocity during the drift */
+    mask free;         /* not pinned */
+    lane_bits touched; /* bit i: collider i, in this step */
+    lane_bits outside; /* bit i: the path is known to end outside of collider i, to within contact_slop() */
+    scalar h;          /* [s] duration of the drift */
+    scalar kappa;      /* fraction of the kick of the step that w holds */
+    uint32_t known;    /* bit i: start[i] is set */
+    contact_point start[most_colliders]; /* at x0, at the start of the step */
 } drifting;
 
 /* The part of a tangential velocity that friction removes, at most `limit`. */
@@ -65,20 +68,23 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
-/* Steps 1 and 2: finds the contact in the lanes that it returns. */
-SPRING_INLINE mask find_impact(const scene_collider *c, drifting *p, contact_point *at, real *gap, real *fraction,
-                               mask *pushed)
+/* Steps 1 and 2 with collider i: finds the contact in the lanes that it returns. */
+SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, contact_point *at, real *gap,
+                               real *fraction, mask *pushed)
 {
-    find_contact(c, STEP_START, splat(0), &p->x0, at);
+    if ((p->known >> i & 1) != 0)
+        *at = p->start[i];
+    else
+        find_contact(c, STEP_START, splat(0), &p->x0, at);
     const real slop = contact_slop(c, p->x0);
     mask hit = p->free;
     *pushed = hit & (at->gap < -slop);
     *gap = select_real(at->gap < slop, splat(0), at->gap); /* a rounding error divided by h would be a velocity */
     *fraction = splat(0);
-    for (int i = 0;; i++) {
+    for (int iteration = 0;; iteration++) {
         const real rate = dot3(at->normal, minus3(p->d, shift_at(c, at)));
         hit &= *pushed | not_mask(*gap + (1 - *fraction) * rate >= 0);
-        if (i == impact_iterations || !any(hit))
+        if (iteration == impact_iterations || !any(hit))
             return hit;
         const real step = *gap / -rate;
         const mask on = hit & not_mask(*pushed) & (step > least_fraction * (1 - *fraction));
@@ -96,8 +102,8 @@ SPRING_INLINE mask find_impact(const scene_collider *c, drifting *p, contact_poi
 }
 
 /* Step 4 in the first half of the step: the path ends on the surface. inward: [m] how far it ends below the tangent plane,
-   negative; left: [s] of the step. */
-SPRING_NOINLINE void press_from_start(const scene_collider *c, drifting *p, mask where, const contact_point *at,
+   negative; left: [s] of the step. Returns the lanes whose path is known to end outside. */
+SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask where, const contact_point *at,
                                       const real3 *surface, real inward, real left, real fraction)
 {
     const real duration = vec_abs(left), inverse_duration = inverse_of(duration);
@@ -110,15 +116,23 @@ SPRING_NOINLINE void press_from_start(const scene_collider *c, drifting *p, mask
     const int passes = c->friction > 0 ? friction_passes : 0;
     real lambda = vec_not_negative(-inward) * inverse_duration;
     real3 slip = {splat(0), splat(0), splat(0)}, x = x1;
-    mask stuck = {0};
+    mask stuck = {0}, settled;
+    const real tolerance = (scalar)0.25 * contact_slop(c, p->x0);
     for (int pass = 0;; pass++) {
         const int iterations = c->shape == SPRING_PLANE ? 0 : pass == passes ? surface_iterations : 1;
-        for (int i = 0; i < iterations; i++) { /* Newton's method, with 2 - cosine for 1/cosine, which is never less */
+        settled = iterations == 0 ? where : (mask){0};
+        /* Newton's method, with 2 - cosine for 1/cosine, which is never less. The gap is convex, so an iteration that
+           finds the gap g leaves at least g (1 - cosine)^2 of it. */
+        for (int i = 0; i < iterations; i++) {
             const real3 guess = plus_scaled3(x, lambda * duration, n);
             contact_point there;
             find_contact(c, STEP_END, splat(0), &guess, &there);
             const real cosine = dot3(n, there.normal), next = lambda - there.gap * inverse_duration * (2 - cosine);
-            lambda = select_real(cosine > (scalar)0.1, vec_not_negative(next), lambda);
+            const mask ahead = (cosine > (scalar)0.1) & not_mask(settled);
+            lambda = select_real(ahead, vec_not_negative(next), lambda);
+            settled |= ahead & (vec_abs(there.gap) * (1 - cosine) <= tolerance);
+            if (!any(where & not_mask(settled)))
+                break;
         }
         if (pass == passes)
             break;
@@ -137,6 +151,7 @@ SPRING_NOINLINE void press_from_start(const scene_collider *c, drifting *p, mask
     const real3 d = plus_scaled3(minus3(x, p->x0), lambda * duration, n);
     p->w = select3(where, select3(stuck, *surface, w), p->w);
     p->d = select3(where, select3(stuck, times3(splat(p->h), *surface), d), p->d);
+    return where & settled & not_mask(stuck);
 }
 
 /* Step 4 later in the step, or at a second contact. */
@@ -153,22 +168,34 @@ SPRING_NOINLINE void press_late(const scene_collider *c, drifting *p, mask where
     p->d = select3(where, plus_scaled3(d, vec_not_negative(-there.gap), there.normal), p->d);
 }
 
-/* Steps 1 to 4 with one collider. Returns the lanes that touch it. */
-SPRING_NOINLINE mask collide(const scene_collider *c, drifting *p)
+/* Notes which lanes touch collider i, and those among all lanes whose path is known to end outside. */
+SPRING_INLINE void note_contact(drifting *p, unsigned i, mask hit, mask outside)
+{
+    const uint32_t bit = UINT32_C(1) << i;
+    p->touched |= bits_where(hit, bit);
+    p->outside = (p->outside & ~bits_where(hit, UINT32_MAX)) | bits_where(outside, bit);
+}
+
+/* Steps 1 to 4 with collider i. */
+SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p)
 {
     contact_point at;
     real gap, fraction;
     mask pushed;
-    const mask hit = find_impact(c, p, &at, &gap, &fraction, &pushed);
-    if (!any(hit))
-        return hit;
+    const mask hit = find_impact(c, i, p, &at, &gap, &fraction, &pushed);
+    const mask missed = turns(c) ? (mask){0} : p->free & not_mask(hit); /* the gap along the path is convex */
+    if (!any(hit)) {
+        note_contact(p, i, hit, missed);
+        return;
+    }
     const real left = (1 - fraction) * p->h;
     const real3 n = at.normal, surface = surface_velocity(c, &at), way = times3(fraction, p->d);
 
     const real3 at_impact = plus_scaled3(p->w, (fraction - p->kappa) * p->h, p->accel);
-    const real3 u = minus3(select3(p->touched, p->w, at_impact), surface);
+    const mask again = has_bits(p->touched, UINT32_MAX);
+    const real3 u = minus3(select3(again, p->w, at_impact), surface);
     const real rate = dot3(u, n);
-    const mask bounces = hit & (rate * p->h < -contact_slop(c, p->x0)) & not_mask(p->touched & (fraction <= 0));
+    const mask bounces = hit & (rate * p->h < -contact_slop(c, p->x0)) & not_mask(again & (fraction <= 0));
     if (any(bounces)) {
         const real impulse = -(1 + c->restitution) * rate;
         const real3 friction = friction_loss(tangential_to(n, u), c->friction * vec_abs(impulse));
@@ -189,17 +216,17 @@ SPRING_NOINLINE mask collide(const scene_collider *c, drifting *p)
         outside = ends_above & (there.gap >= 0);
     }
     const mask presses = hit & not_mask(outside) & (fraction < 1);
-    const mask late = presses & ((fraction > (scalar)0.5) | p->touched | pushed);
+    const mask late = presses & ((fraction > (scalar)0.5) | again | pushed);
     if (any(late))
         press_late(c, p, late, &at, &surface, inward, left);
     const mask early = presses & not_mask(late);
     if (any(early))
-        press_from_start(c, p, early, &at, &surface, inward, left, fraction);
-    return hit;
+        outside |= press_from_start(c, p, early, &at, &surface, inward, left, fraction);
+    note_contact(p, i, hit, outside | missed);
 }
 
-/* Step 5 for one collider, in the lanes `where`. Returns those that were inside. */
-SPRING_NOINLINE mask leave_collider(const scene_collider *c, drifting *p, mask where)
+/* Step 5 for collider i, in the lanes `where`. Returns those that were inside. */
+SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, drifting *p, mask where)
 {
     const real3 x = plus3(p->x0, p->d);
     contact_point there;
@@ -212,27 +239,22 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, drifting *p, mask w
     const real3 w = clipped(c, there.normal, surface, p->w, p->h, &slip);
     p->w = select3(inside, w, p->w);
     p->d = select3(inside, plus_scaled3(p->d, -there.gap, there.normal), p->d);
+    note_contact(p, i, inside, (mask){0});
     return inside;
 }
 
-/* The contacts of a vector of particles in a drift. touched: [lanes] gets a bit for each collider. */
-SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t *touched)
+/* The contacts of a vector of particles in a drift. */
+SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 {
-    p->touched = (mask){0};
-    for (unsigned i = 0; i < t->count; i++) {
-        const scene_collider *const c = &t->collider[i];
-        if (!any(p->free & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
-            continue;
-        const mask hit = collide(c, p);
-        add_bit(touched, i, hit);
-        p->touched |= hit;
-    }
+    p->touched = p->outside = bits_where((mask){0}, 0);
+    for (unsigned i = 0; i < t->count; i++)
+        if (any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
+            collide(&t->collider[i], i, p);
     const mask all_free = p->free;
     for (unsigned i = 0; i + 1 < t->count; i++) {
-        p->free = all_free & with_bits(touched, UINT32_MAX << i << 1); /* deflected by a later collider */
-        if (!any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
-            continue;
-        add_bit(touched, i, collide(&t->collider[i], p));
+        p->free = all_free & has_bits(p->touched, UINT32_MAX << i << 1); /* deflected by a later collider */
+        if (any(p->free) && any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
+            collide(&t->collider[i], i, p);
     }
     p->free = all_free;
     mask moved = all_free;
@@ -241,40 +263,39 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p, uint32_t 
         moved = (mask){0};
         for (unsigned i = 0; i < t->count; i++) {
             const scene_collider *const c = &t->collider[i];
-            if (!any(before & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
-                continue;
-            const mask inside = leave_collider(c, p, before);
-            add_bit(touched, i, inside);
-            p->touched |= inside;
-            moved |= inside;
+            const mask open = before & not_mask(has_bits(p->outside, UINT32_C(1) << i));
+            if (any(open) && any(open & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
+                moved |= leave_collider(c, i, p, open);
         }
     }
 }
 
 /* The last kick: velocities lose their components into the colliders that were touched. With several colliders, projected
-   Gauss-Seidel: in further rounds each collider corrects its impulse, which stays non-negative. Friction acts in the first round. */
-SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, const uint32_t *touched, pose_time when, mask free,
-                                       const real3 *x, real3 *v)
+   Gauss-Seidel: in further rounds each collider corrects its impulse, which stays non-negative. Friction acts in the first round.
+   Sets found[i], for all lanes, of the colliders i whose bits it returns. */
+SPRING_NOINLINE uint32_t stop_at_colliders(const scene_contacts *t, lane_bits touched, pose_time when, mask free,
+                                           const real3 *x, real3 *v, contact_point *found)
 {
-    real3 normal[most_colliders], surface[most_colliders];
+    uint32_t known = 0;
+    real3 surface[most_colliders];
     real pressed[most_colliders]; /* [m/s] along the normal */
     mask touches[most_colliders], several = {0}, any_yet = {0};
     for (unsigned i = 0; i < t->count; i++) {
         const scene_collider *const c = &t->collider[i];
-        touches[i] = free & with_bits(touched, UINT32_C(1) << i);
+        touches[i] = free & has_bits(touched, UINT32_C(1) << i);
         if (!any(touches[i]))
             continue;
         several |= any_yet & touches[i];
         any_yet |= touches[i];
-        contact_point at;
-        find_contact(c, when, splat(0), x, &at);
-        normal[i] = at.normal;
-        surface[i] = surface_velocity(c, &at);
-        const real3 u = minus3(*v, surface[i]), tangential = tangential_to(at.normal, u);
-        const real rate = dot3(u, at.normal), limit = c->friction * vec_abs(rate);
+        find_contact(c, when, splat(0), x, &found[i]);
+        known |= UINT32_C(1) << i;
+        const real3 normal = found[i].normal;
+        surface[i] = surface_velocity(c, &found[i]);
+        const real3 u = minus3(*v, surface[i]), tangential = tangential_to(normal, u);
+        const real rate = dot3(u, normal), limit = c->friction * vec_abs(rate);
         const mask enters = touches[i] & (rate * t->h < 0);
         const mask slides = vec_sqrt(dot3(tangential, tangential)) > limit;
-        const real3 slid = minus3(plus_scaled3(*v, -rate, at.normal), friction_loss(tangential, limit));
+        const real3 slid = minus3(plus_scaled3(*v, -rate, normal), friction_loss(tangential, limit));
         *v = select3(enters, select3(slides, slid, surface[i]), *v);
         pressed[i] = select_real(enters, -rate, splat(0));
     }
@@ -283,11 +304,12 @@ SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, const uint32_t *
             const mask again = several & touches[i];
             if (!any(again))
                 continue;
-            const real wanted = pressed[i] - dot3(minus3(*v, surface[i]), normal[i]);
+            const real wanted = pressed[i] - dot3(minus3(*v, surface[i]), found[i].normal);
             const real now = select_real(wanted * t->h > 0, wanted, splat(0));
-            *v = select3(again, plus_scaled3(*v, now - pressed[i], normal[i]), *v);
+            *v = select3(again, plus_scaled3(*v, now - pressed[i], found[i].normal), *v);
             pressed[i] = select_real(again, now, pressed[i]);
         }
+    return known;
 }
 
 /* See normal_kernel. */

@@ -44,16 +44,26 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
-/* Lanes whose number has one of these bits. */
-SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
+typedef uint32_t lane_bits;
+
+SPRING_INLINE lane_bits load_bits(const uint32_t *p)
 {
-    return (numbers[0] & bits) != 0;
+    return *p;
 }
 
-/* Sets bit k of the numbers of these lanes. */
-SPRING_INLINE void add_bit(uint32_t *numbers, unsigned k, mask where)
+SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
 {
-    numbers[0] |= (uint32_t)where << k;
+    *p = b;
+}
+
+SPRING_INLINE lane_bits bits_where(mask t, uint32_t bits)
+{
+    return t ? bits : 0;
+}
+
+SPRING_INLINE mask has_bits(lane_bits b, uint32_t bits)
+{
+    return (b & bits) != 0;
 }
 
 SPRING_INLINE real vec_sqrt(real a)

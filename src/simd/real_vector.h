@@ -94,20 +94,35 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
 #endif
 }
 
-/* Lanes whose number has one of these bits. */
-SPRING_INLINE mask with_bits(const uint32_t *numbers, uint32_t bits)
+/* 32 bits in each lane. */
+typedef mask lane_bits;
+
+SPRING_INLINE lane_bits load_bits(const uint32_t *p)
 {
-    mask t = {0};
-    for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
-        t[i] = -(scalar_bits)((numbers[i] & bits) != 0);
-    return t;
+    scalar_bits each[sizeof(lane_bits) / sizeof(scalar)];
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
+        each[i] = (scalar_bits)p[i];
+    lane_bits b;
+    memcpy(&b, each, sizeof b);
+    return b;
 }
 
-/* Sets bit k of the numbers of these lanes. */
-SPRING_INLINE void add_bit(uint32_t *numbers, unsigned k, mask where)
+SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
 {
-    for (size_t i = 0; i < sizeof where / sizeof(scalar); i++)
-        numbers[i] |= (uint32_t)(where[i] & 1) << k;
+    for (size_t i = 0; i < sizeof b / sizeof(scalar); i++)
+        p[i] = (uint32_t)b[i];
+}
+
+/* These bits in the lanes of a mask, 0 in the others. */
+SPRING_INLINE lane_bits bits_where(mask t, uint32_t bits)
+{
+    return t & (scalar_bits)bits;
+}
+
+/* Lanes that have one of these bits. */
+SPRING_INLINE mask has_bits(lane_bits b, uint32_t bits)
+{
+    return (b & (scalar_bits)bits) != 0;
 }
 
 SPRING_INLINE real vec_sqrt(real a)
