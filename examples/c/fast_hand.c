@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * How fast may a hand drag a cloth? The middle of its lower edge is moved to and fro for a second and let go. After that
- * energy can only be lost: what is gained is the error of the step. docs/hand.md says what to make of the table.
+ * energy can only be lost: what is gained is the error of the step. docs/dragging.md says what to make of the table.
  *
  *     cc -std=c11 -O2 fast_hand.c -lspringstep -lm -o fast_hand
  */

@@ -5,7 +5,7 @@
  *     cc -std=c11 rope.c -lspringstep -lm -o rope
  *
  * To grab a particle, pin it and drive it; to let it go, free it. The scene has to be SPRING_SCENE_EDITABLE. A hand that
- * is too fast for the rope: docs/hand.md.
+ * is too fast for the rope: docs/dragging.md.
  */
 #include <springstep/scene.h>
 #include <math.h>
@@ -31,7 +31,7 @@ static void mouse(double t, double at[2])
     at[1] = -2.3 + 0.9 * t;
 }
 
-/* The hand follows the mouse, at half the speed of waves in the rope at most: see docs/hand.md. */
+/* The hand follows the mouse, at half the speed of waves in the rope at most: see docs/dragging.md. */
 static void reach(double hand[2], const double to[2])
 {
     const double most = 0.5 * spacing * sqrt(stiffness / mass) * frame_time; /* [m] in a frame */

@@ -45,7 +45,7 @@ local function start(x, y)
   end
 end
 
--- The hand follows the pointer, at half the speed of waves in the rope at most: see docs/hand.md.
+-- The hand follows the pointer, at half the speed of waves in the rope at most: see docs/dragging.md.
 local function reach(x, y, duration)
   local dx, dy, most = x - hand[0], y - hand[1], 0.5 * wave * duration
   local part = math.min(1, most / math.max(math.sqrt(dx * dx + dy * dy), 1e-9))

@@ -320,7 +320,7 @@ void world_close(world *w)
 /* ----------------------------------------------------------------------------------------------------------- motion */
 
 /* The hand follows the mouse at half the speed of waves at most: a faster one stretches the links next to it, and asks for
-   shorter steps (docs/hand.md). */
+   shorter steps (docs/dragging.md). */
 static void reach(world *w, double duration)
 {
     const vec3 d = {w->goal.x - w->hand.x, w->goal.y - w->hand.y, w->goal.z - w->hand.z};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Fills the table of libraries in docs/ui.md from docs/data/javascript.tsv; with --check, says whether it is filled from it.
+// Fills the table of libraries in docs/javascript.md from docs/data/javascript.tsv; with --check, says whether it is filled from it.
 //
 // usage: node table.mjs [--check]
 import { readFileSync, writeFileSync } from "node:fs";
 
 const docs = new URL("../../../docs/", import.meta.url);
-const page = new URL("ui.md", docs);
+const page = new URL("javascript.md", docs);
 const data = readFileSync(new URL("data/javascript.tsv", docs), "utf8").trimEnd().split("\n");
 const [head, ...rows] = data.filter((line) => !line.startsWith("#")).map((line) => line.split("\t"));
 
@@ -47,11 +47,11 @@ const filled = text.replace(
     /(<!-- javascript\.tsv -->\n)[^]*?(<!-- end -->)/,
     (_, begin, end) => `${begin}\n${table}\n\n${end}`,
 );
-if (!filled.includes(table)) throw new Error("docs/ui.md has no place for the table");
+if (!filled.includes(table)) throw new Error("docs/javascript.md has no place for the table");
 if (process.argv[2] !== "--check") writeFileSync(page, filled);
 else if (filled !== text) {
     console.log(
-        "docs/ui.md is not filled from docs/data/javascript.tsv: bindings/js/compare/table.mjs does it",
+        "docs/javascript.md is not filled from docs/data/javascript.tsv: bindings/js/compare/table.mjs does it",
     );
     process.exitCode = 1;
 }
