@@ -22,7 +22,7 @@ import sys
 import jinja2
 
 HERE = pathlib.Path(__file__).resolve().parent
-PAGES = {"index": "Springs through time", "evidence": "Springs through time: the evidence"}  # and their titles
+PAGES = {"index": "Spring simulation: methods, steps and accuracy", "evidence": "Spring simulation: evidence"}  # and their titles
 
 
 class DataError(Exception):
