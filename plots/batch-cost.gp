@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a step of one spring costs in a batch of double precision, with each feature. Above: few springs, many steps a
-# call, in the cache. Below: many springs, one step a call, from memory.
+# Time of one step of one spring in a batch in double precision, with each feature. Above: few springs in cache, many
+# steps per call. Below: many springs in memory, one step per call.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 1000
 call plots."need.gp" ARG3 "kernel precision count ns_per_spring_step"
 

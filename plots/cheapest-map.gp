@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# One spring, and the method that takes the fewest force evaluations to stay within an error, the steps as long as
-# `spring_accurate_step()` allows. Each panel is a damping ratio ζ. The exact solution, which evaluates no force, is left
-# out: it would be the cheapest everywhere.
+# The method with the fewest force evaluations for a given error, for one spring. The steps are as long as
+# `spring_accurate_step()` allows. Each panel has a damping ratio ζ. The exact solution needs no force evaluations and
+# is left out.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "620 + key_height(methods)"
 map = ARG3
 call plots."need.gp" map "damping_ratio tolerance periods method force_evaluations"
@@ -34,7 +34,7 @@ do for [p = 1:panels] {
     set title sprintf("ζ = %.4g", damping[1 + (p - 1)*points/panels]) offset 0,-0.9
     if (p % 2) {
         set ytics 10 format "10^{%T}"
-        set ylabel "error / start" offset 1,0
+        set ylabel "error / initial value" offset 1,0
     } else {
         set ytics 10 format ""
         unset ylabel

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The cloth of the figure above, as fast as it falls, every second row of its links. The dots hold it; the square below it
-# is as large as the cloth.
+# The cloth of the figure above in real time. Every second row of its links is drawn. The dots are the pinned corners,
+# and the square below the cloth has the size of the cloth.
 import film
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# A cloth of {{ data('cloth-map').last.size|round|int }} by {{ data('cloth-map').last.size|round|int }} particles, held by
-# two of its corners, falls, swings and hangs, in 1, 2, 4, … steps a frame of 1/60 s. Colour: the error, over the size of
-# the motion. Orange: exploded. White: steps as long as the stable step that the library states. Empty below: less than
-# one step a frame.
+# A cloth of {{ data('cloth-map').last.size|round|int }} by {{ data('cloth-map').last.size|round|int }} particles,
+# pinned at two corners, falls, swings and hangs, with 1, 2, 4, … steps per frame of 1/60 s. Colour: error relative to
+# the size of the motion. Orange: exploded. White line: the stable step that the library returns. The empty area below
+# has less than one step per frame.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "200 + 250*((methods + 1)/2)"
 map = ARG3
 call plots."need.gp" map "stiffness_N_per_m steps_per_frame method error status stable_step_s"
@@ -38,7 +38,7 @@ do for [m = 1:methods] {
     set title labels[m] offset 0,-0.9
     if (m % 2) {
         set ytics ("1" 0, "4" 2, "16" 4, "64" 6, "256" 8)
-        set ylabel "forces a frame" offset 1,0
+        set ylabel "force evaluations / frame" offset 1,0
     } else {
         set ytics ("" 0, "" 2, "" 4, "" 6, "" 8)
         unset ylabel

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-# A cloth, held at two corners, the dots, and let go level, moved by leapfrog in steps of {{ step('cloth-energy') }}.
+# A cloth is pinned at two corners (dots) and released from a horizontal position. Leapfrog, steps of {{
+# step('cloth-energy') }}.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 470
 call plots."need.gp" ARG3 "t_s"
 instants = "0.2 0.4 0.6 0.8 1.2 2" # [s]

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Contacts, error at the end against the step, for the library and for the two schemes that engines use, with the same
-# leapfrog. Above, a particle bounces along the ground with friction. Below, one slides down a sphere with friction. The
-# dotted lines have the slopes of the orders one and two. Errors of bounces depend on where in a step an impact falls.
+# Error at the end of a run with contacts versus step, for the library and for two schemes that are common in engines,
+# all with leapfrog. Above: a particle bounces along the ground with friction. Below: a particle slides down a sphere
+# with friction. The dotted lines have the slopes of orders one and two. The errors of bounces also depend on where
+# within a step an impact occurs.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "760 + key_height(4)"
 contacts = ARG3
 call plots."need.gp" contacts "case scheme dt_s error"

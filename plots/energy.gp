@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The error in energy against the time run, in steps of {{ data('energy-euler').rows[0].duration_s /
-# data('energy-euler').rows[0].steps }} s. Euler gains without end. The energies of leapfrog and symplectic Euler swing,
-# by as much at the end as at the beginning; leapfrog's swings by far more where its velocity is taken half a step ahead
-# of its position. RK4 loses, slowly, and never stops. Grey: the laws of the text.
+# Energy error versus duration of the run, with steps of {{ data('energy-euler').rows[0].duration_s /
+# data('energy-euler').rows[0].steps }} s. Euler's error grows without bound. The errors of leapfrog and symplectic
+# Euler oscillate, with the same amplitude at the end as at the beginning. Leapfrog's error is far larger if its
+# velocity is taken half a step ahead of its position. RK4 slowly loses energy. Grey: the formulas in the text.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods + 2)"
 call plots."need.gp" ARG3 "duration_s steps energy_error_J" methods
 call plots."need.gp" ARG4 "duration_s energy_error_J"
@@ -24,8 +24,8 @@ law_ahead(t) = t > longest ? NaN : E0*dt/2
 set logscale xy
 set xrange [0.5:2*longest]
 set yrange [1e-14:top]
-set xlabel "time run / s"
-set ylabel "error in energy / J"
+set xlabel "duration / s"
+set ylabel "energy error / J"
 set format xy "10^{%T}"
 set xtics 10
 set ytics 1e3

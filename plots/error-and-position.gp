@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Position and error over the last ten seconds of the long run, each error on a scale of its own. Dotted lines stand at
-# the turning points. Euler's error is an amplitude that grew: it is greatest there, and zero where the spring passes its
-# rest position. Leapfrog's is a clock that runs fast: it is zero at the turning points and greatest where the spring is
-# fastest. What RK4 shows is rounding.
+# Position and error over the last ten seconds of the long run. Each error has its own scale. The dotted lines mark the
+# turning points. Euler has an amplitude error, which is largest at the turning points and zero at the equilibrium
+# position. Leapfrog has a phase error, which is zero at the turning points and largest where the velocity is largest.
+# RK4 has only rounding errors.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "235 + 155*methods"
 runs = ARG3
 call plots."need.gp" runs "t_s x_m exact_x_m" methods

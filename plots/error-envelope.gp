@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The greatest error in position of each second or so of the long run. Dotted: what theory says of Euler, leapfrog and
-# RK4. What is seen of RK4 is rounding, far above its own error. Symplectic Euler's error swings in each period, and hardly
-# grows.
+# The largest position error in each interval of about one second of the long run. Dotted: theory for Euler, leapfrog
+# and RK4. RK4 has rounding errors far above its truncation error. Symplectic Euler's error oscillates in each period
+# and hardly grows.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "440 + key_height(methods + 1)"
 envelopes = ARG3
 call plots."need.gp" envelopes "t_s error_min_m error_max_m" methods
@@ -21,7 +21,7 @@ set format y "10^{%T}"
 set ytics 1e3
 set mytics 1
 set xlabel "time / s"
-set ylabel "greatest error in position / m"
+set ylabel "largest position error / m"
 call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] file(envelopes, m) using "t_s":(greater(column("error_min_m"), column("error_max_m"))) \

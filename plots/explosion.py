@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The water of the figure above, poked in the middle, a picture for each step of {{ step('water-2ms-euler-energy') }},
-# slowed down. What is very high or very low is cut off; how high it is stands below it.
+# The water of the figure above after a disturbance in the middle, in slow motion, with one picture per step of {{
+# step('water-2ms-euler-energy') }}. Very large heights and depths are cut off, and the largest value is written below
+# the surface.
 import math
 
 import film

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The last six hundredths of a second before the end of the long run. Methods whose markers lie inside each other, in
-# the rings of the exact solution, cannot be told apart; Euler's are beside them.
+# The last six hundredths of a second before the end of the long run. The markers of all methods except Euler lie inside
+# the rings of the exact solution.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods + 1)"
 runs = ARG3
 call plots."need.gp" runs "t_s x_m exact_x_m" methods

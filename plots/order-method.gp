@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# {{ method }}: the error after one second against the number of steps, and the power law fitted through all of the points.
+# {{ method }}: error after one second versus the number of steps, and the power law fitted through all points.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 ARG3 "390 + key_height(3)"
 call plots."need.gp" ARG4 "n error_m"
 call plots."need.gp" ARG5 "coefficient_m exponent"

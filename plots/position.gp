@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# Position over the last ten seconds of the long run. The broad grey line is the exact solution: Euler swings beyond it, and
-# the lines of all other methods lie on each other, in its middle.
+# Position over the last ten seconds of the long run. The broad grey line is the exact solution. Euler overshoots it,
+# and the lines of all other methods coincide with it.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods + 1)"
 runs = ARG3
 call plots."need.gp" runs "t_s x_m exact_x_m" methods

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a method costs and what it gives: the error after one second against the work, counted in force evaluations. RK4
-# makes four of them a step, the others one. Grey: theory, not fitted.
+# Error after one second versus cost, counted in force evaluations. RK4 has four force evaluations per step, the other
+# methods have one. Grey: theory, not fitted.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "euler leapfrog rk4" "390 + key_height(methods + 1)"
 do for [m = 1:methods] {
     types[m] = word("1 3 4", m) + 0 # the README keeps its picture when the table grows

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Where the particles of the rope are along x, soon after it was let go. Left: what Euler makes of it in steps of {{
-# step('rope-euler-energy') }}. Right: leapfrog in steps of {{ step('rope-coarse-energy') }}, just above its stable
-# step. The rope is torn apart before it has begun to fall. Dotted: where the particles belong.
+# Position x of the particles of the rope shortly after its release. Left: Euler, steps of {{ step('rope-euler-energy')
+# }}. Right: leapfrog, steps of {{ step('rope-coarse-energy') }}, just above its stable step. Both runs explode before
+# the rope has begun to fall. Dotted: the correct positions.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 310
 call plots."need.gp" ARG3 "t_s particle x_m" 2
 array torn[2] = [word(ARG3, 1), word(ARG3, 2)]

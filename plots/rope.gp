@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# A rope, the last particle of which weighs {{ (data('rope-energy').setting('end-mass') /
-# data('rope-energy').setting('mass'))|int|count }} times as much as each of the others, let go level: every quarter of
-# a second, with leapfrog in steps of {{ step('rope-energy') }}. The black dot is where it hangs.
+# A rope, drawn every quarter of a second after its release from a horizontal position. Its last particle has {{
+# (data('rope-energy').setting('end-mass') / data('rope-energy').setting('mass'))|int|count }} times the mass of each
+# other particle. Leapfrog, steps of {{ step('rope-energy') }}. The black dot is the pinned end.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" 330
 call plots."need.gp" ARG3 "t_s particle x_m z_m"
 rope = ARG3

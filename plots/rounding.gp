@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# Rounding alone: the distance between the computed state and the same method in exact arithmetic, over the number of
-# steps, from eight starts. With a step of {{ data('rounding-leapfrog').rows[0].dt_s }} s, a power of two, leapfrog's
-# coefficient dt ω²/2 is exact, and errors that point anywhere grow like √n; with {{
-# data('rounding-decimal').rows[0].dt_s }} s it is rounded, once for all steps, and errors that all point the same way
-# grow like n. Compensated sums take away most of the first kind, and nothing of the second.
+# Rounding error versus number of steps, from eight starts: the distance between the computed state and the same method
+# in exact arithmetic. With a step of {{ data('rounding-leapfrog').rows[0].dt_s }} s, a power of two, leapfrog's
+# coefficient dt ω²/2 is exact. The rounding errors are then independent, and their sum grows like √n. With a step of {{
+# data('rounding-decimal').rows[0].dt_s }} s the coefficient is rounded once for all steps. The resulting errors have
+# the same sign and grow like n. Compensated sums remove most of the first kind of error and none of the second.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 900
 plain = ARG3
 compensated = ARG4

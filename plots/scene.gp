@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-# How many times as fast as a plain loop over the links a step of a scene is, against the number of links; one dot a
-# measurement. The loop is what anybody would write, over an array of links and one of particles, for the same scene in
-# the same order. On the line both take the same time, below it the plain loop is faster. Brown: a sheet whose links, or links
-# and particles, are in random order.
+# Time of a plain loop over the links divided by the library's time, versus the number of links, one dot per
+# measurement. The loop uses an array of links and an array of particles, for the same scene in the same order. Below
+# the line the plain loop is faster. Brown: sheets with links, or links and particles, in random order.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "440 + key_height(6)"
 call plots."need.gp" ARG3 "kernel precision count speedup"
 bench = ARG3
@@ -20,7 +19,7 @@ set xrange [0.7:1e7]
 set yrange [*<0.25:8<*]
 set format x "10^{%T}"
 set xlabel "links"
-set ylabel "plain loop's time / the library's"
+set ylabel "time of plain loop / library"
 set ytics (0.125, 0.25, 0.5, 1, 2, 4, 8, 16)
 call plots."key.gp" 6
 set output ARG1

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# What a step of one spring costs. Grey: the same written out in a loop, in registers: Euler, leapfrog, the four stages of
-# RK4, and of the exact solution the textbook's formula by the C library's functions.
+# Time of one step of one spring. Grey: the same computation written out in a loop, in registers. For the exact solution
+# this is the textbook formula with functions of the C library.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" 420
 call plots."need.gp" ARG3 "kernel ns_per_spring_step limit_ns"
 

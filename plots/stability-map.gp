@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The error after ten periods over step and damping ratio, as a fraction of the distance from rest at the start. Orange:
-# more than the whole of it. White: the largest stable step. Around ζ = 1 a spring has come to rest after ten periods, so
-# there even a coarse step leaves no error to speak of, if only it is stable. Leapfrog is stable for every damping, and of
-# no use where damping is strong and the step coarse: there a part of its velocity changes sign at every step.
+# The error after ten periods versus step and damping ratio, as a fraction of the initial displacement. Orange: an error
+# larger than the initial displacement. White line: the stability limit. Near ζ = 1 the spring is at rest after ten
+# periods, so even long steps leave almost no error if they are stable. Leapfrog is stable at every damping ratio, but
+# inaccurate where the damping is strong and the step is long: a part of its velocity changes sign in each step there.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "200 + 250*((methods + 1)/2)"
 map = ARG3
 limits = ARG4

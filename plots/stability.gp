@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The largest stable step, as ω dt, over the damping ratio. Marks: found by taking steps and watching whether they grow,
-# without any formula. Lines: theory. Euler is stable only where there is damping, and best at critical damping; leapfrog
-# does not mind damping at all; RK4's limit falls where damping is strong.
+# The stability limit, as ω dt, versus the damping ratio. Marks: measured from the growth of computed motion, without
+# using any formula for the limit. Lines: theory. Euler is stable only with damping, and its limit is largest at
+# critical damping. Leapfrog's limit does not depend on damping. RK4's limit falls at strong damping.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods + 1)"
 stability = ARG3
 call plots."need.gp" stability "method damping_ratio limit_measured limit_theory"
@@ -16,7 +16,7 @@ set format xy "10^{%T}"
 set xtics 10
 set mxtics 1
 set xlabel "damping ratio ζ"
-set ylabel "largest stable ω dt"
+set ylabel "stability limit ω dt"
 call plots."key.gp" methods + 1
 set output ARG1
 plot for [m = 1:methods] stability using "damping_ratio":(of(m, column("limit_theory"))) with lines linetype theory dashtype solid notitle, \

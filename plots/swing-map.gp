@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# A link with a mass at its end is let go at an angle, from hanging to standing, and swings
-# {{ data('swing-map').last.duration_s|round|int }} s, by leapfrog. Each panel: how many times its rest length the link is
-# at the start. Colour: the energy gained, over the largest kinetic energy it should have. Orange: more than ten times
-# what it ever should be. White: the stable step that the library states.
+# A link with a mass at its end is released at an angle between hanging down and standing up, and swings for {{
+# data('swing-map').last.duration_s|round|int }} s. Leapfrog. Each panel: initial length of the link over its rest
+# length. Colour: energy gained, relative to the largest kinetic energy of the exact motion. Orange: more than ten times
+# that energy. White line: the stable step that the library returns.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "700"
 map = ARG3
 call plots."need.gp" map "stretch angle_deg stable_fraction energy_error"

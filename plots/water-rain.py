@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Rain on the water, and a box after a quarter of a second, slowed down; the heights of the water are exaggerated. The box is
-# taken away when it has come to rest. Leapfrog, two steps of {{ step('water-rain-energy') }} for each picture.
+# Rain on height-field water, and a box that hits the water after a quarter of a second, in slow motion. The heights of
+# the water are exaggerated. The box is removed when it has come to rest. Leapfrog, two steps of {{
+# step('water-rain-energy') }} per picture.
 import math
 
 import film

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The ideal spring after ten thousand periods: error of the energy, relative to what it was, against run time. With long
-# steps RK4 loses all of it, while leapfrog's error depends on the step alone, not on how long the run is. Open markers:
-# GSL.
+# Relative energy error versus run time for the ideal spring after ten thousand periods. With long steps RK4 loses all
+# of the energy. Leapfrog's energy error depends on the step, and not on the duration of the run. Open markers: GSL.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "420 + key_height(methods + 3)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s energy_error"
@@ -17,7 +16,7 @@ set ytics 1e3
 set mxtics 1
 set mytics 1
 set xlabel "run time / s"
-set ylabel "error of the energy"
+set ylabel "relative energy error"
 entries = methods + 3
 call plots."key.gp" entries
 set output ARG1

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-# The ideal spring after one period and after ten: error against force evaluations. Dotted: what theory says, exactly, of
-# Euler, leapfrog and RK4. Markers inside each other: the methods agree. The vertical line is where RK4 passes leapfrog.
-# At the end rounding is all that is left, and more steps make it more. Open markers: GSL.
+# Work–precision diagrams of the ideal spring after one period and after ten: error versus force evaluations. Dotted:
+# the exact errors of Euler, leapfrog and RK4 from theory. Nested markers show that methods agree. At the vertical line
+# RK4 becomes more accurate than leapfrog. At the right only rounding error is left, and it grows with the number of
+# steps. Open markers: GSL.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "855 + key_height(methods + 2)"
 output = ARG1
 work = ARG3
@@ -55,7 +56,7 @@ do for [k = 1:2] {
     periods = lengths[k]
     panel = "ideal-".periods
     cross = crosses[k]
-    set title sprintf("%s, crossing at %.3g a period", periods == 1 ? "one period" : "ten periods", cross/periods) \
+    set title sprintf("%s, crossing at %.3g per period", periods == 1 ? "one period" : "ten periods", cross/periods) \
         offset -2,-0.6
     set arrow 1 from cross,1e-16 to cross,3 nohead linetype theory linewidth 1
     if (k == 2) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Scenes, error at the end against run time: one particle on a spring that swings, a cloth that falls, and a sheet of
-# water, which is linear. Open markers: GSL, grey, SUNDIALS (ARKODE, CVODE), brown, and Boost.odeint, violet, whose
-# symplectic method is for motion without drag.
+# Work–precision diagrams of scenes, error at the end versus run time: an elastic pendulum, a falling cloth, and a sheet
+# of height-field water, which is linear. Open markers: GSL (grey), SUNDIALS (ARKODE and CVODE, brown) and Boost.odeint
+# (violet). The symplectic method of Boost.odeint applies only without drag.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "1115 + key_height(methods + 7)"
 output = ARG1
 work = ARG3

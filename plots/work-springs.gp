@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# One spring, error at the end against the time the run took: ten periods without damping, and five with a damping ratio
-# of a tenth. Open markers: GSL, grey, SUNDIALS (ARKODE, CVODE), brown, and Boost.odeint, violet, whose symplectic method
-# is for motion without drag. The star is the exact solution, which takes no steps. Smaller errors than the axis shows are
-# drawn at its end.
+# Work–precision diagrams of one spring, error at the end versus run time: ten periods without damping, and five with a
+# damping ratio of a tenth. Open markers: GSL (grey), SUNDIALS (ARKODE and CVODE, brown) and Boost.odeint (violet). The
+# symplectic method of Boost.odeint applies only without drag. The star is the exact solution, which needs no steps.
+# Errors below the range of the axis are drawn at its lower end.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "835 + key_height(methods + 8)"
 output = ARG1
 work = ARG3

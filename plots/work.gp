@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The same long run in more and more steps: the error in position at its end against the time the run took. Rings mark
-# the smallest numbers of steps from which on the error never exceeds Euler's, the dotted line.
+# Work–precision diagram of the long run: position error at the end versus run time, for different numbers of steps.
+# Rings mark the smallest number of steps from which the error never again exceeds Euler's error (dotted line).
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "springs" "390 + key_height(methods)"
 work = ARG3
 call plots."need.gp" work "problem solver effort time_s error_x"
