@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Height-field water from above at four times after a disturbance in the middle, in steps of {{
+# Height-field water from above at four instants after a disturbance in the middle, in steps of {{
 # step('water-fine-euler-energy') }}. The methods cannot be distinguished by eye. The wave travels to the edges, which
 # are pinned.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "95 + 148*methods"
