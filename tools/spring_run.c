@@ -53,7 +53,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-run",
-    .summary = "Move one spring through time and compare it with its exact solution.",
+    .summary = "Simulate one spring and compare it with its exact solution.",
     .details = "Times are i DT from the start, or i H/N, and the exact solution is computed from the start in one\n"
                "evaluation.\n\n"
                "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"

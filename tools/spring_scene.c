@@ -126,7 +126,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-scene",
-    .summary = "A rope, a cloth, a block of jelly, a chain or a water surface through time.",
+    .summary = "Simulate a rope, a cloth, a soft body (jelly), a chain or height-field water.",
     .details = "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
                "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
                "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"

@@ -206,7 +206,7 @@ def test_damaged(seed, whole, parts, tmp_path):
     is_failure(join(path, *others), 1, '--join: ', str(path), 'run this part again')
     result = part(1, 3, path)
     assert (result.returncode, result.stdout) == (0, '')
-    assert result.stderr == f'{SWEEP}: "{path}" is damaged: what is not whole is done again\n'
+    assert result.stderr == f'{SWEEP}: "{path}" is damaged: incomplete points are computed again\n'
     assert same(path.read_bytes(), parts[0].read_bytes()) and same(join(path, *others).stdout, whole)
     assert len(list(tmp_path.iterdir())) == 3
 

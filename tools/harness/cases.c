@@ -153,8 +153,8 @@ const validation_case cases[] = {
      .external = true},
     {"damped-10", "a heavily damped spring", 1.3, 1.7, 10, 0, START, .stable_fraction = 0.5, .n = 60, .external = true},
     {"damped-1e4", "two time scales 4e8 apart", 1.3, 1.7, 1e4, 0, START, .stable_fraction = 0.5, .n = 10000},
-    {"settled-0.2", "long settled: light damping is where CVODE's BDF cannot take the long steps it wants", 1.3, 1.7,
-     0.2, 0, START, .dt = 0.1 / 1.7, .n = 10000, .external = true, .tolerance = 1e-6},
+    {"settled-0.2", "long settled: with light damping, CVODE's BDF cannot take long steps", 1.3, 1.7, 0.2, 0, START,
+     .dt = 0.1 / 1.7, .n = 10000, .external = true, .tolerance = 1e-6},
     {"settled-0.4", "the same with more damping, where it can", 1.3, 1.7, 0.4, 0, START, .dt = 0.1 / 1.7, .n = 10000,
      .external = true, .tolerance = 1e-6},
     /* the stability limit */

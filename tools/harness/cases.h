@@ -22,7 +22,7 @@ typedef struct validation_case validation_case;
 
 struct validation_case {
     const char *name;
-    const char *purpose; /* what it is there to break */
+    const char *purpose; /* the fault that the case is designed to find */
 
     /* the spring, by undamped frequency and damping ratio; omega 0: no stiffness, damping_ratio is damping/mass
        [1/s] */

@@ -467,12 +467,13 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
                                    STEPS(0, (eighths) * (second), (eighths) * (fourth), (eighths) * (eighth)), \
                                    .formula = "dispersion", .slow = (takes_long)                               \
     }
-#define WAVE(mode, N, eighths, takes_long)                                                                         \
-    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, 36,     \
-         takes_long),                                                                                              \
-        MODE("water-mode-" mode "-mirrored-" N, "the same with all families of links, mirrored at the edges",      \
-             (eighths) / 2, 121, 75, 62, takes_long),                                                              \
-        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges", (eighths) / 2, \
+#define WAVE(mode, N, eighths, takes_long)                                                                          \
+    MODE("water-mode-" mode "-structural-" N, "a standing wave of " N " x " N " heights", eighths, 70, 43, 36,      \
+         takes_long),                                                                                               \
+        MODE("water-mode-" mode "-mirrored-" N,                                                                     \
+             "the same with structural, shear and bend springs, mirrored at the edges", (eighths) / 2, 121, 75, 62, \
+             takes_long),                                                                                           \
+        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges", (eighths) / 2,  \
              121, 75, 62, takes_long)
 
 const scene_case scene_cases[] = {

@@ -30,7 +30,7 @@ typedef struct scene_case scene_case;
 
 struct scene_case {
     const char *name;
-    const char *purpose; /* what it is there to break */
+    const char *purpose; /* the fault that the case is designed to find */
     void (*build)(const scene_case *c, scene_problem *p);
     size_t count;        /* of what there can be any number of */
     double duration;     /* [s] */

@@ -153,7 +153,7 @@ static void settle_options(void)
     if (n_max < n_min)
         cli_fail(CLI_USAGE, "--n-max: \"%" PRIu64 "\" is not a number of at least --n-min, %" PRIu64, n_max, n_min);
     if (fit && n_max - n_min < n_step)
-        cli_fail(CLI_USAGE, "--fit: takes two points or more; --n-max should be at least --n-min + --n-step");
+        cli_fail(CLI_USAGE, "--fit: requires two points or more; --n-max should be at least --n-min + --n-step");
     if (fit && match_error > 0)
         cli_fail(CLI_USAGE, "--fit: cannot be combined with --match-error; it should be one of them");
     if (!(match_error < 2))

@@ -184,7 +184,7 @@ static void do_part(const work *w)
     if (j == NULL)
         cli_fail(CLI_IO, "%s", journal_message);
     if (journal_damaged(j))
-        cli_warn("\"%s\" is damaged: what is not whole is done again", w->path);
+        cli_warn("\"%s\" is damaged: incomplete points are computed again", w->path);
     sweep_memory *memory = new_memory();
     for (uint64_t block = w->number - 1; block < w->grid->blocks; block += w->parts) {
         bool there;

@@ -26,7 +26,7 @@ static bool list_only, quick;
 
 static cli_option options[] = {
     {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "only this case; --list names them"},
-    {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and what each is there to break"},
+    {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and the fault that each is designed to find"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "leave out the cases that take long, unless named"},
     {.name = NULL},
 };

@@ -40,7 +40,7 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-work",
-    .summary = "Time against error of every stepper, compared with GSL, SUNDIALS and odeint, in one run.",
+    .summary = "Measure time and error of every stepper and of GSL, SUNDIALS and odeint in one run.",
     .details =
         "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
         "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
