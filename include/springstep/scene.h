@@ -20,7 +20,7 @@
  *
  * These rules hold for every function in this file, in addition to those in spring.h:
  *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
- *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY needs more memory. docs/scenes.md lists the bytes of each
+ *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY needs more memory. docs/details.md lists the bytes of each
  *    feature, and docs/performance.md the time.
  *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO.
  *  - Snapshots. A scene begins at the first byte of its memory and holds no pointer to itself. To take or restore a
@@ -156,7 +156,7 @@ typedef struct spring_scene_def {
     const double *mass;           /**< [particles] [kg] > 0 unless pinned; NULL: mass_all for every particle */
     double mass_all;              /**< [kg]; 0 means 1 */
     const uint8_t *pinned;        /**< [particles]; non-zero: keeps its velocity whatever forces act; NULL: none */
-    const spring_link *link;      /**< [links]; sorted links are fastest, see docs/scenes.md */
+    const spring_link *link;      /**< [links]; sorted links are fastest, see docs/details.md */
     double gravity[3];            /**< [m/s^2]; elements beyond the axes are ignored */
     double drag;                  /**< [N s/m] >= 0, on every particle */
     spring_scene_force_fn *force; /**< callback; NULL: none */

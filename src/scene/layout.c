@@ -148,7 +148,7 @@ typedef struct array_row {
     bool present;
 } array_row;
 
-/* The arrays of a scene. This table is the one place that decides sizes and conditions; docs/scenes.md describes it. */
+/* The arrays of a scene. This table is the one place that decides sizes and conditions; docs/details.md describes it. */
 static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[ARRAY_COUNT])
 {
     const bool rollback = (l->flags & SPRING_SCENE_NO_UNDO) == 0, editable = (l->flags & SPRING_SCENE_EDITABLE) != 0;
