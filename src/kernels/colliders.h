@@ -125,7 +125,7 @@ SPRING_INLINE real3 shift_at(const scene_collider *c, const contact_point *p)
 }
 
 /* Whether the collider turns in the step: then the gap along a straight path is not convex. */
-SPRING_INLINE bool turns(const scene_collider *c)
+SPRING_INLINE bool collider_turns(const scene_collider *c)
 {
     return c->shape == SPRING_CAPSULE &&
            (c->shift[0] != c->shift_to[0] || c->shift[1] != c->shift_to[1] || c->shift[2] != c->shift_to[2]);

@@ -183,7 +183,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p)
     real gap, fraction;
     mask pushed;
     const mask hit = find_impact(c, i, p, &at, &gap, &fraction, &pushed);
-    const mask missed = turns(c) ? (mask){0} : p->free & not_mask(hit); /* the gap along the path is convex */
+    const mask missed = collider_turns(c) ? (mask){0} : p->free & not_mask(hit); /* the gap along the path is convex */
     if (!any(hit)) {
         note_contact(p, i, hit, missed);
         return;
