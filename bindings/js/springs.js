@@ -29,10 +29,9 @@ export class Springs {
         const attracts = omega2 > 0;
         const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
-        // is so small that a spring may land from far away, there is no limit, and without damping no need for one.
-        const slope = (4 * epsilon) / share;
-        const least =
-            attracts && share >= 32 * epsilon ? (4 * leastNormal) / share + 2 * restDelta : Infinity;
+        // is so small that a spring may land from far away, there is no limit.
+        const slope = (4 * epsilon) / (share || 1);
+        const least = attracts && slope <= 1 / 8 ? (slope / epsilon) * leastNormal + 2 * restDelta : Infinity;
         let resting = 0;
         let failed = -1;
         for (let i = 0; i < count; i++) {
