@@ -112,6 +112,43 @@ static void same_everywhere(void)
     CHECK(touched > 1000, "contacts took place");
 }
 
+/* A particle above a floor by less than its rounding error, near a sphere, so that it is computed with particles that hit
+   the floor: the result is the same as without these. */
+static void neighbours_change_nothing(void)
+{
+    enum { count = 16 };
+    double x[count][3] = {{1, 3e-16, 0}}, v[count][3] = {{0, -1e-14, 0}}, alone[6], among[6];
+    const spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.25},
+                                  {.shape = SPRING_SPHERE, .at = {1, 1.001, 0}, .radius = 1}};
+    for (size_t i = 1; i < count; i++) {
+        x[i][0] = (double)(10 * i);
+        x[i][1] = 0.001;
+        v[i][1] = -2;
+    }
+    for (int m = 0; m < method_count; m++)
+        for (int k = 0; k < kernel_count; k++) {
+            if (kernels_of(k) == NULL)
+                continue;
+            for (int all = 0; all < 2; all++) {
+                const spring_scene_def def = {.methods = 1u << with_contacts[m],
+                                              .particles = all ? count : 1,
+                                              .position = x[0],
+                                              .velocity = v[0],
+                                              .mass_all = 2,
+                                              .colliders = 2};
+                spring_scene *s = scene_of(&def);
+                double *result = all ? among : alone;
+                CHECK(spring_scene_set_colliders(s, c, 2) == SPRING_OK &&
+                          spring_scene_advance_with(kernels_of(k), s, with_contacts[m], 0.01, 1) == SPRING_OK,
+                      "valid");
+                spring_scene_get(s, SPRING_POSITION, result, 0, 0, 1);
+                spring_scene_get(s, SPRING_VELOCITY, result + 3, 0, 0, 1);
+                free(s);
+            }
+            CHECK(memcmp(alone, among, sizeof alone) == 0, "contacts of other particles change no bit");
+        }
+}
+
 /* Colliders that nothing touches change no bit. */
 static void far_away(void)
 {
@@ -567,6 +604,7 @@ static void pressed_by_damping(void)
 
 static const test tests[] = {
     {"the same bits", same_everywhere},
+    {"neighbours in a SIMD vector", neighbours_change_nothing},
     {"far away", far_away},
     {"rollback", rollback},
     {"speed limit", speed_limit},

@@ -715,6 +715,33 @@ static void wedges(void)
     free(s);
 }
 
+/* In a wedge of two planes a particle is projected to one plane and to the other in turn, five times after the first
+   contact in a step. Each projection leaves the cosine of the angle of the depth. */
+static void wedge_of_planes(void)
+{
+    const double dt = 0.01, speed = 3;
+    for (double angle = PI / 6; angle < 0.45 * PI; angle += PI / 18) {
+        const spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{0, 1, 0}}},
+                                      {.shape = SPRING_PLANE, .axis = {{sin(angle), -cos(angle), 0}}}};
+        double deepest = 0;
+        for (int i = 0; i < 400; i++) {
+            const double r = random_uniform(0.02, 0.2), at = random_uniform(0.05, 0.95) * angle;
+            const double direction = at + PI + random_uniform(-0.6, 0.6);
+            const double x[3] = {r * cos(at), r * sin(at), 0};
+            const double v[3] = {speed * cos(direction), speed * sin(direction), 0};
+            const spring_scene_def def = {.particles = 1, .position = x, .velocity = v, .mass_all = 2, .colliders = 2};
+            spring_scene *s = scene_of(&def);
+            spring_scene_set_colliders(s, c, 2);
+            for (int n = 0; n < 20; n++) {
+                CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
+                deepest = fmax(deepest, -least_gap(s, c, 2, 0, 0));
+            }
+            free(s);
+        }
+        CHECK_BELOW(deepest, speed * dt * pow(cos(angle), 5), "five projections of at most the motion in a step");
+    }
+}
+
 /* A soft body thrown about in a box of six planes: without restitution 1, contacts never add energy. */
 static void energy_in_box(void)
 {
@@ -780,6 +807,7 @@ static const test tests[] = {
     {"hits and misses", hits_and_misses},
     {"no tunnelling", tunnelling},
     {"wedges", wedges},
+    {"wedge of planes", wedge_of_planes},
     {"energy in a box", energy_in_box},
 };
 

@@ -68,16 +68,16 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
-/* Steps 1 and 2 with collider i: finds the contact in the lanes that it returns. */
-SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, contact_point *at, real *gap,
-                               real *fraction, mask *pushed)
+/* Steps 1 and 2 with collider i, in the lanes `near`: finds the contact in the lanes that it returns. */
+SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask near, contact_point *at,
+                               real *gap, real *fraction, mask *pushed)
 {
     if ((p->known >> i & 1) != 0)
         *at = p->start[i];
     else
         find_contact(c, STEP_START, splat(0), &p->x0, at);
     const real slop = contact_slop(c, p->x0);
-    mask hit = p->free;
+    mask hit = near;
     *pushed = hit & (at->gap < -slop);
     *gap = select_real(at->gap < slop, splat(0), at->gap); /* a rounding error divided by h would be a velocity */
     *fraction = splat(0);
@@ -168,24 +168,26 @@ SPRING_NOINLINE void press_late(const scene_collider *c, drifting *p, mask where
     p->d = select3(where, plus_scaled3(d, vec_not_negative(-there.gap), there.normal), p->d);
 }
 
-/* Notes which lanes touch collider i, and those among all lanes whose path is known to end outside. */
-SPRING_INLINE void note_contact(drifting *p, unsigned i, mask hit, mask outside)
+/* Records the lanes that touch collider i, and the lanes whose path is known to end outside of it. A contact changes the
+   path, so nothing is known of the other colliders then. */
+SPRING_INLINE void record_contact(drifting *p, unsigned i, mask hit, mask outside)
 {
     const uint32_t bit = UINT32_C(1) << i;
     p->touched |= bits_where(hit, bit);
     p->outside = (p->outside & ~bits_where(hit, UINT32_MAX)) | bits_where(outside, bit);
 }
 
-/* Steps 1 to 4 with collider i. */
-SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p)
+/* Steps 1 to 4 with collider i, in the lanes `near` that may_touch() finds. In other lanes nothing happens: a gap that is
+   a rounding error counts as 0 here, so a result would depend on which particles share the vector. */
+SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, mask near)
 {
     contact_point at;
     real gap, fraction;
     mask pushed;
-    const mask hit = find_impact(c, i, p, &at, &gap, &fraction, &pushed);
-    const mask missed = collider_turns(c) ? (mask){0} : p->free & not_mask(hit); /* the gap along the path is convex */
+    const mask hit = find_impact(c, i, p, near, &at, &gap, &fraction, &pushed);
+    const mask missed = collider_turns(c) ? (mask){0} : near & not_mask(hit); /* the gap along the path is convex */
     if (!any(hit)) {
-        note_contact(p, i, hit, missed);
+        record_contact(p, i, hit, missed);
         return;
     }
     const real left = (1 - fraction) * p->h;
@@ -222,7 +224,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p)
     const mask early = presses & not_mask(late);
     if (any(early))
         outside |= press_from_start(c, p, early, &at, &surface, inward, left, fraction);
-    note_contact(p, i, hit, outside | missed);
+    record_contact(p, i, hit, outside | missed);
 }
 
 /* Step 5 for collider i, in the lanes `where`. Returns those that were inside. */
@@ -239,7 +241,7 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, driftin
     const real3 w = clipped(c, there.normal, surface, p->w, p->h, &slip);
     p->w = select3(inside, w, p->w);
     p->d = select3(inside, plus_scaled3(p->d, -there.gap, there.normal), p->d);
-    note_contact(p, i, inside, (mask){0});
+    record_contact(p, i, inside, (mask){0});
     return inside;
 }
 
@@ -247,25 +249,31 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, driftin
 SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 {
     p->touched = p->outside = bits_where((mask){0}, 0);
-    for (unsigned i = 0; i < t->count; i++)
-        if (any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
-            collide(&t->collider[i], i, p);
-    const mask all_free = p->free;
-    for (unsigned i = 0; i + 1 < t->count; i++) {
-        p->free = all_free & has_bits(p->touched, UINT32_MAX << i << 1); /* deflected by a later collider */
-        if (any(p->free) && any(p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d))))
-            collide(&t->collider[i], i, p);
+    for (unsigned i = 0; i < t->count; i++) {
+        const mask near = p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        if (any(near))
+            collide(&t->collider[i], i, p, near);
     }
-    p->free = all_free;
-    mask moved = all_free;
+    for (unsigned i = 0; i + 1 < t->count; i++) {
+        const mask deflected = p->free & has_bits(p->touched, UINT32_MAX << i << 1); /* by a later collider */
+        if (!any(deflected))
+            break;
+        const mask near = deflected & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        if (any(near))
+            collide(&t->collider[i], i, p, near);
+    }
+    mask moved = p->free;
     for (int pass = 0; pass < corner_passes && any(moved); pass++) {
         const mask before = moved;
         moved = (mask){0};
         for (unsigned i = 0; i < t->count; i++) {
             const scene_collider *const c = &t->collider[i];
             const mask open = before & not_mask(has_bits(p->outside, UINT32_C(1) << i));
-            if (any(open) && any(open & may_touch(c, p->x0, p->d, dot3(p->d, p->d))))
-                moved |= leave_collider(c, i, p, open);
+            if (!any(open))
+                continue;
+            const mask near = open & may_touch(c, p->x0, p->d, dot3(p->d, p->d));
+            if (any(near))
+                moved |= leave_collider(c, i, p, near);
         }
     }
 }
