@@ -10,7 +10,7 @@ from conan.tools.files import copy, load
 
 class Springstep(ConanFile):
     name = "springstep"
-    description = "A small C library that moves springs through time"
+    description = "Fast, deterministic spring simulation in C"
     license = "MIT"
     package_type = "library"
     languages = "C"

@@ -340,7 +340,7 @@ def test_full_disk_with_jobs(whole, small_disk):
     command = [*GRID, '--jobs', '2', '-o', small_disk / 'map.tsv']
     result = run(SWEEP, *command)
     assert result.returncode == 3 and 'No space left on device' in result.stderr
-    assert 'the same command goes on with it' in result.stderr.splitlines()[-1]
+    assert 'the same command continues it' in result.stderr.splitlines()[-1]
     subprocess.run(['mount', '-o', 'remount,size=8m', small_disk], check=True)
     is_done(run(SWEEP, *command))
     assert same((small_disk / 'map.tsv').read_text(), whole)

@@ -85,7 +85,7 @@ static const cli_program program = {
         "and evaluations of damping; time_s includes them.\n\n"
         "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
         "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
-        "With --sag: limit (scene or link: what is stretched by S, or by at most 0.1 % of S less),\n"
+        "With --sag: limit (scene or link: its stretch is S, or at most 0.1 % of S less),\n"
         "stiffness_N_per_m, scene_stretch and link_stretch (at rest, of the scene and of its most stretched\n"
         "link), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
         "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"

@@ -43,8 +43,8 @@ static const cli_option options[] = {
              "steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
     {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = 1024, .unstamped = true,
      .help = "work with J processes on this machine; --output is needed\n"
-             "Their results are next to it in FILE.1-of-J, FILE.2-of-J, ... until all is done: the same "
-             "command goes on with it."},
+             "Their results are next to it in FILE.1-of-J, FILE.2-of-J, ... until all are complete. The "
+             "same command continues an incomplete sweep."},
     {"part", CLI_WORDS, .words = &part, .value = "I/N", .unstamped = true,
      .help = "do the I-th of N parts alone, into the file of --output\n"
              "If that is there it goes on behind its last whole block."},
@@ -452,7 +452,8 @@ static void wait_for_jobs(const char *const *paths)
         cli_fail((cli_status)worst, "nothing is done");
     if (worst != 0)
         cli_fail((cli_status)worst,
-                 "not all is done; what is done lies in %s.*-of-%" PRIu64 ", and the same command goes on with it",
+                 "the sweep is incomplete; its results so far are in %s.*-of-%" PRIu64
+                 ", and the same command continues it",
                  cli_output_path(), jobs);
 }
 
