@@ -2,15 +2,15 @@
 /*
  * The forces of bands: links with a constant index offset between their ends, as in a rope, a sheet or a block.
  *
- * Method    For each tile of slots, the forces of every band on the lower ends are computed and kept. Then each particle
- *           of the tile adds the forces of the links of which it is the lower end, and subtracts those of the links of
- *           which it is the upper end, `offset` slots before. So a band keeps a ring of its last offset + tile forces.
- *           Each link is computed once and nothing is scattered; both ends get the same bits, so that momentum is
- *           conserved to rounding error; and the order of additions does not depend on the vector width. A tile reads
- *           no position and no velocity of the tiles before it.
- * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2); no force where both ends are at one
- *           point. On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force where it is not
- *           longer than its rest length, or where it would push.
+ * Method    For each tile of slots, the forces of every band on the lower ends are computed and stored. The force on a
+ *           particle is the sum of the forces of the links whose lower end it is, minus the forces of the links whose
+ *           upper end it is. The latter are `offset` slots back, so a band has a ring buffer of its last offset + tile
+ *           forces. Each link is computed once, and no force is scattered. Both ends get the same bits, so momentum is
+ *           conserved to rounding error. The order of additions does not depend on the vector width. A tile reads no
+ *           position and no velocity of earlier tiles.
+ * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2), or 0 if both ends are at one point.
+ *           On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force unless it is longer
+ *           than its rest length and pulls.
  * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
  */
 #ifndef SPRINGSTEP_BANDS_H
@@ -19,8 +19,8 @@
 #include "../simd/quad.h"
 #include "scene_kernels.h"
 
-/* Vectors of links that are computed together: while one waits for a square root, another is computed. A link on one axis
-   has no root and few operations, so that more vectors amortise the loop (measured for vectors of 16 and 64 bytes). */
+/* Vectors of links per iteration, at most: their square roots overlap. A link on one axis has no root and few
+   operations, so more vectors amortise the loop (measured for vectors of 16 and 64 bytes). */
 enum { most_together = 4 };
 
 SPRING_INLINE size_t links_together(uint32_t axes)
@@ -28,8 +28,8 @@ SPRING_INLINE size_t links_together(uint32_t axes)
     return axes == 1 && SPRING_VECTOR != 32 ? 4 : 2;
 }
 
-/* Replaces the vectors from the lower to the upper ends of links by the forces on the lower ends. Slots without a link get
-   0 by selection, not by multiplication: their particles may be infinitely far apart. */
+/* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
+   to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
                              const real *rest, const real *c, bool damped, bool tension_only)
 {
@@ -58,7 +58,7 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
         acts[m] = joined[m];
-        if (tension_only) /* NaN stays, so that it is noticed */
+        if (tension_only) /* NaN remains, so that it is detected */
             scale[m] = vec_not_negative(scale[m]);
         if (tension_only && damped)
             acts[m] &= not_mask(stretch <= 0);
@@ -89,8 +89,8 @@ SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* Computes the forces of a band in `slots` slots from t on; those along axis a are stored at force + a * axis. shared: all
-   slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
+/* Computes the forces of a band in `slots` slots from t on. Forces along axis a are stored at force + a * axis.
+   shared: all slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
 SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
                                size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared,
                                bool tension_only)
@@ -101,7 +101,7 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c,
                         *const damping = damped ? band->damping + slot * stride_c : NULL;
-    SPRING_PREFETCH(occupied + tile); /* so few cache lines that the hardware prefetcher does not see a stream */
+    SPRING_PREFETCH(occupied + tile); /* too few cache lines for the hardware prefetcher to detect a stream */
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const size_t together = links_together(axes);
     size_t j = 0;
@@ -143,14 +143,13 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
 SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
                                    size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
 {
-    if (axes == 1 &&
-        band->coefficient_stride == 0) /* such a link takes so few operations that loading coefficients counts */
+    if (axes == 1 && band->coefficient_stride == 0) /* with so few operations, loads of coefficients would matter */
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true, false);
     else
         tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false, false);
 }
 
-/* Tension-only links. Functions of their own, so that the loop over tiles exists once. */
+/* Tension-only links. Separate functions, so that the loop over tiles is compiled once. */
 typedef void taut_kernel(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
                          size_t slots, scalar *force, size_t axis);
 
@@ -185,8 +184,8 @@ SPRING_INLINE taut_kernel *taut_forces(uint32_t axes, bool damped)
     return damped ? damped_taut_forces_on_3_axes : taut_forces_on_3_axes;
 }
 
-/* As tile_forces(), by damping alone along frozen directions d: d (d . relative velocity). Functions of their own, so that
-   the loop over tiles exists once. */
+/* Like tile_forces(), for damping alone along frozen directions d: the force is d (d . relative velocity). Separate
+   functions, so that the loop over tiles is compiled once. */
 SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
                                        size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
@@ -241,18 +240,18 @@ SPRING_INLINE void damping_forces(const scene_band *band, const scalar *v, size_
                  : damping_forces_on_3_axes)(band, v, stride, t, slots, force, axis);
 }
 
-/* Forces to be added to the particles of a tile, or subtracted; those along axis a are at force + a * axis. */
+/* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
 typedef struct kept_forces {
     const scalar *force;
     size_t axis;
 } kept_forces;
 
-/* Adds up the forces of all bands on `count` particles from t on. */
+/* Sets `to` to the sum of the forces of all bands on `count` particles. */
 SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
                           const kept_forces *minus, size_t minuses, uint32_t axes)
 {
     enum { most = 4 };
-    const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors at once */
+    const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors per iteration */
     for (size_t j = 0; j < count; j += some * lanes) {
         real force[most][3];
         SPRING_UNROLL
@@ -286,7 +285,7 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
     }
 }
 
-/* Repeats the first tile of a ring behind its last one, so that any `tile` consecutive slots are contiguous. */
+/* Copies the first tile of a ring behind its last tile, so that any `tile` consecutive slots are contiguous. */
 SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
@@ -294,8 +293,8 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
             vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
 }
 
-/* The forces of all bands on particles from ... to - 1. The rings hold the forces of the links before. `axis` is the number
-   of elements from one axis of a ring to the next, `t` the first slot of a tile. */
+/* Computes the forces of all bands on particles from ... to - 1. The rings contain the forces of earlier links. In the
+   loop, `t` is the first slot of a tile, and `axis` is the stride between the axes of a ring. */
 SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
                              size_t to, uint32_t axes, bool damped)
 {
@@ -338,7 +337,7 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
     }
 }
 
-/* A function for each number of axes: in one function, gcc would keep less of the loops in registers. */
+/* One function per number of axes: in a common function, gcc would keep fewer variables of the loops in registers. */
 SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {

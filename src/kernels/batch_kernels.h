@@ -28,7 +28,7 @@ typedef struct batch_run {
     double t;                            /* exact solution: n dt */
     const scalar *target;                /* exact solution: NULL, or a target for each spring */
     exact_landing landing;               /* of springs with targets */
-    const spring_propagator *propagator; /* exact solution of springs with equal parameters; NULL: they differ */
+    const spring_propagator *propagator; /* exact solution, if all springs have equal parameters; else NULL */
 } batch_run;
 
 typedef struct batch_kernels {
@@ -36,7 +36,7 @@ typedef struct batch_kernels {
     bool (*advance)(const batch_run *b); /* false: at least one spring kept its state */
 } batch_kernels;
 
-SPRING_INTERNAL const batch_kernels spring_batch_v128; /* by bits of a SIMD vector */
+SPRING_INTERNAL const batch_kernels spring_batch_v128; /* named by the bits of a SIMD vector */
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL const batch_kernels spring_batch_v256, spring_batch_v512;
 #endif

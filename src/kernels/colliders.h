@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Distances from colliders: the signed gap between a particle and the surface of a plane, sphere, capsule or box, and the
- * normal there.
+ * Distances from colliders: the signed gap between a particle and the surface of a plane, sphere, capsule or box, and
+ * the normal there.
  *
- * Method    All shapes except planes are cores with a radius: a point, a segment, a box. The gap is the distance from the
- *           core minus the radius; inside the core of a box, minus the distance from its nearest face.
+ * Method    All shapes except planes are a core (a point, a segment or a box) with a radius. The gap is the distance
+ *           from the core minus the radius. Inside the core of a box, that distance is minus the distance from the
+ *           nearest face.
  * Accuracy  a few eps (|x|_1 + radius), for capsules plus their length, see contact_slop(). Planes are stored by their
  *           offset normal . at, so the distance of `at` does not matter.
  */
@@ -29,21 +30,21 @@ SPRING_INLINE real3 place_of(pose_time when, real fraction, const scalar start[3
                                : splat3(when == STEP_END ? end : start);
 }
 
-/* The place on a collider that is nearest to a particle. */
+/* The point on a collider that is nearest to a particle. */
 typedef struct contact_point {
     real gap;     /* [m] negative inside */
     real3 normal; /* unit vector, out of the collider */
-    real3 arm;    /* [m] from `at`, for a capsule from the nearest point of its axis, to the particle */
-    real along;   /* capsule: that point, 0 at `at` to 1 at `to`; else 0 */
+    real3 arm;    /* [m] to the particle from `at` or, for a capsule, from the nearest point of its axis */
+    real along;   /* capsule: position of that point, from 0 at `at` to 1 at `to`; else 0 */
 } contact_point;
 
-/* 1/a; 1 unless a > 0. */
+/* 1/a if a > 0, else 1. */
 SPRING_INLINE real inverse_of(real a)
 {
     return 1 / select_real(a > 0, a, splat(1));
 }
 
-/* from_core: from the nearest point of the core. In the core itself the normal is +y. */
+/* from_core: from the nearest point of the core to the particle. In the core itself, the normal is +y. */
 SPRING_INLINE void set_round(contact_point *p, real3 from_core, scalar radius)
 {
     const real distance = vec_sqrt(dot3(from_core, from_core));
@@ -117,14 +118,14 @@ SPRING_INLINE real contact_slop(const scene_collider *c, real3 x)
     return 8 * eps * (vec_abs(x.x) + vec_abs(x.y) + vec_abs(x.z) + c->radius);
 }
 
-/* [m] how far the collider moves in the step, at the contact. */
+/* [m] displacement of the collider during the step, at the contact. */
 SPRING_INLINE real3 shift_at(const scene_collider *c, const contact_point *p)
 {
     const real3 at = splat3(c->shift);
     return c->shape == SPRING_CAPSULE ? plus_scaled3(at, p->along, minus3(splat3(c->shift_to), at)) : at;
 }
 
-/* Whether the collider turns in the step: then the gap along a straight path is not convex. */
+/* Whether the collider turns during the step. If so, the gap along a straight path is not convex. */
 SPRING_INLINE bool collider_turns(const scene_collider *c)
 {
     return c->shape == SPRING_CAPSULE &&
@@ -140,8 +141,8 @@ SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_poin
     return c->spins ? plus3(v, cross3(splat3(c->spin), p->arm)) : v;
 }
 
-/* Lanes whose particle may touch the collider on its way from x to x + d. It is conservative: with the radius
-   R that includes the way of the collider, (R + |d|)^2 <= 17/16 R^2 + 17 d^2, and `reach` has the first term. */
+/* Lanes whose particle may touch the collider on its path from x to x + d. The test is conservative: if R is the radius
+   plus the displacement of the collider, (R + |d|)^2 <= 17/16 R^2 + 17 d^2, and `reach` is the first term. */
 SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_squared)
 {
     if (c->shape == SPRING_PLANE) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernels of particles.h for scenes with colliders: the motion without contacts, free_...(), and with them,
-   resolve_...(). */
+/* The kernels of particles.h for scenes with colliders: free_...() computes the motion without contacts, resolve_...()
+   with contacts. */
 #ifndef SPRINGSTEP_CONTACT_KERNELS_H
 #define SPRINGSTEP_CONTACT_KERNELS_H
 
 #include "contact_queue.h"
 
-/* ------------------------------------------------------------------------------------------------------- kick and drift */
+/* --------------------------------------------------------------------------------------------------- kick and drift */
 
 SPRING_INLINE void clear_touched(const scene_contacts *t, size_t first)
 {
@@ -81,9 +81,9 @@ SPRING_NOINLINE bool move_kick_drift_contact(const scene_particles *p, const sce
                         : for_each_particle(p, m, from, to, free_kick_drift, resolve_kick_drift, 0);
 }
 
-/* --------------------------------------------------------------------------------------------------------- last kick */
+/* -------------------------------------------------------------------------------------------------------- last kick */
 
-/* With kick 0 it only removes velocity into the colliders. */
+/* A kick of 0 only removes the velocity components into colliders. */
 SPRING_INLINE mask free_implicit_kick(const scene_particles *s, const scene_motion *m, const particle_vector *p,
                                       contact_queue *q, unsigned variant)
 {
@@ -116,7 +116,7 @@ SPRING_NOINLINE bool move_implicit_kick_contact(const scene_particles *p, const 
     return for_each_particle(p, m, from, to, free_implicit_kick, resolve_implicit_kick, 0);
 }
 
-/* -------------------------------------------------------------------------------------------------- symplectic Euler */
+/* ------------------------------------------------------------------------------------------------- symplectic Euler */
 
 SPRING_INLINE mask free_implicit_kick_drift(const scene_particles *s, const scene_motion *m, const particle_vector *p,
                                             contact_queue *q, unsigned variant)
@@ -163,7 +163,7 @@ SPRING_NOINLINE bool move_implicit_kick_drift_contact(const scene_particles *p, 
     return for_each_particle(p, m, from, to, free_implicit_kick_drift, resolve_implicit_kick_drift, 0);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- RK4 */
+/* -------------------------------------------------------------------------------------------------------------- RK4 */
 
 SPRING_INLINE mask free_last_stage(const scene_particles *s, const scene_motion *m, const particle_vector *p,
                                    contact_queue *q, unsigned variant)
@@ -183,7 +183,7 @@ SPRING_INLINE mask free_last_stage(const scene_particles *s, const scene_motion 
     return not_finite3(x) | not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
 }
 
-/* As a drift with the mean velocity and kicks by the mean acceleration. */
+/* Contacts are computed as for a drift with the mean velocity and kicks by the mean acceleration. */
 SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_vector *p, const contact_queue *q,
                                         unsigned variant)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The loop over the particles of a scene with colliders. All particles are moved as if there were no colliders, a SIMD vector
- * of particles at a time with all their axes. Those that may be in contact are collected in a queue, and moved again, a
- * full SIMD vector of them at a time. Few particles touch a collider, so most vectors of neighbours would be nearly empty.
+ * The loop over the particles of a scene with colliders. First, all particles are advanced without colliders, one SIMD
+ * vector of particles at a time with all their axes. Particles that may be in contact are collected in a queue, and are
+ * advanced again in full SIMD vectors. Few particles touch a collider, so most vectors of neighbours would be nearly
+ * empty.
  */
 #ifndef SPRINGSTEP_CONTACT_QUEUE_H
 #define SPRINGSTEP_CONTACT_QUEUE_H
@@ -10,7 +11,7 @@
 #include "contacts.h"
 #include "particles.h"
 
-/* A vector of particles, for formulas on all axes at once. */
+/* A vector of particles, with all their axes. */
 typedef struct particle_vector {
     size_t first; /* particle */
     bool quads;   /* quantities are arrays of quads */
@@ -23,7 +24,7 @@ typedef struct particle_vector {
     implicit_factors damping; /* of an implicit kick; unset without drag */
 } particle_vector;
 
-/* A quantity on one axis. */
+/* A quantity along one axis. */
 SPRING_INLINE real load_axis(const particle_vector *p, const scalar *quantity, uint32_t axis)
 {
     if (!p->quads)
@@ -40,7 +41,7 @@ SPRING_INLINE real3 load_axes(const particle_vector *p, const scalar *quantity)
                    p->axes > 2 ? load_axis(p, quantity, 2) : splat(0)};
 }
 
-/* Of a quad all four numbers are set: what a call that failed left in the unused ones could be NaN. */
+/* Sets all four numbers of a quad: after a call that failed, the unused ones could be NaN. */
 SPRING_INLINE void store_axes(const particle_vector *p, scalar *quantity, real3 value)
 {
     if (!p->quads) {
@@ -60,8 +61,8 @@ SPRING_INLINE void store_axes(const particle_vector *p, scalar *quantity, real3 
             quantity[quad_size * (p->first + i) + a] = each[a][i];
 }
 
-/* The operations of the following functions are those of particles.h, so that a particle that touches nothing has the
-   results of a scene without colliders. */
+/* The following functions have the same operations as particles.h, so that the results of a particle without contacts
+   are bit-identical to a scene without colliders. */
 SPRING_INLINE real free_on_axis(const scene_particles *s, const scene_motion *m, const particle_vector *p,
                                 uint32_t axis)
 {
@@ -119,24 +120,23 @@ SPRING_INLINE mask touching(const uint32_t *bits)
     return SPRING_UNLIKELY(all != 0) ? has_bits(load_bits(bits), UINT32_MAX) : (mask){0};
 }
 
-/* Lanes whose particle may touch a collider during its motion d. */
+/* Lanes whose particle may touch a collider during its displacement d. */
 SPRING_INLINE mask near_colliders(const scene_contacts *t, const particle_vector *p, real3 x0, real3 d)
 {
     const real square = dot3(d, d);
-    mask near = not_mask(square <= SCALAR_MAX); /* nothing is known of a motion whose square overflows */
+    mask near = not_mask(square <= SCALAR_MAX); /* if the square overflows, any collider may be near */
     for (unsigned i = 0; i < t->count; i++)
         near |= may_touch(&t->collider[i], x0, d, square);
     return near & p->free;
 }
 
-/* Particles that may be in contact are collected, so that contacts are computed for full SIMD vectors of them. */
 enum { QUEUED_X0, QUEUED_V0, QUEUED_THIRD, QUEUED_FOURTH, queued_quantities, queue_size = 2 * lanes };
 
 typedef struct contact_queue {
     size_t count;
-    int quantities; /* that its particles have */
+    int quantities; /* stored for each particle */
     uint32_t particle[queue_size];
-    uint32_t before[queue_size]; /* bits of the colliders that it touched in the step before */
+    uint32_t before[queue_size]; /* bits of the colliders touched in the previous step */
     scalar inverse_mass[queue_size];
     scalar value[queued_quantities][3][queue_size];
 } contact_queue;
@@ -179,7 +179,7 @@ SPRING_INLINE size_t first_group(const contact_queue *q)
     return q->count < (size_t)lanes ? q->count : (size_t)lanes;
 }
 
-/* The last group is filled up with its first particle, pinned. */
+/* Fills up the last group with pinned copies of its first particle. */
 SPRING_NOINLINE void fill_group(contact_queue *q)
 {
     for (size_t i = q->count; i < lanes; i++) {
@@ -217,7 +217,7 @@ SPRING_INLINE void scatter(const contact_queue *q, const particle_vector *p, sca
             quantity[a * stride + each * q->particle[i]] = on_axis[a][i];
 }
 
-/* The contacts of a group in a drift. */
+/* Computes the contacts of the first group during a drift. */
 SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, drifting *d)
 {
     collide_all(t, d);
@@ -228,14 +228,15 @@ SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, 
         t->touched[q->particle[i]] |= touched[i];
 }
 
-/* Moves one vector of particles as if there were no colliders, and puts those that may be in contact into the queue.
-   Returns the lanes whose result is infinite or NaN, also of those: friction could hold an infinite force. */
+/* Advances one vector of particles without colliders, and adds the particles that may be in contact to the queue.
+   Returns the lanes whose result is infinite or NaN, including queued particles: static friction could cancel an
+   infinite force. */
 typedef mask free_update(const scene_particles *s, const scene_motion *m, const particle_vector *p, contact_queue *q,
                          unsigned variant);
-/* Moves the first group of the queue. */
+/* Advances the first group of the queue, with contacts. */
 typedef mask contact_update(const scene_motion *m, const particle_vector *p, const contact_queue *q, unsigned variant);
 
-/* As for_each_vector(), with all axes of a particle at once. */
+/* Like for_each_vector(), with all axes of a particle at once. */
 SPRING_INLINE bool for_each_particle(const scene_particles *particles, const scene_motion *motion, size_t from,
                                      size_t to, free_update *update, contact_update *resolve, unsigned variant)
 {

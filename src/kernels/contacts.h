@@ -1,26 +1,29 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Contacts of particles with colliders, as constraints on the drift, with the time of impact.
+ * Contacts of particles with colliders: constraints on the drift, with the time of impact.
  *
- * Method    Drift, for each collider in turn. x0 is the position, w the velocity after the kick, a the acceleration of that
- *           kick, d = h w the displacement, V the velocity of the surface, n the normal, theta the fraction of the step
- *           before the contact; w holds the fraction kappa of the kick of the step (leapfrog 1/2, symplectic Euler 1).
+ * Symbols   x0 is the position, w the velocity after the kick, a the acceleration of that kick, d = h w the
+ *           displacement, V the velocity of the surface, n the normal, and theta the fraction of the step before the
+ *           contact. w includes the fraction kappa of the kick of the step (leapfrog 1/2, symplectic Euler 1).
+ * Drift     For each collider in turn:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
- *           2. Time of impact, by Newton's method on the gap along the path. The gap to a convex body that does not turn is a
- *              convex function of the fraction, so the method never overshoots: theta <- theta + gap/(rate of approach).
- *           3. Impact, with u = w + (theta - kappa) h a - V, if n.u < 0: the impulse -(1 + e) n.u n, and friction of at
- *              most mu times that along -u_t. The rest of the path, (1 - theta) h, has the changed velocity.
- *           4. Pressing, if the rest of the path still ends inside. A contact in the first half of the step: lambda n with
- *              the lambda for which the path ends on the surface, and friction of at most mu lambda. Static friction holds
- *              a particle exactly: w = V, d = h V. In the second half, or at a second contact in the step: the path is
- *              projected to the tangent plane, and w loses its component into the collider.
- *           5. Colliders before the last one that a particle touched are tested again, with its new path. A particle that
- *              is still inside at the end (corners, turning capsules) is moved to the surface, likewise.
- *           Last kick, for colliders that were touched: v loses its component into the collider, with friction of at most mu
- *           times that; static friction gives v = V exactly.
+ *           2. Newton's method on the gap along the path gives the time of impact: theta <- theta + gap/(rate of
+ *              approach). The gap to a convex body that does not turn is a convex function of the fraction, so the
+ *              method never overshoots.
+ *           3. Impact, if n.u < 0 for u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n, with friction
+ *              along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has the changed velocity.
+ *           4. Pressing, if the rest of the path still ends inside. In the first half of the step: the impulse is
+ *              lambda n, with the lambda for which the path ends on the surface, and friction is at most mu lambda.
+ *              Static friction holds a particle exactly: w = V, d = h V. In the second half, or at a second contact in
+ *              the step: the path is projected to the tangent plane, and w loses its component into the collider.
+ *           5. All colliders before the last one that a particle touched are tested again, with its new path. A
+ *              particle that is still inside at the end (corners, turning capsules) is moved to the surface, and w
+ *              loses its component into the collider.
+ * Last kick For colliders that were touched: v loses its component into the collider, with friction of at most mu times
+ *           this component. Static friction gives v = V exactly.
  * Order     2 with leapfrog, also across impacts and with sliding friction; see docs/evidence.md.
- * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in the
- *           drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983). tests/test_scene_contacts.c has the closed forms.
+ * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
+ *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983). tests/test_scene_contacts.c has the closed forms.
  */
 #ifndef SPRINGSTEP_CONTACTS_H
 #define SPRINGSTEP_CONTACTS_H
@@ -29,7 +32,7 @@
 
 enum { impact_iterations = 8, friction_passes = 2, surface_iterations = 2, corner_passes = 2, stop_rounds = 32 };
 
-/* A fraction of a step that is a rounding error. */
+/* Fractions of a step up to this size are rounding errors. */
 static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON);
 
 /* A vector of particles in a drift. */
@@ -42,7 +45,7 @@ typedef struct drifting {
     lane_bits touched; /* bit i: collider i, in this step */
     lane_bits outside; /* bit i: the path is known to end outside of collider i, to within contact_slop() */
     scalar h;          /* [s] duration of the drift */
-    scalar kappa;      /* fraction of the kick of the step that w holds */
+    scalar kappa;      /* fraction of the kick of the step that w includes */
     uint32_t known;    /* bit i: start[i] is set */
     contact_point start[most_colliders]; /* at x0, at the start of the step */
 } drifting;
@@ -59,7 +62,8 @@ SPRING_INLINE real3 tangential_to(real3 normal, real3 u)
     return plus_scaled3(u, -dot3(u, normal), normal);
 }
 
-/* w without its component into a surface that moves at `surface`, and with friction. *slip: the part that friction removed. */
+/* w without its component into a surface that moves at velocity `surface`, and with friction. *slip: the velocity that
+   friction removed. */
 SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface, real3 w, scalar h, real3 *slip)
 {
     const real3 u = minus3(w, surface);
@@ -68,7 +72,7 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
-/* Steps 1 and 2 with collider i, in the lanes `near`: finds the contact in the lanes that it returns. */
+/* Steps 1 and 2 with collider i, in the lanes `near`. Returns the lanes with a contact, which the outputs describe. */
 SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask near, contact_point *at,
                                real *gap, real *fraction, mask *pushed)
 {
@@ -101,8 +105,9 @@ SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifti
     }
 }
 
-/* Step 4 in the first half of the step: the path ends on the surface. inward: [m] how far it ends below the tangent plane,
-   negative; left: [s] of the step. Returns the lanes whose path is known to end outside. */
+/* Step 4 in the first half of the step: moves the end of the path to the surface. inward: [m] gap between the end of
+   the path and the tangent plane, negative; left: [s] rest of the step. Returns the lanes whose path is known to end
+   outside. */
 SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask where, const contact_point *at,
                                       const real3 *surface, real inward, real left, real fraction)
 {
@@ -121,8 +126,8 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
     for (int pass = 0;; pass++) {
         const int iterations = c->shape == SPRING_PLANE ? 0 : pass == passes ? surface_iterations : 1;
         settled = iterations == 0 ? where : (mask){0};
-        /* Newton's method, with 2 - cosine for 1/cosine, which is never less. The gap is convex, so an iteration that
-           finds the gap g leaves at least g (1 - cosine)^2 of it. */
+        /* Newton's method, with 2 - cosine in place of 1/cosine, which is never less. The gap is convex, so at least
+           g (1 - cosine)^2 of a gap g remains after an iteration. */
         for (int i = 0; i < iterations; i++) {
             const real3 guess = plus_scaled3(x, lambda * duration, n);
             contact_point there;
@@ -142,7 +147,7 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
         if (!any(where & not_mask(stuck)))
             break;
         slip = select3(slides, times3(limit * inverse_speed, sliding), sliding);
-        /* Along the velocity at the start: then the kicks before and after the drift are adjoint. */
+        /* Friction along the velocity at the start makes the kicks before and after the drift adjoint. */
         const mask fast = slides & along_start & (start_speed > 2 * limit);
         slip = select3(fast, times3(limit * inverse_start_speed, at_start), slip);
         x = plus_scaled3(x1, -left, slip);
@@ -168,8 +173,8 @@ SPRING_NOINLINE void press_late(const scene_collider *c, drifting *p, mask where
     p->d = select3(where, plus_scaled3(d, vec_not_negative(-there.gap), there.normal), p->d);
 }
 
-/* Records the lanes that touch collider i, and the lanes whose path is known to end outside of it. A contact changes the
-   path, so nothing is known of the other colliders then. */
+/* Records the lanes that touch collider i, and the lanes whose path is known to end outside of it. A contact changes
+   the path, so it clears the bits of `outside` of all other colliders. */
 SPRING_INLINE void record_contact(drifting *p, unsigned i, mask hit, mask outside)
 {
     const uint32_t bit = UINT32_C(1) << i;
@@ -177,8 +182,8 @@ SPRING_INLINE void record_contact(drifting *p, unsigned i, mask hit, mask outsid
     p->outside = (p->outside & ~bits_where(hit, UINT32_MAX)) | bits_where(outside, bit);
 }
 
-/* Steps 1 to 4 with collider i, in the lanes `near` that may_touch() finds. In other lanes nothing happens: a gap that is
-   a rounding error counts as 0 here, so a result would depend on which particles share the vector. */
+/* Steps 1 to 4 with collider i, in the lanes `near` that may_touch() finds. Other lanes must not change: a gap that is
+   a rounding error counts as 0 here, so results would depend on which particles share the vector. */
 SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, mask near)
 {
     contact_point at;
@@ -209,7 +214,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
 
     const real3 rest_of_path = minus3(p->d, way), shift = shift_at(c, &at);
     const real inward = gap + dot3(n, rest_of_path) - (1 - fraction) * dot3(n, shift);
-    const mask ends_above = hit & (inward >= 0); /* the tangent plane */
+    const mask ends_above = hit & (inward >= 0); /* of the tangent plane */
     mask outside = ends_above;
     if (any(ends_above)) {
         const real3 x = plus3(p->x0, p->d);
@@ -227,7 +232,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
     record_contact(p, i, hit, outside | missed);
 }
 
-/* Step 5 for collider i, in the lanes `where`. Returns those that were inside. */
+/* Step 5 for collider i, in the lanes `where`. Returns the lanes that were inside. */
 SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, drifting *p, mask where)
 {
     const real3 x = plus3(p->x0, p->d);
@@ -245,7 +250,7 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, driftin
     return inside;
 }
 
-/* The contacts of a vector of particles in a drift. */
+/* Computes the contacts of a vector of particles during a drift. */
 SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 {
     p->touched = p->outside = bits_where((mask){0}, 0);
@@ -278,9 +283,9 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
     }
 }
 
-/* The last kick: velocities lose their components into the colliders that were touched. With several colliders, projected
-   Gauss-Seidel: in further rounds each collider corrects its impulse, which stays non-negative. Friction acts in the first round.
-   Sets found[i], for all lanes, of the colliders i whose bits it returns. */
+/* The last kick: removes the velocity components into the colliders that were touched. With several colliders, this is
+   projected Gauss-Seidel: in further rounds, each collider corrects its impulse, which stays non-negative. Friction
+   acts in the first round only. Returns the bits of the colliders i whose found[i] is set, in all lanes. */
 SPRING_NOINLINE uint32_t stop_at_colliders(const scene_contacts *t, lane_bits touched, pose_time when, mask free,
                                            const real3 *x, real3 *v, contact_point *found)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact solution of the springs of a batch. Springs with equal parameters share coefficients; others have their own
-   (exact_formula.h), computed in double in both precisions, since in float the phase would have an error of 6e-8 omega t. */
+/* The exact solution of the springs of a batch. Springs with equal parameters share coefficients. Other springs have
+   their own (exact_formula.h), computed in double in both precisions, since in float the phase would have an error of
+   6e-8 omega t. */
 #ifndef SPRINGSTEP_EXACT_SPRINGS_H
 #define SPRINGSTEP_EXACT_SPRINGS_H
 
@@ -42,7 +43,7 @@ SPRING_INLINE real exact_rate(exact_array p, size_t i, bool single)
     return select_real(rate >= 0, rate + (rate - rate), splat(NAN));
 }
 
-/* Stores the springs of a vector that stay finite. Returns false, since one does not. */
+/* Stores the springs of a vector whose new state is finite. Always returns false: at least one spring is not stored. */
 SPRING_NOINLINE bool exact_store_valid(const exact_run *b, size_t i, const double *x, const double *v, double beyond)
 {
     for (size_t k = 0; k < lanes; k++) {
@@ -63,7 +64,7 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 {
     const exact_run b = *run; /* a local copy, so that stores cannot alias its fields */
     const bool damped = b.gamma.first != NULL, loaded = b.accel.first != NULL;
-    const double beyond = b.single ? 0x1.ffffffp127 : INFINITY; /* becomes infinite when it is stored */
+    const double beyond = b.single ? 0x1.ffffffp127 : INFINITY; /* numbers from here on are stored as infinite */
     bool all = true;
     for (size_t i = 0; i < b.count; i += lanes) {
         const real w = exact_rate(b.omega2, i, b.single), g = damped ? exact_rate(b.gamma, i, b.single) : splat(0);

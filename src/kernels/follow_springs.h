@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* Springs of a batch that follow targets: follow_formula.h on SIMD vectors. A spring lands as a single one does, and if it
-   is within the tolerances. The springs that do not rest on their targets are counted. */
+/* Springs of a batch that follow targets: follow_formula.h on SIMD vectors. A spring is placed on its target if it
+   lands, as in spring_follow(), or if it is within the tolerances. Springs that are not at rest on their targets are
+   counted. */
 #ifndef SPRINGSTEP_FOLLOW_SPRINGS_H
 #define SPRINGSTEP_FOLLOW_SPRINGS_H
 
 #include "../spring/follow_formula.h"
 #include "spring_group.h"
 
-/* Of `many` springs from spring i on, those that are counted. */
+/* The number of springs that are counted, of `many` springs from spring i on. */
 SPRING_INLINE size_t counted_from(const exact_landing *b, size_t i, size_t many)
 {
     return i >= b->counted ? 0 : b->counted - i < many ? b->counted - i : many;
 }
 
-/* Places the springs of a vector that land or have settled on their targets. Returns the number of others, NaN among
-   them. */
+/* Places the springs of a vector that land or have settled on their targets. Returns the number of other springs,
+   including NaN. */
 SPRING_INLINE size_t settle(const exact_landing *b, size_t i, real *x, real *v, real y, real rest,
                             const follow_coefficients *c, bool single)
 {
@@ -35,15 +36,15 @@ SPRING_INLINE size_t settle(const exact_landing *b, size_t i, real *x, real *v, 
     return moving;
 }
 
-/* The rest position. Without stiffness a load leaves none: infinite. */
+/* The rest position; infinite if there is a load and no stiffness. */
 SPRING_INLINE real follow_rest(real target, real a, real w)
 {
     return select_real(a != 0, target + a / w, target);
 }
 
-/* If no |y| of a group is below slope * (the largest |x|) + least, no spring of the group lands or settles. This follows
-   from |rest| <= |x| + |y| and d <= eps/2 |rest|, with a factor of 2 or more to spare. Where share is so small that a spring
-   may land from farther away than |x|, there is no limit. */
+/* If no |y| of a group is below slope * (the largest |x|) + least, no spring of the group lands or settles. This
+   follows from |rest| <= |x| + |y| and d <= eps/2 |rest|, with a factor of 2 or more to spare. If share is so small
+   that a spring may land from farther away than |x|, `least` is infinite. */
 typedef struct follow_limit {
     real slope, least;
 } follow_limit;
@@ -59,7 +60,7 @@ SPRING_INLINE follow_limit follow_limit_of(const exact_landing *b, scalar share)
     return (follow_limit){splat(per_share * eps), splat(per_share * normal + 2 * x_tol)};
 }
 
-/* A vector of springs with stiffness, from spring i on; not stored. */
+/* A vector of springs with stiffness after a step, before it is stored. */
 typedef struct followed {
     real x, v, y, rest;
 } followed;
@@ -73,7 +74,7 @@ SPRING_INLINE followed follow_vector(const batch_run *b, size_t i, const follow_
     return (followed){rest + y, u, y, rest};
 }
 
-/* A group of which some springs may land or settle. Returns false if a spring keeps its state. */
+/* Advances a group whose springs may land or settle. Returns false if a spring keeps its state. */
 SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coefficients *c)
 {
     real x[vectors], v[vectors];
@@ -87,7 +88,7 @@ SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coeff
     return store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
 }
 
-/* Springs with equal coefficients and stiffness. unit: the first half of E is 1, as it is for most frames. */
+/* Springs with equal coefficients, and with stiffness. unit: exact_coefficients.half is 1, as for most time steps. */
 SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
 {
     const batch_run b = *run; /* a local copy, so that stores cannot alias its fields */
@@ -126,7 +127,7 @@ SPRING_INLINE real exact_load(const void *array, size_t i, bool single)
     return single ? vec_load_float((const float *)array + i) : vec_load((const double *)array + i);
 }
 
-/* a, or with `single` a as a float */
+/* a, rounded to float if `single`. */
 SPRING_INLINE real rounded(real a, bool single)
 {
     float each[lanes];
@@ -136,8 +137,8 @@ SPRING_INLINE real rounded(real a, bool single)
     return vec_load_float(each);
 }
 
-/* A vector of springs with coefficients of their own, from spring i on. The rest position is rounded as in
-   follow_alike(). A spring without stiffness is measured from where it is; its target has to be finite. */
+/* A vector of springs with different coefficients, from spring i on. The rest position is rounded as in follow_alike().
+   For a spring without stiffness, y = x, or NaN if the target is not finite. */
 SPRING_INLINE void follow_each(const exact_run *b, size_t i, real *x, real *v, real w, real a,
                                const exact_coefficients *exact, bool loaded)
 {

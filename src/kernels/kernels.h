@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * All kernels for one vector width and precision: SPRING_VECTOR bytes, double or with SPRING_FLOAT float, as the tables
- * SPRING_BATCH_TABLE, SPRING_SCENE_TABLE and SPRING_UNBANDED_TABLE. Included by the sources of this folder.
+ * All kernels for one vector width (SPRING_VECTOR bytes) and one precision (double, or float with SPRING_FLOAT), and
+ * their tables SPRING_BATCH_TABLE, SPRING_SCENE_TABLE and SPRING_UNBANDED_TABLE. Included by the sources of this
+ * folder.
  */
 #include <math.h>
 #include <stdbool.h>

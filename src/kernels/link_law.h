@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The law of a link, as numbers. The kernels have it for SIMD vectors: see bands.h and unbanded.h. */
+/* The force law of a link, for single numbers. bands.h and unbanded.h have it for SIMD vectors. */
 #ifndef SPRINGSTEP_LINK_LAW_H
 #define SPRINGSTEP_LINK_LAW_H
 
 #include "../simd/arithmetic.h"
 
-/* [N] > 0 pulls; rate: [m/s] rate of change of the length */
+/* [N] positive if the link pulls; rate: [m/s] rate of change of the length */
 static inline double link_tension(double stiffness, double rest, double damping, double length, double rate)
 {
     return stiffness * (length - rest) + damping * rate;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The motion of the particles of a scene, with the SIMD vectors that real.h is set to: kick, implicit kick, drift and the
- * stages of Runge-Kutta methods. scene_kernels.h gives the formula of each. A pinned particle has inverse mass 0.
+ * The motion of the particles of a scene, on the SIMD vectors of real.h: kick, implicit kick, drift and the stages of
+ * Runge-Kutta methods. scene_kernels.h gives the formula of each. A pinned particle has inverse mass 0.
  */
 #ifndef SPRINGSTEP_PARTICLES_H
 #define SPRINGSTEP_PARTICLES_H
@@ -19,13 +19,13 @@ typedef struct coordinates {
     real drag;                /* [1/s] */
     bool dragged;             /* the scene has drag */
     implicit_factors damping; /* of an implicit kick; unset without drag */
-    bool holds;               /* there may be held forces; a constant */
+    bool holds;               /* constant: there may be held forces */
     real held;                /* [N] held force */
 } coordinates;
 
 static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* By force, held force and gravity. No force moves a pinned particle, not even an infinite one. */
+/* By force, held force and gravity. No force accelerates a pinned particle, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
 {
     const real force = c->holds ? vec_load(m->force + c->at) + c->held : vec_load(m->force + c->at);
@@ -51,17 +51,17 @@ SPRING_INLINE void store_state(const scene_motion *m, const coordinates *c, real
     vec_store(m->v + c->at, v);
 }
 
-/* The state at the end of a step. */
+/* Stores the state at the end of a step. Returns the lanes that are not finite or too fast. */
 SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x, real v)
 {
     store_state(m, c, x, v);
     return not_finite(x) | too_fast(m, c, v);
 }
 
-/* Moves one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
+/* Advances one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
 typedef mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
 
-/* The loop of all kernels. holds is a constant; with true, a scene without held forces adds -0, which changes no bit. */
+/* The loop of all kernels. holds is a constant; if true, a scene without held forces adds -0, which changes no bit. */
 SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
                                    particle_update *update, unsigned variant, bool holds)
 {
@@ -104,7 +104,7 @@ SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c
 
 enum { ENDS_STEP = 1, PREDICTS = 2 };
 
-/* In contact_kernels.h, with all axes of a particle at once. */
+/* Defined in contact_kernels.h, with all axes of a particle at once. */
 static particle_kernel move_kick_drift_contact, move_implicit_kick_contact, move_implicit_kick_drift_contact,
     move_last_stage_contact;
 
@@ -114,7 +114,7 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     const real v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly(m, c, start, free) : start;
     const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free), x = vec_load(m->x0 + c->at) + m->drift * v;
     store_state(m, c, x, v);
-    mask wrong = not_finite(x); /* as it is if v0 or v is not finite */
+    mask wrong = not_finite(x); /* also if v0 or v is not finite */
     if ((variant & ENDS_STEP) != 0)
         wrong |= (vec_abs(v0) > m->max_speed) & (c->inverse_mass > 0);
     if ((variant & PREDICTS) == 0)
@@ -124,7 +124,7 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     return wrong | not_finite(predicted);
 }
 
-/* Leapfrog has loops of their own for held forces, so that other scenes lose no time. */
+/* Leapfrog has separate loops for held forces, so that they cost other scenes nothing. */
 SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     const unsigned ends = m->ends_step ? ENDS_STEP : 0, predicts = m->predicted != NULL ? PREDICTS : 0;
@@ -180,7 +180,7 @@ static bool move_implicit_kick_drift(const scene_particles *p, const scene_motio
     return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0, true);
 }
 
-/* --------------------------------------------------------------------------------------- stages of Runge-Kutta methods */
+/* ------------------------------------------------------------------------------------ stages of Runge-Kutta methods */
 
 enum { NO_SUM, FIRST_SUM, NEXT_SUM };
 
@@ -231,8 +231,8 @@ static bool move_last_stage(const scene_particles *p, const scene_motion *m, siz
     return for_each_vector(p, m, from, to, update_last_stage, 0, true);
 }
 
-/* The acceleration of stage `number` by the force found there: of x, or with drag of y = e^(drag t/2) (x - x0), where t
-   is the time since the start of the step. */
+/* The acceleration of stage `number`: of x or, with drag, of y = e^(drag t/2) (x - x0), where t is the time since the
+   start of the step. */
 SPRING_INLINE real nystrom_acceleration(const scene_motion *m, const coordinates *c, size_t number)
 {
     const real free = free_acceleration(m, c);
@@ -305,8 +305,8 @@ static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, si
 
 /* ------------------------------------------------------------------------------------------------ Chebyshev damping */
 
-/* A term of Clenshaw's recurrence, by the forces of damping at the term before. At the end, a pinned particle keeps its
-   velocity. */
+/* A term of Clenshaw's recurrence, from the damping forces of the previous term. In the last term, a pinned particle
+   keeps its velocity. */
 SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates *c, unsigned last)
 {
     const scene_chebyshev *const p = m->chebyshev;
@@ -330,7 +330,7 @@ static bool move_last_damping_term(const scene_particles *p, const scene_motion 
     return for_each_vector(p, m, from, to, update_damping_term, 1, false);
 }
 
-/* ------------------------------------------------------------------------------- kicks, and drifts with exact drag */
+/* -------------------------------------------------------------------------------- kicks, and drifts with exact drag */
 
 SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {

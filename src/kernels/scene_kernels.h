@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernels of scenes, loops over links and over particles: their arguments, their formulas and the type of their table,
-   which kernels.h fills. The field kick_drift is move_kick_drift() of particles.h, and so on; band_forces is
-   compute_band_forces() of bands.h. */
+/* The kernels of scenes (loops over links and over particles): their arguments, their formulas and the type of their
+   table. kernels.h defines the tables: the field kick_drift is move_kick_drift() of particles.h, and so on; band_forces
+   is compute_band_forces() of bands.h. */
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
@@ -13,46 +13,45 @@
 #include <stddef.h>
 
 enum {
-    padding = 16,        /* elements of the longest SIMD vector; every quantity has so many before and behind it */
+    padding = 16,        /* elements of the longest SIMD vector; every array has as many before and after it */
     most_colliders = 32, /* bits of a mask */
     most_bands = 32,     /* a block with shear and bend springs has 16 */
     nystrom_stages = 7,  /* of a Runge-Kutta-Nystrom method, after the first */
-    tile = 64            /* slots of a band whose forces are computed together, in the first-level cache */
+    tile = 64            /* slots of a band whose forces are computed together; they fit the first-level cache */
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
 /* Which terms of the law of a link are computed. */
 typedef enum link_terms {
-    STIFFNESS_TERM,             /* no link is damped, or damping is applied apart */
+    STIFFNESS_TERM,             /* no link is damped, or damping is applied separately */
     STIFFNESS_AND_DAMPING_TERM, /* of scene_band.damping and unbanded_links.damping */
     DAMPING_TERM                /* alone, along frozen directions */
 } link_terms;
 
-/* A band: links whose upper end is `offset` particles after the lower one. A band has a slot for each particle of the
-   tiles that hold lower ends. */
+/* A band: links whose upper end is `offset` particles after the lower end. A band has a slot for each particle of the
+   tiles that contain lower ends. */
 typedef struct scene_band {
     ptrdiff_t offset;
-    ptrdiff_t start, end;         /* slots: from the tile of the first lower end to behind the last one */
+    ptrdiff_t start, end;         /* slots, from the first tile with a lower end to the end of the last one */
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    const scalar *direction; /* [(N s/m)^(1/2)] root of damping, times the unit vector from the lower to the upper end
-                                     at positions where it was frozen (on one axis 1); by axis and slot; 0 without a link.
-                                     NULL: the scene has none */
+    const scalar *direction; /* [(N s/m)^(1/2)] sqrt(damping) times the frozen unit vector from the lower to the upper
+                                end (on one axis 1); by axis and slot; 0 without a link. NULL: the scene has none */
     size_t direction_stride; /* from axis to axis */
-    size_t ring_start;       /* of its ring of forces among the rings of all bands */
-    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all in use */
+    size_t ring_start;       /* of its ring of forces in scene_forces.rings */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots */
     ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
-/* Links that lie in no band. */
+/* Links that belong to no band. */
 typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
-    const scalar *direction;                  /* the same, a quad for each link */
+    const scalar *direction;                  /* likewise, a quad for each link */
 } unbanded_links;
 
 typedef struct scene_links {
@@ -66,25 +65,26 @@ typedef struct scene_links {
     bool tension_only; /* links pull and never push */
 } scene_links;
 
-/* What the kernels of links write. */
+/* Outputs of the kernels of links. */
 typedef struct scene_forces {
     scalar *force;   /* [N] on all particles */
-    scalar *rings;   /* [N] of each band, the forces on the lower ends of its last slots; the first tile is repeated */
+    scalar *rings;   /* [N] for each band, the forces on lower ends in its last slots; the first tile is repeated */
     scalar *records; /* see unbanded.h; NULL: the scene has none */
 } scene_forces;
 
-/* Computes forces from positions, and from velocities if `terms` has damping. band_forces: the forces of all bands on particles
-   from ... to - 1, both multiples of tile or the end; v may be the array of forces. The others: of all unbanded links. */
+/* Compute forces from positions, and from velocities if `terms` has damping. A band_kernel computes the forces of all
+   bands on particles from ... to - 1, both multiples of tile or the end; v may be the array of forces. An
+   unbanded_kernel computes the forces of all unbanded links. */
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 
-/* Computes scene_band.direction of all bands at positions x. direction: that of the first band. */
+/* Computes scene_band.direction of all bands at positions x. direction: the array of the first band. */
 typedef void direction_kernel(const scene_links *, const scalar *x, scalar *direction);
-/* Returns whether a link of the bands is longer than `stretch` times its rest length, cut links and links of rest length
-   0 excepted. May return true for a link that is shorter by 1e-5 of that. 0 <= stretch <= 1e9. */
+/* Returns whether a link of the bands is longer than `stretch` times its rest length, except for cut links and links of
+   rest length 0. May return true if a link is at most 1e-5 of this length shorter. 0 <= stretch <= 1e9. */
 typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
 
-/* In a small scene, quantities are arrays of quads, and these are the values for `count` numbers on one axis. */
+/* The particles of a scene. In a small scene, arrays of quads are treated as `count` numbers on one axis. */
 typedef struct scene_particles {
     size_t count;
     uint32_t axes;
@@ -97,39 +97,39 @@ typedef struct scene_particles {
     size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
-/* What stages of a Runge-Kutta-Nystrom method use besides scene_motion. */
+/* Further arguments of the stages of a Runge-Kutta-Nystrom method. */
 typedef struct scene_nystrom {
     size_t number;                       /* 1 to nystrom_stages */
-    scalar square;                       /* [s^2] of the step */
-    scalar *accel;                       /* [m/s^2] the accelerations of all stages ... */
-    size_t accel_stride;                 /* ... elements from one stage to the next */
+    scalar square;                       /* [s^2] of the time step */
+    scalar *accel;                       /* [m/s^2] accelerations of all stages */
+    size_t accel_stride;                 /* elements from one stage to the next */
     const scalar *weight_x, *weight_v;   /* of the stages */
     const scalar *stage_x;               /* [m] positions of the stage that the force belongs to */
     const scalar *growth, *decay, *loss; /* by mass: e^(drag t/2) at that stage, its inverse at the next stage, and
                                             e^(-drag kick/2) - 1 */
 } scene_nystrom;
 
-/* What a term of a Chebyshev series, applied to velocities, uses besides scene_motion. */
+/* Further arguments of a term of a Chebyshev series that is applied to velocities. */
 typedef struct scene_chebyshev {
-    const scalar *before, *second_before; /* [m/s] the two terms before */
+    const scalar *before, *second_before; /* [m/s] the two previous terms */
     scalar coefficient, before_weight, second_weight;
 } scene_chebyshev;
 
-/* A collider during a step, or during a part of it with a drift. Radius and offset include the radius of particles. */
+/* A collider during a step, or during one of its drifts. Radius and offset include the radius of particles. */
 typedef struct scene_collider {
     spring_shape shape;
     bool spins;
     scalar at[3], to[3], at_end[3], to_end[3]; /* [m] at the start and at the end of the step */
     scalar shift[3], shift_to[3];              /* [m] the differences */
-    scalar offset, offset_end, offset_shift;   /* [m] plane: its normal times `at`, plus the radius */
+    scalar offset, offset_end, offset_shift;   /* [m] plane: normal . at, plus the radius */
     scalar axis[3][3], half[3], radius;
     scalar velocity[3], velocity_to[3], spin[3];
     scalar friction, restitution;
     scalar reach;          /* [m^2] see may_touch() */
-    scalar inverse_square; /* [1/m^2] capsule: of its axis at the start */
+    scalar inverse_square; /* [1/m^2] capsule: 1/(length of its axis)^2 at the start */
 } scene_collider;
 
-/* Computes the normal of a collider nearest to x, at its pose at the start of the step. */
+/* Computes the normal at the surface point nearest to x, for the pose at the start of the step. */
 typedef void normal_kernel(const scene_collider *, const scalar x[3], scalar normal[3]);
 
 /* The contacts of a step. */
@@ -138,20 +138,20 @@ typedef struct scene_contacts {
     const scene_collider *collider; /* [count] */
     uint32_t axes;
     bool quads;             /* a small scene */
-    bool adds;              /* to `touched`: the second drift of a step */
+    bool adds;              /* keep the bits of `touched`: the second drift of a step */
     scalar h;               /* [s] */
-    const scalar *x;        /* [m] positions at the end */
-    const uint32_t *before; /* by particle: bit i says that collider i was touched in the step before */
-    uint32_t *touched;      /* written: in this step; may be `before` */
+    const scalar *x;        /* [m] positions at the end of the step */
+    const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
+    uint32_t *touched;      /* written: the same for this step; may be `before` */
 } scene_contacts;
 
-/* A motion of all particles, from x0 and v0 to x and v. The table below says which fields a kernel uses. */
+/* A motion of all particles, from x0 and v0 to x and v. The table below shows which fields a kernel uses. */
 typedef struct scene_motion {
-    scalar kick, drift;    /* [s] how long forces act on v, and v on x */
+    scalar kick, drift;    /* [s] factors of the acceleration and of the velocity */
     const scalar *force;   /* [N] */
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
-    bool ends_step;        /* begin with the implicit kick that ends the step before */
+    bool ends_step;        /* begin with the implicit kick that ends the previous step */
     scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
     scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
     const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
@@ -163,11 +163,11 @@ typedef struct scene_motion {
     const scalar *span, *loss;      /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
 } scene_motion;
 
-/* Moves particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN, or if
-   a velocity at the end of a step is above max_speed. */
+/* Advances particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN,
+   or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
-/* Unbanded links are computed on quads, so vectors of 64 bytes gain nothing over 32 (1 % on an AMD EPYC). */
+/* Unbanded links are computed on quads, so vectors of 64 bytes are hardly faster than 32 (1 % on an AMD EPYC). */
 typedef struct unbanded_kernels {
     unbanded_kernel *forces;        /* adds the forces of unbanded links */
     unbanded_kernel *record_forces; /* the same for many unbanded links, on two or three axes */
@@ -176,32 +176,32 @@ typedef struct unbanded_kernels {
 
 /* a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct scene_kernels {
-    const struct scene_kernels *small; /* the kernels for small scenes, whose vectors are at most a quad: a load that
-                                          needs the results of two stores has to wait for both */
+    const struct scene_kernels *small; /* the kernels for small scenes, with vectors of at most a quad, since a load
+                                          that spans two recent stores stalls */
     band_kernel *band_forces;          /* the forces of all bands */
     direction_kernel *band_directions;
     const unbanded_kernels *unbanded;
-    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced by
-       the solution u of u = v0 + kick a(u). */
+    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced
+       by the solution u of u = v0 + kick a(u). */
     particle_kernel *kick_drift;
     particle_kernel *implicit_kick;       /* v = v0 + kick a(v) */
     particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
     particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
     particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
-    particle_kernel *next_stage;          /* the same, and these times weight are added to the sums */
+    particle_kernel *next_stage;          /* the same, and weight times these is added to the sums */
     particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v));
                                              x = x0 + drift (sum_x + weight stage_v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
     particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
                                              + kick force/mass */
-    particle_kernel *last_damping_term;   /* the same, if no particle is pinned; pinned ones keep v0 */
+    particle_kernel *last_damping_term;   /* the same, but pinned particles keep v0 */
     stretch_kernel *stretched;            /* see above */
     normal_kernel *contact_normal;        /* see above */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
 } scene_kernels;
 
-SPRING_INTERNAL const scene_kernels spring_scene_v128; /* by bits of a SIMD vector */
+SPRING_INTERNAL const scene_kernels spring_scene_v128; /* named by the bits of a SIMD vector */
 SPRING_INTERNAL const unbanded_kernels spring_unbanded_v128;
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;

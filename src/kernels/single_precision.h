@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Batches and scenes are written for double. With SPRING_FLOAT these names make the same source the single-precision
-   version. */
+/* Batches and scenes are written for double. With SPRING_FLOAT, these names turn the same source into the
+   single-precision version. */
 #ifndef SPRINGSTEP_SINGLE_PRECISION_H
 #define SPRINGSTEP_SINGLE_PRECISION_H
 

@@ -6,7 +6,7 @@
 #include "../spring/rates.h"
 #include "batch_kernels.h"
 
-/* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, else 16). */
+/* Vectors in a group: enough to hide the latency of a step, few enough for the registers (32 of 64 bytes, or 16). */
 enum { vectors = SPRING_VECTOR == 64 ? 8 : 4, group = vectors * lanes };
 
 /* Reads the values of a parameter for a vector of springs, from spring i on. */
@@ -29,7 +29,7 @@ SPRING_INLINE bool negative(batch_array p, size_t i)
     return p.first != NULL && p.first[i * p.stride] < 0;
 }
 
-/* Stores the springs of a group that are finite and have no negative rate. Returns false if there are others. */
+/* Stores the springs of a group that are finite and have no negative rate. Returns false if a spring is not stored. */
 SPRING_NOINLINE bool store_valid(const batch_run *b, size_t i, const real *x, const real *v, size_t many)
 {
     scalar x1[group], v1[group];
@@ -47,8 +47,8 @@ SPRING_NOINLINE bool store_valid(const batch_run *b, size_t i, const real *x, co
     return all;
 }
 
-/* Checks whether a spring of a group may have to keep its state. A sum is not finite if one of its terms is not, nor if
-   it overflows. signs: not 0 where a rate is negative. */
+/* Checks whether a spring of a group may have to keep its state. A sum is not finite if one of its terms is not finite,
+   or if it overflows. signs: not 0 where a rate is negative. */
 SPRING_INLINE bool doubtful(const real *x, const real *v, size_t many, mask signs)
 {
     real sum = x[0] + v[0];

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The loops over the springs of a batch, with the SIMD vectors that real.h is set to.
+ * The loops over the springs of a batch, on the SIMD vectors of real.h.
  *
- * Method    A group of a few vectors is loaded into registers, takes all its steps there, and is stored. The independent
- *           chains of operations keep the processor busy, and memory is read once for any number of steps. A spring that
- *           must keep its state is not stored.
- * Requires  of a method: an infinite or NaN rate leaves x or v infinite or NaN, since only x and v are checked
- *           afterwards; a rate of 0 gives the bits of a step without it.
+ * Method    A group of a few vectors is loaded into registers, advanced by all steps, and stored. The independent
+ *           chains of operations hide the latency, and memory is read once for any number of steps. A spring that must
+ *           keep its state is not stored.
+ * Requires  A method must give an infinite or NaN x or v if a rate is infinite or NaN, since only x and v are checked
+ *           afterwards. A rate of 0 must give the same bits as a step without this rate.
  */
 #ifndef SPRINGSTEP_SPRINGS_H
 #define SPRINGSTEP_SPRINGS_H
@@ -63,7 +63,7 @@ SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_
     return store_group(run, i, b->x + i, b->v + i, x, v, vectors, signs);
 }
 
-/* Several steps, group by group. The loops over steps exist for each set of features, all other code once. */
+/* Several steps, group by group. The loop over steps is compiled for each set of features, all other code once. */
 SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
                                   bool damped, bool loaded)
 {
@@ -81,8 +81,8 @@ SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare,
     return all;
 }
 
-/* A single step, vector by vector: the processor overlaps independent vectors by itself, and springs in memory are slower
-   in groups. */
+/* A single step, vector by vector. The processor overlaps independent vectors by itself, and groups are slower for
+   springs in memory. */
 SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, method_start *start, method_step *step,
                                 bool damped, bool loaded)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Whether a link of a band is stretched beyond a limit: a quick look at all links before one is torn.
+ * Whether any link of a band is stretched beyond a limit: a fast test, after which the caller decides exactly.
  *
- * Method    length^2 is compared with (stretch rest)^2, without a root. Both have relative errors below 8 eps, so a link
- *           that is longer is found also if the squares are equal to within a few roundings. The caller decides exactly.
+ * Method    length^2 is compared with (stretch rest)^2, without a root. Both have relative errors below 8 eps. The
+ *           tolerance `nearly` is larger, so no link beyond the limit is missed.
  */
 #ifndef SPRINGSTEP_STRETCH_H
 #define SPRINGSTEP_STRETCH_H
@@ -13,7 +13,7 @@
 
 SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, const scalar *x, real stretch)
 {
-    const real nearly = splat((scalar)(1 - 0x1p-18)); /* 4e-6, more than the rounding errors also in float */
+    const real nearly = splat((scalar)(1 - 0x1p-18)); /* 1 - 4e-6: more than the rounding errors, also in float */
     const ptrdiff_t stride_c = band->coefficient_stride;
     mask longer = {0};
     for (ptrdiff_t t = band->start; t < band->end; t += (ptrdiff_t)lanes) {
@@ -27,7 +27,7 @@ SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, 
             square += delta * delta;
         }
         const mask beyond = (rest != 0) & not_mask(square < nearly * (bound * bound));
-        if (SPRING_UNLIKELY(any(beyond))) /* of links that were cut, too */
+        if (SPRING_UNLIKELY(any(beyond))) /* may include cut links */
             longer |= beyond & vec_load_mask(band->occupied + slot);
     }
     return any(longer);

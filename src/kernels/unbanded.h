@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The forces of unbanded links, one by one in their order, with the axes of a particle side by side in a quad.
+ * The forces of unbanded links, one after another in their order. The axes of a particle are side by side in a quad.
  *
  * Law       see bands.h
  * Accuracy  the square root and the quotient rest/length are correctly rounded
@@ -17,16 +17,16 @@ SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square
 {
     const scalar stretch = 1 - l->rest[j] / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
     const scalar scale = damped ? pull + l->damping[j] * (rate / square) : pull;
-    return tension_only && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is noticed */
+    return tension_only && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is detected */
 }
 
-/* A link that is cut has no force, however far apart its ends are. */
+/* A cut link has no force, however far apart its ends are. */
 SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
 {
     return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
 }
 
-/* From arrays of each axis. */
+/* Quantities have an array for each axis. */
 SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                 uint32_t axes, bool damped, bool tension_only)
 {
@@ -72,19 +72,20 @@ SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
 }
 
-/* Tension-only: a function of its own, since it is called for few links. */
+/* Tension-only; not inlined, since it is called for few links. */
 SPRING_NOINLINE void one_taut_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
                                    size_t stride, bool damped)
 {
     one_quad_link(l, j, x, v, force, stride, damped, true);
 }
 
-/* From quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
+/* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient.
+   */
 SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
                               size_t stride, bool damped, bool tension_only)
 {
     const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
-    const size_t ahead = 32; /* links, whose ends are prefetched: for scenes larger than the cache */
+    const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
         if (stride > quad_size && j + ahead < fours) { /* not in a small scene */
@@ -137,16 +138,16 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
             one_quad_link(l, j, x, v, force, stride, damped, tension_only);
 }
 
-/* -------------------------------------------------------------------------------- damping alone, along frozen directions */
+/* --------------------------------------------------------------------------- damping alone, along frozen directions */
 
-/* The force on the first end; it is that on the second with the sign reversed. */
+/* The force on the first end; the force on the second end is opposite. */
 SPRING_INLINE quad damping_pull(const unbanded_links *l, size_t j, quad relative)
 {
     const quad d = quad_load(l->direction + quad_size * j);
     return quad_times(quad_all(quad_dot(d, relative)), d);
 }
 
-/* From arrays of each axis. */
+/* Quantities have an array for each axis. */
 SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *v, scene_forces *out, uint32_t axes)
 {
     const unbanded_links *const l = &s->unbanded;
@@ -163,7 +164,7 @@ SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *v, s
     }
 }
 
-/* From quads, as quad_links(). */
+/* Quantities are quads, as in quad_links(). */
 SPRING_INLINE void quad_damping(const unbanded_links *links, const scalar *v, scalar *force, size_t stride)
 {
     const unbanded_links own = *links, *const l = &own;
@@ -175,14 +176,14 @@ SPRING_INLINE void quad_damping(const unbanded_links *links, const scalar *v, sc
     }
 }
 
-/* Records: position, velocity if links are damped, and force of a particle in one piece of memory, for scenes with many
-   unbanded links. */
+/* A record has the position, the velocity (if links are damped) and the force of a particle side by side, for scenes
+   with many unbanded links. */
 SPRING_INLINE size_t force_in_record(bool damped)
 {
     return (damped ? 2 : 1) * quad_size;
 }
 
-/* Tension-only links of records. Functions of their own, which do not slow down others. */
+/* Tension-only links of records. Separate functions, so that other links are not slower. */
 SPRING_NOINLINE void taut_links(const unbanded_links *l, const scalar *x, scalar *force)
 {
     quad_links(l, x, NULL, force, force_in_record(false) + quad_size, false, true);
@@ -199,7 +200,7 @@ SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const sca
     const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
     for (size_t i = 0; i < s->particles; i++) {
         scalar *record = out->records + stride * i;
-        for (size_t k = 0; k < stride; k += quad_size) /* numbers of no axis are 0 */
+        for (size_t k = 0; k < stride; k += quad_size) /* unused numbers are 0 */
             quad_store(record + k, quad_all(0));
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
@@ -251,7 +252,7 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
        : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
                    : function(__VA_ARGS__, 3, false, false))
 
-/* The same of tension-only links, of which few are computed here: one loop for all. */
+/* The same for tension-only links. Few are computed here, so `damped` is not a constant. */
 SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     if (s->axes == 3)
