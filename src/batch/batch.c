@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { largest_vector = 16, largest_group = 8 * largest_vector }; /* springs: 64 bytes, in float */
+enum { largest_vector = 16, largest_group = 8 * largest_vector }; /* [springs] 64 bytes of float */
 
 static const uint32_t known_bits = SPRING_SHARED_OMEGA2 | SPRING_SHARED_GAMMA | SPRING_SHARED_ACCEL;
 
@@ -24,7 +24,7 @@ static bool overlap(const scalar *a, size_t a_count, const scalar *b, size_t b_c
     return p < q ? q - p < a_count * sizeof(scalar) : p - q < b_count * sizeof(scalar);
 }
 
-/* Whether an array of parameters, if there is one, does not overlap the state. */
+/* Whether an array of parameters is NULL or does not overlap the state. */
 static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, uint32_t bit)
 {
     const size_t count = is_shared(b, bit) ? 1 : b->count;
@@ -32,7 +32,7 @@ static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, u
            (!overlap(b->x, b->count, parameter, count) && !overlap(b->v, b->count, parameter, count));
 }
 
-/* A shared parameter must be valid before anything changes. Other parameters concern their own spring only. */
+/* An invalid shared parameter fails the call before any state changes. Other parameters concern one spring only. */
 static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
     return parameter == NULL || !is_shared(b, bit) || (spring_finite(*parameter) && *parameter >= least);
@@ -89,7 +89,7 @@ static const batch_kernels *best_batch_kernels(void)
     return SPRING_BEST_KERNELS(&spring_batch_v128, &spring_batch_v256, &spring_batch_v512);
 }
 
-/* The first `size` elements of `to`: `count` elements, and copies of the first of them. */
+/* Copies `count` elements, and fills `to` up to `size` elements with copies of the first. */
 static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t size)
 {
     memcpy(to, from, count * sizeof *to);
@@ -98,8 +98,8 @@ static scalar *filled_up(scalar *to, const scalar *from, size_t count, size_t si
     return to;
 }
 
-/* Advances the springs that do not fill a group, together with copies of the first of them, so that the loop ends early
-   when none of them is finite any more. */
+/* Advances the springs that do not fill a group. Copies of the first fill it up, so that the loop still ends early when
+   no spring is finite any more. */
 static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, const batch_run *all, size_t first)
 {
     scalar x[largest_group], v[largest_group];
@@ -124,7 +124,7 @@ static bool advance_tail(const batch_kernels *kernels, const spring_batch *b, co
     return done;
 }
 
-/* A parameter as kernels read it. A shared value is repeated in `same`. */
+/* The array of a parameter for the kernels. A shared value is repeated in `same`. */
 static batch_array array_of(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar *same)
 {
     if (parameter == NULL)
@@ -152,7 +152,7 @@ static bool advance_all(const batch_kernels *kernels, const spring_batch *b, bat
     return done;
 }
 
-/* Checks that concern the whole batch. In single precision a step is not valid either if it is not finite as a float. */
+/* Checks that concern the whole batch. In single precision, the step must be finite as a float. */
 static spring_status check_batch(const spring_batch *b, spring_method m, double step)
 {
     const spring_method_info *info = spring_method_describe(m);
@@ -196,7 +196,7 @@ spring_status spring_batch_advance(const spring_batch *b, spring_method m, doubl
     return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
 }
 
-/* The number of springs that do not rest on their target. */
+/* The number of springs that are not at rest on their targets. */
 static size_t count_moving(const spring_batch *b, const scalar *target, const exact_landing *landing)
 {
     size_t moving = 0;
@@ -210,7 +210,7 @@ static size_t count_moving(const spring_batch *b, const scalar *target, const ex
     return moving;
 }
 
-/* As tests call it. In single precision tolerances are rounded once, here. */
+/* In single precision, tolerances are rounded once, here. */
 spring_status spring_batch_follow_with(const batch_kernels *kernels, const spring_batch *b, const scalar *target,
                                        double dt, double x_tol, double v_tol, size_t *moving)
 {
@@ -220,7 +220,7 @@ spring_status spring_batch_follow_with(const batch_kernels *kernels, const sprin
         return SPRING_EINVAL;
     size_t count = 0;
     spring_status status = SPRING_OK;
-    const double largest = sizeof(scalar) == sizeof(float) ? FLT_MAX : DBL_MAX; /* infinity is at no distance */
+    const double largest = sizeof(scalar) == sizeof(float) ? FLT_MAX : DBL_MAX; /* no infinite distance is tolerated */
     const exact_landing landing = {
         .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = &count};
     if (b->count > 0 && dt == 0)

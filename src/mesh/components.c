@@ -2,8 +2,8 @@
 /*
  * Connected components of particles and links: the pieces of a torn scene.
  *
- * Method    Union-find. The parent of a particle is a particle of the same component with a smaller index, or itself, so a
- *           root is the least index of its component, and one pass in ascending order numbers all particles.
+ * Method    Union-find. The parent of a particle is the particle itself, or one of the same component with a smaller
+ *           index. So a root has the least index of its component, and one ascending pass numbers all particles.
  * Source    Tarjan, van Leeuwen, Worst-case analysis of set union algorithms (1984): path halving
  */
 #include <springstep/scene.h>
@@ -45,7 +45,7 @@ size_t spring_links_components(size_t particles, size_t links, const spring_link
         component[a < b ? b : a] = a < b ? a : b;
     }
     uint32_t count = 0;
-    for (size_t i = 0; i < particles; i++) /* the parents before i are numbers of components by now */
+    for (size_t i = 0; i < particles; i++) /* parents before i are already component numbers */
         component[i] = component[i] == i ? count++ : component[component[i]];
     return count;
 }

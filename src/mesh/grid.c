@@ -55,11 +55,10 @@ static bool valid(const spring_grid *g)
     if (g == NULL || axes_of_grid(g) > 3 || (g->height && g->axes > 1) || (g->families & ~families) != 0 ||
         (g->pinned & ~faces) != 0)
         return false;
-    for (int a = (int)axes_of_grid(g); a < 3 && !g->height;
-         a++) /* no particles along an axis that positions do not have */
+    for (int a = (int)axes_of_grid(g); a < 3 && !g->height; a++) /* one layer along axes that positions do not have */
         if (count_of(g, a) > 1)
             return false;
-    const double longest = 4; /* spacings: no link is longer */
+    const double longest = 4; /* [spacings] no link is longer */
     for (int a = 0; a < 3; a++)
         if (!spring_finite(count_of(g, a) * g->spacing))
             return false;

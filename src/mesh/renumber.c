@@ -2,14 +2,15 @@
 /*
  * A numbering of particles that places joined particles near each other in memory.
  *
- * Method    Links with a constant offset between their ends form bands (scene/layout.c). Cuthill and McKee number breadth
- *           first from a particle at the rim, neighbours by ascending degree: a sheet by its diagonals, whose lengths differ.
- *           Chains through that numbering, each particle behind the last numbered of its neighbours that has none
- *           behind it yet, are the rows of a sheet, if only the shortest links are followed: those along rows. Where
- *           these chains leave many offsets, more than a sheet has particles along its edge, the numbering itself is
- *           tried, through all links: it leaves few, if no band, since it joins only what is in neighbouring levels.
- *           (Its reversal, which is for factors of matrices, changes no offset.)
- * Start     The particle at the rim is the last numbered from any other.
+ * Method    Links with a constant offset between their ends form bands (scene/layout.c). The Cuthill-McKee numbering is
+ *           breadth first, from a particle at the rim, with neighbours by ascending degree. It numbers a sheet along
+ *           its diagonals, whose lengths differ, so offsets vary. Therefore particles are then joined into chains: in
+ *           the order of the numbering, each particle follows its last numbered neighbour that has no successor yet. If
+ *           only the shortest links are used, the chains are the rows of a sheet. If chains leave many offsets, more
+ *           than a sheet has particles along its edge, the numbering itself is tried, with all links. It has few
+ *           offsets, though no bands, since its links join neighbouring levels only. (The reverse numbering, which is
+ *           used for matrix factors, has the same offsets.)
+ * Start     The particle at the rim is the last particle of a numbering from any other particle.
  * Source    Cuthill, McKee, Reducing the bandwidth of sparse symmetric matrices (1969)
  */
 #include <math.h>
@@ -26,7 +27,7 @@ typedef struct graph {
     uint32_t *start, *neighbour;
     uint32_t *number; /* of each particle, or none */
     uint32_t *queue;  /* particles by level */
-    uint32_t *next;   /* in its chain */
+    uint32_t *next;   /* successor in the chain, or none */
 } graph;
 
 static spring_status links_status(size_t particles, size_t links, const spring_link *link)
@@ -47,7 +48,7 @@ static uint32_t degree(const graph *g, uint32_t v)
     return g->start[v + 1] - g->start[v];
 }
 
-/* Lists the neighbours by links up to a length. */
+/* Lists the neighbours that are joined by links of at most this rest length. */
 static void list_neighbours(graph *g, double longest)
 {
     memset(g->start, 0, (g->particles + 1) * sizeof *g->start);
@@ -65,7 +66,7 @@ static void list_neighbours(graph *g, double longest)
         }
 }
 
-/* Numbers the particles that are connected to root, breadth first, in the queue from `first` on. Returns the end. */
+/* Numbers the particles that are connected to root, breadth first, in the queue from `first` on. Returns its end. */
 static uint32_t breadth_first(graph *g, uint32_t root, uint32_t first)
 {
     /* of a particle in the queue; without a limit the time would be quadratic in the links of a particle */
@@ -165,7 +166,7 @@ static uint32_t end_of(const spring_link *link, bool upper)
     return (link->a > link->b) == upper ? link->a : link->b;
 }
 
-/* Counting sort of indices of links by their lower or upper ends, stable; from: NULL for 0, 1, 2 ... */
+/* Stable counting sort of indices of links by their lower or upper ends. from: NULL for 0, 1, 2 ... */
 static void sort_by_end(const graph *g, bool upper, const uint32_t *from, uint32_t *to)
 {
     memset(g->start, 0, (g->particles + 1) * sizeof *g->start);
@@ -179,7 +180,7 @@ static void sort_by_end(const graph *g, bool upper, const uint32_t *from, uint32
     }
 }
 
-/* link[i] becomes what link[from[i]] was, cycle by cycle; from is used up. */
+/* Permutes links in place, cycle by cycle: link[i] becomes the old link[from[i]]. Overwrites `from`. */
 static void permute(size_t links, spring_link *link, uint32_t *from)
 {
     for (uint32_t i = 0; i < links; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Checks and fixes the arithmetic that all sources need: IEEE 754, in the declared type, one rounding per operation. Included
-   first. */
+/* Checks and sets the arithmetic that all sources require: IEEE 754 in the declared type, with one rounding per
+   operation. Included first. */
 #ifndef SPRINGSTEP_ARITHMETIC_H
 #define SPRINGSTEP_ARITHMETIC_H
 
@@ -10,15 +10,15 @@
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(_M_FP_FAST)
 #error "springstep promises the same bits everywhere and notices NaN: compile it without -ffast-math"
 #endif
-/* gcc's GNU mode says 16 where the processor has half precision: that is about _Float16; float and double are as
-   with 0. tcc says nothing; on x86-64 nothing but long double is wider than declared. */
+/* In GNU mode, gcc defines 16 for processors with half precision. This concerns _Float16; float and double are as with
+   0. tcc does not define it; on x86-64, only long double is wider than declared. */
 #if defined(FLT_EVAL_METHOD) ? FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 : !defined(__x86_64__)
 #error "springstep needs types as declared; 32-bit x86: -msse2 -mfpmath=sse, s390x: -fexcess-precision=fast"
 #endif
 
-/* A build that includes src/ may lack -ffp-contract=off. gcc 12 ignores the standard pragma and
-   fuses in GNU mode. It also pairs x and v into one wide load, which then waits for the two narrow stores of the call
-   before: spring_advance() by one step took 15 ns instead of 9. */
+/* A program that compiles src/ itself may lack -ffp-contract=off. gcc 12 ignores the standard pragma and contracts
+   expressions in GNU mode. It also combines the loads of x and v into a wide load, which waits for the two narrow
+   stores of the previous call: spring_advance() by one step took 15 ns instead of 9. */
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__)
@@ -32,7 +32,7 @@
 _Static_assert((long long)9007199254740991.0 == 9007199254740991,
                "springstep needs constants in double: compile it without -fsingle-precision-constant");
 
-/* Linkage of what the sources share and programs do not see: declarations, and definitions of tables. */
+/* Linkage of names that the sources share and programs do not see: declarations, and definitions of tables. */
 #ifndef SPRING_INTERNAL
 #define SPRING_INTERNAL extern
 #define SPRING_TABLE
@@ -47,7 +47,7 @@ _Static_assert((long long)9007199254740991.0 == 9007199254740991,
 #endif
 #endif
 
-/* Whether functions may be compiled for an instruction set that the others do not use. */
+/* Whether single functions may be compiled for a different instruction set. */
 #ifndef SPRING_X86_64
 #if defined(__GNUC__) && defined(__x86_64__)
 #define SPRING_X86_64 1
@@ -60,7 +60,7 @@ _Static_assert((long long)9007199254740991.0 == 9007199254740991,
 #include <stdint.h>
 #include <string.h>
 
-/* The square root, correctly rounded; that of mingw-w64's C library is not. */
+/* The square root, correctly rounded. sqrt() of mingw-w64's C library is not. */
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #else
@@ -75,7 +75,7 @@ static inline double spring_sqrt(double a)
 #endif
 }
 
-/* Not the macros of math.h: with mingw-w64 these warn that a double may become a float. */
+/* The macros of math.h would cause warnings with mingw-w64, that a double may become a float. */
 static inline bool spring_finite(double a)
 {
     return a - a == 0;

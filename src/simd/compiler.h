@@ -4,7 +4,7 @@
 #define SPRINGSTEP_COMPILER_H
 
 #if defined(__GNUC__)
-#define SPRING_INLINE              static inline __attribute__((always_inline)) /* constant flags vanish at -O1 too */
+#define SPRING_INLINE              static inline __attribute__((always_inline)) /* folds constant flags at -O1 too */
 #define SPRING_NOINLINE            static __attribute__((noinline)) /* keeps rare code out of the hot path */
 #define SPRING_UNLIKELY(condition) __builtin_expect(condition, 0)
 #define SPRING_PREFETCH(address)   __builtin_prefetch(address)
@@ -15,7 +15,8 @@
 #define SPRING_PREFETCH(address)   (void)(address)
 #endif
 
-/* Before a loop whose arrays should be kept in registers. For RISC-V without vectors clang unrolls no such loop, and warns. */
+/* Before a loop whose arrays should be kept in registers. For RISC-V without vectors, clang does not unroll such a
+   loop, and warns. */
 #if defined(__clang__) && defined(__riscv) && !defined(__riscv_vector)
 #define SPRING_UNROLL
 #elif defined(__clang__)
@@ -26,7 +27,7 @@
 #define SPRING_UNROLL
 #endif
 
-/* Before a loop whose long body should not be repeated. */
+/* Before a loop whose long body should not be unrolled. */
 #if defined(__clang__)
 #define SPRING_ROLLED _Pragma("clang loop unroll(disable)")
 #elif defined(__GNUC__)
@@ -35,7 +36,7 @@
 #define SPRING_ROLLED
 #endif
 
-/* clang for POWER warns that comparisons of AltiVec's vectors will change. Vectors of GNU C are none of those. */
+/* clang for POWER warns that comparisons of AltiVec vectors will change, which does not concern vectors of GNU C. */
 #if defined(__clang__) && defined(__ALTIVEC__)
 #if __has_warning("-Wdeprecated-altivec-src-compat")
 #pragma clang diagnostic ignored "-Wdeprecated-altivec-src-compat"

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Functions of the exact solution beyond + - * / and sqrt: the error of a product, powers of two, e^x, sine and cosine.
- * On `real`, in double, from multiplications, additions, integer operations and exact scalings alone: the same bits
- * lane by lane, and from every compiler, processor and C library.
+ * Functions of the exact solution besides + - * / and sqrt: the error of a product, powers of two, e^x, sine and
+ * cosine. They use `real`, in double, with multiplications, additions, integer operations and exact scalings alone. So
+ * results are bit-identical in every lane, and with every compiler, processor and C library.
  *
- * Method    The argument is taken to the nearest multiple of ln 2, or of pi/2, in two parts: multiples of the first,
- *           of few bits, are exact, so what is left over has the error of the second. Then Taylor's polynomial about 0,
- *           by Horner's rule: well-known coefficients, which need a term or two more than the best ones.
- * Special   NaN gives NaN; an infinite angle too. e^x of an infinite x is 0, or infinite.
+ * Method    The nearest multiple of ln 2, or of pi/2, is subtracted from the argument in two parts. The first part has
+ *           few bits, so its multiples are exact, and the remainder has the error of the second part alone. The
+ *           function of the remainder is Taylor's polynomial about 0, by Horner's rule: its coefficients are well
+ *           known, and it needs one or two terms more than the best polynomial.
+ * Special   NaN and infinite angles give NaN. e^x of an infinite x is 0, or infinite.
  * Accuracy  e^x 1.1 ulp, 1 - e^x 1.6 ulp, sine and cosine 1.5 ulp and, of angles beyond 10^8, half an eps of the angle
  *           (tests/test_elementary.c)
  * Source    Dekker, A floating-point technique for extending the available precision, Numer. Math. 18 (1971): products;
@@ -31,7 +32,7 @@ SPRING_INLINE halves halves_of(real a)
     return (halves){high, a - high};
 }
 
-/* a b - product, where product is a b rounded, and a^2 - square: exactly, for numbers of 2^-450 ... 2^450. */
+/* a b - product, where product is a b rounded, and a^2 - square. Both are exact for numbers of 2^-450 ... 2^450. */
 SPRING_INLINE real product_error(real a, real b, real product)
 {
     const halves x = halves_of(a), y = halves_of(b);
@@ -44,7 +45,7 @@ SPRING_INLINE real square_error(real a, real square)
     return ((x.high * x.high - square) + x.high * (2 * x.low)) + x.low * x.low;
 }
 
-/* To add this to a number of less than 2^51 leaves the nearest integer in the lowest bits. */
+/* Added to a number of less than 2^51, this leaves the nearest integer in the lowest bits. */
 static const scalar to_integer = 0x1.8p52;
 
 SPRING_INLINE real nearest(real a)
@@ -52,7 +53,7 @@ SPRING_INLINE real nearest(real a)
     return (a + to_integer) - to_integer;
 }
 
-/* 2^k of an integer, |k| < 1087: infinite or denormal where that is. */
+/* 2^k of an integer k, |k| < 1087, including infinite and denormal results. */
 SPRING_INLINE real power_of_two(real k)
 {
     real shift = splat(0), back = splat(1);
@@ -63,8 +64,8 @@ SPRING_INLINE real power_of_two(real k)
     return from_bits(to_bits(k + shift + (to_integer + 1023)) << 52) * back;
 }
 
-/* c[0] + c[1] z + ..., an even number of terms: by Horner's rule for even and odd powers, since a processor that waits
-   for one can do the other. */
+/* c[0] + c[1] z + ..., an even number of terms. Horner's rule runs separately for even and odd powers, so that their
+   latencies overlap. */
 SPRING_INLINE real polynomial(real z, const scalar *c, int terms)
 {
     const real square = z * z;
@@ -82,7 +83,7 @@ typedef struct exponential {
     real k, e;
 } exponential;
 
-/* |x| <= 1500, which is far enough for any number, and its inverse. */
+/* |x| <= 1500, which covers the range of double, for e^x and its inverse. */
 SPRING_INLINE exponential exponential_of(real x)
 {
     /* (e^r - 1 - r)/r^2; the first omitted term is 4e-18 of e^r */
@@ -105,7 +106,7 @@ SPRING_INLINE sine_cosine sine_cosine_of(real angle)
     static const scalar even[] = {1. / 24,        -1. / 720,         1. / 40320,          -1. / 3628800,
                                   1. / 479001600, -1. / 87178291200, 1. / 20922789888000, -1. / 6402373705728000};
     const scalar two_over_pi = 0x1.45f306dc9c883p-1, half_pi_high = 0x1.921fb54p+0, half_pi_low = 0x1.10b4611a62633p-30;
-    /* Beyond, the angle is off by more than a turn: any will do. */
+    /* Larger angles have an error of more than a turn, so 0 is as good. */
     const real known = select_real(vec_abs(angle) < 0x1p51, angle, angle - angle);
     const real quarter = known * two_over_pi + to_integer, q = quarter - to_integer;
     const real r = (known - q * half_pi_high) - q * half_pi_low, z = r * r;

@@ -20,14 +20,14 @@ SPRING_INLINE quad quad_all(scalar a)
     return quad_of(a, a, a, a);
 }
 
-/* Over the three axes. */
+/* The dot product over the three axes. */
 SPRING_INLINE scalar quad_dot(quad a, quad b)
 {
     const quad product = quad_times(a, b);
     return quad_at(product, 0) + quad_at(product, 1) + quad_at(product, 2);
 }
 
-/* Whether no number is infinite or NaN. */
+/* Whether all four numbers are finite. */
 SPRING_INLINE bool quad_finite(quad a)
 {
     const quad zero = quad_minus(a, a);

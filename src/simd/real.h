@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * `real`, the type that formulas are written on: one number, or a SIMD vector of springs, links or coordinates.
+ * `real`, the type in which formulas are written: one number, or a SIMD vector of springs, links or coordinates.
  *
- * The including file defines SPRING_FLOAT for float instead of double, and SPRING_VECTOR as the size of a vector in bytes.
- * Lane by lane every operation is the scalar one, so a spring has the same bits in any lane of any vector. Compilers without
- * the vector types of GNU C use one number.
+ * The including file defines SPRING_FLOAT for float instead of double, and SPRING_VECTOR as the size of a vector in
+ * bytes. In each lane, every operation is the scalar operation, so results are bit-identical in any lane of any vector.
+ * With compilers that lack the vector types of GNU C, `real` is one number.
  */
 #ifndef SPRINGSTEP_REAL_H
 #define SPRINGSTEP_REAL_H
@@ -21,7 +21,7 @@
 
 SPRING_INLINE scalar scalar_sqrt(scalar a)
 {
-    return (scalar)spring_sqrt((double)a); /* in float rounded twice, which changes nothing for a square root */
+    return (scalar)spring_sqrt((double)a); /* in float rounded twice, which does not change a square root */
 }
 
 #if defined(SPRING_VECTOR) && SPRING_VECTORS
@@ -42,8 +42,8 @@ SPRING_INLINE void vec_store(scalar *p, real r)
     memcpy(p, &r, sizeof r);
 }
 
-/* In a loop that reads an array of which registers hold a part at best. Instructions of x86 read operands from memory at
-   no cost; compilers would copy the array to another part of the stack before the loop. */
+/* Placed in a loop that reads an array which is too large for the registers. x86 instructions read operands from memory
+   at no cost, but compilers would copy the array to another place on the stack before the loop. */
 SPRING_INLINE void vec_read_again(const void *array)
 {
 #if SPRING_X86_64

@@ -113,7 +113,7 @@ SPRING_INLINE void vec_store_float(float *p, real r)
 }
 #endif
 
-/* See real_vector.h: the same bits. */
+/* Bit-identical to the function in real_vector.h. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
 {
     (void)where;

@@ -9,7 +9,7 @@ SPRING_INLINE real splat(scalar s)
     return s - (real){0}; /* -0.0 stays -0.0 */
 }
 
-/* Lanes that are infinite or NaN are not 0. */
+/* Not 0 in lanes that are infinite or NaN. */
 SPRING_INLINE mask not_finite(real a)
 {
     return (mask)(a - a);
@@ -70,7 +70,7 @@ SPRING_INLINE real vec_not_negative(real a)
 #endif
 }
 
-/* From a byte a lane, -1 or 0. */
+/* From one byte per lane, -1 or 0. */
 SPRING_INLINE mask vec_load_mask(const int8_t *p)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
@@ -113,13 +113,13 @@ SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
         p[i] = (uint32_t)b[i];
 }
 
-/* These bits in the lanes of a mask, 0 in the others. */
+/* `bits` in the lanes of a mask, 0 in other lanes. */
 SPRING_INLINE lane_bits bits_where(mask t, uint32_t bits)
 {
     return t & (scalar_bits)bits;
 }
 
-/* Lanes that have one of these bits. */
+/* Lanes that have one of `bits`. */
 SPRING_INLINE mask has_bits(lane_bits b, uint32_t bits)
 {
     return (b & (scalar_bits)bits) != 0;
@@ -241,13 +241,13 @@ SPRING_INLINE real vec_min(real a, real b)
 #endif
 }
 
-/* 1/sqrt(a) of squares a > 0, and 0 for 0, of several vectors at once; elsewhere than in the lanes of `where` anything.
-   By a seed to 1 ulp, by a quotient, as in float, to 1.5 ulp (tests/test_inverse_sqrt.c).
+/* 1/sqrt(a) for a > 0, and 0 for 0, of several vectors at once. Lanes outside of `where` have any result. The error is
+   1 ulp with a seed, and 1.5 ulp with a quotient, as in float (tests/test_inverse_sqrt.c).
 
-   In double: a seed y by a square root and a quotient in float, which are several times as fast, then y (1 + r/2 + 3/8
-   r^2), r = 1 - a y^2. y has 24 bits, so its square is exact, and |r| < 2^-20: what is left out is below 2^-61. Half an
-   ulp at most comes from the last sum, as much from a y^2. Where some a has no exponent of 2^-84 ... 2^43 its lane
-   takes the quotient in double; each lane by itself, so that it has the same bits in any vector. */
+   In double, the seed y comes from a square root and a quotient in float, which are several times as fast. The result
+   is y (1 + r/2 + 3/8 r^2), r = 1 - a y^2. y has 24 bits, so its square is exact. |r| < 2^-20, so the omitted terms are
+   below 2^-61. The last sum adds half an ulp at most, and a y^2 as much. Lanes with an exponent outside of
+   2^-84 ... 2^43 use the quotient in double. This is a choice per lane, so results are the same in any vector. */
 SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
 {
 #ifdef SPRING_FLOAT
@@ -256,7 +256,7 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
     for (int k = 0; k < many; k++)
         a[k] = select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0));
 #else
-    /* The exponents are 128, so the difference to the bits of the least number has 7 + 52 bits. */
+    /* There are 128 exponents, so the difference to the bits of the least number has 7 + 52 bits. */
     const mask least = (mask)splat(0x1p-84), beyond = (mask){0} - ((int64_t)1 << 59);
     real y[8], r[8];
     mask wrong = {0};

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From here to target_end.h functions use the instructions for vectors of SPRING_VECTOR bytes: 16, or where
- * SPRING_LONG_VECTORS says so 32 or 64. Headers of the system stand before it.
+ * Functions between this file and target_end.h use the instructions for vectors of SPRING_VECTOR bytes: 16, or 32 or 64
+ * if SPRING_LONG_VECTORS is set. System headers are included before this file.
  *
- * Targets are set by pragma, not by flags of the build, so the sources of src compile alone, without flags.
+ * Targets are set by pragmas, not by build flags, so that the sources compile without flags.
  */
 #ifndef SPRINGSTEP_TARGET_BEGIN_H
 #define SPRINGSTEP_TARGET_BEGIN_H

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The end of what target_begin.h begins. */
+/* Ends the target that target_begin.h sets. */
 #if SPRING_VECTOR == 16
 #elif defined(__clang__)
 #pragma clang attribute pop
