@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The memory block of a scene: struct spring_scene, followed by arrays. Arrays are found by their offsets from the start
- * of the block and never by pointers, so that the block may be copied to any other address.
+ * The memory block of a scene: struct spring_scene, followed by arrays. Arrays are found by their offsets from the
+ * start of the block and never by pointers, so that the block may be copied to any other address.
  */
 #ifndef SPRINGSTEP_BLOCK_H
 #define SPRINGSTEP_BLOCK_H
@@ -21,10 +21,10 @@ typedef enum scene_array {
     ARRAY_PREDICTED,      /* [m/s] velocities that leapfrog predicts; see predicted_velocities() */
     ARRAY_STAGES,         /* quantities that Runge-Kutta methods store */
     ARRAY_INVERSE_MASS,   /* [1/kg] 0: pinned */
-    ARRAY_FREE_MASS,      /* [1/kg] the inverse mass of a particle once it is freed; 0: its mass is not valid */
+    ARRAY_FREE_MASS,      /* [1/kg] inverse mass of a particle when it is not pinned; 0: its mass is not valid */
     ARRAY_MASS_FACTORS,   /* numbers that RKN8 and SRKN6 store for each mass, with drag */
     ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
-    ARRAY_RINGS,          /* [N] bands: forces that are kept; see kernels/bands.h */
+    ARRAY_RINGS,          /* [N] bands: ring buffers of forces; see kernels/bands.h */
     ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
     ARRAY_BAND_REST,      /* [m] */
     ARRAY_BAND_DAMPING,   /* [N s/m] */
@@ -33,7 +33,7 @@ typedef enum scene_array {
     ARRAY_LINK_STIFFNESS, /* [N/m] */
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
-    ARRAY_SLOTS,   /* by link: its slot among those of all bands, or band_slots + its index among unbanded links */
+    ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded.h */
     ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
     ARRAY_LINK_DIRECTIONS,
@@ -42,15 +42,15 @@ typedef enum scene_array {
     ARRAY_SUMS,          /* work space of the stable step, by particle */
     ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COLLIDERS,     /* spring_collider, as set */
-    ARRAY_PLACED,        /* scene_collider, in the present step */
+    ARRAY_PLACED,        /* scene_collider, in the current step */
     ARRAY_TOUCHED_0,     /* by particle: bits of the colliders that it touches in buffer 0 */
     ARRAY_TOUCHED_1,
     ARRAY_COUNT
 } scene_array;
 
-/* A band: its links, and the position of its slots, coefficients and ring among those of all bands. */
+/* A band: its links, and where its slots, coefficients and ring start in the arrays of all bands. */
 typedef struct band_layout {
-    uint32_t offset;     /* index of the upper end of a link minus that of the lower end */
+    uint32_t offset;     /* upper end of a link minus its lower end */
     uint32_t first, end; /* range of the lower ends */
     bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
     size_t slots, coefficients, ring_start;
@@ -73,13 +73,13 @@ typedef struct scene_layout {
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
 
-/* Bounds from which the stable steps follow; see stable_step.c. Each motion u'' = -w u - g u' of the scene about rest has
-   w <= stiffness, g <= damping, and with drag g/w >= drag/stiffness_sum. */
+/* Bounds from which the stable steps follow; see stable_step.c. Each motion u'' = -omega2 u - gamma u' of the scene
+   about rest has omega2 <= stiffness, gamma <= damping, and with drag gamma/omega2 >= drag/stiffness_sum. */
 typedef struct scene_bounds {
-    double stiffness;    /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle; 1/mass with a pin */
-    double link_damping; /* [1/s]   the same of damping */
-    double damping;      /* [1/s]   the same of damping, plus drag/mass */
-    double stiffness_sum; /* [N/m]   as stiffness, without the mass */
+    double stiffness;     /* [1/s^2] largest sum of (2/mass) stiffness over the links of a particle; 1/mass to a pin */
+    double link_damping;  /* [1/s]   the same for damping */
+    double damping;       /* [1/s]   the same for damping, plus drag/mass */
+    double stiffness_sum; /* [N/m]   like stiffness, without the mass */
     double drag;          /* [N s/m] */
     double least_drag;    /* [1/s]   drag divided by the largest mass */
 } scene_bounds;
@@ -88,7 +88,7 @@ typedef struct scene_bounds {
 typedef enum known_force {
     NO_FORCE,
     FORCE,           /* at its positions and velocities */
-    PREDICTED_FORCE, /* at its positions and the velocities that leapfrog predicted: these forces are part of the state */
+    PREDICTED_FORCE, /* at its positions and at velocities that leapfrog predicted; part of the state */
     ELASTIC_FORCE    /* at its positions, without link damping */
 } known_force;
 
@@ -116,11 +116,12 @@ struct spring_scene {
 /* Places the colliders for a step from t0 to t1, into ARRAY_PLACED. */
 SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
 
-/* Removes from the acceleration of a particle the part that the colliders it touches balance. Returns the size of the rest. */
+/* Adds the accelerations by the touched colliders to the acceleration of a particle. Returns the size of the rest that
+   static friction does not balance. */
 SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t particle,
                                              double accel[3]);
 
-/* The bounds for the present links and masses. */
+/* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
 
 /* spring_scene_advance() with a given instruction set, for tests. */
@@ -131,7 +132,7 @@ SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *ker
 SPRING_INTERNAL spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch,
                                                      const double *limit, uint32_t *torn, size_t room, size_t *count);
 
-/* -------------------------------------------------------------------------------------------------- access to arrays */
+/* ------------------------------------------------------------------------------------------------- access to arrays */
 
 static inline bool scene_has(const spring_scene *s, scene_array a)
 {
@@ -149,8 +150,8 @@ static inline const void *scene_read(const spring_scene *s, scene_array a)
     return scene_has(s, a) ? (const char *)s + s->layout.offset[a] : NULL;
 }
 
-/* The element of particle 0 on an axis, of a quantity that every scene has. Particle i is particle_stride * i elements
-   further. */
+/* The element of particle 0 on an axis, for a quantity that every scene has. The element of particle i is
+   particle_stride * i elements further. */
 static inline scalar *scene_axis(spring_scene *s, scene_array a, uint32_t axis)
 {
     void *start = (char *)s + s->layout.offset[a];
@@ -200,7 +201,7 @@ static inline scene_array state_array(const spring_scene *s, spring_quantity q)
     return q == SPRING_POSITION ? positions_in(s->buffer) : velocities_in(s->buffer);
 }
 
-/* A quantity of the state on an axis, as scene_axis(). */
+/* A quantity of the state on an axis, like scene_axis(). */
 static inline const scalar *scene_state(const spring_scene *s, spring_quantity q, uint32_t axis)
 {
     return scene_read_axis(s, state_array(s, q), axis);

@@ -2,34 +2,35 @@
 /*
  * Link damping at steps beyond the limit of explicit damping: a Chebyshev series, applied to all velocities.
  *
- * Method    Damping alone, for a time t and with the directions of links frozen, turns velocities v into e^Z v,
- *           Z = -t M^-1 C. With Y = 1 + Z/rho the exponential is a series of Chebyshev polynomials T_k with coefficients
- *           c_k > 0, which are modified Bessel functions:
+ * Method    Damping alone, for a time t and with the directions of links frozen, changes velocities v to e^Z v,
+ *           Z = -t M^-1 C. With Y = 1 + Z/rho, the exponential is a series of Chebyshev polynomials T_k with
+ *           coefficients c_k > 0, which are modified Bessel functions:
  *
  *               e^(rho (Y - 1)) = sum c_k T_k(Y),   c_0 = e^-rho I_0(rho),   c_k = 2 e^-rho I_k(rho)
  *
  *           P is the sum of the terms up to k = s, where c_s is increased so that P'(0) = 1, divided by sum c_k. It is
  *           computed by Clenshaw's recurrence b_k = c_k v + 2 Y b_{k+1} - b_{k+2}, P v = c_0 v + Y b_1 - b_2, with s
- *           evaluations of the forces of damping.
- *           The c_k follow from their recurrence, downwards (Miller), so that + - * / and a square root are enough.
- * Limit     |T_k(y)| <= 1 for |y| <= 1, and all c_k are positive. So |P(z)| <= P(0) = 1 for -2 rho <= z <= 0: damping never
- *           adds kinetic energy if that interval holds the spectrum of Z, which lies between -t G and 0 (G:
- *           scene_bounds.link_damping).
+ *           evaluations of the damping forces.
+ *           The c_k follow from their downward recurrence (Miller), which requires + - * / and a square root only.
+ * Limit     |T_k(y)| <= 1 for |y| <= 1, and all c_k are positive. So |P(z)| <= P(0) = 1 for -2 rho <= z <= 0, and
+ *           damping never adds kinetic energy if this interval contains the spectrum of Z. The spectrum lies between
+ *           -t G and 0, where G is scene_bounds.link_damping.
  * Accuracy  |P(z) - e^z| < 0.15 in the interval, and P(z) - e^z = O(z^3) for small t: tests/test_scene_damping.c
- * Source    Abramowitz, Stegun, Handbook of Mathematical Functions (1964), 9.6.34 and 9.12; Tal-Ezer, Kosloff, An accurate
- *           and efficient scheme for propagating the time dependent Schroedinger equation, J. Chem. Phys. 81 (1984)
+ * Source    Abramowitz, Stegun, Handbook of Mathematical Functions (1964), 9.6.34 and 9.12; Tal-Ezer, Kosloff, An
+ *           accurate and efficient scheme for propagating the time dependent Schroedinger equation, J. Chem. Phys. 81
+ *           (1984)
  */
 #ifndef SPRINGSTEP_CHEBYSHEV_H
 #define SPRINGSTEP_CHEBYSHEV_H
 
 #include "pass.h"
 
-/* Terms are left out from the end of the series as long as their coefficients sum up to less than this fraction of the total. More
-   terms make no scene more accurate, since the error of a step is that of the splitting (docs/accuracy.md). */
+/* The coefficients of all omitted terms sum up to less than this fraction of the total. More terms make no scene more
+   accurate, since the error of a step comes from the splitting (docs/accuracy.md). */
 static const double left_out = 0.05;
 
-/* The least and the largest rho. For a larger one, damping acts for a shorter time, since rounding errors grow like
-   rho^(1/2). Series have at most 12 500 terms in double and 760 in float. */
+/* The least and the largest rho. Instead of a larger rho, damping acts for a shorter time, since rounding errors grow
+   like rho^(1/2). Series have at most 12 500 terms in double and 760 in float. */
 static const double least_rho = 0x1p-20, most_rho = sizeof(scalar) == sizeof(float) ? 1.5e5 : 4e7;
 
 /* One step of the recurrence I_{k-1} = I_{k+1} + 2 k/rho I_k, downwards. */
@@ -40,7 +41,7 @@ static inline void bessel_step(double rho, unsigned k, double *above, double *he
     *here = below;
 }
 
-/* The series for damping over the time t, at a bound of link_damping. */
+/* The series for damping over the time t; link_damping: see scene_bounds. */
 static inline chebyshev_series chebyshev_for(double t, double link_damping)
 {
     const double wanted = (1 + 0x1p-10) * t * link_damping / 2; /* a little more, for rounding errors of the bound */
@@ -62,7 +63,7 @@ static inline chebyshev_series chebyshev_for(double t, double link_damping)
         squares += 2 * here * k * k;
     }
     sum += here;
-    const double more = (rho * sum - squares) / ((double)terms * terms - rho); /* of the last coefficient */
+    const double more = (rho * sum - squares) / ((double)terms * terms - rho); /* added to the last coefficient */
     return (chebyshev_series){
         .terms = terms,
         .rho = rho,
@@ -73,8 +74,8 @@ static inline chebyshev_series chebyshev_for(double t, double link_damping)
     };
 }
 
-/* The forces of damping at velocities v, then the motion of all particles by them. The results are those of
-   evaluate_links() and move(). Where all links lie in bands it is one pass over memory. */
+/* Evaluates the damping forces at velocities v, then advances all particles by them. The results are those of
+   evaluate_links() and move(). If all links lie in bands, it is one fused pass. */
 static inline bool damping_term(scene_step *s, const scene_links *links, const scalar *x, const scalar *v,
                                 particle_kernel *kernel, const scene_motion *m)
 {
@@ -94,8 +95,8 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
     return true;
 }
 
-/* Stores the directions of all links at positions x, times the root of their damping, so that damping at any velocities
-   takes no root and no quotient. The direction is 0 where the ends of a link coincide. */
+/* Stores the directions of all links at positions x, times the square root of their damping, so that damping forces
+   require no root and no quotient. The direction is 0 if the ends of a link coincide. */
 static inline void freeze_directions(const scene_step *s, const scalar *x)
 {
     const scene_layout *l = &s->scene->layout;

@@ -103,8 +103,8 @@ static def_error check_links(const spring_scene_def *def)
     return no_error;
 }
 
-/* Methods that evaluate forces at positions alone and need smooth motion, in a scene whose forces depend on velocities or
-   have a kink, or with contacts. */
+/* Rejects methods that evaluate forces at positions alone and require smooth motion, if forces depend on velocities or
+   have a kink, or if there are contacts. */
 static def_error check_velocities(const spring_scene_def *def)
 {
     const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0 || def->colliders > 0;

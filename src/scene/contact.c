@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Colliders of a scene: setting them, their poses during a step, and what touches them. The formulas of contacts are in
-   kernels/contacts.h. */
+/* Colliders of a scene: setting them, their poses during a step, and balance at rest. kernels/contacts.h has the
+   formulas of contacts. */
 #include "block.h"
 #include "../spring/roots.h"
 
-/* ------------------------------------------------------------------------------------------------------- valid values */
+/* ----------------------------------------------------------------------------------------------------- valid values */
 
 static bool fits3(const double v[3], uint32_t axes)
 {
@@ -65,9 +65,9 @@ static bool collider_valid(const spring_collider *c, double thickness, uint32_t 
            fits_not_negative(c->friction) && c->restitution >= 0 && c->restitution <= 1;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- poses */
+/* ------------------------------------------------------------------------------------------------------------ poses */
 
-/* Where a point is after `time`, in the precision of the scene. */
+/* The position of a point after `time`, in the precision of the scene. */
 static void place_point(const double at[3], const double velocity[3], double time, uint32_t axes, scalar out[3])
 {
     for (uint32_t a = 0; a < 3; a++)
@@ -138,7 +138,7 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
                        s->layout.axes);
 }
 
-/* ----------------------------------------------------------------------------------------------------- public functions */
+/* ------------------------------------------------------------------------------------------------- public functions */
 
 spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count)
 {
@@ -176,13 +176,13 @@ spring_status spring_scene_touching(const spring_scene *s, uint32_t *bits, size_
     return SPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- at rest */
+/* ---------------------------------------------------------------------------------------------------------- at rest */
 
-/* Colliders press by non-negative accelerations. This is projected Gauss-Seidel: each collider in turn presses as much as is
-   missing, or less than in the round before. In a groove, colliders press a particle against each other. */
+/* Adds the accelerations by which colliders press, which are not negative. This is projected Gauss-Seidel: in each
+   round, each collider corrects its own acceleration. In a groove, colliders press a particle against each other. */
 static void add_pressing(const double normal[][3], double pressing[], size_t count, double accel[3])
 {
-    enum { rounds = 200 }; /* walls that enclose 170 degrees lose a factor of 0.97 in each */
+    enum { rounds = 200 }; /* between walls that enclose 170 degrees, each multiplies the error by 0.97 */
     for (int round = 0; round < rounds; round++)
         for (size_t k = 0; k < count; k++) {
             const double before = pressing[k];

@@ -7,7 +7,7 @@ static bool is_editable(const spring_scene *s)
     return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
 }
 
-/* Whether a link may take the place of the one with this index. */
+/* Whether a link may replace the link with this index. */
 static bool replaces_link(const spring_scene *s, size_t index, const spring_link *link)
 {
     const stored_link old = scene_link(s, index);
@@ -67,11 +67,11 @@ size_t spring_scene_find_link(const spring_scene *s, uint32_t a, uint32_t b)
 
 /* --------------------------------------------------------------------------------------------- masses and pins */
 
-/* A change of masses and pins, as set_pinned and set_mass propose it. */
+/* A change of masses and pins that is checked before it is made. */
 typedef struct proposal {
     size_t first, count;
-    const uint8_t *pinned; /* NULL: as they are */
-    const double *mass;    /* NULL: as they are */
+    const uint8_t *pinned; /* NULL: unchanged */
+    const double *mass;    /* NULL: unchanged */
 } proposal;
 
 static bool is_pinned_now(const spring_scene *s, size_t i)
@@ -99,7 +99,7 @@ static double proposed_inverse_mass(const spring_scene *s, const proposal *p, si
     return will_be_pinned(s, p, i) ? 0 : (double)free_inverse_mass(s, p, i);
 }
 
-/* Whether the scene could have been defined with it. */
+/* Whether a definition of the scene with these values would be valid. */
 static bool proposal_valid(const spring_scene *s, const proposal *p)
 {
     bool grows = false; /* some inverse mass */

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From a definition to a scene: which links form bands, which arrays there are, and filling them.
+ * Building a scene from its definition: finding bands, placing arrays, and filling them.
  *
- * Bands     Links with the same index offset, upper minus lower end, form a band as long as their lower ends ascend in the
- *           order of the links, so that no slot is used twice, and if at least a quarter of the slots from the first to
- *           the last is in use: then the band is faster than single links. If there are more than most_bands bands, the longest are kept.
- *           Offsets are counted in a small hash table. Links for which there is no room there or in their band are
- *           unbanded, as are the links of particles without a regular order.
+ * Bands     Links with the same index offset (upper minus lower end) form a band as long as their lower ends ascend in
+ *           the order of the links, so that no slot is used twice. At least a quarter of the slots from the first to
+ *           the last must be in use; otherwise single links are faster. If there are more than most_bands bands, the
+ *           longest are kept. Offsets are counted in a small hash table. Links that do not fit into the table or into
+ *           their band are unbanded. So are the links of particles without a regular order.
  */
 #include "definition.h"
 #include "steppers.h"
 
-/* ------------------------------------------------------------------------------------------------------------- bands */
+/* ------------------------------------------------------------------------------------------------------------ bands */
 
 static uint32_t lower_end(const spring_link *link)
 {
@@ -103,7 +103,7 @@ static void find_bands(const spring_scene_def *def, scene_layout *l)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ arrays */
+/* ----------------------------------------------------------------------------------------------------------- arrays */
 
 /* The methods that store nothing for stages or masses. */
 static uint32_t default_methods(void)
@@ -121,7 +121,7 @@ static uint32_t methods_of(const spring_scene_def *def)
     return def->methods == 0 ? default_methods() : def->methods;
 }
 
-/* What methods store in a scene: the most that one of them needs. */
+/* Storage for the methods of a scene: the largest that one of them needs. */
 typedef struct storage_needs {
     bool predicts;
     unsigned stages, mass_factors;
@@ -148,7 +148,7 @@ typedef struct array_row {
     bool present;
 } array_row;
 
-/* The arrays of a scene. This table is the one place that decides sizes and conditions; docs/details.md describes it. */
+/* The arrays of a scene. Sizes and conditions are defined by this table alone; docs/details.md describes it. */
 static void list_arrays(const spring_scene_def *def, const scene_layout *l, array_row row[ARRAY_COUNT])
 {
     const bool rollback = (l->flags & SPRING_SCENE_NO_UNDO) == 0, editable = (l->flags & SPRING_SCENE_EDITABLE) != 0;
@@ -216,7 +216,7 @@ static void place_arrays(const spring_scene_def *def, scene_layout *l)
         l->offset[ARRAY_FORCE_1] = l->offset[ARRAY_FORCE_0];
 }
 
-/* Most particles and most links of a small scene: fewer do not fill SIMD vectors over particles. */
+/* Maximum number of particles, and of links, of a small scene. So few do not fill SIMD vectors of particles. */
 enum { most_small = 12 };
 
 static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
@@ -262,9 +262,9 @@ spring_status spring_scene_bytes(const spring_scene_def *def, size_t *bytes)
     return status;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- filling */
+/* ---------------------------------------------------------------------------------------------------------- filling */
 
-/* The inverse mass once the particle is freed; 0: its mass is not valid. */
+/* The inverse mass of a particle when it is not pinned; 0: its mass is not valid. */
 static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
 {
     const double all = def->mass_all == 0 ? 1 : def->mass_all;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Functions from which the steppers are written: they move the particles of a scene and evaluate its forces. */
+/* Functions of the steppers: they advance the particles of a scene and evaluate its forces. */
 #ifndef SPRINGSTEP_PASS_H
 #define SPRINGSTEP_PASS_H
 
@@ -11,12 +11,12 @@
 typedef struct chebyshev_series {
     unsigned terms; /* 0: links are damped explicitly */
     double rho;
-    double last, beyond_last; /* coefficients of the last term, and of the first one that is left out */
-    double more;              /* what is added to the last one */
-    double kick;              /* [s] how long the forces of damping act in one application of Y */
+    double last, beyond_last; /* coefficients of the last term, and of the first omitted term */
+    double more;              /* added to the last coefficient */
+    double kick;              /* [s] duration of the damping forces in one application of Y */
 } chebyshev_series;
 
-/* One step, from the state in one buffer to the state in another, or the same, buffer. */
+/* One step, from the state in one buffer to the state in the other or the same buffer. */
 struct scene_step {
     const scene_kernels *kernels;
     spring_scene *scene;
@@ -61,9 +61,9 @@ static inline scalar *mass_factor(const scene_step *s, unsigned i)
     return (scalar *)scene_memory(s->scene, ARRAY_MASS_FACTORS) + i * s->scene->layout.masses;
 }
 
-/* Where leapfrog stores predicted velocities. Forces that depend on velocities in a callback are not kept, so the array
-   for the forces of the other buffer is free. Else it is the array where the forces will be, if kernels may overwrite
-   velocities by forces as they compute them, or an array of its own. */
+/* The array in which leapfrog stores predicted velocities. If a callback uses velocities, forces are not kept, so the
+   force array of the other buffer is free. Otherwise it is ARRAY_PREDICTED or, if kernels may overwrite velocities by
+   forces, the array in which the forces will be stored. */
 static inline scalar *predicted_velocities(const scene_step *s)
 {
     if (scene_callback_uses_velocity(s->scene))
@@ -186,7 +186,7 @@ static inline scene_forces scene_prepare_forces(spring_scene *s, scalar *force)
 
 /* ------------------------------------------------------------------------------------------------------- evaluation */
 
-/* Calls the callback in a small scene, whose quantities it receives by axis. */
+/* Calls the callback in a small scene, with copies of the quantities by axis. */
 SPRING_NOINLINE void call_back_small(spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
 {
     const size_t n = s->layout.particles;
@@ -247,7 +247,7 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
 }
 
 /* Evaluates the forces at x and v, at a fraction of the step, and stores them in force_at(s, s->to), the force array of
-   the end of the step. The end of a step has the same time as the start of the next one, to the bit. */
+   the end of the step. The time at the end of a step is bit-identical to the time at the start of the next. */
 static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     s->forces.force = force_at(s, s->to);
@@ -265,13 +265,13 @@ static inline void find_start_force(scene_step *s, const scalar *v)
     s->force = force_at(s, s->to); /* predicted forces stay in the other array, for a rollback */
 }
 
-/* ------------------------------------------------------------------------------------------------------------ motion */
+/* ----------------------------------------------------------------------------------------------------------- motion */
 
-/* Particles that are moved on all axes before the next ones. Their masses, 8 KB, stay in the first-level cache; in a
-   fused pass all that is read and written for them, 150 KB, stays in the second-level cache. */
+/* Number of particles that are advanced on all axes before the next ones. Their masses (8 KB) stay in the first-level
+   cache. In a fused pass, all their data (150 KB) stay in the second-level cache. */
 enum { chunk = 16 * tile };
 
-/* Moves all particles. Returns false if a result is not finite. */
+/* Advances all particles. Returns false if a result is not finite. */
 static inline bool move(const scene_step *s, particle_kernel *kernel, const scene_motion *m)
 {
     const size_t count = s->particles.count;
@@ -282,13 +282,13 @@ static inline bool move(const scene_step *s, particle_kernel *kernel, const scen
 }
 
 /*
- * Moves all particles by `first`; evaluates the forces at the positions first->x and the velocities v, at a fraction of
- * the step; and, unless second_kernel is NULL, moves all particles by `second`, which uses these forces and leaves positions
- * alone. Returns false if a result is not finite.
+ * Advances all particles by `first`. Evaluates the forces at the positions first->x and the velocities v, at a fraction
+ * of the step. Then, unless second_kernel is NULL, advances all particles by `second`, which uses these forces and does
+ * not change positions. Returns false if a result is not finite.
  *
- * The results are those of move(), evaluate() and move(). Where all links lie in bands and there is no callback, it is one
- * pass over memory: the forces on a chunk of particles are computed as soon as `first` has moved the particles that their
- * links reach, and `second` moves the chunk while it is in the cache.
+ * The results are those of move(), evaluate() and move(). If all links lie in bands and there is no callback, it is one
+ * fused pass: the forces on a chunk of particles are computed as soon as `first` has advanced the other ends of their
+ * links, and `second` advances the chunk while it is in the cache.
  */
 static inline bool move_evaluate_move(scene_step *s, particle_kernel *first_kernel, const scene_motion *first,
                                       const scalar *v, double fraction, particle_kernel *second_kernel,

@@ -3,11 +3,11 @@
  * Lowering stiffness until a time step is stable.
  *
  * Method    Leapfrog is stable for dt < 2/sqrt(L), where L is the largest sum of (2/mass) stiffness over the links of a
- *           particle (stable_step.c). A particle allows the factor f = (2 fraction/dt)^2/sum, at most 1. The stiffness of a
- *           link is multiplied by the smaller factor of its two ends. So no sum exceeds (2 fraction/dt)^2, and the sum of the particle with the least
- *           factor reaches it.
- * Memory    No memory is needed besides the links: particles are processed in blocks, whose sums fit on the stack. Previous
- *           blocks may already have softened the links of a block, which only lowers its sums.
+ *           particle (stable_step.c). A particle allows the factor f = (2 fraction/dt)^2/sum, at most 1. The stiffness
+ *           of a link is multiplied by the smaller factor of its two ends. So no sum exceeds (2 fraction/dt)^2, and the
+ *           sum of the particle with the least factor reaches it.
+ * Memory    No memory is needed besides the links: particles are processed in blocks, whose sums fit on the stack.
+ *           Previous blocks may already have softened the links of a block, which only lowers its sums.
  */
 #include "definition.h"
 #include "steppers.h"
@@ -36,8 +36,8 @@ static void add_end(const spring_scene_def *def, link_sums *sums, size_t first, 
     }
 }
 
-/* The factor that a particle allows, from its sum; most_rate2: [1/s^2] the largest sum over the mass. A little less than
-   the quotient, since sums are rounded here and in the precision of the scene. */
+/* The factor that a particle allows, given its sum. It is slightly less than the quotient, since sums are rounded here
+   and in the precision of the scene. most_rate2: [1/s^2] largest allowed sum/mass. */
 static double factor_of(const spring_scene_def *def, size_t i, double sum, uint32_t links, double most_rate2)
 {
     const double epsilon = sizeof(scalar) == sizeof(float) ? 0x1p-23 : 0x1p-52, most = most_rate2 * mass_of(def, i);

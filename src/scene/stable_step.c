@@ -2,8 +2,9 @@
 /*
  * Bounds on the forces of links, from which the stable step of each method follows (steppers.c).
  *
- * Method    Gershgorin's circles: no eigenvalue of M^-1 K exceeds the largest absolute row sum of that matrix. A link adds
- *           at most 2 stiffness/mass to the row of each of its particles, or stiffness/mass if its other end is pinned.
+ * Method    Gershgorin's circles: no eigenvalue of M^-1 K exceeds the largest absolute row sum of that matrix. A link
+ *           adds at most 2 stiffness/mass to the row of each of its particles, or stiffness/mass if its other end is
+ *           pinned.
  */
 #include "steppers.h"
 #include "stored_links.h"
@@ -25,8 +26,8 @@ static int exponent_of(double value)
     return exponent;
 }
 
-/* Sums are scaled by powers of two, which changes no bit: by the exponent of the inverse mass of each particle, and by one
-   exponent for all that keeps the largest term below 1. So no sum overflows, and terms that underflow do not matter. */
+/* Sums are scaled by powers of two, which is exact: by the exponent of the inverse mass of each particle, and by a
+   common exponent that keeps the largest term below 1. So no sum overflows, and terms that underflow do not matter. */
 static int mass_exponent(const spring_scene *s, size_t i, bool by_mass)
 {
     const double inverse = inverse_mass_at(s, i);

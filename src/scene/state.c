@@ -63,7 +63,7 @@ double spring_scene_tension(const spring_scene *s, size_t index)
     return reversed ? -tension : tension;
 }
 
-/* ------------------------------------------------------------------------------------------------------- get and set */
+/* ------------------------------------------------------------------------------------------------------ get and set */
 
 /* Checks the arguments that get, getf and set share. *stride: in elements; 0 becomes the number of axes. */
 static spring_status check_range(const spring_scene *s, spring_quantity q, const void *buffer, size_t *stride,

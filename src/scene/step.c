@@ -2,10 +2,9 @@
 /*
  * Advancing a scene: the loop over the steps of a call.
  *
- * Rollback  The state is in one of two buffers. The first step of a call reads this buffer and writes to the other buffer.
- *           Further steps read and write the other buffer, which becomes the state when the call succeeds. So a rollback
- *           copies nothing.
- *           Without rollback there is one buffer.
+ * Rollback  The state is in one of two buffers. The first step of a call reads this buffer and writes to the other
+ *           buffer. Further steps read and write the other buffer, which becomes the state when the call succeeds. So a
+ *           rollback copies nothing. Without rollback there is one buffer.
  */
 #include "chebyshev.h"
 #include "../spring/roots.h"
@@ -37,7 +36,8 @@ static bool finite_scene(const spring_scene *s)
     return true;
 }
 
-/* After a failure without rollback the whole state becomes NaN, so that a caller cannot use the numbers that are still finite. */
+/* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
+   finite. */
 static void invalidate(spring_scene *s)
 {
     const size_t stride = s->layout.particle_stride;
@@ -64,7 +64,7 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
 }
 
 /* Takes n steps. A run is a sequence of calls with the same dt; `before` is the number of its steps before this call.
-   Returns the forces that are known at the end. *finite says whether every step gave finite numbers. */
+   Returns the forces that are known at the end. *finite: whether the results of every step are finite. */
 static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
                                     bool *finite)
 {
@@ -84,7 +84,7 @@ static known_force take_scene_steps(scene_step *step, const scene_stepper *stepp
     return step->known;
 }
 
-/* The series by which links are damped once a step, beyond the limit of explicit damping. Negative steps are below it. */
+/* The series that damps links once a step, if dt is beyond the limit of explicit damping. A negative dt is not. */
 static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
 {
     if (s->damped_links == 0 || stepper->explicit_limit == NULL)
@@ -153,9 +153,9 @@ spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, 
     return spring_scene_advance_with(best_scene_kernels(), s, m, dt, n);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- at rest */
+/* ---------------------------------------------------------------------------------------------------------- at rest */
 
-/* The forces at the state. The forces of a callback are not stored: what *user holds may change before the next step. */
+/* The forces at the state. The forces of a callback are not stored, since its *user may change before the next step. */
 static const scalar *forces_of_state(spring_scene *s)
 {
     scalar *const force = scene_axis(s, forces_in(s->known == PREDICTED_FORCE ? 1 - s->buffer : s->buffer), 0);

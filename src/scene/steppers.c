@@ -2,7 +2,7 @@
 /*
  * One step of each method for scenes, and its stable step.
  *
- * The formulas are those of the files in methods/, with the acceleration a(x, v) of a particle by its links, gravity, drag
+ * The formulas are in the files in methods/. Here a(x, v) is the acceleration of a particle by its links, gravity, drag
  * and the callback. The stable steps follow from bounds on the sums over the links of a particle (stable_step.c).
  */
 #include "chebyshev.h"
@@ -32,8 +32,8 @@ static scene_outcome scene_symplectic_euler(scene_step *s)
     return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
 }
 
-/* Explicit damping of links lowers the limit, implicit drag raises it: a motion with stiffness k, link damping c and drag
-   d, all divided by the mass, is stable for h^2 k + 2 h c < 4 + 2 h d. */
+/* Explicit link damping lowers the limit, and implicit drag raises it. A motion with stiffness k, link damping c and
+   drag d, all divided by the mass, is stable for h^2 k + 2 h c < 4 + 2 h d. */
 static double scene_symplectic_euler_limit(const scene_bounds *b)
 {
     const double excess = b->link_damping - b->least_drag;
@@ -43,7 +43,7 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
     return (root - excess) / b->stiffness;
 }
 
-/* Damping changes velocities: again they lose their components into the colliders that are touched. */
+/* Removes the velocity components into touched colliders again, since link damping changes velocities. */
 static bool stop_at_contacts(scene_step *s, const scene_motion *last_kick)
 {
     scene_motion m = *last_kick;
@@ -51,9 +51,9 @@ static bool stop_at_contacts(scene_step *s, const scene_motion *last_kick)
     return s->contacts.count == 0 || move(s, s->kernels->implicit_kick, &m);
 }
 
-/* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each half
-   is kick, drift, evaluate, implicit kick, as in scene_leapfrog(), and so is the way to treat callbacks: the forces of one
-   that uses velocities are not kept, and are evaluated at predicted velocities. */
+/* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each
+   half is kick, drift, evaluate, implicit kick. As in scene_leapfrog(), the forces of a callback that uses velocities
+   are not kept, and are evaluated at predicted velocities. */
 static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
 {
     const bool keeps = !scene_callback_uses_velocity(s->scene);
@@ -87,13 +87,13 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     };
 }
 
-/* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one pass over the
-   particles, with the results of two.
-   Where forces depend on velocities by more than drag, they are evaluated at predicted velocities v*. Let v' be the
-   velocity after the first half kick, by the force F0, and a(F, v) the acceleration by a force, gravity and the drag at v.
-   The prediction is v* = v' + h/2 a(F0, v*). The force F1 at x1 and v* gives v1 = v' + h/2 a(F1, v1). The next step starts
-   with F1, so F1 is part of the state. The forces of a callback that uses velocities are not kept, since what it reads
-   may change between calls: then forces are evaluated twice a step, and each kick is a pass. */
+/* Kick, drift, evaluate, implicit kick. The last kick of a step and the first kick of the next are one fused pass over
+   the particles, with the results of two passes.
+   If forces other than drag depend on velocities, they are evaluated at predicted velocities v*. Let v' be the velocity
+   after the first half kick, by the force F0, and a(F, v) the acceleration by a force, gravity and the drag at v. The
+   prediction is v* = v' + h/2 a(F0, v*). The force F1 at x1 and v* gives v1 = v' + h/2 a(F1, v1). The next step starts
+   with F1, so F1 is part of the state. The forces of a callback that uses velocities are not kept, since its data may
+   change between calls. Then forces are evaluated twice a step, and each kick is a separate pass. */
 static scene_outcome scene_leapfrog(scene_step *s)
 {
     if (s->damping.terms > 0)
@@ -159,8 +159,8 @@ static double scene_rk4_limit(const scene_bounds *b)
 
 _Static_assert((int)rkn8_stages == (int)nystrom_stages, "the kernels compute the stages of RKN8");
 
-/* Indices of what RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each c of the stages
-   after the first, and loss e^(-g h/2) - 1. */
+/* Indices of the factors that RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each
+   c of the stages after the first, and loss e^(-g h/2) - 1. */
 enum { RKN8_GROWTH, RKN8_DECAY = rkn8_stages, RKN8_LOSS = 2 * rkn8_stages, RKN8_FACTORS };
 
 static void compute_rkn8_factors(const scene_step *s)
@@ -180,7 +180,7 @@ static void compute_rkn8_factors(const scene_step *s)
     }
 }
 
-/* The first of the nine stages has the forces at the end of the step before. */
+/* The first of the nine stages uses the forces at the end of the previous step. */
 static scene_outcome scene_rkn8(scene_step *s)
 {
     const bool dragged = s->particles.drag != 0;
@@ -216,7 +216,8 @@ static double scene_rkn8_limit(const scene_bounds *b)
     return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
 }
 
-/* Indices of what SRKN6 stores for each mass, with drag, for each of its different drifts; see scene_motion. */
+/* Indices of the factors that SRKN6 stores for each mass, with drag, for each of its different drifts; see
+   scene_motion. */
 enum { SRKN6_SPAN, SRKN6_LOSS = srkn6_different, SRKN6_FACTORS = 2 * srkn6_different };
 
 static void compute_srkn6_factors(const scene_step *s)
@@ -236,8 +237,8 @@ static void compute_srkn6_factors(const scene_step *s)
     }
 }
 
-/* Kicks and drifts in turn. The last kick of a step and the first kick of the next are one pass over the particles, with
-   the results of two. Drag acts in drifts alone. */
+/* Alternating kicks and drifts. The last kick of a step and the first kick of the next are one fused pass over the
+   particles, with the results of two passes. Drag acts in drifts alone. */
 static scene_outcome scene_srkn6(scene_step *s)
 {
     const bool dragged = (scalar)s->scene->drag != 0;
@@ -267,7 +268,7 @@ static scene_outcome scene_srkn6(scene_step *s)
     return (scene_outcome){.finite = true, .known = FORCE};
 }
 
-/* The growth of heavy drag in the drifts backwards would exceed the decay in the others: see srkn6.h. */
+/* With heavy drag, the growth in backward drifts would exceed the decay in the others; see srkn6.h. */
 static double scene_srkn6_limit(const scene_bounds *b)
 {
     return fmin(9.07 / spring_sqrt(b->stiffness), 20 / b->damping);

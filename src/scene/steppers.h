@@ -16,8 +16,8 @@ typedef struct scene_outcome {
 typedef struct scene_stepper {
     scene_outcome (*step)(scene_step *s); /* NULL: the method is not for scenes */
     double (*stable_step)(const scene_bounds *b);
-    bool predicts; /* stores predicted velocities and the forces at them, where forces depend on velocities. Beyond
-                              explicit_limit links are damped by a Chebyshev series (chebyshev.h) */
+    bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities. Beyond
+                      explicit_limit, links are damped by a Chebyshev series (chebyshev.h) */
     double (*explicit_limit)(const scene_bounds *b);
     unsigned stages;       /* quantities of all particles that it stores for its stages */
     unsigned mass_factors; /* numbers that it stores for each mass, with drag */

@@ -10,8 +10,8 @@
 /* Where a link is stored. */
 typedef struct link_place {
     uint32_t a, b; /* its ends; in a band the lower one first */
-    bool banded;   /* else the index is that among the unbanded links */
-    size_t slot;   /* banded: among those of all bands */
+    bool banded;   /* else the index is among the unbanded links */
+    size_t slot;   /* banded: among the slots of all bands */
     size_t index;  /* of its coefficients */
 } link_place;
 
@@ -64,7 +64,7 @@ static inline void scene_write_link(spring_scene *s, size_t index, const spring_
         occupied[at.slot] = (scalar)link->stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
 }
 
-/* The same for a scene in use, whose force and bounds are no longer known then. */
+/* The same for a scene in use. Its forces, and its bounds if they change, are then no longer known. */
 static inline void scene_replace_link(spring_scene *s, size_t index, const spring_link *link)
 {
     const stored_link old = scene_link(s, index);
@@ -90,7 +90,7 @@ static inline void scene_store_gravity(spring_scene *s, const double *gravity)
     }
 }
 
-/* In a small scene, for all numbers of a quad. */
+/* In a small scene, sets all numbers of a quad. */
 static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inverse)
 {
     scalar *const mass = (scalar *)scene_memory(s, ARRAY_INVERSE_MASS) + s->layout.particle_stride * i;
@@ -98,7 +98,7 @@ static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inve
         mass[k] = inverse;
 }
 
-/* ------------------------------------------------------------------------------------------------------ valid values */
+/* ----------------------------------------------------------------------------------------------------- valid values */
 
 static inline bool scene_fits(double value) /* finite in the precision of the scene */
 {
@@ -115,7 +115,7 @@ static inline bool scene_mass_valid(double mass)
     return mass > 0 && scene_fits(mass) && scene_fits(1 / mass);
 }
 
-/* The field of a link that is not valid, whatever its masses; NULL: none. */
+/* The field of a link that is not valid for any masses; NULL: none. */
 static inline const char *scene_link_invalid_field(const spring_link *link)
 {
     return !scene_not_negative(link->rest)        ? "link.rest"

@@ -2,13 +2,13 @@
 /*
  * Cutting the links of a scene that are longer than a limit.
  *
- * Method    Usually no link tears. So the kernel of bands (kernels/stretch.h) first looks for any link beyond the least of
- *           all limits. Only if there is one, all links are visited in the order of their indices, and decided in double.
+ * Method    Usually no link tears. So kernels/stretch.h first tests whether any link of a band is beyond the least of
+ *           all limits. Only if a link may be, all links are tested in double, in the order of their indices.
  */
 #include "pass.h"
 #include "stored_links.h"
 
-/* The least limit of a link; NaN if one is negative or NaN. Four at once: a minimum has to wait for the one before. */
+/* The least limit of a link; NaN if one is negative or NaN. Four independent minima overlap their latencies. */
 static double least_limit(const double *limit, size_t links)
 {
     enum { some = 4 };
