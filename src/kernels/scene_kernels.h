@@ -36,7 +36,7 @@ typedef struct scene_band {
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
     const scalar *stiffness;      /* [N/m] */
-    const scalar *rest;           /* [m]; negative on one axis where the link runs from the upper end to the lower */
+    const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
     const scalar *direction; /* [(N s/m)^(1/2)] sqrt(damping) times the frozen unit vector from the lower to the upper
                                 end (on one axis 1); by axis and slot; 0 without a link. NULL: the scene has none */

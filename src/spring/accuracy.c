@@ -11,12 +11,14 @@
  *
  *               R^(i+k) - F^(i+k) = R^i (R^k - F^k) + (R^i - F^i) F^k
  *
- *           The maximum is searched at every i if there are few; at enough times of each period if there are few periods;
- *           else at times in geometric progression, each over all phases of the oscillation (envelope_at()). That is never
- *           below the error, and above it by a few percent.
+ *           If there are few steps, the maximum is searched at every i. If there are few periods, it is searched at
+ *           enough times of each period. Otherwise it is searched at times in geometric progression, each over all
+ *           phases of the oscillation (envelope_at()). The result is never below the error, and above it by a few
+ *           percent.
  * Search    E follows a power law for small steps. With implicit damping, large steps may skip a fast decay and be more
- *           accurate than small ones (symplectic Euler with heavy damping). So the search starts with a step that is short
- *           compared with every time scale, and enlarges it by a twentieth at most until the error exceeds the tolerance.
+ *           accurate than small ones (symplectic Euler with heavy damping). So the search starts with a step that is
+ *           short compared with every time scale, and enlarges it until the error exceeds the tolerance: by 5 % at a
+ *           time where the power law does not hold.
  * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are never accurate enough.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
  *           (tests/test_accurate_step.c)
@@ -38,7 +40,7 @@ static spring_matrix matrix_plus(spring_matrix p, spring_matrix q)
     return matrix_sum(p, 1, q);
 }
 
-/* |p| + |q|, with the matrix as the map z -> p z + q conj(z) of complex numbers z = x + i v/Omega. */
+/* The matrix as the map z -> p z + q conj(z) of complex numbers z = x + i v/Omega. Its spectral norm is |p| + |q|. */
 typedef struct turn_pair {
     double p[2], q[2];
 } turn_pair;
@@ -55,7 +57,7 @@ static double matrix_norm(spring_matrix m)
     return spring_sqrt(p) + spring_sqrt(q);
 }
 
-/* The run of i + k steps, of those of i and of k. */
+/* The run of i + k steps, from the runs of i and of k steps. */
 static step_run runs_joined(step_run i, step_run k)
 {
     const spring_matrix step = matrix_plus(i.advance, i.error);
@@ -76,7 +78,7 @@ static step_rates rates_of_step(const accuracy *of, double steps)
 /* Up to this size of Z the power series are summed. */
 static const double series_limit = 1;
 
-/* The first term that is left out is 1/22! of the sum. */
+/* The first omitted term is 1/22! of the sum. */
 enum { SERIES_TERMS = 22 };
 
 static double rates_size(step_rates r)
@@ -138,13 +140,13 @@ static step_run run_of_one_step(const accuracy *of, step_rates r)
                       rates_size(r) <= series_limit ? short_error(&t, r, of->order) : long_error(&t, r, advance)};
 }
 
-/* ------------------------------------------------------------------------------------------ the phase of oscillations */
+/* ---------------------------------------------------------------------------------------- the phase of oscillations */
 
-/* The part of a step without trace, over its imaginary eigenvalue: J of e^(angle J), J^2 = -1. */
+/* The part of a step without trace, divided by its imaginary eigenvalue: J of e^(angle J), J^2 = -1. */
 typedef struct phase_rotation {
     bool turns;               /* both the steps and the exact solution oscillate */
     spring_matrix exact;      /* J of F */
-    spring_matrix difference; /* J of R minus that */
+    spring_matrix difference; /* J of R minus J of F */
 } phase_rotation;
 
 static spring_matrix matrix_without_trace(spring_matrix m)
@@ -155,8 +157,8 @@ static spring_matrix matrix_without_trace(spring_matrix m)
 
 /* With F' and R' = F' + D' the parts without trace and s the eigenvalues,
        J_R - J_F = D'/s_R + F' (1/s_R - 1/s_F),   s_R^2 - s_F^2 = det D' + the part of det(F' + D') of first order
-   F'xx, from damping, is left out of them: it changes the difference by a few parts in a thousand of what counts where
-   damping is light, and where it is not, the largest error comes in the first periods, without this. */
+   F'xx, from damping, is omitted. With light damping, it changes the relevant difference by a few parts in a thousand.
+   With heavier damping, the largest error comes in the first periods, where this is not used. */
 static phase_rotation phase_rotation_of(step_run step)
 {
     const spring_matrix F = matrix_without_trace(step.advance), D = matrix_without_trace(step.error);
@@ -177,8 +179,8 @@ static double largest_semiaxis(const double c[2], const double s[2])
     return spring_sqrt((cc + ss + spring_hypot(fabs(cc - ss), 2 * fabs(cs))) / 2);
 }
 
-/* The largest |R^i e^(t J_R) - F^i e^(t J_F)| over the phase t, or a little more: as if both turns of the difference
-   were largest at once. */
+/* The largest |R^i e^(t J_R) - F^i e^(t J_F)| over the phase t, or a little more: both terms of the norm are treated as
+   largest at the same phase. */
 static double envelope_at(step_run i, const phase_rotation *j)
 {
     if (!j->turns)
@@ -189,10 +191,10 @@ static double envelope_at(step_run i, const phase_rotation *j)
     return largest_semiaxis(c.p, s.p) + largest_semiaxis(c.q, s.q);
 }
 
-/* --------------------------------------------------------------------------------------------------- the largest error */
+/* ------------------------------------------------------------------------------------------------ the largest error */
 
-/* The largest value of a smooth function between samples in order: of the parabola through three, where the middle one is
-   largest. */
+/* The largest value of a smooth function between ordered samples: the maximum of the parabola through three samples of
+   which the middle one is largest. */
 typedef struct error_peak {
     double t[2], value[2]; /* the last two, newest first */
     double most;
@@ -215,12 +217,12 @@ static void error_peak_add(error_peak *p, double t, double value)
 
 enum {
     MOST_SAMPLES = 1024,
-    RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three is off by 1e-5 */
-    FIRST_PERIODS = 10,    /* of more: an error that decays from the start is largest at a phase, not in its envelope */
-    MOST_DOUBLINGS = 53    /* of the steps: a year of them */
+    RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three has an error of 1e-5 */
+    FIRST_PERIODS = 10,    /* of more: the largest error of a decay from the start is at a phase, not in its envelope */
+    MOST_DOUBLINGS = 53    /* of the number of steps: 2^53 take a year */
 };
 
-/* level[j]: 2^j steps, up to n. Returns their number. */
+/* level[j]: 2^j steps, up to n. Returns the number of levels. */
 static int doublings_of(step_run level[MOST_DOUBLINGS + 1], step_run step, double n)
 {
     int count = 1;
@@ -241,7 +243,7 @@ static step_run step_run_of(const step_run *level, int levels, double n)
     return all;
 }
 
-/* At every stride-th step of from ... to, where `now` is the first of them; the error there, or its envelope. */
+/* The largest error, or envelope, at every stride-th step of from ... to. now: the run of `from` steps. */
 static double most_at_strides(const step_run *level, int levels, step_run now, double from, double to, double stride,
                               const phase_rotation *phase)
 {
@@ -263,7 +265,7 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
     return spring_finite(last) ? fmax(p.most, last) : INFINITY;
 }
 
-/* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and where the largest of them has been found. */
+/* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and the interval around the largest of them. */
 typedef struct power_samples {
     const phase_rotation *phase;
     step_run before, best_before; /* the sample before the last, before the largest */
@@ -288,7 +290,8 @@ static void power_sample(power_samples *s, double i, step_run now)
     s->i_before = i;
 }
 
-/* At times in geometric progression, from the last power of two below `from` steps on, and at the last step. */
+/* The largest envelope at times in geometric progression, from the last power of two below `from` steps on, and at the
+   last step. */
 static double most_at_powers(const step_run *level, int levels, double from, double n, const phase_rotation *phase)
 {
     power_samples s = {.phase = phase};
@@ -310,10 +313,10 @@ static double most_at_powers(const step_run *level, int levels, double from, dou
     return fmax(s.most, most_at_strides(level, levels, s.best_before, s.from, s.to, stride, phase));
 }
 
-/* After this many times of decay an error that grows with the time is below a hundredth of its maximum. */
+/* After this many decay times, an error that grows with time is below 1 % of its maximum. */
 static const double decays_that_count = 8;
 
-/* The steps in which the slower of R and F decays so far, or n: det R = 1 - loss of R's trace and determinant. */
+/* The number of steps in which the slower of R and F decays so far, or n. det R = 1 + trace + determinant of R - 1. */
 static double steps_that_count(step_run step, double G, double n)
 {
     const spring_matrix R = matrix_plus(step.advance, step.error); /* - 1 */
@@ -331,14 +334,14 @@ double spring_error_of(const accuracy *of, double steps, double n)
     const step_run step = run_of_one_step(of, r);
     if (!spring_finite(matrix_norm(step.error)))
         return INFINITY;
-    n = fmin(n, most); /* beyond, numbers of steps that differ by one are equal */
+    n = fmin(n, most); /* larger doubles do not count single steps */
     step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};
     const phase_rotation no_phase = {0};
     if (n <= MOST_SAMPLES)
         return most_at_strides(&step, 1, start, 0, n, 1, &no_phase);
     const int levels = doublings_of(level, step, n);
-    /* r.a^2 is not w h^2 for slow springs, which do not decay either; overdamped springs have no one rate */
+    /* For slow springs, r.a^2 is not w h^2, but they do not decay either. Overdamped springs have no single rate. */
     const double square = r.a * r.c - r.G / 2 * (r.G / 2);
     if (!(square > 0))
         return most_at_powers(level, levels, 0, n, &no_phase);
@@ -352,9 +355,9 @@ double spring_error_of(const accuracy *of, double steps, double n)
                 most_at_powers(level, levels, early, n, &phase));
 }
 
-/* ---------------------------------------------------------------------------------------------------------- the search */
+/* ------------------------------------------------------------------------------------------------------- the search */
 
-/* a^(1/order) of the orders that are powers of two, and near it of the others. */
+/* a^(1/order) if the order is a power of two, else an approximation. */
 static double order_root(double a, int order)
 {
     for (; order > 1; order /= 2)
@@ -362,7 +365,7 @@ static double order_root(double a, int order)
     return a;
 }
 
-/* The number of steps at which the errors of all would add up to the tolerance, by the power law. */
+/* The number of steps whose errors would add up to the tolerance, by the power law. */
 static double steps_guess(const accuracy *of, double tolerance, double asymptotic)
 {
     const step_run step = run_of_one_step(of, rates_of_step(of, asymptotic));
@@ -372,7 +375,7 @@ static double steps_guess(const accuracy *of, double tolerance, double asymptoti
 double spring_accurate_steps(const accuracy *of, double tolerance)
 {
     const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS)));
-    const double asymptotic = ceil(2 * rates_size(of->whole)); /* steps from which on the power law holds */
+    const double asymptotic = ceil(2 * rates_size(of->whole)); /* the power law holds from this number of steps on */
     const double resolution = 0x1p-13;                         /* of n */
     double n = fmin(ceil(steps_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
     for (int tries = 0;; tries++) {
@@ -389,7 +392,7 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
         const double law = ceil(n * order_root(error / tolerance, of->order));
         if (good == INFINITY)
             n = fmin(2 * n, most);
-        else if (bad == 0) /* where the power law does not hold, slowly: a maximum must not be jumped over */
+        else if (bad == 0) /* slowly where the power law does not hold, so that no maximum is skipped */
             n = floor(fmin(fmax(law, asymptotic), n / 1.05));
         else
             n = tries > 12 ? bad + floor((good - bad) / 2) : fmin(fmax(law, bad + finest), good - finest);

@@ -12,11 +12,12 @@ typedef struct accuracy {
     step_rates whole; /* the rates of one step that is as long as T */
 } accuracy;
 
-/* E of n steps of T/steps. Infinite where it overflows, and of more than 2^53 steps. */
+/* E after n steps of T/steps. Infinite if it overflows, and for more than 2^53 steps. */
 SPRING_INTERNAL double spring_error_of(const accuracy *of, double steps, double n);
 
-/* The least number n of steps of T/n with E at most the tolerance, for it and for all that are larger; above 8192 up to one
-   part in 8192 more. Infinite where rounding exceeds the tolerance before, and where it is more than 2^53. */
+/* The least number of steps such that, for it and for every larger number n, E of n steps of T/n is at most the
+   tolerance; above 8192, up to one part in 8192 more. Infinite if rounding errors exceed the tolerance first, and if it
+   is more than 2^53. */
 SPRING_INTERNAL double spring_accurate_steps(const accuracy *of, double tolerance);
 
 #endif

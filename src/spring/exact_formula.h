@@ -2,7 +2,7 @@
 /*
  * The exact (closed-form) solution of a damped, loaded spring, on `real`: one spring or a SIMD vector of springs.
  *
- * Method    With b = g/2 and D = w - b^2, and h = (1 - d)/gap, d = e^(-gap |t|), where the roots p < q are real:
+ * Method    With b = g/2, D = w - b^2 and, if the roots p < q are real, h = (1 - d)/gap, d = e^(-gap |t|):
  *
  *               x(t) = E (F x0 + H v0) + P a      D >= 0: E = e^(-bt)   F = cos + b H   H = sin(split t)/split
  *               v(t) = E (G v0 - w H x0 + H a)                          G = cos - b H   split = sqrt(D)
@@ -11,13 +11,13 @@
  *                                                 E = e^(-qt), F = d - p h, G = 1 + p h, H = -h    for t < 0
  *
  *           q = b + split, p = w/q, gap = 2 split. No difference cancels more than the solution itself does, and both
- *           forms hold up to critical damping, where H = t. P, the integral of E H, is (1 - E F)/w, or, with real
- *           roots, ((1 - e^(-pt))/p - E H)/q; where the larger root times t is below 1 both cancel, and P is the power
+ *           forms hold up to critical damping, where H = t. P is the integral of E H: (1 - E F)/w or, with real roots,
+ *           ((1 - e^(-pt))/p - E H)/q. If the larger root times t is below 1, both would cancel. P is then the power
  *           series of t^2 times a divided difference of the exponential at 0 and the roots. Powers of two of E are
- *           applied in two halves, so that a large start times a tiny factor does not overflow or underflow early.
- * Special   w = 0 is a free particle; t that is not finite gives NaN.
- * Accuracy  see spring.h; tests/test_exact.c prints the largest error found. Without the rounding errors of w and b^2 it
- *           would be hundreds of times the bound near critical damping.
+ *           applied in two halves, so that a large state times a tiny factor does not overflow or underflow early.
+ * Special   w = 0 is a free particle. A t that is not finite gives NaN.
+ * Accuracy  see spring.h; tests/test_exact.c prints the largest error found. Without the rounding errors of w and b^2
+ *           it would be hundreds of times the bound near critical damping.
  * Source    textbook; divided differences: Higham, Functions of Matrices (2008), section B.16
  */
 #ifndef SPRINGSTEP_EXACT_FORMULA_H
@@ -31,7 +31,7 @@
 typedef struct exact_coefficients {
     real half;           /* of E, see exact_halves */
     real F, G, H, wH, P; /* times the other half; H [s], wH [1/s]; P [s^2] is complete */
-    real decay_rate;     /* [1/s] of E; for t > 0 that of the slowest mode */
+    real decay_rate;     /* [1/s] of E; for t > 0, of the slowest mode */
 } exact_coefficients;
 
 /* Coefficients that are equal for all springs, computed once in double. */
@@ -55,7 +55,7 @@ SPRING_INLINE void exact_step(real *x, real *v, real a, const exact_coefficients
 }
 
 #ifndef SPRING_FLOAT
-/* 1 - e^x and e^x of -750 <= x <= 0 */
+/* 1 - e^x and e^x for -750 <= x <= 0 */
 typedef struct exact_decay {
     real lost, left;
 } exact_decay;
@@ -82,8 +82,8 @@ SPRING_INLINE exact_halves exact_halves_of(real x)
 /* Numbers below this do not change 1, even as a sum of many squares. */
 static const scalar exact_tiny = 0x1p-55;
 
-/* P/t^2 as the sum of h_n/(n + 2)!, h_n = -sum h_(n-1) - product h_(n-2), sum and product those of the roots times t:
-   Horner's rule. Both roots below 1: the first omitted term is 8e-18. */
+/* P/t^2 as the sum of h_n/(n + 2)!, h_n = -sum h_(n-1) - product h_(n-2), by Horner's rule. sum, product: of the roots
+   times t. If these are below 1, the first omitted term is 8e-18. */
 SPRING_INLINE real exact_short_response(real sum, real product)
 {
     /* clang-format off */

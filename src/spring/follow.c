@@ -16,8 +16,8 @@ spring_status spring_follow(spring_state *s, const spring_params *p, double targ
     if (dt == 0)
         return SPRING_OK;
 
-    /* A load shifts the rest position. Without stiffness there is none, and x is measured from where the target would be
-       if it had started at 0. */
+    /* A load shifts the rest position. Without stiffness there is no rest position, and x is measured from a target
+       that starts at 0. */
     const bool is_free = r.omega2 == 0, pushed = is_free && has_load;
     const double rest = has_load ? target + p->load / p->stiffness : target;
     const double moved = target_velocity != 0 ? target_velocity * dt : 0;

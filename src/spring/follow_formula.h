@@ -4,26 +4,27 @@
  *
  * Method    The rest position moves at the constant velocity T'. So y = x - rest and u = v - T' obey the equation of a
  *           spring without load, and the exact solution (exact_formula.h) advances them.
- * Landing   x is stored with an error of up to d, half an ulp, and stepping stops where a step changes x by less. To reach
- *           the target all the same, a spring is placed on it at rest if dt > 0 and
+ * Landing   x is stored with an error of up to d, half an ulp, so it stops where a step would change it by less. To
+ *           reach the target nevertheless, a spring is placed on it at rest if dt > 0 and
  *
  *               hypot(y, u/omega) min(1, r dt) <= 9/4 d,   r the decay rate of its slowest mode.
  *
- *           The condition is true wherever rounding can stop a spring. With an error of +-d in x after each step, (y, u/omega)
- *           ends up within the sum of +-d Phi(i dt) (1, 0) over i >= 1, Phi the propagator of (y, u/omega). The sum
- *           times r dt is largest at critical damping for dt -> 0, where it is the integral of Phi (1, 0) omega dt,
- *           d (2, 1), of norm sqrt(5) d = 2.236 d. (It tends to d for large damping ratios, to 2/pi d for small ones.)
- *           9/4 leaves room for the rounding errors of a step. v adds nothing, since it has a relative error. d is that
- *           of the larger of x and the rest position, between which a power of two may lie.
- * Special   No stiffness: only u decays. Near 0 an ulp is arbitrarily small; a spring lands where numbers would become
- *           denormal.
+ *           The condition is true wherever rounding can stop a spring. With an error of +-d in x after each step,
+ *           (y, u/omega) ends up within the sum of +-d Phi(i dt) (1, 0) over i >= 1, where Phi is the propagator of
+ *           (y, u/omega). The sum times r dt is largest at critical damping for dt -> 0, where it is d times the
+ *           integral of Phi (1, 0) omega dt: d (2, 1), of norm sqrt(5) d = 2.236 d. (It tends to d for large damping
+ *           ratios, to 2/pi d for small ones.) 9/4 leaves room for the rounding errors of a step. v adds nothing, since
+ *           its error is relative. d is half an ulp of the larger of x and the rest position, since a power of two may
+ *           lie between them.
+ * Special   Without stiffness, only u decays. Near 0, an ulp is arbitrarily small, so a spring lands where numbers
+ *           would become denormal.
  */
 #ifndef SPRINGSTEP_FOLLOW_FORMULA_H
 #define SPRINGSTEP_FOLLOW_FORMULA_H
 
 #include "exact_formula.h"
 
-/* What a step needs of a spring. */
+/* The coefficients of a step. */
 typedef struct follow_coefficients {
     exact_coefficients exact;
     real omega2;
@@ -37,7 +38,7 @@ SPRING_INLINE follow_coefficients follow_prepare(exact_coefficients exact, real 
     return (follow_coefficients){exact, omega2, select_real(lands, select_real(share < 1, share, splat(1)), splat(0))};
 }
 
-/* Half an ulp of a >= 0 that is not denormal, exactly. Computed of a/2, since the number after the largest is infinite. */
+/* Half an ulp of a >= 0 that is not denormal, exactly. It uses a/2, since the number after the largest is infinite. */
 SPRING_INLINE real half_ulp(real a)
 {
     const scalar u = (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON) / 2;
@@ -54,7 +55,7 @@ SPRING_INLINE real vec_hypot(real a, real b)
     return large * vec_sqrt(1 + ratio * ratio);
 }
 
-/* Whether a spring lands: see above. single: x is stored as a float, whatever it is computed in. */
+/* Whether a spring lands: see above. single: x is stored as a float, even if it is computed in double. */
 SPRING_INLINE mask follow_lands(real x, real rest, real y, real u, const follow_coefficients *c, bool single)
 {
     const scalar ulps = single && sizeof(scalar) == sizeof(double) ? (scalar)0x1p29 : 1; /* an ulp of float in double */

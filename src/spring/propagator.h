@@ -14,7 +14,7 @@
 typedef struct spring_propagator {
     double half;           /* e^(-bt/2), or of the slow root */
     double F, G, H, wH, P; /* times half; H [s], wH [1/s]; P [s^2] is complete */
-    double decay_rate;     /* [1/s] for t > 0 that of the slowest mode */
+    double decay_rate;     /* [1/s] for t > 0, of the slowest mode */
 } spring_propagator;
 
 SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_quotients *r, double t,
@@ -26,8 +26,8 @@ SPRING_INTERNAL spring_state spring_exact(spring_state s, const spring_params *p
 /* e^x - 1 */
 SPRING_INTERNAL double spring_expm1(double x);
 
-/* Springs that the exact solution moves each by its own coefficients, in double, whatever they are stored in: bitwise
-   identical to spring_exact(). One that would not stay finite, or has a negative rate, keeps its state. */
+/* Springs that the exact solution advances with coefficients for each spring, in double in both precisions:
+   bit-identical to spring_exact(). A spring that would not stay finite, or has a negative rate, keeps its state. */
 typedef struct exact_array {
     const void *first; /* NULL: all are 0 */
     size_t stride;     /* from spring to spring: 1, or 0 for a vector of equal elements */
@@ -36,12 +36,12 @@ typedef struct exact_array {
 /* Springs that follow targets: see spring_batch_follow(). */
 typedef struct exact_landing {
     double x_tol, v_tol; /* finite */
-    size_t counted;      /* springs that are counted; those after them only fill a vector */
-    size_t *moving;      /* incremented by the number of springs that do not rest on their target */
+    size_t counted;      /* springs that are counted; further ones only fill a vector */
+    size_t *moving;      /* incremented by the number of springs that are not at rest on their targets */
 } exact_landing;
 
 typedef struct exact_run {
-    size_t count; /* a multiple of any vector's */
+    size_t count; /* a multiple of the lanes of any vector */
     bool single;  /* arrays of float, not double */
     void *x, *v;
     exact_array omega2, gamma, accel;
@@ -53,7 +53,7 @@ typedef struct exact_run {
 typedef bool exact_kernel(const exact_run *b); /* false: at least one spring has kept its state */
 
 #ifndef SPRING_NO_BATCH
-SPRING_INTERNAL exact_kernel spring_exact_v128; /* by bits of a vector */
+SPRING_INTERNAL exact_kernel spring_exact_v128; /* named by the bits of a SIMD vector */
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL exact_kernel spring_exact_v256, spring_exact_v512;
 #endif

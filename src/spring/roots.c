@@ -2,8 +2,8 @@
 /*
  * The characteristic roots of a spring, r^2 + (c/m) r + k/m = 0, without cancellation.
  *
- * Method    Near critical damping the computed w - b^2 consists of rounding errors only. So the exact rounding error of the
- *           square is added, and also the rounding errors of the quotients w = k/m and g = c/m:
+ * Method    Near critical damping, the computed w - b^2 consists of rounding errors only. So the exact rounding error
+ *           of the square is added, and also the rounding errors of the quotients w = k/m and g = c/m:
  *           n/d = q + (n - q d)/d to twice the precision.
  * Accuracy  omega, b, and split: 2 eps, relative, at every damping ratio
  * Source    Higham, Accuracy and Stability of Numerical Algorithms (2002), section 1.8 (the quadratic equation);
@@ -19,8 +19,8 @@ static double remainder_of(double n, double d, double q)
     return (n - product) - product_error(q, d, product);
 }
 
-/* n/d - q, the rounding error of the quotient q, for numbers of any size. The error of a denormal q is much more than eps q,
-   but the steppers use q itself: the error, at most half of the smallest number, is rounded to 0. */
+/* n/d - q, the rounding error of the quotient q, for numbers of any size. The error of a denormal q is much more than
+   eps q, but the steppers use q itself. So this error, at most half of the smallest number, is rounded to 0. */
 static double rest_of(double n, double d, double q)
 {
     int by_n, by_d, by_q;
@@ -30,7 +30,7 @@ static double rest_of(double n, double d, double q)
     return ldexp(remainder_of(ldexp(n, by_n - by_d - by_q), d, q) / d, by_q);
 }
 
-/* Neither such numbers, nor their products, nor the rounding errors of these overflow or underflow. */
+/* Such numbers, their products, and the rounding errors of these products neither overflow nor underflow. */
 static bool moderate(double a)
 {
     return a > 0x1p-400 && a < 0x1p400;

@@ -25,7 +25,7 @@ typedef struct spring_quotients {
     double omega2, b, rest;
 } spring_quotients;
 
-/* k, c, m: stiffness, damping, mass. By value, since clang 14 would load two of them at once and wait for two stores. */
+/* k, c, m: stiffness, damping, mass. By value: clang 14 would load two of them at once, which waits for two stores. */
 SPRING_INTERNAL spring_quotients spring_quotients_of(double k, double c, double m);
 
 SPRING_INTERNAL spring_roots spring_roots_of(const spring_params *p);

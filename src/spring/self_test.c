@@ -3,8 +3,8 @@
  * Checks that the floating-point environment of this thread gives reproducible results.
  *
  * Method    Numbers that the compiler cannot fold are rounded, halved below the smallest normal number, multiplied and
- *           added. Then every method takes a few steps of a spring, a batch and a scene, as far as it offers them. The
- *           digest of the results must be the one in the entry of the method.
+ *           added. Then every method advances a spring, a batch and a scene by a few steps, as far as it supports them.
+ *           The digest of the results must equal the digest in the row of the method.
  * Source    FNV-1a: Fowler, Noll, Vo (1991)
  */
 #include <springstep/batch.h>
@@ -51,7 +51,7 @@ static uint64_t digest_of(uint64_t digest, double number)
 enum { test_steps = 7 };
 static const double test_dt = 0.23, test_mass = 1.3, test_stiffness = 2.7, test_x = 0.3, test_v = -0.7;
 
-/* In batches the second spring overflows, unless the method is stable whatever the step. */
+/* In batches, the second spring overflows unless the method is stable for every step. */
 static uint64_t digest_of_springs(uint64_t digest, spring_method m)
 {
     const spring_params p = {test_mass, test_stiffness, 0.6, 0.4};

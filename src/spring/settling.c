@@ -2,14 +2,15 @@
 /*
  * The settling time of a spring.
  *
- * Method    Measured from the rest position, y(t) is monotone between the zeros of v: evenly spaced by pi/split for an
- *           oscillating spring, at most one for an overdamped one. The amplitude at these turning points decreases by a
- *           fixed factor. After the last turning point beyond x_tol, |y| falls below x_tol and stays below. The first turning point and the crossing
- *           are found by bisection of time on the exact solution: the same solution gives the same time, bit for bit.
- * Special   no stiffness: the particle stops at x + v/g, if there is damping and no load. At an infinite time the exact
- *           solution is NaN, which ends every search.
- * Accuracy  bisection of the computed exact solution ends at adjacent doubles. For a tolerance within the rounding error
- *           of the state, the result is not significant
+ * Method    Measured from the rest position, y(t) is monotone between the zeros of v, the turning points. They are
+ *           spaced by pi/split for an oscillating spring; an overdamped spring has at most one. The amplitude at the
+ *           turning points decreases by a fixed factor. After the last turning point beyond x_tol, |y| falls below
+ *           x_tol and stays below. The first turning point and the crossing are found by bisection of time on the exact
+ *           solution, so the time is bit-identical wherever the solution is.
+ * Special   Without stiffness, the particle stops at x + v/g if there is damping and no load. At an infinite time, the
+ *           exact solution is NaN, which ends every search.
+ * Accuracy  bisection of the computed exact solution ends at adjacent doubles. For a tolerance within the rounding
+ *           error of the state, the result is not significant
  */
 #include <stddef.h>
 
@@ -25,7 +26,7 @@ typedef struct motion {
     double tol; /* [m] */
 } motion;
 
-/* Of the rest position, or without stiffness of where the particle will stop, v/g ahead. */
+/* Of the rest position or, without stiffness, of the point where the particle will stop, v/g ahead. */
 static bool is_within(const motion *m, double t)
 {
     const double g = 2 * m->roots.b;
@@ -41,7 +42,7 @@ static bool has_turned(const motion *m, double t)
     return !(m->start.v > 0 ? v > 0 : v < 0);
 }
 
-/* The first time in (before .. after] of which something is true, where it is false before. */
+/* The first time in (before .. after] at which is_true() holds. It does not hold at `before`. */
 static double first_time(const motion *m, bool is_true(const motion *, double), double before, double after)
 {
     for (;;) {
@@ -55,7 +56,7 @@ static double first_time(const motion *m, bool is_true(const motion *, double), 
     }
 }
 
-/* A time at which something is true: `from` plus 1/b, doubled as often as it takes; infinite if that does. */
+/* A time at which is_true() holds: `from` plus 1/b, doubled as often as necessary; may be infinite. */
 static double some_time(const motion *m, bool is_true(const motion *, double), double from)
 {
     double span = 1 / m->roots.b;
@@ -64,8 +65,9 @@ static double some_time(const motion *m, bool is_true(const motion *, double), d
     return from + span;
 }
 
-/* The time after the last swing beyond the tolerance: of the swings at first + n spacing swing 0 is. Between n and 2n, and
-   n a power of two, bisection of time looks at swings alone as long as there are any. */
+/* The time after the last turning point beyond the tolerance. Turning point n is at first + n spacing, and turning
+   point 0 is beyond. Bisection between turning points n and 2n, n a power of two, tests turning points alone until the
+   interval is one spacing. */
 static double after_last_swing(const motion *m, double first, double spacing)
 {
     double beyond = 0, within = 1;
@@ -85,7 +87,7 @@ static double settling_oscillating(const motion *m)
     return m->roots.b == 0 ? INFINITY : after_last_swing(m, first, spacing);
 }
 
-/* A spring that never turns does so here when its velocity underflows; then it is at rest. */
+/* If a spring never turns, has_turned() holds once its velocity underflows; then the spring is at rest. */
 static double settling_creeping(const motion *m)
 {
     const double turn = m->start.v != 0 ? first_time(m, has_turned, 0, some_time(m, has_turned, 0)) : 0;
@@ -108,7 +110,7 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
         m.start.x -= p->load / p->stiffness;
     if (!spring_finite(m.start.x) || (m.roots.omega2 == 0 && p->load != 0))
         return INFINITY;
-    if (m.tol == 0) /* what moves never comes so near for good */
+    if (m.tol == 0) /* a moving spring does not stay at distance 0 */
         return m.start.v == 0 && is_within(&m, 0) ? 0 : INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }

@@ -91,7 +91,7 @@ double spring_stable_step(const spring_params *p, spring_method m)
     return method->stable_step(&r);
 }
 
-/* Of valid parameters; in (x, v/Omega), Omega the larger of omega and 1/duration. */
+/* For valid parameters, in the variables (x, v/Omega), where Omega is the larger of omega and 1/duration. */
 static accuracy accuracy_of(const spring_params *p, const method_row *method, double duration)
 {
     const spring_rates r = spring_rates_of(p);
@@ -128,7 +128,7 @@ double spring_step_error(const spring_params *p, spring_method m, double duratio
     if (method->terms == NULL)
         return 0;
     const accuracy of = accuracy_of(p, method, duration);
-    const double steps = duration / dt, slack = 1 + 4 * DBL_EPSILON; /* of the quotient: n steps of duration/n are n */
+    const double steps = duration / dt, slack = 1 + 4 * DBL_EPSILON; /* rounding: duration/(duration/n) is n */
     return spring_error_of(&of, steps, fmax(1, floor(steps * slack)));
 }
 
