@@ -19,8 +19,8 @@
  *           5. All colliders before the last one that a particle touched are tested again, with its new path. A
  *              particle that is still inside at the end (corners, turning capsules) is moved to the surface, and w
  *              loses its component into the collider.
- * Kick      The last kick, for colliders that were touched: v loses its component into the collider, with friction of at
- *           most mu times this component. Static friction gives v = V exactly.
+ * Kick      The last kick, for colliders that were touched: v loses its component into the collider, with friction of
+ *           at most mu times this component. Static friction gives v = V exactly.
  * Order     2 with leapfrog, also across impacts and with sliding friction; see docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
  *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983). tests/test_scene_contacts.c has the closed forms.
@@ -214,7 +214,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
 
     const real3 rest_of_path = minus3(p->d, way), shift = shift_at(c, &at);
     const real inward = gap + dot3(n, rest_of_path) - (1 - fraction) * dot3(n, shift);
-    const mask ends_above = hit & (inward >= 0); /* of the tangent plane */
+    const mask ends_above = hit & (inward >= 0); /* the tangent plane */
     mask outside = ends_above;
     if (any(ends_above)) {
         const real3 x = plus3(p->x0, p->d);
