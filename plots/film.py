@@ -28,12 +28,19 @@ STYLE = """
 .{name} .quiet {{ stroke: #b4b4b4; stroke-width: 5 }}
 .{name} .box {{ fill: #b35a1f; stroke: #dcebf7; stroke-width: 6 }}
 .{name} .pin {{ fill: currentColor }}
+.{name} .ball {{ fill: #e69f00; stroke: #a06c00; stroke-width: 4 }}
+.{name} .cloth path {{ stroke: #00558c; stroke-width: 2 }}
+.{name} .t0 {{ fill: #4479ad }}
+.{name} .t1 {{ fill: #6a9aca }}
+.{name} .t2 {{ fill: #8db4de }}
+.{name} .t3 {{ fill: #b3d0ef }}
 .{name} text {{ fill: currentColor; font: {size}px sans-serif }}
 @media (prefers-color-scheme: dark) {{
 .{name} {{ color: #e8e8e8 }}
 .{name} path {{ stroke: #62b8f2 }}
 .{name} .water {{ fill: #17293a }}
 .{name} .wall, .{name} .quiet {{ stroke: #5a5e62 }}
+.{name} .cloth path {{ stroke: #0d2b45 }}
 .{name} .box {{ fill: #ff9a52; stroke: #17293a }}
 }}
 """
@@ -55,6 +62,12 @@ def columns(file_name, names):
             raise DataError(f'{file_name}: no value in column "{name}"')
     places = [header.index(name) for name in names]
     return [[line[place] for place in places] for line in lines[1:]]
+
+
+def collider(file_name):
+    """The fields of the --collider of the command that wrote a data file."""
+    fields = setting(file_name, "--collider").split(":")[1].split(",")
+    return {name: float(number) for name, number in (field.split("=") for field in fields)}
 
 
 def setting(file_name, option):
@@ -100,6 +113,12 @@ class View:
         self._x = (scale * math.cos(a), scale * math.sin(a), 0)
         self._y = (scale * math.sin(a) * math.sin(e), -scale * math.cos(a) * math.sin(e), -scale * up * math.cos(e))
         self._origin = origin
+        self._towards = (math.sin(a) * math.cos(e), -math.cos(a) * math.cos(e), math.sin(e))
+        self.scale = scale
+
+    def depth(self, point):
+        """How near a point is to the viewer [m]."""
+        return sum(a * p for a, p in zip(self._towards, point))
 
     def __call__(self, point):
         """In units of the drawing."""
@@ -137,6 +156,33 @@ def water(sheet, frame, view, every=1, most=math.inf):
     return "".join(lines("water", back + front[::-1], closed=True) for back, front in zip(rows[:0:-1], rows[-2::-1]))
 
 
+class Ball:
+    """A sphere in the picture. Whatever is outside it and nearer than its centre is in front of it."""
+
+    def __init__(self, view, centre, radius):
+        x, y = view(centre)
+        self.depth = view.depth(centre)
+        self.drawing = f'<circle class="ball" cx="{x}" cy="{y}" r="{SCALE * view.scale * radius:g}"/>'
+
+
+LIGHT = (0.3, -0.5, 0.81)  # towards the light, of length 1
+TONES = 4
+
+
+def cloth(sheet, frame, view, ball, every):
+    """A cloth and a sphere: facets of every so many links, from the farthest to the nearest, in tones by their normals."""
+    parts = [(ball.depth, ball.drawing)]
+    for j in range(0, sheet.edge - every, every):
+        for i in range(0, sheet.edge - every, every):
+            corners = [sheet.at(frame, *at) for at in ((i, j), (i + every, j), (i + every, j + every), (i, j + every))]
+            u, v = ([b - a for a, b in zip(corners[k], corners[k + 2])] for k in (0, 1))
+            normal = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+            share = abs(sum(a * b for a, b in zip(LIGHT, normal))) / math.hypot(*normal)
+            tone = min(int(TONES * share), TONES - 1)
+            parts.append((sum(map(view.depth, corners)) / 4, lines(f"t{tone}", [view(c) for c in corners], closed=True)))
+    return f'<g class="cloth">{"".join(drawing for _, drawing in sorted(parts))}</g>'
+
+
 def walls(view, length, depth):
     """The two sides that are seen of a block of water, whose edges are held: they hide what reaches lower than its front."""
     front = [(0, 0, 0), (length, 0, 0), (length, 0, -depth), (0, 0, -depth)]
@@ -151,7 +197,8 @@ def write(output, name, height, frames, seconds, still, below="", above=""):
     """
     if pathlib.Path(output).suffix != ".svg":
         raise DataError(f'"{output}": an animation is written to a file that ends in .svg')
-    style = STYLE.format(name=name, seconds=seconds * len(frames), share=100 / len(frames), size=18 * SCALE)
+    share = math.floor(1e6 / len(frames)) / 1e4  # rounded down, or two frames would be visible for a moment
+    style = STYLE.format(name=name, seconds=seconds * len(frames), share=share, size=18 * SCALE)
 
     def group(k):
         kind = 'frame still"' if k == min(still, len(frames) - 1) else 'frame" visibility="hidden"'

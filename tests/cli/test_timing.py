@@ -7,7 +7,7 @@ import pathlib
 import pytest
 from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, run, table
 
-SUNDIALS = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'sundials'
+OPTIMISED = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'optimised'
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
@@ -75,11 +75,11 @@ def test_softened_and_xpbd_start_with_a_step_a_frame():
         assert float(more[-1]['error']) < float(first['error'])
 
 
-@pytest.mark.parametrize('args', [[], ['--nonsense'], ['one', 'two']])
-def test_usage_of_the_build_of_sundials(args):
-    result = run(SUNDIALS, *args)
+@pytest.mark.parametrize('args', [[], ['--nonsense'], ['sundials'], ['nonsense', 'there'], ['sundials', '--there']])
+def test_usage_of_the_build_with_optimisation(args):
+    result = run(OPTIMISED, *args)
     assert (result.returncode, result.stdout) == (2, '')
-    assert result.stderr.startswith('usage: tools/bench/sundials DIRECTORY')
+    assert result.stderr.startswith('usage: tools/bench/optimised sundials|chipmunk DIRECTORY')
 
 
 def cheapest(rows, error, among):

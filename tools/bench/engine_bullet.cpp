@@ -10,9 +10,17 @@
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <cstdio>
 
 namespace
 {
+
+const char *version()
+{
+    static char text[16];
+    std::snprintf(text, sizeof text, "%d.%02d", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100);
+    return text;
+}
 
 struct World {
     btSoftBodyRigidBodyCollisionConfiguration configuration;
@@ -72,5 +80,5 @@ void position(const void *world, size_t particle, double *x)
 } // namespace
 
 const physics_engine engine_bullet = {
-    "bullet", sizeof(btScalar) == sizeof(float) ? "float" : "double", 3, make, step, position,
+    "bullet", sizeof(btScalar) == sizeof(float) ? "float" : "double", version, 3, make, step, position,
 };

@@ -37,7 +37,9 @@ static const cli_program program = {
                "That moves both ends of a link to its length, so the material is another one, but the work is\n"
                "that of one force a link; its links in random order, as in Bullet's examples, and fastest.\n"
                "chipmunk: damped springs between bodies, with one iteration a step; the same\n"
-               "forces as ours, on two axes, as ours are then. Nothing collides in either.\n\n"
+               "forces as ours, on two axes, as ours are then. Nothing collides in either. A line of the\n"
+               "table says whether Chipmunk was compiled with assertions, as Debian's is, which makes it\n"
+               "slower; tools/bench/optimised builds it without.\n\n"
                "Figures are medians of samples, in processor time, that alternate. spread is the distance\n"
                "between the quartiles over the median, the larger one of both. verdict is ok, noisy (spread\n"
                "above 0.05: the machine was busy, the row proves nothing) or above_goal (speedup below 15).\n"
@@ -183,6 +185,9 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     cli_table *table = cli_open_output();
     timing_stamp(table);
+    for (int e = 0; engines[e] != NULL; e++)
+        if (only_engine < 0 || only_engine == e)
+            cli_comment(table, "%s: %s", engines[e], engine_of[e]->version());
     cli_columns(table, program.columns);
     for (int e = 0; engines[e] != NULL; e++)
         for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++)

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The tables "Performance at a glance" in README.md, from measurements in docs/data.
+
+usage: glance.py --measure BUILD   measure with the programs of a build folder, and fill the tables
+       glance.py --check           fail if the tables are not those of the data
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+DOCS = pathlib.Path(__file__).resolve().parent
+README = DOCS.parent / 'README.md'
+SCENES = {'rope': 'rope', 'cloth': 'cloth, 25²', 'jelly': 'soft body, 8³'}
+COMMANDS = {
+    **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
+    'engines': ['spring-engines'],
+    'stiff': ['spring-work', '--problem', 'stiff-cloth'],
+}
+OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces'}}
+
+
+def file(name):
+    return DOCS / 'data' / f'{name}.tsv'
+
+
+def measure(build):
+    """Write the data anew."""
+    for name, (program, *options) in COMMANDS.items():
+        others = [word for option, other in OTHER_FILES.get(name, {}).items() for word in (option, file(other))]
+        subprocess.run([pathlib.Path(build) / 'tools' / program, *options, *others, '-o', file(name)], check=True)
+
+
+def read(name):
+    """Return the comments (by name) and the rows of a data file."""
+    lines = file(name).read_text().splitlines()
+    comments = dict(line[2:].split(': ', 1) for line in lines if line.startswith('# ') and ': ' in line)
+    header, *rows = [line.split('\t') for line in lines if not line.startswith('#')]
+    return comments, [dict(zip(header, row)) for row in rows]
+
+
+def row_where(rows, **values):
+    """Return the only row with these values."""
+    (row,) = [row for row in rows if all(row[column] == value for column, value in values.items())]
+    return row
+
+
+def two_digits(number):
+    """Return a number, rounded to two significant digits."""
+    number = float(f'{float(number):.2g}')
+    return f'{number:.0f}' if number >= 10 else f'{number:#.2g}'
+
+
+def table(*lines):
+    return '\n'.join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def tables():
+    """Return the text between the marks of README.md."""
+    scenes = []
+    for scene, title in SCENES.items():
+        comments, rows = read(f'plan-{scene}')
+        row = row_where(rows, limit='scene')
+        scenes.append((title, *re.search(r'(\d+) particles, (\d+) links', comments['scene']).groups(),
+                       row['steps_per_frame'], f"{two_digits(float(row['time_per_frame_s']) * 1e6)} µs"))
+    versions, engines = read('engines')
+    xpbd = row_where(read('stiff-forces')[1], problem='stiff-cloth', evaluation='xpbd')
+    smallest = min((row['links'] for row in engines), key=int)
+    others = [(f'Bullet {versions["bullet"]}, one position iteration per step', 'bullet'),
+              (f'Chipmunk2D {versions["chipmunk"]}, damped springs', 'chipmunk')]
+    ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
+    ratios.append(('XPBD with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
+    processors = {read(name)[0]['processor'] for name in COMMANDS}
+    if len(processors) != 1:
+        raise SystemExit(f'the data are of several processors: {processors}')
+    (processor,) = processors
+    return '\n\n'.join([
+        table(('scene', 'particles', 'links', 'steps per frame', 'time per frame (`spring-plan`)'), ['---'] * 5, *scenes),
+        table(('time per link and step, relative to leapfrog', 'ratio'), ['---'] * 2, *ratios),
+        f'Measured on one core of an {processor}.'.replace('(R)', ''),
+    ])
+
+
+def main():
+    option, *build = sys.argv[1:] or ['']
+    if (option, len(build)) not in (('--measure', 1), ('--check', 0)):
+        raise SystemExit(__doc__)
+    if build:
+        measure(build[0])
+    text = README.read_text()
+    filled, places = re.subn(r'(<!-- glance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
+    if places != 1:
+        raise SystemExit('README.md has no place for the tables')
+    if build:
+        README.write_text(filled)
+    elif filled != text:
+        raise SystemExit('the tables of README.md are not those of docs/data: docs/glance.py --measure fills them')
+
+
+main()
