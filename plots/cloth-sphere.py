@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# A sphere moves through a cloth that is pinned at two corners, with friction. The cloth has 25² particles. Leapfrog advances
+# A sphere pushes a cloth that hangs from two corners, with friction. The cloth has 25² particles. Leapfrog advances
 # it by ten steps per frame of 1/60 s; every third frame is drawn, and every second row of particles.
 import film
 
