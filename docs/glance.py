@@ -13,7 +13,7 @@ import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent
 README = DOCS.parent / 'README.md'
-SCENES = {'rope': 'rope', 'cloth': 'cloth, 25²', 'jelly': 'soft body, 8³'}
+SCENES = {'rope': 'rope', 'cloth': 'cloth, 25 × 25', 'jelly': 'soft body, 8 × 8 × 8'}
 COMMANDS = {
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
     'engines': ['spring-engines'],
@@ -78,7 +78,7 @@ def tables():
     (processor,) = processors
     return '\n\n'.join([
         table(('scene', 'particles', 'links', 'steps per frame', 'time per frame (`spring-plan`)'), ['---'] * 5, *scenes),
-        table(('time per link and step, relative to leapfrog', 'ratio'), ['---'] * 2, *ratios),
+        table(('', 'time per link and step, in multiples of leapfrog (`spring-engines`, `spring-work`)'), ['---'] * 2, *ratios),
         f'Measured on one core of an {processor}.'.replace('(R)', ''),
     ])
 
