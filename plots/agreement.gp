@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The error of every check as a fraction of its bound, one dot per row of the table. A dot to the right of the line is a
-# failed check, which stops the report. Errors below a hundred-millionth of their bound are drawn on the left edge.
+# failed check, which stops the report. Errors below a hundred-millionth of their bound are drawn at the left edge.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" "990 + key_height(methods)"
 call plots."need.gp" ARG3 "method witness error bound"
 array kinds[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-# Time of one step of one spring in a batch in double precision, with each feature. Above: few springs in cache, many
-# steps per call. Below: many springs in memory, one step per call.
+# Time of one step of one spring in a batch in double precision, with each feature. Top: few springs in cache, many steps
+# per call. Bottom: many springs in memory, one step per call. Parameters are shared, or each spring has its own.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog rk4" 1000
 call plots."need.gp" ARG3 "kernel precision count ns_per_spring_step"
 
 bars = 16
 array features[8] = ["_shared_omega2", "", "_shared_gamma", "_own_gamma", "_shared_accel", "_own_accel", \
     "_own_gamma_accel", "_zero_gamma_accel"]
-array feature_titles[8] = ["one stiffness for all", "stiffness of each", "… one damping", "… own damping", "… one load", \
-    "… own load", "… own of both", "… arrays of zeros"]
+array feature_titles[8] = ["shared stiffness", "own stiffness", "… shared damping", "… own damping", "… shared load", \
+    "… own load", "… own damping, load", "… arrays of zeros"]
 array titles[bars]
 array colours[bars]
 do for [r = 1:bars] {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# What a spring and step of a batch costs in one precision, with its limits: called by batch-double.gp and batch-float.gp.
+# Time per spring and step of a batch in one precision, with the limits: called by batch-double.gp and batch-float.gp.
 #
 #     call plots."batch-precision.gp" OUTPUT BENCH PRECISION
 
@@ -23,4 +23,4 @@ plot for [k = 1:2] for [m = 1:methods] bench using (is(m, k) ? column("count") :
          with linespoints linetype types[m] dashtype solid pointtype (k == 1 ? 7 : 6) pointsize 1 title labels[m].", ".titles[k], \
      for [k = 1:2] for [m = 1:methods] bench using (is(m, k) ? column("count") : NaN):"limit_ns" \
          with lines linetype types[m] linewidth 2 dashtype (2,3) notitle, \
-     NaN with lines linetype theory linewidth 2 dashtype (2,3) title "their limits"
+     NaN with lines linetype theory linewidth 2 dashtype (2,3) title "limits"

@@ -10,8 +10,8 @@ array kernels[bars] = ["leapfrog_sheet_16", "leapfrog_sheet_16", "leapfrog_sheet
     "leapfrog_sheet_16_drag", "leapfrog_sheet_16_damping", "leapfrog_sheet_16_editable", "leapfrog_sheet_16_no_undo", \
     "leapfrog_sheet_16_callback_still", "leapfrog_sheet_16_callback", "leapfrog_sheet_16_links_shuffled", \
     "leapfrog_water_16", "rk4_sheet_16", "rkn8_sheet_16"]
-array titles[bars] = ["a plain loop", "leapfrog", "… in float", "… masses that differ", "… drag", "… damped links", \
-    "… editable", "… no rollback", "… callback, positions", "… callback, velocities", "… links in no order", \
+array titles[bars] = ["a plain loop", "leapfrog", "… single precision", "… different masses", "… drag", "… damped links", \
+    "… editable", "… no rollback", "… callback, positions", "… callback, velocities", "… unsorted links", \
     "… one axis: water", "RK4", "RKN8"]
 array colours[bars]
 do for [r = 1:bars] {
@@ -21,6 +21,6 @@ is(r) = strcol("kernel") eq kernels[r] && column("count") == 7002 && strcol("pre
 stats ARG3 using (is(1) ? column("baseline_ns") : 0) nooutput
 plain_loop = STATS_sum
 size(r) = r == 1 ? 1 : column("ns_per_spring_step")/plain_loop
-set xlabel "time of a step / the loop's"
+set xlabel "time / time of plain loop"
 set output ARG1
 call plots."bars.gp" ARG3 0.47

@@ -2,7 +2,7 @@
 # The energy of the water without drag, in steps of {{ step('scene-energy-euler') }}, below leapfrog's stable step. The
 # initial disturbance supplies the energy, which should then remain constant. The dotted line is the energy from
 # leapfrog in steps of {{ step('scene-energy-exact') }}. Euler's energy grows without bound. RK4 loses energy, fastest
-# while there are short waves. Leapfrog oscillates about the reference by a few percent with so long a step, and does
+# while there are short waves. With this long step, leapfrog oscillates about the reference by a few percent, but does
 # not drift. Curves that leave the figure at the top belong to runs that explode.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "scenes" "390 + key_height(methods + 1)"
 energies = ARG3

@@ -19,7 +19,7 @@ set xrange [0.7:1e7]
 set yrange [*<0.25:8<*]
 set format x "10^{%T}"
 set xlabel "links"
-set ylabel "time of plain loop / library"
+set ylabel "speedup over plain loop"
 set ytics (0.125, 0.25, 0.5, 1, 2, 4, 8, 16)
 call plots."key.gp" 6
 set output ARG1

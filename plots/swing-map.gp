@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # A link with a mass at its end is released at an angle between hanging down and standing up, and swings for {{
 # data('swing-map').last.duration_s|round|int }} s. Leapfrog. Each panel: initial length of the link over its rest
-# length. Colour: energy gained, relative to the largest kinetic energy of the exact motion. Orange: values above the scale. White line: the stable step that the library returns.
+# length. Colour: energy gained, relative to the largest kinetic energy of the exact motion. Orange: values above the
+# scale. White line: the stable step that the library returns.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "700"
 map = ARG3
 call plots."need.gp" map "stretch angle_deg stable_fraction energy_error"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# {{ method }}: error at the end versus computing time per frame of 1/60 s. Leapfrog begins with the fewest stable
-# steps. With fewer steps the links have to be softened (dotted). XPBD has one iteration per substep, and CVODE's BDF
-# chooses its own steps.
+# {{ method }}: error at the end versus computing time per frame of 1/60 s. Leapfrog's curve begins with the fewest
+# stable steps. With fewer steps, leapfrog requires softened links (dotted). XPBD has one iteration per substep. CVODE's
+# BDF chooses its own steps.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "symplectic-euler leapfrog rk4 srkn6 rkn8" "460 + key_height(methods + 3)"
 problem = ARG3
 work = ARG4
