@@ -8,7 +8,7 @@ bars = 16
 array features[8] = ["_shared_omega2", "", "_shared_gamma", "_own_gamma", "_shared_accel", "_own_accel", \
     "_own_gamma_accel", "_zero_gamma_accel"]
 array feature_titles[8] = ["shared stiffness", "own stiffness", "… shared damping", "… own damping", "… shared load", \
-    "… own load", "… own damping, load", "… arrays of zeros"]
+    "… own load", "… both own", "… arrays of zeros"]
 array titles[bars]
 array colours[bars]
 do for [r = 1:bars] {
