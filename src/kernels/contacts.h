@@ -53,8 +53,9 @@ typedef struct drifting {
 /* The part of a tangential velocity that friction removes, at most `limit`. */
 SPRING_INLINE real3 friction_loss(real3 tangential, real limit)
 {
-    const real speed = vec_sqrt(dot3(tangential, tangential));
-    return select3(speed > limit, times3(limit * inverse_of(speed), tangential), tangential);
+    real inverse;
+    const real speed = length_of(dot3(tangential, tangential), &inverse);
+    return select3(speed > limit, times3(limit * inverse, tangential), tangential);
 }
 
 SPRING_INLINE real3 tangential_to(real3 normal, real3 u)
@@ -115,8 +116,9 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
     const real3 x1 = plus3(p->x0, p->d), n = at->normal;
     const real3 sliding = tangential_to(n, minus3(p->w, *surface));
     const real3 at_start = tangential_to(n, minus3(plus_scaled3(p->w, splat(-p->kappa * p->h), p->accel), *surface));
-    const real speed = vec_sqrt(dot3(sliding, sliding)), start_speed = vec_sqrt(dot3(at_start, at_start));
-    const real inverse_speed = inverse_of(speed), inverse_start_speed = inverse_of(start_speed);
+    real inverse_speed, inverse_start_speed;
+    const real speed = length_of(dot3(sliding, sliding), &inverse_speed);
+    const real start_speed = length_of(dot3(at_start, at_start), &inverse_start_speed);
     const mask along_start = dot3(at_start, sliding) > (scalar)0.5 * start_speed * speed;
     const int passes = c->friction > 0 ? friction_passes : 0;
     real lambda = vec_not_negative(-inward) * inverse_duration;
@@ -156,7 +158,10 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
     const real3 d = plus_scaled3(minus3(x, p->x0), lambda * duration, n);
     p->w = select3(where, select3(stuck, *surface, w), p->w);
     p->d = select3(where, select3(stuck, times3(splat(p->h), *surface), d), p->d);
-    return where & settled & not_mask(stuck);
+    /* A stuck particle keeps its distance from a collider that does not spin or turn, to within rounding errors. */
+    const mask keeps =
+        c->spins || collider_turns(c) ? (mask){0} : stuck & (at->gap > (scalar)-0.5 * contact_slop(c, p->x0));
+    return where & ((settled & not_mask(stuck)) | keeps);
 }
 
 /* Step 4 later in the step, or at a second contact. */
@@ -307,8 +312,9 @@ SPRING_NOINLINE uint32_t stop_at_colliders(const scene_contacts *t, lane_bits to
         const real3 u = minus3(*v, surface[i]), tangential = tangential_to(normal, u);
         const real rate = dot3(u, normal), limit = c->friction * vec_abs(rate);
         const mask enters = touches[i] & (rate * t->h < 0);
-        const mask slides = vec_sqrt(dot3(tangential, tangential)) > limit;
-        const real3 slid = minus3(plus_scaled3(*v, -rate, normal), friction_loss(tangential, limit));
+        real inverse;
+        const mask slides = length_of(dot3(tangential, tangential), &inverse) > limit;
+        const real3 slid = minus3(plus_scaled3(*v, -rate, normal), times3(limit * inverse, tangential));
         *v = select3(enters, select3(slides, slid, surface[i]), *v);
         pressed[i] = select_real(enters, -rate, splat(0));
     }

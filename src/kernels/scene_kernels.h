@@ -125,8 +125,8 @@ typedef struct scene_collider {
     scalar axis[3][3], half[3], radius;
     scalar velocity[3], velocity_to[3], spin[3];
     scalar friction, restitution;
-    scalar reach;          /* [m^2] see may_touch() */
-    scalar inverse_square; /* [1/m^2] capsule: 1/(length of its axis)^2 at the start */
+    scalar reach_fast, reach_slow; /* [m^2] see may_touch() */
+    scalar inverse_square;         /* [1/m^2] capsule: 1/(length of its axis)^2 at the start */
 } scene_collider;
 
 /* Computes the normal at the surface point nearest to x, for the pose at the start of the step. */

@@ -105,6 +105,21 @@ static void copy_shape(scene_collider *to, const spring_collider *c, double thic
     to->spins = to->spin[0] != 0 || to->spin[1] != 0 || to->spin[2] != 0;
 }
 
+/* [m] A bound on contact_slop() of particles at the collider. */
+static scalar rounding_error_at(const scene_collider *c, uint32_t axes)
+{
+    const scalar eps = sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
+    double size = (double)c->radius;
+    for (uint32_t a = 0; a < axes; a++) {
+        size += fabs((double)c->at[a]);
+        if (c->shape == SPRING_CAPSULE)
+            size += fabs((double)c->to[a]);
+        if (c->shape == SPRING_BOX)
+            size += (double)c->half[a];
+    }
+    return 16 * eps * (scalar)size;
+}
+
 static void place_collider(scene_collider *to, const spring_collider *c, double time0, double time1, double thickness,
                            uint32_t axes)
 {
@@ -126,7 +141,9 @@ static void place_collider(scene_collider *to, const spring_collider *c, double 
     scalar shift = length_of_shift(to->shift);
     if (c->shape == SPRING_CAPSULE && length_of_shift(to->shift_to) > shift)
         shift = length_of_shift(to->shift_to);
-    to->reach = (scalar)1.07 * (to->radius + shift) * (to->radius + shift);
+    const scalar reach = to->radius + shift + rounding_error_at(to, axes);
+    to->reach_fast = (scalar)1.07 * reach * reach;
+    to->reach_slow = (scalar)1.006 * reach * reach;
 }
 
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
