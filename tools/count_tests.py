@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Counts the test cases of a Meson test run and says what was skipped, and why.
+"""Counts the test cases of a Meson test run, and prints the skipped cases with their reasons.
 
 usage: count_tests.py BUILD/meson-logs
 
-A program that speaks TAP counts once for each of its test points, pytest once for each of its cases, every other
-program once: Meson writes them to testlog.junit.xml. What became of each program is in testlog.json: one that broke
-off, or ran fewer points than it had planned, is a failure although each of its points may have passed.
+A TAP program counts once for each of its test points, pytest once for each of its cases, and every other program once.
+Meson writes the cases to testlog.junit.xml, and the result of each program to testlog.json. A program that ended early,
+or ran fewer points than planned, is a failure, even if each of its points passed.
 """
 
 import collections

@@ -42,7 +42,7 @@ missing_packages() {
 }
 
 give_up() {
-    say "$1; these Debian packages, or their like, are missing:" "${@:2}"
+    say "$1; these Debian packages, or their equivalents, are missing:" "${@:2}"
     exit 3
 }
 
@@ -51,9 +51,9 @@ install_missing() {
     mapfile -t missing < <(missing_packages)
     wait $! # its status
     ((${#missing[@]})) || return 0
-    command -v apt-get >/dev/null || give_up 'packages can be installed here only by you' "${missing[@]}"
+    command -v apt-get >/dev/null || give_up 'packages cannot be installed automatically on this system' "${missing[@]}"
     if ((EUID)); then
-        command -v sudo >/dev/null || give_up 'installing packages takes root or sudo' "${missing[@]}"
+        command -v sudo >/dev/null || give_up 'installing packages requires root or sudo' "${missing[@]}"
         as_root=(sudo)
     fi
     say "installing ${missing[*]}"
@@ -62,7 +62,7 @@ install_missing() {
         give_up 'apt-get failed' "${missing[@]}"
     fi
     mapfile -t missing < <(missing_packages)
-    ((${#missing[@]} == 0)) || give_up 'apt-get succeeded and yet something is not found' "${missing[@]}"
+    ((${#missing[@]} == 0)) || give_up 'apt-get succeeded, but the installed files were not found' "${missing[@]}"
 }
 
 # Under sudo, in somebody's own checkout: only the packages needed root. What is built stays theirs.

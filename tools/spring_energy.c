@@ -24,33 +24,33 @@ static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
-     .help = "a row for each power of ten from 1 s to H [s]"},
+     .help = "print a row for each power of ten from 1 s to H [s]"},
     {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
-     .help = "number of steps; two of this, --dt, --duration give the third"},
+     .help = "number of steps; two of DT, N and H set the third"},
     {"half-step-velocity", CLI_FLAG, .flag = &half_step_velocity,
-     .help = "leapfrog only: take the kinetic energy half a step ahead\n"
-             "that is, with the velocity at t + dt/2 and the position at t"},
-    {"jitter", CLI_FLAG, .flag = &jitter, .help = "draw every step from DT/2 to 3 DT/2, the same ones at every run"},
+     .help = "leapfrog only: compute the kinetic energy half a step ahead\n"
+             "It uses the velocity at t + dt/2 and the position at t."},
+    {"jitter", CLI_FLAG, .flag = &jitter, .help = "random steps from DT/2 to 3 DT/2, the same in every run"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library, or stages (rk4 only: computes k1 to k4)"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-energy",
-    .summary = "The error in the energy of an undamped spring after 1, 10, 100 ... seconds.",
-    .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m: its energy is\n"
-               "1/2 J.\n\n"
-               "Every step is taken: H = 1e8 s are 1e10 steps, one to three minutes; progress is shown on a\n"
-               "terminal.\n\n"
-               "With --method exact one evaluation covers the steps from row to row, 2^24 of them at most.\n"
-               "With --jitter the time run is the duration only on average.\n\n"
-               "Remarked on standard error is a step that is not below the stable step; with --jitter, the longest.",
+    .summary = "Measure the energy error of an undamped spring after 1, 10, 100 ... seconds.",
+    .details = "The spring has a mass of 1 kg and a stiffness of 1 N/m, and starts at rest from x = 1 m. Its energy\n"
+               "is 1/2 J.\n\n"
+               "All steps are computed. H = 1e8 s takes 1e10 steps, which is one to three minutes. Progress is shown\n"
+               "on a terminal.\n\n"
+               "With --method exact, one evaluation covers the steps from one row to the next, at most 2^24 steps.\n"
+               "With --jitter, the simulated time equals the duration only on average.\n\n"
+               "A warning is printed if the step is not below the stable step. With --jitter, this is the longest\n"
+               "step.",
     .columns = "method velocity duration_s steps energy_error_J",
-    .meaning = "velocity is synchronised, or half_step_ahead with --half-step-velocity; duration_s is steps times\n"
-               "DT, steps the whole number that comes nearest to the power of ten, at least 1; energy_error_J is\n"
-               "the distance |E - 1/2 J|. An energy that overflows has the error inf; that is a result, with\n"
-               "status 0.",
+    .meaning = "velocity is synchronised, or half_step_ahead with --half-step-velocity. duration_s is steps times\n"
+               "DT, where steps is the whole number nearest to the power of ten, at least 1. energy_error_J is |E -\n"
+               "1/2 J|. If the energy overflows, the error is inf and the exit status is 0.",
     .shown = {"duration_s", "energy_error_J"},
     .examples = {"--method leapfrog --duration 1e5", "--method leapfrog --duration 1e4 --half-step-velocity",
                  "--method rk4 --dt 0.1 --steps 1e6 -o energy.tsv"},
@@ -113,7 +113,7 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     stepper_check(&chosen);
     if (half_step_velocity && chosen.method != SPRING_LEAPFROG)
-        cli_fail(CLI_USAGE, "--half-step-velocity: with --method %s; it should be leapfrog", stepper_name(&chosen));
+        cli_fail(CLI_USAGE, "--half-step-velocity: --method is %s, but it should be leapfrog", stepper_name(&chosen));
     run_length_settle(&length);
     if (!(length.duration >= 1))
         cli_fail(CLI_USAGE, "--duration: \"%g\" is not a time of at least 1 s", length.duration);

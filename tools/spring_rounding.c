@@ -25,26 +25,26 @@ static run_length length = {.steps = 10000000, .dt = 0.01};
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_steps, .required = true, .value = "M"},
     {"sum", CLI_CHOICE, .choice = &sum, .choices = sums, .required = true, .value = "S",
-     .help = "plain, as the library, or, of leapfrog and rk4, compensated"},
+     .help = "plain, as in the library, or compensated (leapfrog and rk4 only)"},
     {"steps", CLI_COUNT, .count = &length.steps, .least = first_row, .most = CLI_MOST_STEPS, .value = "N",
-     .help = "rows up to N steps"},
+     .help = "print rows up to N steps"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT", .help = "step [s]"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
-     .help = "time to run [s]; two of this, --steps, --dt give the third"},
+     .help = "simulated time [s]; two of H, N and DT set the third"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-rounding",
-    .summary = "How the rounding errors of an undamped spring grow with the number of steps.",
-    .details = "The computed state is compared with the same method in 107-digit arithmetic, so all that differs is\n"
-               "rounding. 1e9 steps take about half a minute.\n\n"
-               "Remarked on standard error is a step that is not below the stable step.",
+    .summary = "Measure how the rounding errors of an undamped spring grow with the number of steps.",
+    .details = "The computed state is compared with the same method in 107-digit arithmetic, so the difference is\n"
+               "rounding error only. 1e9 steps take about half a minute.\n\n"
+               "A warning is printed if the step is not below the stable step.",
     .columns = "method sum start steps dt_s state_error energy_error coefficient_error",
-    .meaning = "start is 0 to 7: phases spread evenly over a period. There are two rows for each power of ten from\n"
-               "1e4 steps to N. state_error is relative to the amplitude, in (x, v/omega), energy_error to the\n"
-               "energy; coefficient_error is by how much the rounding of dt stiffness/mass, which is the same in\n"
-               "every step, shifts the phase [rad].",
+    .meaning = "start is 0 to 7: initial phases, spread evenly over a period. There are two rows for each power of\n"
+               "ten from 1e4 steps to N. state_error is relative to the amplitude, in (x, v/omega). energy_error is\n"
+               "relative to the energy. coefficient_error is the phase shift [rad] caused by the rounding error of\n"
+               "dt stiffness/mass, which is the same in every step.",
     .shown = {"steps", "state_error"},
     .examples = {"--method leapfrog --sum plain --steps 1e5", "--method rk4 --sum compensated --steps 1e5",
                  "--method euler --sum plain --dt 0.001 --duration 100 -o rounding.tsv"},

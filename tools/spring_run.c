@@ -25,27 +25,28 @@ static spring_state start = {.x = 1};
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
-     .help = "time to run [s]; two of this, --steps, --dt give the third"},
+     .help = "simulated time [s]; two of H, N and DT set the third"},
     {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
      .help = "step [s]\n"
              "A duration is rounded to whole steps."},
     {"every", CLI_COUNT, .count = &every, .least = 1, .value = "K",
-     .help = "a row for every K-th step, the start included; else the end alone"},
+     .help = "print every K-th step, including the start; otherwise only the end"},
     {"from", CLI_REAL, .real = &from, .value = "T", .needs = &every,
-     .help = "no rows for times before T [s], except for the end"},
-    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "[kg]"},
-    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "[N/m]"},
-    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "[N s/m]"},
+     .help = "print no rows before time T [s], except the end"},
+    {"mass", CLI_POSITIVE, .real = &spring.mass, .value = "m", .help = "mass [kg]"},
+    {"stiffness", CLI_NOT_NEGATIVE, .real = &spring.stiffness, .value = "k", .help = "stiffness [N/m]"},
+    {"damping", CLI_NOT_NEGATIVE, .real = &spring.damping, .value = "c", .help = "damping [N s/m]"},
     {"load", CLI_REAL, .real = &spring.load, .value = "f", .help = "constant force [N]"},
-    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "displacement at the start [m]"},
-    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "velocity at the start [m/s]"},
+    {"x0", CLI_REAL, .real = &start.x, .value = "x", .help = "initial displacement [m]"},
+    {"v0", CLI_REAL, .real = &start.v, .value = "v", .help = "initial velocity [m/s]"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
+     .help = "library, or stages (rk4 only: computes k1 to k4)"},
     {"envelope", CLI_FILE, .file = &envelope_path, .value = "FILE",
-     .help = "write the envelope of the error to FILE, too\n"
-             "That is its minimum and maximum over all steps, for each of --columns equal parts of the run."},
+     .help = "also write the envelope of the error to FILE\n"
+             "The envelope is the minimum and maximum over all steps, for each of --columns equal parts of the\n"
+             "run."},
     {"columns", CLI_COUNT, .count = &envelope_columns, .least = 1, .most = 1000000, .value = "N",
      .needs = &envelope_path, .help = "number of parts of the envelope"},
     {.name = NULL},
@@ -54,17 +55,17 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-run",
     .summary = "Simulate one spring and compare it with its exact solution.",
-    .details = "Times are i DT from the start, or i H/N, and the exact solution is computed from the start in one\n"
+    .details = "Times are i DT from the start, or i H/N. The exact solution is computed from the start in one\n"
                "evaluation.\n\n"
-               "Where a spring explodes, that is, its state or its energy becomes infinite, the rows end, the time\n"
-               "is told, and the status is 1. Remarked on standard error is a step that is not\n"
-               "below the stable step, and a duration that is no whole number of steps.",
+               "If the spring explodes, that is, if its state or its energy becomes infinite, the output ends, the\n"
+               "time is printed on standard error, and the exit status is 1. A warning is printed if the step is not\n"
+               "below the stable step, or if the duration is not a whole number of steps.",
     .columns = "method step t_s x_m v_m_per_s energy_J exact_x_m error_m",
-    .meaning = "energy_J is m v^2/2 + k x^2/2 - load x, error_m the distance |x_m - exact_x_m|. The last row is\n"
-               "the final state. With --method exact one evaluation covers the steps from row to row, 2^24 of\n"
-               "them at most (with --envelope each step has its own), and the error is what rounding adds up to.\n\n"
-               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m,\n"
-               "these with the sign of x_m - exact_x_m. Parts without a step have no row.",
+    .meaning = "energy_J is m v^2/2 + k x^2/2 - load x. error_m is |x_m - exact_x_m|. The last row is the final\n"
+               "state. With --method exact, one evaluation covers the steps from one row to the next, at most 2^24\n"
+               "steps (with --envelope, one step), and the error is accumulated rounding error.\n\n"
+               "Columns of the envelope: method, t_s (the middle of the part), error_min_m and error_max_m. The\n"
+               "errors have the sign of x_m - exact_x_m. Parts without a step have no row.",
     .shown = {"t_s", "x_m"},
     .examples = {"--method leapfrog --duration 10 --dt 0.01 --every 1 -o spring.tsv",
                  "--method exact --duration 2 --steps 120 --every 1 --stiffness 40 --damping 3",
@@ -152,7 +153,7 @@ static void tell_explosion(spring_state *s, uint64_t step, uint64_t n)
         while (take(s, n))
             step += n;
     cli_warn("the spring explodes: step %" PRIu64
-             ", to t = %.17g s, makes its state or its energy infinite; it was x = %g m, v = %g m/s",
+             ", to t = %.17g s, makes its state or its energy infinite; before this step, x = %g m and v = %g m/s",
              step + 1, (double)(step + 1) * length.dt, s->x, s->v);
 }
 

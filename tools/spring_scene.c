@@ -41,109 +41,112 @@ static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .required = true, .value = "S"},
     {"method", CLI_METHOD, .choice = &method, .offers = cli_for_scenes, .required = true, .value = "M"},
     {"duration", CLI_POSITIVE, .real = &length.duration, .value = "H",
-     .help = "time to run [s]; two of this, --dt, --steps give the third"},
+     .help = "simulated time [s]; two of H, DT and N set the third"},
     {"dt", CLI_POSITIVE, .real = &length.dt, .value = "DT",
-     .help =
-         "step [s] (default: half the stable step of leapfrog, or less)\n"
-         "By default a frame takes as many steps as make them at most half the stable step of leapfrog, with other\n"
-         "methods also of RK4, which heavily damped links limit, and an eighth of --push-duration. A duration is\n"
-         "rounded to whole steps."},
+     .help = "step [s] (default: half the stable step of leapfrog, or less)\n"
+             "By default, a frame has the fewest steps that are at most half the stable step of leapfrog and at\n"
+             "most an eighth of --push-duration. For other methods they are also at most half the stable step of\n"
+             "RK4, which heavy link damping limits. A duration is rounded to whole steps."},
     {"steps", CLI_COUNT, .count = &length.steps, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
      .help = "number of steps"},
     {"steps-per-frame", CLI_COUNT, .count = &steps_per_frame, .least = 1, .most = 1000000, .value = "N",
-     .help = "instead of --dt: the step is 1/(R N) s"},
+     .help = "instead of --dt: steps per frame; the step is 1/(R N) s"},
     {"frame-rate", CLI_POSITIVE, .real = &frame_rate, .value = "R", .needs = &steps_per_frame,
-     .help = "frames a second that --steps-per-frame divides"},
+     .help = "frames per second, for --steps-per-frame"},
     {"size", CLI_COUNT, .count = &given.size, .least = 2, .most = 4000, .value = "N",
-     .help = "particles along an edge; of a chain: those that move (default: by scene)\n"
-             "That is: rope 20, cloth 25, jelly 8, chain 50, water 25."},
+     .help = "particles along an edge; chain: free particles (default: by scene)\n"
+             "Defaults: rope 20, cloth 25, jelly 8, chain 50, water 25."},
     {"axes", CLI_COUNT, .count = &given.axes, .least = 1, .most = 3, .value = "A",
-     .help = "water only: 1 moves up and down, 3 in all directions (default: 1)"},
+     .help = "water only: 1 for vertical motion, 3 for all directions (default: 1)"},
     {"links", CLI_CHOICE, .choice = &link_choice, .choices = links, .value = "L",
-     .help = "cloth, jelly, water: all, or structural, to the next alone\n"
-             "All are those to the next particle, across, and to the one after the next. Rope and chain have\n"
-             "structural links alone."},
+     .help = "cloth, jelly and water: all springs, or structural springs only\n"
+             "all means structural, shear and bend springs: to the next particle, across, and to the second next\n"
+             "particle. Rope and chain have only structural springs."},
     {"length", CLI_POSITIVE, .real = &given.length, .value = "L",
-     .help = "of an edge [m] (default: by scene)\n"
-             "That is: rope 2, cloth 2, jelly 0.7, chain 5, water 4."},
+     .help = "length of an edge [m] (default: by scene)\n"
+             "Defaults: rope 2, cloth 2, jelly 0.7, chain 5, water 4."},
     {"mass", CLI_POSITIVE, .real = &given.mass, .value = "M",
-     .help = "of a particle [kg] (default: by scene)\n"
-             "That is: rope 0.05, cloth 0.01, jelly 0.01, chain 0.1, water 1."},
+     .help = "mass of a particle [kg] (default: by scene)\n"
+             "Defaults: rope 0.05, cloth 0.01, jelly 0.01, chain 0.1, water 1."},
     {"end-mass", CLI_POSITIVE, .real = &given.end_mass, .value = "M",
-     .help = "rope only: of the last particle [kg] (default: as --mass)"},
+     .help = "rope only: mass of the last particle [kg] (default: as --mass)"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &given.stiffness, .value = "K",
-     .help = "of a link [N/m] (default: by scene)\n"
-             "That is: rope 2000, cloth 500, jelly 40, chain 100, water 25000."},
-    {"damping", CLI_NOT_NEGATIVE, .real = &given.damping, .value = "C", .help = "of a link [N s/m] (default: 0)"},
+     .help = "stiffness of a link [N/m] (default: by scene)\n"
+             "Defaults: rope 2000, cloth 500, jelly 40, chain 100, water 25000."},
+    {"damping", CLI_NOT_NEGATIVE, .real = &given.damping, .value = "C",
+     .help = "damping of a link [N s/m] (default: 0)"},
     {"drag", CLI_NOT_NEGATIVE, .real = &given.drag, .value = "D",
-     .help = "of a particle [N s/m] (default: by scene)\n"
-             "That is: rope 0.01, cloth 0.01, jelly 0.005, chain 0, water 0.5."},
+     .help = "drag on a particle [N s/m] (default: by scene)\n"
+             "Defaults: rope 0.01, cloth 0.01, jelly 0.005, chain 0, water 0.5."},
     {"gravity", CLI_REAL, .real = &given.gravity, .value = "G",
-     .help = "rope, cloth and jelly only: downwards [m/s^2] (default: 9.81)"},
+     .help = "rope, cloth and jelly only: gravity, downwards [m/s^2] (default: 9.81)"},
     {"stretch", CLI_POSITIVE, .real = &given.stretch, .value = "S",
-     .help = "of the links at the start, over their rest length (default: by scene)\n"
-             "That is: 1, for water on three axes 1.25. Water on one axis has no rest lengths, and by default all of\n"
-             "--stiffness: S > 1 leaves it the part 1 - 1/S, as much as a sheet stretched like that has across."},
+     .help = "initial length of the links over their rest length (default: by scene)\n"
+             "The default is 1, and 1.25 for water on three axes. Links of water on one axis have no rest length,\n"
+             "and their default is the full --stiffness. S > 1 multiplies it by 1 - 1/S, the transverse stiffness\n"
+             "of a sheet with this stretch."},
     {"poke", CLI_REALS, .real = poke[0], .least = 5, .most = MOST_DISTURBANCES, .times = &pokes,
      .value = "T,X,Y,FORCE,AREA",
      .help = "push at time T [s] at (X, Y) [m] with FORCE [N] on AREA [m^2]; repeatable\n"
-             "It pushes down, with FORCE at most, spread over a round AREA > 0. 0 <= T < H; 100 pokes at most."},
-    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "a drop in every 1/RATE seconds"},
-    {"seed", CLI_COUNT, .count = &seed, .value = "N", .needs = &rain, .help = "another --rain for every N"},
+             "The force acts downwards, is at most FORCE, and is spread over a round area. AREA > 0 and 0 <= T <\n"
+             "H. At most 100 pokes."},
+    {"rain", CLI_NOT_NEGATIVE, .real = &rain, .value = "RATE", .help = "one raindrop in every 1/RATE seconds"},
+    {"seed", CLI_COUNT, .count = &seed, .value = "N", .needs = &rain, .help = "seed of the random raindrops"},
     {"drop-box", CLI_REALS, .real = box[0], .least = 2, .most = MOST_DISTURBANCES, .times = &boxes, .value = "T,MASS",
      .help = "a box of MASS [kg] hits the middle at time T [s]; repeatable\n"
-             "It falls from 1 m, at 9.81 m/s^2. MASS > 0, 0 <= T < H; 100 boxes at most."},
-    {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D", .help = "of a poke, a drop, the box [s]"},
+             "It falls from a height of 1 m, at 9.81 m/s^2. MASS > 0 and 0 <= T < H. At most 100 boxes."},
+    {"push-duration", CLI_POSITIVE, .real = &disturbance_time, .value = "D",
+     .help = "duration of a poke, a raindrop or a box impact [s]"},
     {"tension-only", CLI_FLAG, .flag = &tension_only,
      .help = "links pull and never push; not for scenes with one axis"},
     {"tear", CLI_POSITIVE, .real = &tear, .value = "STRETCH",
-     .help = "cut links longer than STRETCH times their rest length, after each row\n"
+     .help = "after each row, cut links longer than STRETCH times their rest length\n"
              "The number of torn links is printed on standard error. Not for scenes with one axis."},
     {"collider", CLI_WORDS, .words = &colliders, .value = "SHAPE:FIELDS",
-     .help =
-         "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
-         "Fields are NAME=NUMBER, separated by commas, and by default 0. All shapes have x y z [m], a point of the\n"
-         "plane, the centre, or one end of the capsule; vx vy vz [m/s], the velocity; wx wy wz [rad/s], the spin, "
-         "which\n"
-         "enters friction only; friction >= 0; and restitution, 0 to 1. A plane has the normal nx ny nz, by default\n"
-         "upwards; a sphere radius; a capsule radius and the other end x2 y2 z2; a box hx hy hz, half of its size "
-         "along\n"
-         "x, y and z, and radius, which rounds its edges. z is up. The rope has no y. At most 32 colliders. Not for\n"
-         "scenes with one axis, and not for euler, rkn8 and srkn6."},
+     .help = "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
+             "Fields are NAME=NUMBER, separated by commas, and 0 by default. These fields apply to all shapes: x y\n"
+             "z [m] is a point of the plane, the centre, or one end of the capsule. vx vy vz [m/s] is the\n"
+             "velocity. wx wy wz [rad/s] is the spin, which affects friction only. friction is at least 0.\n"
+             "restitution is from 0 to 1. A plane also has the normal nx ny nz, upwards by default. A sphere has a\n"
+             "radius. A capsule has a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size\n"
+             "along x, y and z, and a radius, which rounds its edges. z is up. The rope has no y. At most 32\n"
+             "colliders. Not for scenes with one axis, and not for euler, rkn8 and srkn6."},
     {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,
-     .help = "of every particle, for --collider [m]"},
-    {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows, and frames, a second"},
+     .help = "radius of every particle [m]"},
+    {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows and frames per second"},
     {"frames", CLI_FOLDER, .file = &frames, .value = "DIR",
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
-             "DIR is created; older frames in it of the same numbers are replaced."},
+             "DIR is created. Older frames with the same numbers are replaced."},
     {"positions", CLI_FILE, .file = &positions, .value = "FILE", .help = "write the positions of all frames to FILE"},
     {"hash", CLI_FLAG, .flag = &hash_alone,
-     .help = "print nothing but 16 digits, of the state at the end\n"
-             "FNV-1a, 64 bits, over the doubles of all positions, then all velocities, lowest byte first; of a\n"
-             "scene that blows up, of the last state before."},
+     .help = "print only a hash of the final state, 16 hexadecimal digits\n"
+             "The hash is FNV-1a with 64 bits, over the doubles of all positions and then of all velocities,\n"
+             "lowest byte first. If the scene explodes, it is the hash of the last state before."},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-scene",
     .summary = "Simulate a rope, a cloth, a soft body (jelly), a chain or height-field water.",
-    .details = "The rope swings, held at one end. The cloth hangs on two corners. The jelly stands on its lowest\n"
-               "layer. The masses of the chain move along it, plucked in the middle. The edges of the water are\n"
-               "pinned; where no disturbance is asked for it is poked in the middle, by 10^5 N on (L/8)^2 m^2.\n\n"
-               "A disturbance that begins at T has the force FORCE (4 u (1 - u))^4, u = (t - T)/D, for 0 < u < 1;\n"
-               "for the chain it is along it. A poke is spread like (1 - r^2/R^2)^2, the box evenly over a square of\n"
-               "(L/8)^2 m^2, and loses its momentum, MASS 4.43 m/s. A drop of rain is a poke of (L/16)^2 m^2 with\n"
-               "the momentum of one particle at 10 m/s, anywhere and at any time within its 1/RATE seconds.\n\n"
-               "No step is refused. Remarked on standard error is one that is not below the stable step, one so\n"
-               "long, D/4 or more, that a disturbance loses or gains by it, and a chosen one of which H is no whole\n"
-               "number. When the energy overflows the rows\n"
-               "end, the time is told, and the status is 1.",
+    .details = "The rope is held at one end and swings. The cloth hangs from two corners. The jelly stands on its\n"
+               "lowest layer. The masses of the chain move along it, and the chain is plucked in the middle. The\n"
+               "edges of the water are pinned. If no disturbance is given, the water is poked in the middle with\n"
+               "10^5 N on (L/8)^2 m^2.\n\n"
+               "A disturbance that begins at T has the force FORCE (4 u (1 - u))^4, with u = (t - T)/D and 0 < u <\n"
+               "1. In the chain, the force acts along the chain. A poke is spread like (1 - r^2/R^2)^2. The box is\n"
+               "spread evenly over a square of (L/8)^2 m^2, and loses its momentum, MASS 4.43 m/s. A raindrop is a\n"
+               "poke of (L/16)^2 m^2 with the momentum of one particle at 10 m/s, at a random place and time within\n"
+               "its 1/RATE seconds.\n\n"
+               "Every step is accepted. A warning is printed if the step is not below the stable step, if it is D/4\n"
+               "or more, so that disturbances become weaker or stronger, or if H is not a whole number of the given\n"
+               "steps. When the energy overflows, the output ends, the time is printed on standard error, and the\n"
+               "exit status is 1.",
     .columns = "t_s energy_J kinetic_J elastic_J gravity_J max_displacement_m",
-    .meaning = "energy_J is the sum of its parts kinetic_J, elastic_J and gravity_J (0 at the origin),\n"
-               "max_displacement_m the largest distance of a particle from its start. A row for each frame, at\n"
-               "the step nearest to it, and one for the end, the step nearest to the duration, but at least one.\n"
-               "With --collider there is one more column, touching: the number of particles that touch a collider.\n\n"
-               "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, z up.",
+    .meaning = "energy_J is the sum of kinetic_J, elastic_J and gravity_J (0 at the origin). max_displacement_m is\n"
+               "the largest distance of a particle from its start. There is a row for each frame, at the nearest\n"
+               "step, and a row for the end, at the step nearest to the duration but after at least one step. With\n"
+               "--collider, the additional column touching has the number of particles that touch a collider.\n\n"
+               "Columns of frames: t_s, particle, its indices i j k in the grid, and x_m y_m z_m, with z up.",
     .shown = {"t_s", "energy_J"},
     .examples = {"--scene cloth --method leapfrog --collider sphere:x=1,y=1,z=-.6,radius=.4 -o c.tsv",
                  "--scene water --method rk4 --duration 1 --poke 0,1,1,2e4,.1 --poke .5,3,2,2e4,.1",
@@ -154,7 +157,8 @@ static const cli_program program = {
 static void refuse_what_it_lacks(const char *option, double value, double usual)
 {
     if (!isnan(value) && isnan(usual))
-        cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; %s has none", option, value, preset_names[kind]);
+        cli_fail(CLI_USAGE, "--%s: \"%g\" is for other scenes; it does not apply to %s", option, value,
+                 preset_names[kind]);
 }
 
 static bool is_disturbed(void)
@@ -172,7 +176,7 @@ static void refuse_on_one_axis(const preset_settings *s)
                               : "collider",
                  preset_names[kind]);
     if (tension_only && spring_method_describe((spring_method)method)->positions_only)
-        cli_fail(CLI_USAGE, "--tension-only: \"%s\" requires smooth forces; --method should be another",
+        cli_fail(CLI_USAGE, "--tension-only: the method \"%s\" requires smooth forces; choose another --method",
                  spring_method_name((spring_method)method));
 }
 
@@ -180,7 +184,7 @@ static void refuse_methods_without_contacts(void)
 {
     const spring_method m = (spring_method)method;
     if (colliders.count > 0 && (m == SPRING_EULER || spring_method_describe(m)->positions_only))
-        cli_fail(CLI_USAGE, "--collider: the method \"%s\" does not support contacts; --method should be another",
+        cli_fail(CLI_USAGE, "--collider: the method \"%s\" does not support contacts; choose another --method",
                  spring_method_name(m));
 }
 
@@ -195,10 +199,10 @@ static void refuse_what_does_not_count(void)
 {
     const bool line = kind == PRESET_ROPE || kind == PRESET_CHAIN;
     if (line && cli_given(&link_choice))
-        cli_fail(CLI_USAGE, "--links: \"%s\" is for other scenes; %s has structural links alone", links[link_choice],
+        cli_fail(CLI_USAGE, "--links: \"%s\" is for other scenes; %s has only structural links", links[link_choice],
                  preset_names[kind]);
     if (!is_disturbed() && cli_given(&disturbance_time))
-        cli_fail(CLI_USAGE, "--push-duration: \"%g\" does not count without --poke, --rain or --drop-box",
+        cli_fail(CLI_USAGE, "--push-duration: \"%g\" has no effect without --poke, --rain or --drop-box",
                  disturbance_time);
 }
 
@@ -208,15 +212,14 @@ static preset_settings chosen_settings(void)
     const bool water = kind == PRESET_WATER;
     given.kind = usual.kind;
     if (given.axes > 0 && !water && given.axes != usual.axes)
-        cli_fail(CLI_USAGE,
-                 "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or not be given",
+        cli_fail(CLI_USAGE, "--axes: \"%" PRIu64 "\" is for water; for the %s it should be %" PRIu64 ", or be omitted",
                  given.axes, preset_names[kind], usual.axes);
     if (given.axes == 2 && water)
         cli_fail(CLI_USAGE, "--axes: \"2\" is not a number of axes of water; it should be 1 or 3");
     refuse_what_it_lacks("end-mass", given.end_mass, usual.end_mass);
     refuse_what_it_lacks("gravity", given.gravity, usual.gravity);
     if (water && given.axes != 3 && given.stretch <= 1)
-        cli_fail(CLI_USAGE, "--stretch: \"%g\" gives water no stiffness across; it should be greater than 1",
+        cli_fail(CLI_USAGE, "--stretch: \"%g\" gives the water no stiffness; it should be greater than 1",
                  given.stretch);
     if (water && given.axes == 3 && isnan(given.stretch))
         given.stretch = 1.25;
@@ -319,8 +322,10 @@ static void prepare_frames(uint64_t count)
     uint64_t number;
     for (const struct dirent *entry; (entry = readdir(folder)) != NULL;)
         if (sscanf(entry->d_name, "frame-%6" SCNu64 ".tsv", &number) == 1 && number >= count)
-            cli_fail(CLI_IO, "--frames: \"%s/%s\" is of a longer run; the folder should be empty or of the same",
-                     frames, entry->d_name);
+            cli_fail(
+                CLI_IO,
+                "--frames: \"%s/%s\" belongs to a longer run; the folder should be empty or belong to the same run",
+                frames, entry->d_name);
     closedir(folder);
     for (uint64_t frame = 0; frame < count; frame++) {
         name_frame(frame);
@@ -459,16 +464,15 @@ static double default_step(spring_scene *scene, bool disturbed)
 static void choose_length(void)
 {
     if (steps_per_frame > 0 && cli_given(&length.dt))
-        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --dt", steps_per_frame);
+        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" cannot be combined with --dt", steps_per_frame);
     if (steps_per_frame > 0 && cli_given(&length.steps) && cli_given(&length.duration))
-        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" does not count with --steps and --duration",
+        cli_fail(CLI_USAGE, "--steps-per-frame: \"%" PRIu64 "\" cannot be combined with --steps and --duration",
                  steps_per_frame);
     if (steps_per_frame > 0)
         length.dt = scene_run_step(frame_rate, steps_per_frame);
     if (cli_given(&length.steps) && length.dt == 0 && !cli_given(&length.duration))
         cli_fail(CLI_USAGE,
-                 "--steps: \"%" PRIu64
-                 "\" leaves the time open; --dt, --steps-per-frame or --duration should be given, too",
+                 "--steps: \"%" PRIu64 "\" does not set the time; give --dt, --steps-per-frame or --duration as well",
                  length.steps);
     if (length.dt > 0 || length.steps > 0)
         run_length_settle(&length);
@@ -489,8 +493,8 @@ static void remark_on_step(spring_scene *scene, bool disturbed)
         run_length_remark_end(&length);
     run_length_remark_step(length.dt, spring_scene_stable_step(scene, m), m);
     if (disturbed && !(length.dt < disturbance_time / 4))
-        cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances lose or "
-                 "gain by it",
+        cli_warn("the step of %g s is not below a quarter of --push-duration, %g s: disturbances become "
+                 "weaker or stronger",
                  length.dt, disturbance_time / 4);
 }
 
@@ -522,7 +526,7 @@ static void check_frames(void)
 {
     const double most_frames = 1e6; /* six digits */
     if (!(length.duration * fps < most_frames) && !cli_given(&fps))
-        cli_fail(CLI_USAGE, "a run of %g s has more than %g frames, %g a second; it should be below %g s",
+        cli_fail(CLI_USAGE, "a run of %g s has more than %g frames, at %g per second; it should be below %g s",
                  length.duration, most_frames, fps, most_frames / fps);
     if (!(length.duration * fps < most_frames))
         cli_fail(CLI_USAGE, "--fps: \"%g\" makes more than %g frames in %g s; it should be below %g", fps, most_frames,
@@ -561,7 +565,7 @@ int main(int argc, char **argv)
     if (tear > 0)
         cli_warn("%zu of %zu links have torn", v.torn, r.def.links);
     if (!survived)
-        cli_warn("the scene blows up: its energy overflows at t = %.17g s", v.lost_at);
+        cli_warn("the scene explodes: its energy overflows at t = %.17g s", v.lost_at);
     free(v.xyz);
     free(v.saved);
     free(scene);

@@ -23,27 +23,29 @@ static bool quick, timed;
 static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S"},
     {"method", CLI_METHOD, .choice = &only_method, .offers = cli_for_scenes, .value = "M"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, for one second"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer numbers of steps, and one second instead of four"},
     {"time", CLI_FLAG, .flag = &timed,
-     .help = "how many particles a millisecond moves instead\n"
-             "by the fewest steps a frame from which on all are fine and below the stable step"},
+     .help = "instead, measure how many particles can be simulated per millisecond\n"
+             "Each method takes the fewest steps per frame from which on all runs are fine and below the stable\n"
+             "step."},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-scene-map",
-    .summary = "What becomes of each preset with each method and number of steps a frame.",
-    .details = "All scenes, or that of --scene, with all methods, or that of --method. The scenes are those that "
-               "spring-scene makes by default, for four seconds.",
+    .summary = "Simulate each preset with each method and number of steps per frame, and judge the energy.",
+    .details = "All scenes are simulated, or only the scene of --scene, with all methods, or only the method of\n"
+               "--method. The scenes are the defaults of spring-scene, for four seconds.",
     .columns = "scene method particles links substeps dt_s stable_step_s energy_error verdict",
-    .meaning = "substeps are the steps in a frame of 1/60 s, stable_step_s what the library says, energy_error the\n"
-               "largest difference of the energy at a frame from that of a run in very short steps, in parts of the\n"
-               "largest kinetic energy there. verdict is fine, up to 0.05; exploded, where the kinetic energy is\n"
-               "more than tenfold the largest, or the state overflows; else lossy or gaining, by the sign of the\n"
-               "difference.\n\n"
-               "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms (the time\n"
-               "that a frame of the scene takes, grown until that is about a millisecond: the shortest of five)\n"
-               "and particles_per_ms. A method of which 64 steps a frame are not fine has no row.",
+    .meaning =
+        "substeps is the number of steps per frame of 1/60 s. stable_step_s is the stable step that the\n"
+        "library returns. energy_error is the largest difference between the energy at a frame and the energy\n"
+        "of a run in very short steps, relative to the largest kinetic energy of that run. verdict is fine if\n"
+        "energy_error is at most 0.05. It is exploded if the kinetic energy is more than ten times the\n"
+        "largest, or if the state overflows. Otherwise it is lossy or gaining, by the sign of the difference.\n\n"
+        "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms and\n"
+        "particles_per_ms. The scene is enlarged until a frame takes about a millisecond. frame_ms is the\n"
+        "shortest of five times. A method that is not fine with 64 steps per frame has no row.",
     .shown = {"substeps", "energy_error"},
     .examples = {"--scene chain --quick", "--scene rope --method leapfrog -o rope.tsv",
                  "--scene chain --method rk4 --time --quick"},

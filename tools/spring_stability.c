@@ -21,23 +21,23 @@ static bool map;
 
 static const cli_option options[] = {
     {"points", CLI_COUNT, .count = &points, .least = 1, .most = 10000, .value = "N",
-     .help = "number of damping ratios from 0.01 to 100, besides 0"},
+     .help = "number of damping ratios from 0.01 to 100, in addition to 0"},
     {"map", CLI_FLAG, .flag = &map,
-     .help = "the error after ten periods instead, over step and damping ratio\n"
-             "on a grid of N damping ratios from 0.01 to 100 by N steps omega dt from 0.001 to 10"},
+     .help = "instead, print the error after ten periods on a grid\n"
+             "The grid has N damping ratios from 0.01 to 100 and N steps omega dt from 0.001 to 10."},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-stability",
-    .summary = "Measure the stable step of each method over the damping ratio.",
-    .details = "The limit is found by taking steps, about a minute of them with as many points as by default.",
+    .summary = "Measure the stable step of each method as a function of the damping ratio.",
+    .details = "The limit is found by simulation. This takes about a minute with the default number of points.",
     .columns = "method damping_ratio limit_measured limit_theory relative_error",
-    .meaning = "limit_measured and limit_theory are omega dt: the largest stable step found by taking steps, and\n"
-               "spring_stable_step().\n\n"
-               "With --map: method, omega_dt, damping_ratio, error: the distance from the exact state in\n"
-               "(x, v/omega) over that of the start from rest, after the whole number of steps that comes\n"
-               "nearest to ten undamped periods; inf where the state overflows.",
+    .meaning = "limit_measured is the largest stable step omega dt found by simulation. limit_theory is the stable\n"
+               "step omega dt of spring_stable_step().\n\n"
+               "With --map: method, omega_dt, damping_ratio, error. The error is the distance from the exact state\n"
+               "in (x, v/omega), relative to the start at rest, after the whole number of steps nearest to ten\n"
+               "undamped periods. It is inf if the state overflows.",
     .shown = {"damping_ratio", "limit_measured"},
     .examples = {"--points 1", "--map --points 10", "--map --points 50 -o map.tsv"},
     .options = options,

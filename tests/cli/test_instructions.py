@@ -16,8 +16,8 @@ def test_usage(args):
     assert result.stderr.startswith('usage: tools/bench/instructions BUILD-DIRECTORY')
 
 
-@pytest.mark.parametrize('args, wanted', [(['--cycles'], 'needs llvm-mca, of Debian\'s package llvm'),
-                                          (['build'], 'needs valgrind, of Debian\'s package valgrind')])
+@pytest.mark.parametrize('args, wanted', [(['--cycles'], 'requires llvm-mca, from Debian\'s package llvm'),
+                                          (['build'], 'requires valgrind, from Debian\'s package valgrind')])
 def test_what_is_missing_is_named(args, wanted, tmp_path):
     for command in 'bash', 'dirname':
         (tmp_path / command).symlink_to(shutil.which(command))

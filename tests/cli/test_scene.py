@@ -109,7 +109,7 @@ def test_water_with_tension(frames_of):
 
 def defaults_in_the_manual():
     """(option, scene, value) where the default is "by scene", and listed."""
-    listed = re.findall(r"\\-\\-([a-z]+) .*\n.*by scene\)\n\.br\nThat is: (.*)\.\n", run(SCENE, "--man").stdout)
+    listed = re.findall(r"\\-\\-([a-z]+) .*\n.*by scene\)\n\.br\nDefaults: (.*)\.\n", run(SCENE, "--man").stdout)
     assert listed
     return [(option, *pair.split()) for option, pairs in listed for pair in pairs.split(", ")]
 
@@ -425,7 +425,7 @@ def test_explosion(tmp_path):
     step, push, end = result.stderr.splitlines()
     assert result.returncode == 1
     assert 'not below the stable step of euler' in step and ' 0.01 s' in step
-    assert 'quarter of --push-duration' in push and 'blows up' in end
+    assert 'quarter of --push-duration' in push and 'explodes' in end
     time, last = float(end.partition(' t = ')[2].split()[0]), parse(rows.read_text())[-1]
     assert 0 <= time - float(last['t_s']) <= 1 / 60 + 0.01
     assert all(math.isfinite(float(x)) for row in parse(rows.read_text()) for x in row.values())

@@ -272,8 +272,8 @@ def test_removed_while_it_is_written(tmp_path):
     path = tmp_path / 'p'
     process = stopped_at_work(path)
     path.unlink()
-    assert outcome(process) == (3, f'{SWEEP}: "{path}" was removed while it was written; it is there again, and the same '
-                                   'command goes on with it')
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was removed during the run; it has been restored, and the same '
+                                   'command continues it')
     written = path.read_bytes()
     assert written.splitlines()[-1].startswith(b'# block ')
     is_done(part(1, 1, path, SLOW))
@@ -287,8 +287,8 @@ def test_moved_or_replaced_while_it_is_written(replace, tmp_path):
     (tmp_path / 'q').write_text('other\n')
     process = stopped_at_work(path)
     replace(path)
-    assert outcome(process) == (3, f'{SWEEP}: "{path}" was moved or replaced while it was written; it should stay until '
-                                   'all is done')
+    assert outcome(process) == (3, f'{SWEEP}: "{path}" was moved or replaced during the run; it should stay in place '
+                                   'until the end')
     assert not path.exists() or path.read_text() == 'other\n'
 
 
@@ -298,7 +298,7 @@ def test_removed_folder(tmp_path):
     process = stopped_at_work(folder / 'p')
     (folder / 'p').unlink()
     folder.rmdir()
-    assert outcome(process) == (3, f'{SWEEP}: "{folder}/p" was removed while it was written, and cannot be written again: '
+    assert outcome(process) == (3, f'{SWEEP}: "{folder}/p" was removed during the run, and cannot be restored: '
                                    'No such file or directory')
 
 
@@ -359,7 +359,7 @@ def test_jobs_that_cannot_begin(tmp_path):
     result = run(SWEEP, *LONG, '--jobs', '1', '-o', tmp_path / 'nowhere' / 'map.tsv')
     assert (result.returncode, result.stderr.splitlines()) == (3, [
         f'{SWEEP}: cannot write "{tmp_path}/nowhere/map.tsv.1-of-1": No such file or directory',
-        f'{SWEEP}: nothing is done'])
+        f'{SWEEP}: nothing was computed'])
 
 
 def test_jobs_beside_parts_of_another_sweep(tmp_path):
@@ -390,16 +390,16 @@ def test_foreign_parts(parts, tmp_path):
     older = tmp_path / 'older'
     older.write_bytes(parts[1].read_bytes().replace(b'# springstep ', b'# springstep 0', 1))
     is_failure(join(parts[0], older, parts[2]), 1, 'another sweep', '# springstep 0')
-    is_failure(join(parts[0], __file__, parts[2]), 1, __file__, 'no part of a sweep')
+    is_failure(join(parts[0], __file__, parts[2]), 1, __file__, 'not a part of a sweep')
     is_failure(join(parts[0], tmp_path / 'nothing'), 3, 'No such file')
     whole = tmp_path / 'whole'
     is_done(run(SWEEP, *GRID, '-o', whole))
-    is_failure(join(whole), 1, 'no part of a sweep')
+    is_failure(join(whole), 1, 'not a part of a sweep')
 
 
 def test_a_file_without_lines(parts, tmp_path):
     """Is not read to its end, which there may be none."""
-    short = 'is no part of a sweep: its header should be whole lines of at most 65536 bytes in all'
+    short = 'is not a part of a sweep: its header should be whole lines of at most 65536 bytes in all'
     is_failure(in_little_memory(SWEEP, '--join', '/dev/zero'), 3, f'--join: "/dev/zero" {short} (line 1)')
     comments = tmp_path / 'comments'
     comments.write_text('# a line\n' * 8000)
@@ -647,10 +647,10 @@ def test_angle():
 
 @pytest.mark.parametrize('args, words', [
     ('--over', ['--over', 'the value is missing']),
-    ('--over omega=1', ['--over', '"omega" is no parameter of one spring', 'omega_dt, damping_ratio']),
-    ('--over size=9', ['--over', '"size" is no parameter of one spring']),
-    ('--scene rope --over omega_dt=1', ['"omega_dt" is no parameter of the scene rope', 'stretch, angle']),
-    ('--scene cloth --over angle=1', ['"angle" is no parameter of the scene cloth']),
+    ('--over omega=1', ['--over', '"omega" is not a parameter of one spring', 'omega_dt, damping_ratio']),
+    ('--over size=9', ['--over', '"size" is not a parameter of one spring']),
+    ('--scene rope --over omega_dt=1', ['"omega_dt" is not a parameter of the scene rope', 'stretch, angle']),
+    ('--scene cloth --over angle=1', ['"angle" is not a parameter of the scene cloth']),
     ('--over omega_dt', ['"omega_dt" is not NAME=A:B:N']),
     *[(f'--over omega_dt={values}', [f'"omega_dt={values}" is not NAME=A:B:N'])
       for values in ['', ':', '1:2', '1:2:1', '1:2:0', '1:2:-3', '1:2:3:4', '1:2:x', '1:2:log', '1:2:lin:3', '1,,2', '1,',
@@ -667,20 +667,20 @@ def test_angle():
     ('--over omega_dt=1:2:9000000000 damping_ratio=0:1:9000000000', ['--over', 'more than 9007199254740992 points']),
     ('--method nothing', ['--method', '"nothing" is not one of all, euler']),
     ('--method rkn8', ['--method', '"rkn8" is not one of all, euler']),
-    ('--method rk4,rk4', ['--method', '"rk4" is there twice']),
+    ('--method rk4,rk4', ['--method', '"rk4" is listed twice']),
     ('--method rk4,', ['--method', '"" is not one of']),
     ('--measure error', ['--measure', '"error" is not one of steps']),
-    ('--measure steps --measure steps', ['--measure', '"steps" is there twice']),
+    ('--measure steps --measure steps', ['--measure', '"steps" is listed twice']),
     ('--scene sea', ['--scene', '"sea" is not one of spring, rope']),
     *[(f'--part {text} -o x', ['--part', f'"{text}" is not I/N'])
       for text in ['0/3', '4/3', '1', '1/', '/3', '1/3/4', '-1/3', 'a/3', '1/99999999999', '1/3x']],
     ('--part 1/3', ['--part', '--output']),
     ('--jobs 2', ['--jobs', '--output']),
     ('--jobs 0 -o x', ['--jobs', '"0"', '1 to 1024']),
-    ('--jobs 2 --part 1/3 -o x', ['--part', 'without --jobs']),
-    ('--part 1/2 2/2 -o x', ['--part', '"1/2" and "2/2"', 'one part']),
-    ('--join a --over omega_dt=1', ['--join', 'should be alone']),
-    ('--join a --scene rope', ['--join', 'should be alone']),
+    ('--jobs 2 --part 1/3 -o x', ['--part', 'combined with --jobs']),
+    ('--part 1/2 2/2 -o x', ['--part', '"1/2" and "2/2"', 'only one part']),
+    ('--join a --over omega_dt=1', ['--join', 'options other than --output']),
+    ('--join a --scene rope', ['--join', 'options other than --output']),
 ])
 def test_refused(args, words, tmp_path):
     is_failure(run(SWEEP, *args.split(), cwd=tmp_path), 2, *words)

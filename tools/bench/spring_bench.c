@@ -19,71 +19,68 @@ static bool quick;
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
-     .help = "spring (one at a time), batch, scene or small"},
+     .help = "spring (one spring), batch, scene or small"},
     {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = bench_kernels, .value = "NAME",
-     .help = "only the rows of this name"},
+     .help = "only the rows with this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
     {"count", CLI_COUNT, .count = &only_count, .least = 1, .value = "N",
-     .help = "only rows of so many springs, or links"},
+     .help = "only rows with this number of springs or links"},
     {"calls", CLI_COUNT, .count = &calls, .least = 1, .value = "N",
-     .help = "only make so many calls, for tools that count instructions"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
+     .help = "make only N calls, for tools that count instructions"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples; takes a few seconds"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-bench",
-    .summary = "What a step of a spring costs, compared with a limit measured in the same run.",
+    .summary = "Measure the cost of a step, compared with a limit measured in the same run.",
     .details =
-        "What tells most are two ratios of times in the same run: speedup, how many times as fast as a\n"
-        "plain loop the library is (nan: there is none), and ratio, its time over that of a limit. Goals\n"
-        "are what the library promises: goal_speedup (0: nothing), goal_ratio and goal_ns (inf:\n"
-        "nothing), goal_excess_ns (0: nothing).\n\n"
-        "Part spring: METHOD is spring_advance() over many steps, METHOD_call a loop of calls of\n"
-        "the kernel, METHOD_advance_1 of spring_advance() by one step; _damped, _loaded: with\n"
-        "damping, with load. Limit \"loop\": the same steps written out in a loop, in registers:\n"
-        "Euler; kick, drift, kick; the four stages of rk4. \"kicks\", of other methods: one kick and\n"
-        "one drift for each force evaluation. \"textbook\": its formula, by exp, cos and sin, or cosh\n"
-        "and sinh. leapfrog_denormal starts from 1e-310 m; its limit,\n"
+        "Two ratios of times in the same run are the most important. speedup is the time of a plain loop over\n"
+        "the time of the library (nan: no plain loop). ratio is the time of the library over the time of a\n"
+        "limit. The goals are goal_speedup and goal_excess_ns (0: no goal), and goal_ratio and goal_ns (inf:\n"
+        "no goal).\n\n"
+        "Part spring: METHOD is spring_advance() over many steps. METHOD_call is a loop of calls of the\n"
+        "kernel. METHOD_advance_1 is a loop of calls of spring_advance() with one step. _damped and _loaded\n"
+        "have damping and load. The limit \"loop\" is a hand-written loop over the same steps, in registers:\n"
+        "Euler; kick, drift, kick; the four stages of rk4. The limit \"kicks\", for other methods, is one kick\n"
+        "and one drift for each force evaluation. The limit \"textbook\" is the formula of the exact solution,\n"
+        "with exp, cos and sin, or cosh and sinh. leapfrog_denormal starts from 1e-310 m. Its limit,\n"
         "\"ordinary\", is leapfrog from an ordinary start.\n\n"
-        "Part batch: METHOD_batch_N is spring_batch_advance() by N steps a call, omega2 an array;\n"
-        "_shared_X, _own_X, _zero_X: with X shared, an array, an array of zeros; _settled: from\n"
-        "1e-310 m (float: 1e-41); _mixed: every second spring overdamped; _unaligned: arrays that\n"
-        "begin 8 bytes after a multiple of 64.\n"
-        "Limits, in vectors as wide as the library's: \"streams\" reads and writes the same arrays,\n"
-        "does no arithmetic, and its time is shared out among the steps of a call; \"arithmetic\"\n"
-        "does the multiplications and additions of a step in registers, with coefficients that are\n"
-        "there: those of leapfrog, rk4 and the exact solution; of other methods those of one kick and\n"
-        "one drift, which no step can do without.\n"
-        "The slower one is the limit: streams for one step, arithmetic for many. For own\n"
-        "parameters of the exact solution it is the textbook's formula; for settled and unaligned,\n"
-        "the same kernel without that.\n\n"
-        "Part scene: METHOD_SHAPE_N is spring_scene_advance() by N steps a call: a rope, a sheet or a\n"
-        "block of jelly with structural, shear and bend links, or water, a height field; with gravity\n"
-        "and pinned edges. _links_shuffled: links in random order; _shuffled: particles numbered at\n"
-        "random, too; _renumbered: that after spring_links_renumber(), whose limit is the plain loop\n"
-        "before, \"shuffled_list\". The plain loop is that over an array of links and one of particles, with a\n"
-        "division and a square root a link, compiled with -O2. Limits: \"streams\" reads and writes the\n"
-        "state and reads forces and links; \"arithmetic\" does that of the links, each once, in\n"
-        "registers. float's limit is the same scene in double; that of a feature (_drag, _damping, ...)\n"
-        "or of another method is \"leapfrog\" without it; that of a rope by one step a call,\n"
-        "\"16_steps\" a call. init_SHAPE is spring_scene_init(), and renumber_SHAPE the call\n"
-        "that orders its links, compared with reading the links of a definition. Goals that depend on the width of "
-        "vectors are those of this processor's.\n\n"
-        "Part small: METHOD_SCENE is spring_scene_advance() of one to six particles. Figures are per force\n"
-        "evaluation, count is that of evaluations per step. Limits: \"written_out\" is the same method in C\n"
-        "for this one scene; \"callback\" is the callback alone.\n\n"
-        "Figures are medians of samples, in processor time, that alternate with those of the\n"
-        "limit. spread is the distance between the quartiles over the median, the larger one of\n"
-        "kernel, limit and baseline. verdict is ok, noisy (spread above 0.05: the machine was busy, the\n"
-        "row proves nothing) or above_goal. No verdict changes the exit status: time is for people to\n"
-        "judge.",
+        "Part batch: METHOD_batch_N is spring_batch_advance() with N steps per call, and omega2 is an array.\n"
+        "In _shared_X, _own_X and _zero_X, X is shared, an array, and an array of zeros. _settled starts from\n"
+        "1e-310 m (float: 1e-41). In _mixed, every second spring is overdamped. In _unaligned, arrays begin 8\n"
+        "bytes after a multiple of 64. The limits use SIMD vectors as wide as the library's. \"streams\" reads\n"
+        "and writes the same arrays without arithmetic, and its time is divided by the number of steps per\n"
+        "call. \"arithmetic\" does the multiplications and additions of a step in registers, with given\n"
+        "coefficients: a full step of leapfrog, rk4 and the exact solution, and for other methods one kick\n"
+        "and one drift, which every step needs. The slower one is the limit: streams for one step, arithmetic\n"
+        "for many. For own parameters of the exact solution, the limit is the textbook formula. For _settled\n"
+        "and _unaligned, it is the same kernel without this property.\n\n"
+        "Part scene: METHOD_SHAPE_N is spring_scene_advance() with N steps per call: a rope, a sheet or a\n"
+        "block of jelly with structural, shear and bend springs, or water, a height field, with gravity and\n"
+        "pinned edges. In _links_shuffled, links are in random order. In _shuffled, particles are also\n"
+        "numbered at random. _renumbered is _shuffled after spring_links_renumber(), and its limit is the\n"
+        "plain loop before it, \"shuffled_list\". The plain loop is a loop over an array of links and one over\n"
+        "an array of particles, with a division and a square root per link, compiled with -O2. Limits:\n"
+        "\"streams\" reads and writes the state, and reads forces and links. \"arithmetic\" does the arithmetic\n"
+        "of the links, once per link, in registers. The limit of float is the same scene in double. The limit\n"
+        "of a feature (_drag, _damping, ...) or of another method is \"leapfrog\" without it. The limit of a\n"
+        "rope with one step per call is \"16_steps\" per call. init_SHAPE is spring_scene_init(), and\n"
+        "renumber_SHAPE is the call that sorts its links. Their limit is reading the links of a definition.\n"
+        "Goals that depend on the vector width are for this processor.\n\n"
+        "Part small: METHOD_SCENE is spring_scene_advance() for one to six particles. Times are per force\n"
+        "evaluation, and count is the number of evaluations per step. Limits: \"written_out\" is the same\n"
+        "method, hand-written in C for this scene. \"callback\" is the callback alone.\n\n"
+        "Times are medians of samples of processor time, which alternate with samples of the limit. spread is\n"
+        "the distance between the quartiles over the median, the largest of kernel, limit and baseline.\n"
+        "verdict is ok, noisy (spread above 0.05: the machine was busy, and the row proves nothing) or\n"
+        "above_goal. The exit status does not depend on the verdict.",
     .columns = "kernel precision count ns_per_spring_step limit_ns ratio spread verdict goal_ratio goal_ns limit "
                "baseline_ns speedup goal_speedup step_ns goal_excess_ns",
-    .meaning = "count is that of springs, or of links of a scene; limit is the name of the limit, baseline_ns the\n"
-               "time of the plain loop, step_ns that of a step of all springs or links, goal_excess_ns how much\n"
-               "longer than with the limit that may take.",
+    .meaning = "count is the number of springs, or of links of a scene. limit is the name of the limit. baseline_ns\n"
+               "is the time of the plain loop. step_ns is the time of a step of all springs or links. goal_excess_ns\n"
+               "is the longest time by which step_ns may exceed the limit.",
     .shown = {"count", "ns_per_spring_step"},
     .examples = {"--quick --part spring", "--quick --kernel leapfrog_batch_1",
                  "--quick --part batch --count 1000 -o bench.tsv"},
@@ -122,7 +119,7 @@ static void check_any_wanted(void)
     for (const bench_row *r = rows; r < rows + count; r++)
         if (wanted(r))
             return;
-    cli_fail(CLI_USAGE, "no row is of all that --part, --kernel, --precision and --count ask for%s",
+    cli_fail(CLI_USAGE, "no row matches --part, --kernel, --precision and --count%s",
              quick ? "; --quick leaves some out" : "");
 }
 

@@ -23,30 +23,32 @@ static bool quick;
 
 static const cli_option options[] = {
     {"engine", CLI_CHOICE, .choice = &only_engine, .choices = engines, .value = "NAME", .help = "bullet or chipmunk"},
-    {"substeps", CLI_COUNT, .count = &substeps, .value = "N", .help = "steps a call", .least = 1, .most = 1000},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples: a few seconds in all"},
+    {"substeps", CLI_COUNT, .count = &substeps, .value = "N", .help = "steps per call", .least = 1, .most = 1000},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer and shorter samples; takes a few seconds"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-engines",
-    .summary = "A sheet by the library and by physics engines that games use, in one run.",
-    .details = "Sheets of 35 x 35 and 128 x 128 particles with structural, shear and bend links, all damped,\n"
-               "pinned along two edges, under gravity, by leapfrog; the same steps for both.\n\n"
-               "bullet: a soft body in a world of its own, with one iteration of its position solver a step.\n"
-               "That moves both ends of a link to its length, so the material is another one, but the work is\n"
-               "that of one force a link; its links in random order, as in Bullet's examples, and fastest.\n"
-               "chipmunk: damped springs between bodies, with one iteration a step; the same\n"
-               "forces as ours, on two axes, as ours are then. Nothing collides in either. A line of the\n"
-               "table says whether Chipmunk was compiled with assertions, as Debian's is, which makes it\n"
-               "slower; tools/bench/optimised builds it without.\n\n"
-               "Figures are medians of samples, in processor time, that alternate. spread is the distance\n"
-               "between the quartiles over the median, the larger one of both. verdict is ok, noisy (spread\n"
-               "above 0.05: the machine was busy, the row proves nothing) or above_goal (speedup below 15).\n"
-               "It does not change the exit status: time is for people to judge.",
+    .summary = "Compare a sheet in the library with the same sheet in physics engines of games.",
+    .details =
+        "The sheets have 35 x 35 and 128 x 128 particles with structural, shear and bend springs, all damped.\n"
+        "They are pinned along two edges, under gravity. The library uses leapfrog. Both take the same steps.\n\n"
+        "bullet: a soft body in a world of its own, with one iteration of its position solver per step. The\n"
+        "solver moves both ends of a link to its length, so the material is different, but the work is\n"
+        "equivalent to one force per link. Its links are in random order, as in Bullet's examples, which is\n"
+        "the fastest order.\n\n"
+        "chipmunk: damped springs between bodies, with one iteration per step. The forces are the same as in\n"
+        "the library, on two axes. The library then also uses two axes. Nothing collides in either engine. A\n"
+        "comment line of the table records whether Chipmunk was compiled with assertions, as Debian's package\n"
+        "is. They make it slower. tools/bench/optimised builds it without assertions.\n\n"
+        "Times are medians of alternating samples of processor time. spread is the distance between the\n"
+        "quartiles over the median, the larger of both. verdict is ok, noisy (spread above 0.05: the machine\n"
+        "was busy, and the row proves nothing) or above_goal (speedup below 15). The exit status does not\n"
+        "depend on the verdict.",
     .columns = "engine precision links substeps speedup spread verdict engine_ns our_ns",
-    .meaning = "precision is that of the engine; ours is double. speedup is how many times as fast as the engine the\n"
-               "library is; engine_ns and our_ns are per link and step.",
+    .meaning = "precision is the precision of the engine. The library uses double. speedup is engine_ns/our_ns.\n"
+               "engine_ns and our_ns are per link and step.",
     .shown = {"links", "speedup"},
     .examples = {"--quick", "--quick --engine bullet", "--quick --engine chipmunk --substeps 4 -o engines.tsv"},
     .options = options,

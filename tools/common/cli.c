@@ -189,7 +189,7 @@ static bool want_help, want_version, want_man, want_completion;
 static const cli_option common_options[] = {
     {"output", CLI_FILE, .file = &cli_asked.output, .value = "FILE",
      .help = "write to FILE instead of standard output\n"
-             "FILE appears, or is replaced, when it is complete"},
+             "FILE is created or replaced when the output is complete."},
     {"help", CLI_FLAG, .flag = &want_help, .help = "print the options and some examples, and exit"},
     {"version", CLI_FLAG, .flag = &want_version, .help = "print the version, and exit"},
     {.name = NULL},
@@ -444,7 +444,8 @@ static void take_value(const cli_option *o, const char *value)
     if (value == NULL)
         fail_at(o, NULL, "the value is missing; it should be ");
     if (o->times != NULL && *o->times == o->most)
-        cli_fail(CLI_USAGE, "--%s: \"%s\" is one too many; it can be given %" PRIu64 " times", o->name, value, o->most);
+        cli_fail(CLI_USAGE, "--%s: \"%s\" is one too many; it can be given at most %" PRIu64 " times", o->name, value,
+                 o->most);
     if (!store(o, value))
         fail_at(o, value, "is not ");
     if (o->times != NULL)

@@ -76,8 +76,8 @@ static void print_columns(const char *words)
 static void print_readers(const cli_program *p)
 {
     const char *x = p->shown[0], *y = p->shown[1];
-    printf("Read FILE by gnuplot: set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\"\n"
-           "  by awk: awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE  by pandas: read_csv(\"FILE\", sep=\"\\t\", "
+    printf("Read FILE with gnuplot: set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\"\n"
+           "  with awk: awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE  with pandas: read_csv(\"FILE\", sep=\"\\t\", "
            "comment=\"#\")\n",
            x, y, column_number(p->columns, x), column_number(p->columns, y));
 }
@@ -93,7 +93,7 @@ void cli_print_help(void)
     size_t i = 0;
     for (; strcmp(cli_option_at(i)->name, "help") != 0; i++)
         print_option(i);
-    printf("  -h, --help, --version   print this, or the version; more: %s --man | man -l -\n", p->name);
+    printf("  -h, --help, --version   print this or the version; manual: %s --man | man -l -\n", p->name);
     if (p->columns != NULL) {
         putchar('\n');
         print_columns(p->columns);
@@ -215,8 +215,8 @@ static void print_title(void)
 static void print_output(const cli_program *p)
 {
     print_section("OUTPUT");
-    puts("Tab\\-separated values: lines that start with # say how the table was made, then come the names of the\n"
-         "columns, then the rows.");
+    puts("Tab\\-separated values. Lines that start with # record how the table was made. They are followed by the\n"
+         "names of the columns and by the rows.");
     if (p->columns != NULL) {
         puts(".PP\nColumns:");
         print_roff(p->columns);
@@ -235,7 +235,7 @@ static void print_output(const cli_program *p)
             "python3 -c 'import pandas; print(pandas.read_csv(\"FILE\", sep=\"\\t\", comment=\"#\"))'\n"
             "awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE\n",
             p->shown[0], p->shown[1], column_number(p->columns, p->shown[0]), column_number(p->columns, p->shown[1]));
-    puts(".PP\nTo look at a table that was written to FILE:\n.PP\n.nf");
+    puts(".PP\nTo read a table in FILE:\n.PP\n.nf");
     print_memory(&text);
     puts(".fi");
 }
@@ -280,15 +280,15 @@ void cli_print_man(void)
     print_section("DESCRIPTION");
     print_paragraphs(p->details != NULL ? p->details : p->summary);
     print_section("OPTIONS");
-    puts("Numbers are decimal (1e\\-4) or hexadecimal (0x1p\\-13); whole numbers may be written 1e7. Of an option "
-         "given\n"
-         "several times the last one counts, unless it says otherwise.");
+    puts("Numbers are decimal (1e\\-4) or hexadecimal (0x1p\\-13); whole numbers may be written 1e7. If an "
+         "option\n"
+         "is given several times, the last one counts, unless its description says otherwise.");
     for (size_t i = 0; cli_option_at(i) != NULL; i++)
         print_man_option(i);
     print_output(p);
     print_section("EXIT STATUS");
-    puts("0 done; 1 the computation failed, or a check did not hold; 2 bad usage; 3 cannot read or write. A closed\n"
-         "pipe ends the program by SIGPIPE, silently.");
+    puts("0: success. 1: the computation failed, or a check failed. 2: invalid usage. 3: cannot read or write. If the\n"
+         "output is a closed pipe, SIGPIPE ends the program without a message.");
     if (p->examples[0] != NULL)
         print_section("EXAMPLES");
     for (int i = 0; i < EXAMPLES && p->examples[i] != NULL; i++) {

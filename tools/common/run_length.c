@@ -22,11 +22,11 @@ void run_length_settle(run_length *run)
 {
     const bool dt = cli_given(&run->dt), duration = cli_given(&run->duration), steps = cli_given(&run->steps);
     if (dt && duration && steps)
-        cli_fail(CLI_USAGE, "--dt, --steps, --duration: two of them give the third; it should be two, not three");
+        cli_fail(CLI_USAGE, "--dt, --steps, --duration: two of them set the third; give two, not three");
     const bool by_steps = steps || (run->duration == 0 && run->steps > 0);
     const bool by_duration = by_steps && duration;
     if ((by_steps && !by_duration && run->dt == 0) || (!by_steps && (run->dt == 0 || run->duration == 0)))
-        cli_fail(CLI_USAGE, "--dt, --steps, --duration: two of them should be given");
+        cli_fail(CLI_USAGE, "--dt, --steps, --duration: give two of them");
     if (!by_steps)
         count_steps(run);
     else if (by_duration)
@@ -34,7 +34,7 @@ void run_length_settle(run_length *run)
     else
         run->duration = run->dt * (double)run->steps;
     if (!(run->dt > 0))
-        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps is no time at all; it should be larger",
+        cli_fail(CLI_USAGE, "--duration: \"%g\" in %" PRIu64 " steps makes each step 0; it should be larger",
                  run->duration, run->steps);
     if (!isfinite(run->duration) && dt)
         cli_fail(CLI_USAGE, "--dt: \"%g\" is too long for %" PRIu64 " steps; the duration should be finite", run->dt,

@@ -354,25 +354,24 @@ static bool quick;
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &part, .choices = parts, .value = "P",
-     .help = "closed forms, the energy in a box, or a list of the cases"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps; rough results"},
+     .help = "closed-form cases, the energy in a box, or a list of the cases"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps, rough results"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-contacts",
-    .summary = "Contacts of scenes against closed forms, compared with two schemes of game engines.",
-    .details =
-        "The method is leapfrog. The scheme library is spring_scene_set_colliders(). projection moves particles\n"
-        "that are inside a collider to its surface after each step, and changes their velocities there. penalty\n"
-        "pushes them out with damped springs.\n\n"
-        "In the part energy a soft body bounces in a box of six planes for a minute, with the library alone.",
+    .summary = "Compare contacts with closed-form solutions and with two schemes of game engines.",
+    .details = "The method is leapfrog. There are three schemes. library is spring_scene_set_colliders(). projection\n"
+               "moves particles that are inside a collider to its surface after each step, and changes their\n"
+               "velocities there. penalty pushes them out with damped springs.\n\n"
+               "With --part energy, a soft body bounces in a box of six planes for a minute, with the scheme library\n"
+               "only.",
     .columns = "case scheme dt_s value exact error order",
-    .meaning =
-        "error is the distance of value from exact, relative to exact if this is not 0. order is the mean slope\n"
-        "of error against dt_s, from the longest step to this one. With --part energy the columns are\n"
-        "restitution, damping_Ns_per_m, stable_fraction (dt over the stable step), dt_s and\n"
-        "largest_energy, over that at the start; with --part list, case and purpose.",
+    .meaning = "error is the distance of value from exact, divided by exact unless exact is 0. order is the mean\n"
+               "slope of error against dt_s, from the longest step to this one.\n\n"
+               "With --part energy: restitution, damping_Ns_per_m, stable_fraction (dt divided by the stable step),\n"
+               "dt_s and largest_energy (divided by the initial energy). With --part list: case and purpose.",
     .shown = {"dt_s", "error"},
     .examples = {"--quick", "--part energy --quick", "--part list"},
     .options = options,

@@ -58,8 +58,8 @@ static double error_bound(spring_method m, double duration, uint64_t n)
 
 static _Noreturn void fail_for_rounding(spring_method m, double error)
 {
-    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m: rounding is of that size", spring_method_name(m),
-             error);
+    cli_fail(CLI_FAILED, "%s cannot be shown to stay within %.17g m, because the rounding error is of that size",
+             spring_method_name(m), error);
 }
 
 /* Longer steps than 1 s, where the turn may be none: by the n-th power of the step, one n after the other. */

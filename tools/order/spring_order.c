@@ -27,37 +27,39 @@ static double match_error;
 static const cli_option options[] = {
     {"method", CLI_METHOD, .choice = &chosen.method, .offers = cli_for_springs, .required = true, .value = "M"},
     {"arithmetic", CLI_CHOICE, .choice = &chosen.arithmetic, .choices = stepper_arithmetics, .value = "A",
-     .help = "library, or, for rk4, stages: k1, k2, k3, k4 one by one"},
-    {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time at which the error is taken [s]"},
+     .help = "library, or stages (rk4 only: computes k1 to k4)"},
+    {"duration", CLI_POSITIVE, .real = &duration, .value = "H", .help = "time at which the error is measured [s]"},
     {"n-min", CLI_COUNT, .count = &n_min, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
-     .help = "smallest number of steps (default: 10; of order 4 and more: 5)"},
+     .help = "smallest number of steps (default: 10; for order 4 and above: 5)"},
     {"n-max", CLI_COUNT, .count = &n_max, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
-     .help = "largest (default: 10000; of order 4 and more: 1000)"},
+     .help = "largest number of steps (default: 10000; for order 4 and above: 1000)"},
     {"n-step", CLI_COUNT, .count = &n_step, .least = 1, .most = CLI_MOST_STEPS, .value = "N",
-     .help = "from one to the next (default: 10; of order 4 and more: 5)"},
+     .help = "increment of the number of steps (default: 10; for order 4 and above: 5)"},
     {"fit", CLI_FLAG, .flag = &fit,
-     .help = "instead of the errors, the power law through all of them\n"
-             "the least-squares line of log(error) against log(n), in one row"},
+     .help = "instead of the errors, print the power law through all of them\n"
+             "The law is the least-squares line of log(error) against log(n). The table has one row."},
     {"match-error", CLI_POSITIVE, .real = &match_error, .value = "E",
-     .help = "instead, the smallest n from which on no error exceeds E [m] < 2\n"
-             "in one row"},
+     .help = "instead, print the smallest n from which on no error exceeds E [m] < 2\n"
+             "The table has one row."},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-order",
-    .summary = "The error in position of a spring after a fixed time, against the number of steps.",
-    .details = "The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m; the error is\n"
-               "|x - cos H|.",
+    .summary = "Measure the position error of a spring after a fixed time, for different numbers of steps.",
+    .details = "The spring has a mass of 1 kg and a stiffness of 1 N/m, and starts at rest from x = 1 m. The error\n"
+               "is |x - cos H|.",
     .columns = "method n dt_s error_m force_evaluations",
-    .meaning = "n is the number of steps, dt_s the step; force_evaluations are those of the whole run.\n\n"
-               "With --fit: method, coefficient_m and exponent (error = coefficient n^exponent), r_squared,\n"
-               "points, and theory_coefficient_m, the same to leading order, of the method without rounding.\n\n"
-               "With --match-error: the columns of a single run, then match_error_m (E), previous_error_m (at\n"
-               "n - 1, more than E) and first_n, the smallest n whose error happens not to exceed E; it may do\n"
-               "so again beyond. Where H is more than 10^5 s no steps of more than 1 s are looked at, and first_n\n"
-               "is 0.\n\n"
-               "The rounding of --arithmetic shows in the last digits of rk4's fit: its errors end at 1e-14.",
+    .meaning = "n is the number of steps. dt_s is the step. force_evaluations counts the whole run.\n\n"
+               "With --fit: method, coefficient_m and exponent (error = coefficient n^exponent), r_squared, points,\n"
+               "and theory_coefficient_m, which is the leading-order coefficient of the method without rounding\n"
+               "error.\n\n"
+               "With --match-error: the columns of a single run, match_error_m (E), previous_error_m (the error of n\n"
+               "- 1 steps, more than E) and first_n, the smallest n whose error does not exceed E. Between first_n\n"
+               "and n, errors may exceed E again. If H is more than 10^5 s, steps of more than 1 s are not examined\n"
+               "and first_n is 0.\n\n"
+               "The rounding error of --arithmetic affects the last digits of the fit for rk4, whose errors go down\n"
+               "to 1e-14.",
     .shown = {"n", "error_m"},
     .examples = {"--method rk4 -o order.tsv", "--method leapfrog --fit",
                  "--method rk4 --duration 100 --match-error 1e-6"},
@@ -105,7 +107,7 @@ static void write_fit(cli_table *table)
     for (uint64_t n = n_min; n <= n_max; n += n_step) {
         const double error = measured_error(n);
         if (!(error > 0))
-            cli_fail(CLI_FAILED, "the error is 0 for %" PRIu64 " steps: no power law goes through it", n);
+            cli_fail(CLI_FAILED, "the error is 0 for %" PRIu64 " steps, which no power law can fit", n);
         points += 1;
         mean_x += (log((double)n) - mean_x) / points;
         mean_y += (log(error) - mean_y) / points;
@@ -129,8 +131,9 @@ static void write_match(cli_table *table)
     const double error = measured_error(n), previous = n > 1 ? measured_error(n - 1) : INFINITY;
     const bool longest = (double)n - 1 < duration; /* steps of more than 1 s may not have been looked at */
     if (!(error <= match_error && (previous > match_error || longest)))
-        cli_fail(CLI_FAILED, "theory says %" PRIu64 " steps, but with them the error is %.17g m, with one less %.17g m",
-                 n, error, previous);
+        cli_fail(CLI_FAILED,
+                 "theory predicts %" PRIu64 " steps, but their error is %.17g m, and with one step less %.17g m", n,
+                 error, previous);
     cli_columns(table, "method n dt_s error_m force_evaluations match_error_m previous_error_m first_n");
     cli_row(table, "%s\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%" PRIu64, stepper_name(&chosen), n,
             duration / (double)n, error, force_evaluations(n), match_error, previous,
@@ -155,7 +158,7 @@ static void settle_options(void)
     if (fit && n_max - n_min < n_step)
         cli_fail(CLI_USAGE, "--fit: requires two points or more; --n-max should be at least --n-min + --n-step");
     if (fit && match_error > 0)
-        cli_fail(CLI_USAGE, "--fit: cannot be combined with --match-error; it should be one of them");
+        cli_fail(CLI_USAGE, "--fit: cannot be combined with --match-error");
     if (!(match_error < 2))
         cli_fail(CLI_USAGE,
                  "--match-error: \"%g\" is more than the distance of two ends of a swing; it should be less "
@@ -164,7 +167,7 @@ static void settle_options(void)
     if ((fit || match_error > 0) && !cli_for_steps(spring_method_describe((spring_method)chosen.method))) {
         char steppers[200];
         cli_list_methods(steppers, sizeof steppers, cli_for_steps);
-        cli_fail(CLI_USAGE, "--method: \"%s\" has no error but rounding; it should be one of %s here",
+        cli_fail(CLI_USAGE, "--method: \"%s\" has only rounding error; it should be one of %s here",
                  stepper_name(&chosen), steppers);
     }
 }

@@ -224,8 +224,8 @@ static uint8_t *pin_highest(const mesh *m, const double *position)
     }
     if (!moves)
         cli_fail(CLI_USAGE,
-                 "--mesh: \"%s\" is level; some of its vertices should be lower than others, since the highest "
-                 "are held (y is up)",
+                 "--mesh: \"%s\" is level; some of its vertices should be lower than others, because the "
+                 "highest are pinned (y is up)",
                  m->path);
     return pinned;
 }

@@ -64,10 +64,11 @@ static void check_pins(const preset *scene)
         held[part[i]] = held[part[i]] || scene->pinned[i];
     for (size_t i = 0; i < particles; i++)
         if (!held[part[i]])
-            cli_fail(CLI_USAGE,
-                     "--sag: the vertex at \"%g %g %g\" hangs on no pin; all parts of a mesh should be joined to its "
-                     "highest vertices, which are pinned",
-                     scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
+            cli_fail(
+                CLI_USAGE,
+                "--sag: the vertex at \"%g %g %g\" is connected to no pin; all parts of a mesh should be connected "
+                "to its highest vertices, which are pinned",
+                scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
     free(part);
     free(held);
 }

@@ -133,8 +133,9 @@ static void run_reference(plan_scene *s, double error, double work)
     const double fewest = 2 * ceil(s->frame / fmin(stable_step(s, m), s->frame));
     if (!(work_of(s, m, 3 * fewest) <= patience * work))
         cli_fail(CLI_FAILED,
-                 "the reference of this scene would need %.3g steps a frame in %" PRIu64 " frames: too long", fewest,
-                 s->frames);
+                 "the reference of this scene would need %.3g steps per frame for %" PRIu64
+                 " frames, which takes too long",
+                 fewest, s->frames);
     uint64_t substeps = (uint64_t)fewest;
     double *coarse = room(s->frames * s->numbers), *fine = room(s->frames * s->numbers);
     bool known = run(s, m, substeps, coarse);

@@ -25,71 +25,73 @@ static bool presets, quick;
 
 static const cli_option options[] = {
     {"error", CLI_POSITIVE, .real = &error, .value = "E",
-     .help = "the largest error, of the size of the motion: 0.01 is 1 %"},
-    {"duration", CLI_POSITIVE, .real = &duration, .value = "T", .help = "for so long [s]"},
+     .help = "largest error, relative to the size of the motion: 0.01 is 1 %"},
+    {"duration", CLI_POSITIVE, .real = &duration, .value = "T", .help = "simulated time [s]"},
     {"mass", CLI_POSITIVE, .real = &mass, .value = "M",
-     .help = "[kg] of the spring, or of particles (default: 1; by scene)"},
+     .help = "mass of the spring or of a particle [kg] (default: 1; by scene)"},
     {"stiffness", CLI_NOT_NEGATIVE, .real = &stiffness, .value = "K",
-     .help = "[N/m] of the spring, or of a scene's links"},
+     .help = "stiffness of the spring or of a link of the scene [N/m]"},
     {"damping", CLI_NOT_NEGATIVE, .real = &damping, .value = "C",
-     .help = "[N s/m] of the spring, or of a scene's links (default: 0)"},
-    {"hertz", CLI_NOT_NEGATIVE, .real = &hertz, .value = "F", .help = "the spring by its undamped frequency [Hz]"},
+     .help = "damping of the spring or of a link of the scene [N s/m] (default: 0)"},
+    {"hertz", CLI_NOT_NEGATIVE, .real = &hertz, .value = "F",
+     .help = "undamped frequency of the spring [Hz], instead of --stiffness"},
     {"damping-ratio", CLI_NOT_NEGATIVE, .real = &damping_ratio, .value = "Z",
-     .help = "with --hertz: 1 is critical (default: 0)"},
+     .help = "damping ratio of the spring, with --hertz; 1 is critical (default: 0)"},
     {"scene", CLI_CHOICE, .choice = &kind, .choices = preset_names, .value = "S",
-     .help = "a scene of spring-scene: rope, cloth, jelly, chain or water"},
+     .help = "a preset of spring-scene: rope, cloth, jelly, chain or water"},
     {"size", CLI_COUNT, .count = &size, .least = 2, .most = 4000, .value = "N",
      .help = "particles along an edge of the scene"},
     {"mesh", CLI_INPUT, .file = &mesh, .value = "FILE",
-     .help = "a scene of a mesh (Wavefront OBJ, y up); takes --stiffness or --sag\n"
-             "A particle a vertex, a link along each edge and across each face of four corners; the highest\n"
-             "vertices are held, gravity pulls at the others, as in\n"
+     .help = "a scene from a mesh (Wavefront OBJ, y up); requires --stiffness or --sag\n"
+             "Each vertex becomes a particle. Links join the ends of each edge, and the opposite corners of each\n"
+             "face of four corners. The highest vertices are pinned, and gravity pulls the others. For example:\n"
              "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01"},
-    {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "[N s/m] of a particle of the scene"},
+    {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "drag on a particle of the scene [N s/m]"},
     {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
-     .help = "the stiffness with which --scene or --mesh hangs by at most S longer\n"
-             "S is from 1e-4 to 1; 0.02 is 2 %. The steps for that stiffness are printed, too, as in\n"
+     .help = "print the stiffness with which --scene or --mesh becomes at most S longer\n"
+             "S is from 1e-4 to 1, and 0.02 is 2 %. The steps for this stiffness are also printed. For example:\n"
              "spring-plan --sag 0.02 --scene cloth"},
     {"presets", CLI_FLAG, .flag = &presets,
-     .help = "the steps that a frame of 1/60 s needs in each scene instead\n"
-             "or in --scene, with each method, for errors of 10, 1 and 0.1 % in a second"},
-    {"quick", CLI_FLAG, .flag = &quick, .needs = &presets, .help = "with --presets: no run that takes long"},
+     .help = "instead, print the steps that each scene needs for a frame of 1/60 s\n"
+             "These are the steps for all scenes, or for --scene, with each method, for errors of 10, 1 and 0.1 %\n"
+             "in a second."},
+    {"quick", CLI_FLAG, .flag = &quick, .needs = &presets, .help = "with --presets: skip long runs"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-plan",
-    .summary = "Which method, and which step, for an error that is small enough; how stiff links should be.",
-    .details =
-        "A spring is given by --stiffness, or by --hertz, a scene by --scene, or by --mesh.\n\n"
-        "Of a spring the error is the largest at any of the first 65536 steps, and at no more of those after\n"
-        "them, in (x, v/omega) and relative to the start, for the worst start; the prediction is the library's,\n"
-        "spring_step_error(). Of a scene it is the largest at any frame: the Euclidean distance of all\n"
-        "positions from a reference over the largest distance of that from the start. The reference is\n"
-        "extrapolated from two runs of the method of highest order, which are made finer until the uncertainty\n"
-        "is a twentieth of the error, or the runs take too long; predicted is what the error of a coarser step\n"
-        "and the order lead to. Steps are whole numbers a frame.\n\n"
-        "With --sag, the scene is left to hang until it is at rest. All links get the same stiffness, the least\n"
-        "with which the scene is at most S longer along gravity than with links that do not stretch. A second row\n"
-        "has the stiffness with which no link is longer than (1 + S) times its rest length. It is larger, since\n"
-        "links near pins carry the weight of everything below them: a long rope needs twice the stiffness, a\n"
-        "cloth that hangs by two corners many times as much. In jelly, which stands on its pins, compression\n"
-        "counts instead. It takes seconds, and minutes with thousands of particles.",
+    .summary = "Find the method and the step for a given error, or the stiffness for a given sag.",
+    .details = "A spring is given by --stiffness or --hertz, and a scene by --scene or --mesh.\n\n"
+               "For a spring, the error is the largest error in (x, v/omega) after any of the first 65536 steps, and\n"
+               "after at most as many of the later steps, relative to the start and for the worst start. The\n"
+               "prediction is spring_step_error(). For a scene, the error is the largest error at any frame: the\n"
+               "Euclidean distance of all positions from a reference, divided by the largest distance of the\n"
+               "reference from the start. The reference is extrapolated from two runs of the method of highest\n"
+               "order. They are refined until the uncertainty is a twentieth of the error, or until the runs take\n"
+               "too long. The predicted error follows from the error of a coarser step and the order. The number of\n"
+               "steps per frame is a whole number.\n\n"
+               "With --sag, the scene hangs until it is at rest. All links have the same stiffness. It is the\n"
+               "smallest stiffness with which the scene is at most S longer along gravity than with links that do\n"
+               "not stretch. A second row has the stiffness with which no link is longer than (1 + S) times its rest\n"
+               "length. This stiffness is larger, because links near pins carry the weight of everything below them:\n"
+               "a long rope needs twice the stiffness, and a cloth that hangs by two corners many times as much. For\n"
+               "jelly, which stands on its pins, compression counts instead. The computation takes seconds, or\n"
+               "minutes with thousands of particles.",
     .columns = "method dt_s steps force_evaluations predicted_error measured_error time_s uncertainty",
-    .meaning =
-        "time_s is the time on this machine, without setting up, uncertainty that of the measured error. The\n"
-        "fastest method comes first. Of methods whose times differ by less than a tenth, the most accurate\n"
-        "comes first. A comment says it in words. A method of which no number of steps is known to be enough\n"
-        "comes last, with 0 steps: rounding would be too large, or the runs take too long.\n"
-        "force_evaluations counts one per step for leapfrog in scenes. With heavily damped links a step takes two\n"
-        "and evaluations of damping; time_s includes them.\n\n"
-        "With --presets: scene, method, error, substeps (a frame; 0: not known), dt_s, measured_error,\n"
-        "uncertainty and stable_substeps (the fewest that are below the stable step; 0: none is).\n\n"
-        "With --sag: limit (scene or link: its stretch is S, or at most 0.1 % of S less),\n"
-        "stiffness_N_per_m, scene_stretch and link_stretch (at rest, of the scene and of its most stretched\n"
-        "link), stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
-        "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"
-        "than how its links stretch, such as a hammock, has only the row of its links.",
+    .meaning = "time_s is the time on this machine, without setup. uncertainty is the uncertainty of the measured\n"
+               "error. The fastest method comes first. Of methods whose times differ by less than a tenth, the most\n"
+               "accurate comes first. A comment states the recommendation. A method without a sufficient number of\n"
+               "steps comes last, with 0 steps, because its rounding error would be too large or the runs would take\n"
+               "too long. force_evaluations counts one evaluation per step for leapfrog in scenes. With heavily\n"
+               "damped links, a step takes two force evaluations, and evaluations of damping. time_s includes them.\n\n"
+               "With --presets: scene, method, error, substeps (per frame; 0: not known), dt_s, measured_error,\n"
+               "uncertainty and stable_substeps (the fewest whose step is below the stable step; 0: none).\n\n"
+               "With --sag: limit (scene or link, whose stretch is S or at most 0.1 % of S less), stiffness_N_per_m,\n"
+               "scene_stretch and link_stretch (the stretch of the scene and of its most stretched link, at rest),\n"
+               "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
+               "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"
+               "than the stretch of its links, such as a hammock, has only the row for link.",
     .shown = {"dt_s", "measured_error"},
     .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
                  "--sag 0.02 --scene rope -o stiffness.tsv"},
@@ -104,8 +106,8 @@ static void refuse(const char *option, double value, const char *should)
 
 static void check_presets(void)
 {
-    refuse("error", error, "is not for --presets, which takes 10, 1 and 0.1 %");
-    refuse("duration", duration, "is not for --presets, which takes a second");
+    refuse("error", error, "is not for --presets, which uses 10, 1 and 0.1 %");
+    refuse("duration", duration, "is not for --presets, which uses one second");
     refuse("sag", sag, "is not for --presets");
     refuse("stiffness", stiffness, "is not for --presets");
     refuse("hertz", hertz, "is not for --presets");
@@ -124,7 +126,7 @@ static void check_error(void)
     if (isnan(duration))
         cli_fail(CLI_USAGE, "--duration: is missing; it should be a time in seconds");
     if (mesh != NULL && isnan(stiffness))
-        cli_fail(CLI_USAGE, "--stiffness: is missing; it should be that of the links of --mesh");
+        cli_fail(CLI_USAGE, "--stiffness: is missing; --mesh requires the stiffness of its links");
 }
 
 static void check_sag(void)
@@ -132,7 +134,7 @@ static void check_sag(void)
     if (!(sag >= 1e-4 && sag <= 1)) /* less takes minutes, and is proportional to 1/stiffness */
         refuse("sag", sag, "should be a stretch from 1e-4 to 1, such as 0.02 for 2 %");
     if (kind < 0 && mesh == NULL)
-        refuse("sag", sag, "is of a scene; it goes with --scene or --mesh");
+        refuse("sag", sag, "requires --scene or --mesh");
     refuse("error", error, "is not for --sag");
     refuse("duration", duration, "is not for --sag");
     refuse("stiffness", stiffness, "is not for --sag, which finds the stiffness");
@@ -141,7 +143,7 @@ static void check_sag(void)
 static void check_usage(void)
 {
     if (mesh != NULL && (presets || kind >= 0))
-        cli_fail(CLI_USAGE, "--mesh: \"%s\" is a scene; --scene and --presets are others", mesh);
+        cli_fail(CLI_USAGE, "--mesh: \"%s\" cannot be combined with --scene or --presets", mesh);
     if (presets) {
         check_presets();
         return;
@@ -151,22 +153,22 @@ static void check_usage(void)
     else
         check_error();
     if (kind >= 0 || mesh != NULL) {
-        refuse("hertz", hertz, "is of one spring, not of a scene");
-        refuse("damping-ratio", damping_ratio, "is of one spring, not of a scene");
+        refuse("hertz", hertz, "is for one spring, not for a scene");
+        refuse("damping-ratio", damping_ratio, "is for one spring, not for a scene");
         if (mesh != NULL && size > 0)
-            cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for --scene; a mesh has its size", size);
+            cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for --scene; a mesh has a fixed size", size);
         return;
     }
-    refuse("drag", drag, "is for a scene; of one spring it should be --damping");
+    refuse("drag", drag, "is for a scene; for one spring use --damping");
     if (size > 0)
         cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for a scene", size);
     if (isnan(hertz) == isnan(stiffness))
-        cli_fail(CLI_USAGE, "--stiffness: either it, or --hertz, or --scene should be given");
+        cli_fail(CLI_USAGE, "--stiffness: give exactly one of --stiffness, --hertz and --scene");
     if (isnan(hertz)) {
-        refuse("damping-ratio", damping_ratio, "goes with --hertz; with --stiffness it should be --damping");
+        refuse("damping-ratio", damping_ratio, "requires --hertz; with --stiffness use --damping");
     } else {
-        refuse("damping", damping, "goes with --stiffness; with --hertz it should be --damping-ratio");
-        refuse("mass", mass, "goes with --stiffness; with --hertz the mass does not count");
+        refuse("damping", damping, "requires --stiffness; with --hertz use --damping-ratio");
+        refuse("mass", mass, "requires --stiffness; with --hertz the mass has no effect");
     }
 }
 
@@ -235,7 +237,7 @@ static void plan_one_scene(const preset *scene)
         cli_progress((place + 1.0) / SPRING_METHOD_COUNT);
     }
     if (row_count > 0 && rows[0].uncertainty > error)
-        cli_warn("the reference is uncertain by %g, more than the error that is asked for", rows[0].uncertainty);
+        cli_warn("the uncertainty of the reference, %g, is larger than the requested error", rows[0].uncertainty);
     plan_scene_free(s);
 }
 
@@ -284,10 +286,10 @@ static void say(cli_table *table)
     if (first->steps > 0 && first != stepper)
         cli_comment(
             table,
-            "plan: for an error of %g after %g s take the exact solution, %.3g s on this machine; of the steppers, %s.",
+            "plan: for an error of %g after %g s, use the exact solution, %.3g s on this machine; as a stepper, %s.",
             error, duration, first->time, steps);
     else
-        cli_comment(table, "plan: for an error of %g after %g s %s%s.", error, duration, stepper != NULL ? "take " : "",
+        cli_comment(table, "plan: for an error of %g after %g s, %s%s.", error, duration, stepper != NULL ? "use " : "",
                     steps);
 }
 
@@ -361,13 +363,13 @@ static void write_sag(cli_table *table, preset *scene)
     plan_stiffness(scene, sag, or_else(damping, 0), row);
     for (int i = 0; i < plan_limits; i++)
         if (isnan(row[i].stiffness))
-            cli_comment(table,
-                        "plan: the height of this scene depends on more than how its links stretch: no row for it.");
+            cli_comment(
+                table, "plan: no row for the scene, because its height depends on more than the stretch of its links.");
         else
             cli_comment(
                 table,
-                "plan: for a %s that is stretched by at most %g take a stiffness of %.4g N/m, and leapfrog in %.0f "
-                "step%s a frame, %.3g s on this machine.",
+                "plan: for a %s that is stretched by at most %g, use a stiffness of %.4g N/m and leapfrog with %.0f "
+                "step%s per frame, %.3g s on this machine.",
                 what[i], sag, row[i].stiffness, row[i].substeps, row[i].substeps == 1 ? "" : "s", row[i].time);
     cli_columns(table, "limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s "
                        "time_per_frame_s");

@@ -163,7 +163,7 @@ static bool find_parameter(grid *g, const char *text, sweep_parameter *found)
     }
     char offered[300] = "";
     list_parameters(g, offered, sizeof offered);
-    return refuse(g, "\"%.*s\" is no parameter of %s %s; it should be one of %s", (int)length, text,
+    return refuse(g, "\"%.*s\" is not a parameter of %s %s; it should be one of %s", (int)length, text,
                   g->scene == SWEEP_SPRING ? "one" : "the scene", sweep_scene_name(g->scene), offered);
 }
 
@@ -173,7 +173,7 @@ static bool check_values(grid *g, const axis *a, const char *text)
     const sweep_parameter_info *p = &sweep_parameters[a->parameter];
     const uint64_t steps = a->kind == AXIS_LIST || p->whole ? a->count : 2;
     if (p->whole && (double)a->count > p->most)
-        return refuse(g, "\"%s\" has more values than there are whole numbers up to %g", text, p->most);
+        return refuse(g, "\"%s\" has more values than whole numbers up to %g", text, p->most);
     for (uint64_t k = 0; k < steps; k++) {
         const double value = axis_value(a, steps == a->count ? k : k * (a->count - 1));
         if (!(value >= p->least && value <= p->most))
@@ -189,10 +189,10 @@ static bool check_alone(grid *g, const axis *a, const char *text)
     for (size_t i = 0; i < g->axes; i++) {
         const sweep_parameter other = g->axis[i].parameter;
         if (other == a->parameter)
-            return refuse(g, "\"%s\": \"%s\" has its values already", text, sweep_parameters[other].name);
+            return refuse(g, "\"%s\": \"%s\" is given already", text, sweep_parameters[other].name);
         if (sweep_parameters[other].instead == (int)a->parameter ||
             sweep_parameters[a->parameter].instead == (int)other)
-            return refuse(g, "\"%s\": a sweep has either that or \"%s\"", text, sweep_parameters[other].name);
+            return refuse(g, "\"%s\": a sweep has either this parameter or \"%s\"", text, sweep_parameters[other].name);
     }
     return true;
 }
@@ -253,7 +253,7 @@ static bool add_method(grid *g, const char *name, size_t length)
             continue;
         for (size_t k = 0; k < g->methods; k++)
             if (g->method[k] == m)
-                return refuse(g, "\"%s\" is there twice", spring_method_name(m));
+                return refuse(g, "\"%s\" is listed twice", spring_method_name(m));
         g->method[g->methods++] = m;
         found++;
     }
@@ -270,7 +270,7 @@ static bool add_measure(grid *g, const char *name, size_t length)
             continue;
         for (size_t k = 0; k < g->measures; k++)
             if (g->measure[k] == (sweep_measure)i)
-                return refuse(g, "\"%s\" is there twice", word);
+                return refuse(g, "\"%s\" is listed twice", word);
         g->measure[g->measures++] = (sweep_measure)i;
         return true;
     }

@@ -230,7 +230,7 @@ static bool has_header(const char *path, FILE *in, const char *header, bool *tor
         if (header[same] == '\n')
             line = same + 1;
     if (same < read)
-        refuse("\"%s\" is there, and is not this part of this sweep: it has \"%.*s\" where \"%.*s\" should be", path,
+        refuse("\"%s\" exists, but is not this part of this sweep: it has \"%.*s\" instead of \"%.*s\"", path,
                (int)strcspn(start + line, "\n"), start + line, (int)strcspn(header + line, "\n"), header + line);
     free(start);
     return same == read;
@@ -302,14 +302,13 @@ static bool write_again(journal *j)
     const long long end = j->end;
     const int fd = open(j->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd < 0)
-        return refuse("\"%s\" was removed while it was written, and cannot be written again: %s", j->path,
-                      strerror(errno));
+        return refuse("\"%s\" was removed during the run, and cannot be restored: %s", j->path, strerror(errno));
     j->fd = fd;
     j->end = 0;
     const bool done = lock(j, fd) && copy_range(j, removed, 0, end) && sync_now(j);
     close(removed);
-    return done && refuse("\"%s\" was removed while it was written; it is there again, and the same command goes on "
-                          "with it",
+    return done && refuse("\"%s\" was removed during the run; it has been restored, and the same command "
+                          "continues it",
                           j->path);
 }
 
@@ -325,7 +324,7 @@ static bool check_name(journal *j)
         return true;
     if (!there && own.st_nlink == 0 && j->damaged_fd < 0)
         return write_again(j);
-    return refuse("\"%s\" was moved or replaced while it was written; it should stay until all is done", path);
+    return refuse("\"%s\" was moved or replaced during the run; it should stay in place until the end", path);
 }
 
 /* ------------------------------------------------------------------------------------------------------- what is seen */
@@ -460,8 +459,8 @@ char *journal_header(const char *path, journal_reader *reader)
     if (more)
         return text;
     free(text);
-    refuse("\"%s\" is no part of a sweep: its header should be whole lines of at most %d bytes in all (line %d)", path,
-           longest_line, number);
+    refuse("\"%s\" is not a part of a sweep: its header should be whole lines of at most %d bytes in all (line %d)",
+           path, longest_line, number);
     return NULL;
 }
 

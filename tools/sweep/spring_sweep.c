@@ -34,49 +34,50 @@ static bool list;
 static const cli_option options[] = {
     {"over", CLI_WORDS, .words = &over, .value = "NAME=A:B:N",
      .help = "an axis: N values from A to B; A:B:log:N with equal ratios; A,B,...\n"
-             "Of several axes the first changes slowest. --list says which names there are."},
+             "With several axes, the first axis changes slowest. --list prints the names."},
     {"scene", CLI_CHOICE, .choice = &scene, .choices = scenes, .value = "S",
      .help = "one spring, or rope, cloth, jelly, chain, water"},
-    {"method", CLI_WORDS, .words = &methods, .value = "M,...", .help = "methods, or all, as if nothing is said"},
+    {"method", CLI_WORDS, .words = &methods, .value = "M,...",
+     .help = "methods, separated by commas, or all (default: all)"},
     {"measure", CLI_WORDS, .words = &measures, .value = "C,...",
-     .help = "further columns\n"
-             "steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
+     .help = "additional columns, separated by commas\n"
+             "These are available: steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
     {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = 1024, .unstamped = true,
-     .help = "work with J processes on this machine; --output is needed\n"
-             "Their results are next to it in FILE.1-of-J, FILE.2-of-J, ... until all are complete. The "
-             "same command continues an incomplete sweep."},
+     .help = "run J processes on this machine; requires --output\n"
+             "Their results are stored in FILE.1-of-J, FILE.2-of-J, ... until all are complete. The same command\n"
+             "continues an incomplete sweep."},
     {"part", CLI_WORDS, .words = &part, .value = "I/N", .unstamped = true,
-     .help = "do the I-th of N parts alone, into the file of --output\n"
-             "If that is there it goes on behind its last whole block."},
+     .help = "compute only part I of N; requires --output\n"
+             "If the file exists, the run continues after its last complete block."},
     {"join", CLI_WORDS, .words = &joined, .value = "FILE...", .unstamped = true,
      .help = "write the rows of all parts, in the order of the grid"},
-    {"list", CLI_FLAG, .flag = &list, .help = "print the parameters of the scene, and end", .unstamped = true},
+    {"list", CLI_FLAG, .flag = &list, .help = "print the parameters of the scene, and exit", .unstamped = true},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-sweep",
-    .summary = "What becomes of a spring, or of a scene, at every point of a grid of parameters.",
-    .details = "The rows are the same, to the last byte, for any number of parts and jobs, on any machine. Work with\n"
-               "--jobs or --part that was interrupted goes on where it was when the same command is given again.\n\n"
-               "One spring has omega 1/s, and runs for 10 periods unless another number is chosen. A scene runs for\n"
-               "2 s in 8 steps a frame of 1/60 s, is looked at after each frame, and is otherwise as spring-scene\n"
-               "makes it.",
+    .summary = "Simulate a spring, or a scene, at every point of a grid of parameters.",
+    .details = "The rows are identical to the last byte for any number of parts and jobs, on any machine. If a run\n"
+               "with --jobs or --part is interrupted, the same command continues it.\n\n"
+               "A spring has omega = 1/s, and runs for 10 periods by default. A scene runs for 2 s with 8 steps per\n"
+               "frame of 1/60 s by default, and is examined after each frame. Otherwise it is as in spring-scene.",
     .columns = "omega_dt method error energy_error status",
-    .meaning =
-        "The first columns are the parameters of the axes, here omega_dt.\n\n"
-        "error: against the exact solution, from the worst start; of a scene against RK4 in steps of at\n"
-        "most a sixteenth of its stable step and of leapfrog's, over the motion; that is itself right to 1e-9\n"
-        "for slow motion, a hanging cloth, and to 2e-4 for the fastest, waves as short as links.\n\n"
-        "force_evaluations: one per step for leapfrog in scenes. With heavily damped links a step takes two and\n"
-        "evaluations of damping, which are not counted.\n\n"
-        "energy_error: the largest, with its sign, over the energy at the start; of a scene over its largest\n"
-        "kinetic energy. settling_time_s: until it stays below 1 % of the start; a scene below 1 % of its\n"
-        "largest speed.\n\n"
-        "status: stable; growing (at the stable step or beyond); exploded (that, and a hundredfold energy; of\n"
-        "a scene ten times the kinetic energy it should have, or no finite numbers: the errors are those\n"
-        "until then); unsupported; no_step (none is accurate enough, or the stable step is 0); too_long;\n"
-        "invalid (numbers that the library refuses, or a scene where nothing moves). What is not known is nan.",
+    .meaning = "The first columns are the parameters of the axes, here omega_dt.\n\n"
+               "error: for a spring, the error relative to the exact solution, for the worst start. For a scene, the\n"
+               "error relative to RK4, divided by the size of the motion. RK4 has steps of at most a sixteenth of\n"
+               "its stable step and of the stable step of leapfrog. Its own error is 1e-9 for slow motion (a hanging\n"
+               "cloth), and up to 2e-4 for the fastest motion (waves as short as links).\n\n"
+               "force_evaluations: one per step for leapfrog in scenes. With heavily damped links, a step takes two\n"
+               "force evaluations, and evaluations of damping, which are not counted.\n\n"
+               "energy_error: the largest energy error, with its sign, relative to the initial energy, or for a\n"
+               "scene to its largest kinetic energy. settling_time_s: the time after which a spring stays below 1 %\n"
+               "of the start, and a scene below 1 % of its largest speed.\n\n"
+               "status: stable; growing (at or above the stable step); exploded (at or above the stable step, with a\n"
+               "hundred times the energy; for a scene, ten times the correct kinetic energy, or numbers that are not\n"
+               "finite; errors are measured until then); unsupported; no_step (no step is accurate enough, or the\n"
+               "stable step is 0); too_long; invalid (the library rejects the numbers, or nothing moves in the\n"
+               "scene). Unknown values are nan.",
     .shown = {"omega_dt", "error"},
     .examples = {"--over omega_dt=0.01:3:log:50 damping_ratio=0:2:21 -o map.tsv",
                  "--scene rope --over stiffness=1e2:1e4:log:5 steps_per_frame=1,2 --jobs 2 -o rope.tsv",
@@ -131,7 +132,7 @@ static void print_header(char *text, size_t size, const grid *g, uint64_t number
                  g->blocks);
     if (snprintf(text, size, "# springstep %s, %s\n# command: %s\n%s%s", spring_version(), program.name,
                  cli_stamped_command(), line, columns) >= (int)size)
-        cli_fail(CLI_USAGE, "--over: these axes are too long to be written down");
+        cli_fail(CLI_USAGE, "--over: the description of these axes is too long");
 }
 
 /* ------------------------------------------------------------------------------------------------------------- parts */
@@ -173,7 +174,7 @@ static void tell_done(const work *w, uint64_t block)
     if (w->done < 0)
         cli_progress((double)(block + 1) / (double)w->grid->blocks);
     else if (write(w->done, "", 1) < 0)
-        cli_fail(CLI_IO, "the process that waits for this one is gone");
+        cli_fail(CLI_IO, "the parent process has exited");
 }
 
 static void do_part(const work *w)
@@ -216,13 +217,13 @@ static void do_one_part(const grid *g)
     char *end = NULL;
     const char *text = part.word[0];
     if (part.count > 1)
-        cli_fail(CLI_USAGE, "--part: \"%s\" and \"%s\": one process does one part", text, part.word[1]);
+        cli_fail(CLI_USAGE, "--part: \"%s\" and \"%s\": a process computes only one part", text, part.word[1]);
     const uint64_t number = read_number(text, &end);
     const uint64_t parts = number > 0 && *end == '/' ? read_number(end + 1, &end) : 0;
     if (parts == 0 || *end != '\0' || number > parts || parts > most_parts)
         cli_fail(CLI_USAGE, "--part: \"%s\" is not I/N with 1 <= I <= N <= %d", text, most_parts);
     if (cli_output_path() == NULL)
-        cli_fail(CLI_USAGE, "--part: a part is a file; --output should name it");
+        cli_fail(CLI_USAGE, "--part: requires --output, the file of the part");
     do_part(&(work){.grid = g, .path = cli_output_path(), .number = number, .parts = parts, .done = -1});
 }
 
@@ -269,7 +270,7 @@ static void look_at_part(const char *path, const char *first_path, found **all, 
     if (own == NULL)
         cli_fail(CLI_IO, "--join: %s", journal_message);
     if (!take_part_line(own, &number, &of, &its_blocks))
-        cli_fail(CLI_FAILED, "--join: \"%s\" is no part of a sweep", path);
+        cli_fail(CLI_FAILED, "--join: \"%s\" is not a part of a sweep", path);
     if (*all == NULL) {
         *parts = of;
         *blocks = its_blocks;
@@ -449,7 +450,7 @@ static void wait_for_jobs(const char *const *paths)
     for (uint64_t i = 0; i < jobs; i++)
         begun = begun || access(paths[i], F_OK) == 0;
     if (worst != 0 && !begun)
-        cli_fail((cli_status)worst, "nothing is done");
+        cli_fail((cli_status)worst, "nothing was computed");
     if (worst != 0)
         cli_fail((cli_status)worst,
                  "the sweep is incomplete; its results so far are in %s.*-of-%" PRIu64
@@ -463,7 +464,7 @@ static void check_output(void)
     const char *path = cli_output_path();
     struct stat status;
     if (path == NULL)
-        cli_fail(CLI_USAGE, "--jobs: results go to files next to that of --output, which is required");
+        cli_fail(CLI_USAGE, "--jobs: requires --output, because results are stored next to that file");
     const bool good = stat(path, &status) == 0 ? S_ISREG(status.st_mode) && access(path, W_OK) == 0
                                                : lstat(path, &status) != 0; /* no link to nowhere */
     if (!good)
@@ -515,8 +516,9 @@ int main(int argc, char **argv)
     }
     if (joined.count > 0) {
         if (over.count + methods.count + measures.count + part.count + jobs > 0 || cli_given(&scene))
-            cli_fail(CLI_USAGE,
-                     "--join: the parts say which sweep they are of; it should be alone except for --output");
+            cli_fail(
+                CLI_USAGE,
+                "--join: cannot be combined with options other than --output, because the parts contain the sweep");
         check_no_part_is_replaced(joined.word, joined.count);
         join(joined.word, joined.count);
         return 0;
@@ -524,7 +526,7 @@ int main(int argc, char **argv)
     grid g;
     make_grid(&g);
     if (part.count > 0 && jobs > 0)
-        cli_fail(CLI_USAGE, "--part: this is the work of one process; it should be without --jobs");
+        cli_fail(CLI_USAGE, "--part: cannot be combined with --jobs");
     if (part.count > 0)
         do_one_part(&g);
     else if (jobs > 0)

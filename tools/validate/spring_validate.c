@@ -25,30 +25,31 @@ static int only_case = -1;
 static bool list_only, quick;
 
 static cli_option options[] = {
-    {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "only this case; --list names them"},
-    {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and the fault that each is designed to find"},
-    {"quick", CLI_FLAG, .flag = &quick, .help = "leave out the cases that take long, unless named"},
+    {"case", CLI_CHOICE, .choice = &only_case, .value = "NAME", .help = "run only this case; --list prints the names"},
+    {"list", CLI_FLAG, .flag = &list_only, .help = "list the cases and the fault that each case is designed to find"},
+    {"quick", CLI_FLAG, .flag = &quick, .help = "skip the cases that take long, unless named"},
     {.name = NULL},
 };
 
 static const cli_program program = {
     .name = "spring-validate",
-    .summary = "Check every method on a catalogue of corner cases against independent references.",
-    .details = "References of springs: iterate, the same method in 107-digit arithmetic; solution, the exact solution\n"
-               "in 107 digits; drive, the motion under the drive that the loads are samples of; gsl-rk4, arkode-rk4,\n"
-               "gsl-rk8pd, cvode-adams, cvode-bdf.\n\n"
-               "Of scenes: definition, the same method from a second program; modes and reduced-mass, exact\n"
-               "expressions for linear scenes; dispersion, the frequency of standing waves on sheets, which run 1 m\n"
-               "in (x, v/omega), so that errors are those of the frequency, relative; digits and formula, the exact\n"
-               "solution; gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams. Against an exact solution (the first solver,\n"
-               "where there is none) each scene has a row for a step, one for half of it and one for the value\n"
-               "extrapolated from both.",
+    .summary = "Check every method against independent references on a catalogue of corner cases.",
+    .details = "References for springs: iterate is the same method in 107-digit arithmetic. solution is the exact\n"
+               "solution in 107 digits. drive is the motion under the continuous drive from which the loads are\n"
+               "sampled. The independent solvers are gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams and cvode-bdf.\n\n"
+               "References for scenes: definition is the same method in a second program. modes and reduced-mass are\n"
+               "exact expressions for linear scenes. dispersion is the frequency of standing waves on sheets. These\n"
+               "waves run 1 m in (x, v/omega), so their errors are relative errors of the frequency. digits and\n"
+               "formula are the exact solution. The independent solvers are gsl-rk4, arkode-rk4, gsl-rk8pd and\n"
+               "cvode-adams.\n\n"
+               "For the exact solution, or the first solver if there is none, each scene has three rows: for a step,\n"
+               "for half the step, and for the value extrapolated from both.",
     .columns = "case method witness dt_s steps error bound verdict reason uncertainty force_evaluations shape",
-    .meaning = "witness is the reference solution; error and bound are distances in (x, v/omega) [m], reason is what\n"
-               "the bound is made of; verdict is pass, fail or skip, and the status 1 if any check fails.\n"
-               "uncertainty is that of the reference [m]: the difference to a ten times coarser run of its own; 0\n"
-               "for exact solutions in multiple precision. force_evaluations are those of the reference; 0 where it\n"
-               "has none. shape is spring or scene.",
+    .meaning = "witness is the reference solution. error and bound are distances in (x, v/omega) [m]. reason lists\n"
+               "the terms of the bound. verdict is pass, fail or skip, and the exit status is 1 if any check fails.\n"
+               "uncertainty is the uncertainty of the reference [m], which is its difference from a run of its own\n"
+               "that is ten times coarser. It is 0 for exact solutions in multiple precision. force_evaluations\n"
+               "counts the evaluations of the reference, and is 0 if it has none. shape is spring or scene.",
     .shown = {"dt_s", "error"},
     .examples = {"--list", "--case fast-root", "--case turning-point -o checks.tsv"},
     .options = options,

@@ -40,38 +40,39 @@ static const cli_option options[] = {
 
 static const cli_program program = {
     .name = "spring-work",
-    .summary = "Measure time and error of every stepper and of GSL, SUNDIALS and odeint in one run.",
-    .details =
-        "Problems: seed-1000s is the study's long run, m = k = 1; other springs have m = 1.3 kg, k = 2.7 N/m.\n"
-        "stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32 particles, the last a hundred\n"
-        "times as heavy) and damped-cloth (16 x 16) have such links that sqrt(L)/60 Hz = 50, where L is the\n"
-        "bound of spring_scene_stable_step(); damped-cloth has damping/mass/60 Hz = 100, too.\n\n"
-        "Solvers: rk4-stages evaluates the four stages one by one; exact is no stepper: one formula whatever\n"
-        "the duration, which evaluates no forces; leapfrog-softened lowers stiffness until the step is 0.95\n"
-        "of the stable step; xpbd takes substeps of one iteration over all links, as game engines do; both in\n"
-        "scenes of distance springs alone; gsl-rk4 doubles its step, and that is counted.\n"
-        "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are available if Boost was found at build time.\n"
-        "odeint-sb3a-m4 is symplectic, for problems without drag and damping.\n"
-        "A run that explodes, or is off by more than three times the size of the motion, has no row.",
+    .summary = "Measure time and error of every stepper and of GSL, SUNDIALS and odeint.",
+    .details = "Problems: seed-1000s is the long run of the original study, with m = k = 1. Other springs have m =\n"
+               "1.3 kg and k = 2.7 N/m. stiff-cloth (32 x 32 particles, hangs by two corners), stiff-rope (32\n"
+               "particles, the last one a hundred times as heavy) and damped-cloth (16 x 16 particles) have\n"
+               "sqrt(L)/60 Hz = 50, where L is the bound of spring_scene_stable_step(). damped-cloth also has\n"
+               "damping/mass/60 Hz = 100.\n\n"
+               "Solvers: rk4-stages evaluates the four stages one by one. exact is one formula for any duration and\n"
+               "evaluates no forces. leapfrog-softened lowers the stiffness until the step is 0.95 of the stable\n"
+               "step. xpbd takes substeps of one iteration over all links, as game engines do. leapfrog-softened and\n"
+               "xpbd run only scenes of distance springs. gsl-rk4 uses step doubling, which is counted.\n"
+               "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are available if Boost was found at build\n"
+               "time. odeint-sb3a-m4 is symplectic, for problems without drag and damping. A run that explodes, or\n"
+               "whose error is more than three times the size of the motion, has no row.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
-    .meaning =
-        "force_evaluations are those of one spring with the library by definition, all others counted; time_s\n"
-        "is the shortest of five loops, in which nothing is set up; error is |(x, v/omega) - exact| relative\n"
-        "to the size of the motion, error_x is |x - exact x| [m] (nan: a scene). effort is sweep (of steps or\n"
-        "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
-        "from which on the error in x never exceeds Euler's at 10^7 steps) or crossing (the last number of\n"
-        "evaluations with which leapfrog is ahead of RK4, and the next one). tolerance is 0 for fixed steps,\n"
-        "energy_error is relative to the energy at the start, of a scene to the kinetic energy at the end (nan:\n"
-        "a callback adds forces). uncertainty is that of the exact end of a scene: an error of five times that is\n"
-        "an upper bound, and not resolved. stretch is the largest length/rest length of a link, less 1.\n\n"
-        "--table: for each error the cheapest measured row that has no larger one, nor has the next finer one\n"
-        "if there is one, of the steppers (solver, dt_s, time_s, steps) and of GSL, SUNDIALS and odeint (peer,\n"
-        "peer_time_s); ratio is peer_time_s/time_s; exact_time_s is that of the exact solution; nan: none.\n\n"
-        "--forces: time_ns is the time of one force evaluation. springstep: a step of leapfrog, or of symplectic\n"
-        "Euler if links are damped, divided by its evaluations. others: the function that GSL, SUNDIALS and odeint\n"
-        "call. xpbd: one substep. links is the number of links (1 for a spring), ratio is time_ns divided by that\n"
-        "of springstep.",
+    .meaning = "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
+               "time_s is the shortest of five loops, without setup. error is |(x, v/omega) - exact| relative to the\n"
+               "size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps or\n"
+               "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
+               "from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the last\n"
+               "number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
+               "fixed steps. energy_error is relative to the initial energy, or for a scene to the final kinetic\n"
+               "energy (nan if a callback adds forces). uncertainty is the uncertainty of the exact final state of a\n"
+               "scene. An error of up to five times this value is an upper bound, and is not resolved. stretch is\n"
+               "the largest length/rest length of a link, minus 1.\n\n"
+               "With --table: for each error, the cheapest measured row whose error, and the error of the next finer\n"
+               "row if there is one, is not larger. solver, dt_s, time_s and steps are from the steppers. peer and\n"
+               "peer_time_s are from GSL, SUNDIALS and odeint. ratio is peer_time_s/time_s. exact_time_s is the time\n"
+               "of the exact solution. nan means none.\n\n"
+               "With --forces: time_ns is the time of one force evaluation. springstep is a step of leapfrog, or of\n"
+               "symplectic Euler if links are damped, divided by its evaluations. others is the function that GSL,\n"
+               "SUNDIALS and odeint call. xpbd is one substep. links is the number of links (1 for a spring). ratio\n"
+               "is time_ns divided by time_ns of springstep.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
@@ -221,7 +222,8 @@ static void crossing(cli_table *table, work *w)
     while (found > least + 4 && error_after(w, SPRING_RK4, found / 4 - 1) < error_after(w, SPRING_LEAPFROG, found - 4))
         found -= 4;
     if (found > most)
-        cli_fail(CLI_FAILED, "%s: RK4 is not ahead with %" PRIu64 " evaluations; it should be", w->problem->name, most);
+        cli_fail(CLI_FAILED, "%s: RK4 should be ahead of leapfrog with %" PRIu64 " evaluations, but is not",
+                 w->problem->name, most);
     for (uint64_t evaluations = found - 4; evaluations <= found; evaluations += 4) {
         measure(table, w, work_solver_of(SPRING_LEAPFROG), (work_effort){.steps = evaluations}, "crossing");
         measure(table, w, work_solver_of(SPRING_RK4), (work_effort){.steps = evaluations / 4}, "crossing");
