@@ -11,8 +11,8 @@
  *
  * These rules hold for every function in this file, in addition to those in spring.h:
  *  - Determinism. In double precision, advancing spring i is bit-identical to advancing the single spring
- *    {1, omega2[i], gamma[i], accel[i]}: in every batch, at every index, with every instruction set. A batch may
- *    therefore be split by pointer, to use threads. In single precision the same arithmetic is done in float, and the
+ *    {1, omega2[i], gamma[i], accel[i]}, in every batch, at every index and with every instruction set. To use threads,
+ *    a batch may therefore be split into ranges. In single precision the same arithmetic is done in float, and the
  *    results do not depend on the index either.
  *  - A feature whose array is NULL is disabled: it is neither read nor computed. A shared array has one element.
  *    docs/performance.md lists the cost of each feature.
@@ -64,8 +64,8 @@ typedef struct spring_batchf {
  * Advances every spring of a batch by n steps.
  *
  * The batch as a whole is checked first; if it is invalid, nothing changes. Otherwise each spring succeeds or fails
- * alone. A spring that would become non-finite keeps its state, and all other springs advance. The same holds for a
- * spring that spring_advance() would reject, because its state or one of its own parameters is not finite or a
+ * independently. A spring that would become non-finite keeps its state, and all other springs advance. The same holds
+ * for a spring that spring_advance() would reject, because its state or one of its own parameters is not finite or a
  * parameter is negative. With a count of 0, n = 0 or dt = 0, nothing changes and the springs are not checked.
  *
  * SPRING_EXACT is one evaluation over n dt. If omega2 is shared, and gamma is shared or NULL, its coefficients are
@@ -75,8 +75,8 @@ typedef struct spring_batchf {
  * which sharing changes a result, by its last bit.
  *
  * The state of a damped spring decays to denormal numbers, below about 1e-308 (1e-38 in float), which are slow on many
- * processors. They are not set to zero, because that would change bits. Leave settled springs out of the batch, or let
- * the processor flush denormal numbers to zero in the threads that advance it.
+ * processors. They are not set to zero, because this would change the results. Leave settled springs out of the batch,
+ * or let the processor flush denormal numbers to zero in the threads that advance it.
  *
  * @param[in,out] b   batch
  * @param[in]     m   method
@@ -96,7 +96,7 @@ typedef struct spring_batchf {
 SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n);
 
 /** The single-precision version. dt is rounded to float once, at the start. A step that rounds to 0 changes nothing and
-   returns SPRING_OK. A step that is not finite as a float is SPRING_EINVAL. */
+   returns SPRING_OK. A step that is not finite as a float returns SPRING_EINVAL. */
 SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, double dt, uint64_t n);
 
 /**
@@ -128,9 +128,9 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
  * rest position whose speed is at most v_tol is placed at its rest position with v = 0. Without stiffness, a spring
  * with a load never rests, and a spring without load rests on its target only.
  *
- * Coefficients are shared as in spring_batch_advance(). As in spring_batch_advance(), each spring fails alone; it also
- * fails if its target is not finite. With dt = 0 nothing moves, and the springs are counted in their present state.
- * With a count of 0, *moving is 0.
+ * Coefficients are shared as in spring_batch_advance(). As in spring_batch_advance(), each spring fails independently.
+ * A spring also fails if its target is not finite. With dt = 0 nothing moves, and the springs are counted in their
+ * current state. With a count of 0, *moving is 0.
  *
  * @param[in,out] b       batch
  * @param[in]     target  [count] targets [m]; must not overlap x or v

@@ -38,7 +38,7 @@ typedef struct spring_clock {
  * @return number of steps to take now. Invalid input (NULL clock, non-finite or negative times, dt <= 0): 0 steps,
  *         *alpha = 0 and an unchanged clock
  * @par Accuracy  each frame rounds pending + frame_dt once; the carried-over time is the exact remainder of this sum
- *                by dt
+ *                divided by dt
  * @par Threads   re-entrant; allocates nothing and keeps no state except the clock
  */
 SPRING_API uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint64_t max_steps,

@@ -62,7 +62,7 @@ extern "C" {
  *
  * where rate is the time derivative of the length. A negative tension pushes. If both ends are at the same place, the
  * link has no direction and its force is 0. If the square of the length underflows (lengths below about 1e-160 m, in
- * single precision 1e-21 m), the force is meaningless.
+ * single precision 1e-21 m), the force is undefined.
  *
  * With one axis, the link is linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
  * force on b is its opposite. */
@@ -102,10 +102,10 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
    all positions and velocities become NaN, and no step succeeds until spring_scene_set() has set all of them. */
 #define SPRING_SCENE_NO_UNDO UINT32_C(2)
 
-/** Promises that the callback does not use velocities. Set it too for a scene that never has a callback. Leapfrog then
-   keeps the forces at the end of a step for the next step, which halves the force evaluations. Leapfrog also needs
-   no memory for predicted velocities, unless a link is damped or the scene is editable. The velocities that the
-   callback receives are unspecified. */
+/** Promises that the callback does not use velocities. Also set it for a scene that never has a callback. Leapfrog then
+   keeps the forces at the end of a step for the next step, which halves the force evaluations. Leapfrog also needs no
+   memory for predicted velocities, unless a link is damped or the scene is editable. The velocities that the callback
+   receives are unspecified. */
 #define SPRING_SCENE_FORCE_IGNORES_VELOCITY UINT32_C(4)
 
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
@@ -137,7 +137,7 @@ typedef struct spring_collider {
     double radius;         /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];    /**< [m/s] velocity of `at` */
     double velocity_to[3]; /**< [m/s] capsule: velocity of `to` */
-    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It enters friction only: the
+    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It affects friction only. The
         body does not turn. With two axes, only spin[2] is used. */
     double spin[3];
     double friction;    /**< Coulomb coefficient >= 0 */
@@ -292,8 +292,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow.
  *
  * The bound holds while no link is compressed below half its rest length. Tension-only links may be compressed further.
- * The bound follows from three sums over the links of a particle, each the largest of all free particles. A link counts
- * once instead of twice if its other end is pinned.
+ * The bound follows from three sums over the links of a particle. Each is the largest sum of any free particle. A link
+ * counts once instead of twice if its other end is pinned.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -335,7 +335,7 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
  * Their damping does not change.
  *
  * For each particle, let K be the sum of 2 stiffness over its links, where a link counts once if its other end is
- * pinned. The particle allows the factor min(1, (2 fraction/dt)^2 mass/K). The stiffness of a link is multiplied by the
+ * pinned. The factor of the particle is min(1, (2 fraction/dt)^2 mass/K). The stiffness of a link is multiplied by the
  * smaller factor of its two ends. Afterwards dt <= fraction spring_scene_stable_step(..., SPRING_LEAPFROG). If a link
  * was softened, this stable step is nearly dt/fraction. Drag and callbacks are not considered.
  *
@@ -365,9 +365,9 @@ typedef struct spring_scene_energies {
     callbacks and colliders is not included. */
 SPRING_API spring_scene_energies spring_scene_energy(const spring_scene *s);
 
-/** Returns whether the scene is at rest: the speed of every particle, also of pinned particles, is at most v_tol [m/s],
-    and the acceleration of every free particle is at most a_tol [m/s^2]. Acceleration that is balanced by the normal
-    force or the static friction of a touched collider does not count. False for invalid input. May evaluate the
+/** Returns whether the scene is at rest: the speed of every particle, including pinned particles, is at most v_tol
+    [m/s], and the acceleration of every free particle is at most a_tol [m/s^2]. Acceleration that is balanced by the
+    normal force or the static friction of a touched collider does not count. False for invalid input. May evaluate the
     forces. */
 SPRING_API bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol);
 
@@ -416,17 +416,17 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
 /**
  * Replaces all colliders of a scene.
  *
- * The colliders are given at their present pose, at the present time of the scene. They then move at their velocities
- * until they are set again. In a game, set them once per frame, with the velocities that bring them to their next pose.
- * A particle that is inside a collider is moved to its surface in the next step, without a change of velocity. Pinned
- * particles pass through colliders.
+ * The colliders are given at their pose at the current time of the scene. They then move at their velocities until they
+ * are set again. In a game, set them once per frame, with the velocities that bring them to their next pose. A particle
+ * that is inside a collider is moved to its surface in the next step, without a change of velocity. Pinned particles
+ * pass through colliders.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed.
  * A bounce therefore has order 2, and no particle passes through a single collider that does not turn, at any speed. A
- * capsule whose ends have different velocities turns: let it turn by a small angle per step. A particle that static
- * friction can hold is held exactly, at any time step. If an impact moves the particle less than 8 eps (|x| + radius)
- * into the collider in a step, this is taken for a rounding error, and the particle does not bounce.
+ * capsule whose ends have different velocities turns. Keep its angle per step small. A particle that static friction
+ * can hold is held exactly, at any time step. If an impact moves the particle less than 8 eps (|x| + radius) into the
+ * collider in a step, this is treated as a rounding error, and the particle does not bounce.
  *
  * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of the
  * colliders by a fraction of its motion in a step. Make a floor of one plane or box: a particle can be caught at the
@@ -484,10 +484,10 @@ SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, s
 /**
  * Cuts all links of an editable scene that are longer than a limit.
  *
- * Call it at a fixed interval, such as once per frame: which links tear depends on how often the lengths are compared.
- * Links are compared in double precision and visited in the order of their indices. Links that are already cut, and
- * links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Use spring_links_components() to find
- * the pieces.
+ * Call it at a fixed interval, such as once per frame, because the result depends on how often the lengths are
+ * compared. Links are compared in double precision and visited in the order of their indices. Links that are already
+ * cut, and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Use spring_links_components()
+ * to find the pieces.
  *
  * If no banded link tears, the lengths of banded links are compared with SIMD, which costs much less than a step; for
  * bands see spring_links_renumber().
@@ -506,7 +506,7 @@ SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, cons
                                            size_t room, size_t *count);
 
 /**
- * Transforms all particles, also pinned particles, by an affine map: x1 = A x + b, v1 = A v.
+ * Transforms all particles, including pinned particles, by an affine map: x1 = A x + b, v1 = A v.
  *
  * Use it to teleport, rotate, reflect or scale a scene. Rest lengths, gravity, held forces and colliders do not change.
  *
@@ -517,7 +517,7 @@ SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, cons
  */
 SPRING_API spring_status spring_scene_transform(spring_scene *s, const double matrix[12]);
 
-/** Copies the present values of a link, rounded to the precision of the scene. With two or three axes, the ends a and b
+/** Copies the current values of a link, rounded to the precision of the scene. With two or three axes, the ends a and b
  * may be swapped compared with the definition.
  *
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
@@ -690,8 +690,8 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
 typedef struct spring_grid {
     uint32_t count[3]; /**< particles along x, y, z; 0 means 1 */
     uint32_t axes;     /**< axes of the positions, 1, 2 or 3; the grid extends along no other axes; 0 means 3 */
-    bool height;       /**< height field: positions have one axis, normal to the grid, and are 0, as rest lengths are */
-    double spacing;    /**< [m] > 0, distance of neighbours along an axis, also in a height field */
+    bool height;       /**< height field: one axis, normal to the grid; positions and rest lengths are 0 */
+    double spacing;    /**< [m] > 0, distance between neighbours along an axis, also in a height field */
     double stretch;    /**< > 0, length/rest of every link; 0 means 1; links are under tension above 1 */
     uint32_t families; /**< springs, SPRING_GRID_STRUCTURAL | ...; 0 means structural springs only */
     double stiffness;  /**< [N/m] >= 0, of every link */
@@ -727,9 +727,9 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
  * their upper ends. Call it before you create a scene, of either precision, from an unsorted mesh.
  *
  * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
- * unbanded links. A rope gets the order of its particles back, and a sheet gets its rows back, so that their links form
- * bands. A sheet requires for this that the links along its rows are at least a fifth shorter than all other links, or
- * that there are no other links. Other meshes get a small bandwidth.
+ * unbanded links. The particles of a rope are put in order, and the particles of a sheet in rows, so that their links
+ * form bands. In a sheet, this requires that the links along its rows are at least a fifth shorter than all other
+ * links, or that there are no other links. Other meshes get a small bandwidth.
  *
  * Permute other arrays yourself: new_mass[i] = mass[order[i]], new_link_name[i] = link_name[link_order[i]].
  *

@@ -221,13 +221,13 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *
  *     mass x'' = load - stiffness (x - T) - damping (x' - T')
  *
- * The target T moves at the constant velocity T' = target_velocity during the step, and reaches `target` at its end. So
- * a target at constant velocity is followed without lag, and independently of the frame rate. For a target that jumps,
- * or whose velocity you do not know, pass target_velocity = 0. A new target keeps x and v.
+ * The target T moves at the constant velocity T' = target_velocity during the step, and reaches `target` at its end. A
+ * target at constant velocity is therefore followed without lag, at any frame rate. For a target that jumps, or whose
+ * velocity you do not know, pass target_velocity = 0. A new target keeps x and v.
  *
- * The rest position is target + load/stiffness, and exactly `target` without load. A damped spring reaches it: it is
- * placed at rest there, x = rest position and v = target_velocity, as soon as rounding could keep it from coming
- * closer. That is if dt > 0 and
+ * The rest position is target + load/stiffness, and exactly `target` without load. A damped spring reaches the rest
+ * position: as soon as rounding error could prevent it from coming closer, it is placed there, with x = rest position
+ * and v = target_velocity. The condition is dt > 0 and
  *
  *     hypot(x - rest position, (v - T')/omega) min(1, slow dt) <= 9/8 ulp + DBL_MIN
  *
@@ -274,16 +274,16 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 
 /**
- * Returns a time step that keeps the error of a method within a tolerance, for every start.
+ * Returns a time step that keeps the error of a method within a tolerance, for every initial state.
  *
  * The error of n steps, relative to the size |(x, v/Omega)| of the start and for the worst start, is
  *
  *     E = the largest |(x, v/Omega) - exact| after any i <= n steps,   Omega = max(omega, 1/duration)
  *
- * with x measured from the rest position. The result is duration/n, where n is the smallest number for which E is at
- * most the tolerance for n and all larger numbers of steps. Above 8192, n may be larger by one part in 8192. E is
- * computed from the step matrix of the method, without a run. The worst start of a heavily damped spring lies along its
- * fast mode, so this mode determines the step; a start at rest would allow longer steps.
+ * with x measured from the rest position. The result is duration/n, where n is the smallest number of steps such that E
+ * is at most the tolerance for n and for every larger number of steps. Above 8192, n may be larger by one part in 8192.
+ * E is computed from the step matrix of the method, without a run. The worst start of a heavily damped spring lies
+ * along its fast mode, so this mode determines the step; a start at rest would allow longer steps.
  *
  * @param[in] duration   > 0 [s]
  * @param[in] tolerance  > 0, relative to the start
@@ -299,7 +299,7 @@ SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, 
 /**
  * Returns the error E of a given time step; see spring_accurate_step().
  *
- * @param[in] duration  > 0 [s]; the error is that of at least one step
+ * @param[in] duration  > 0 [s]; the error is computed for at least one step
  * @param[in] dt        > 0 [s]
  * @return E without rounding error. 0 for the exact solution. INFINITY if E overflows, and for more than 2^53 steps.
  *         NaN for invalid input and a method that is not offered for one spring.
@@ -366,8 +366,8 @@ SPRING_API spring_params spring_params_settling(double time, double damping_rati
  * Returns whether the spring is within x_tol [m] of its rest position load/stiffness and its speed is at most
  * v_tol [m/s].
  *
- * Without stiffness, every position is a rest position if there is no load, and none is if there is one. Stop advancing
- * springs that are at rest: their state decays to denormal numbers, which make steps slow.
+ * Without stiffness, every position is a rest position if there is no load, and no position is a rest position if there
+ * is a load. Stop advancing springs that are at rest: their state decays to denormal numbers, which make steps slow.
  *
  * @return false also for invalid input: NULL, invalid parameters, a state that is not finite, a tolerance that is NaN
  *         or negative
@@ -377,14 +377,14 @@ SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, do
 /**
  * Returns the settling time, from which on the exact solution stays within x_tol of its rest position load/stiffness.
  *
- * Without stiffness and load, the rest position is where damping brings the particle to a stop.
+ * Without stiffness and load, the rest position is the position at which damping stops the particle.
  *
  * @param[in] x_tol  >= 0 [m]
  * @return time [s]. 0 if the spring is never farther from its rest position than x_tol. INFINITY if it never settles.
  *         NaN for invalid input
- * @par Accuracy  the result is where the computed exact solution crosses the tolerance. A tolerance of at most about
- *                10 eps (|x| + |v|/omega + |load/stiffness|) is within the rounding error of the state, and the result
- *                is then not significant.
+ * @par Accuracy  the result is the time at which the computed exact solution crosses the tolerance. A tolerance of at
+ *                most about 10 eps (|x| + |v|/omega + |load/stiffness|) is within the rounding error of the state, and
+ *                the result is then not significant.
  */
 SPRING_API double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol);
 
@@ -395,8 +395,8 @@ SPRING_API bool spring_params_valid(const spring_params *p);
  * Checks that the floating-point environment of this thread gives reproducible results.
  *
  * Call it at the start of a program that relies on determinism. A compiler, a compiler option, or another library that
- * changes the rounding of the processor can break it. The test covers rounding, denormal numbers, fused products and
- * sums, and a few steps of every method: of one spring, of batches in both precisions and of a scene. It takes tens of
+ * changes the rounding mode can break determinism. The test covers rounding, denormal numbers, fused products and sums,
+ * and a few steps of every method: of one spring, of batches in both precisions and of a scene. It takes tens of
  * microseconds and up to 50 KB of the stack.
  *
  * @return SPRING_OK, or the first of SPRING_EROUNDING, SPRING_EFLUSHED, SPRING_EFUSED and SPRING_EBITS that applies
