@@ -473,8 +473,8 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
         MODE("water-mode-" mode "-mirrored-" N,                                                                     \
              "the same with structural, shear and bend springs, mirrored at the edges", (eighths) / 2, 121, 75, 62, \
              takes_long),                                                                                           \
-        MODE("water-mode-" mode "-all-" N, "the same without: bend links are missing at the edges", (eighths) / 2,  \
-             121, 75, 62, takes_long)
+        MODE("water-mode-" mode "-all-" N, "the same without mirroring: bend links are missing at the edges",       \
+             (eighths) / 2, 121, 75, 62, takes_long)
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
@@ -492,10 +492,10 @@ const scene_case scene_cases[] = {
     {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280, 160),
      .omega = 1, .length = 4, .callback = 100, .known = 2, .digits = {-0.92175345784461174225, 5.2692478469465402339},
      .external = true},
-    {"chaotic-50", "the same for long", build_chaotic, .duration = 50, STEPS(0, 102400, 3200, 400), .omega = 1,
+    {"chaotic-50", "the same for a longer time", build_chaotic, .duration = 50, STEPS(0, 102400, 3200, 400), .omega = 1,
      .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
      .external = true, .slow = true},
-    {"van-der-pol-1", "damping that depends on position, and feeds the motion", build_van_der_pol, .count = 1,
+    {"van-der-pol-1", "damping that depends on position and drives the motion", build_van_der_pol, .count = 1,
      .duration = 20, STEPS(81920, 10240, 1280, 0), .omega = 1, .length = 2, .callback = 17, .known = 2,
      .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
     {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
@@ -504,9 +504,9 @@ const scene_case scene_cases[] = {
     {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
      STEPS(16384, 2048, 512, 64), .omega = 50, .length = 1, .callback = 12, .known = 2,
      .digits = {0.51767820806882268094, 0.53980860868328140544}, .external = true},
-    {"stiff-and-soft-10", "the same for long", build_stiff_and_soft, .duration = 10, STEPS(0, 81920, 2560, 320),
-     .omega = 50, .length = 1, .callback = 12, .known = 2, .digits = {0.75633242161029198993, 0.71735962155453710255},
-     .external = true, .slow = true},
+    {"stiff-and-soft-10", "the same for a longer time", build_stiff_and_soft, .duration = 10,
+     STEPS(0, 81920, 2560, 320), .omega = 50, .length = 1, .callback = 12, .known = 2,
+     .digits = {0.75633242161029198993, 0.71735962155453710255}, .external = true, .slow = true},
     {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
      STEPS(81920, 10240, 640, 0), .omega = 3, .length = 1, .callback = 256, .known = 2,
      .digits = {-0.62718670506653073014, -1.3013155502098116779}, .external = true},
@@ -518,28 +518,28 @@ const scene_case scene_cases[] = {
      .omega = 6, .length = 1, .external = true},
     {"heavy-end", "a rope with 10^4 times the mass at its end", build_rope, .duration = 1.0 / 32,
      STEPS(0, 4096, 1024, 128), .omega = 6325, .length = 0.1, .external = true, .slow = true},
-    {"stiff-links", "stiffnesses 1 : 10^6 in turn", build_stiffness_ratio, .duration = 1.0 / 16,
+    {"stiff-links", "alternating stiffnesses 1 : 10^6", build_stiffness_ratio, .duration = 1.0 / 16,
      STEPS(0, 4096, 1024, 128), .omega = 2038, .length = 0.5, .external = true, .slow = true},
-    {"patchwork", "rows of links of which none is like the next, on a line", build_patchwork, .count = 1,
+    {"patchwork", "rows of links, each different from the next, on a line", build_patchwork, .count = 1,
      .duration = 0.5, STEPS(512, 128, 64, 0), .omega = 21, .length = 0.3, .external = true},
     {"patchwork-2d", "the same in the plane, falling", build_patchwork, .count = 2, .duration = 0.5,
      STEPS(512, 128, 64, 0), .omega = 21, .length = 0.3, .external = true},
     {"cloth", "a sheet in space, damped, falling", build_cloth, .duration = 0.25, STEPS(0, 256, 128, 0), .omega = 100,
      .length = 0.2, .external = true, .slow = true},
-    {"water", "a sheet of heights", build_water, .duration = 1, STEPS(2048, 256, 128, 16), .omega = 21, .length = 0.1,
+    {"water", "height-field water", build_water, .duration = 1, STEPS(2048, 256, 128, 16), .omega = 21, .length = 0.1,
      .external = true, .slow = true},
     /* linear chains, with fixed ends */
     {"chain-1", "one mass between walls", CHAIN(1, 2.038, 2.039), LONG},
     {"chain-2", "two", CHAIN(2, 1.441, 2.497), LONG},
-    {"chain-2-briefly", "steps so few that rounding errors cannot cancel", CHAIN(2, 1.441, 2.497), BRIEF},
+    {"chain-2-briefly", "so few steps that rounding errors cannot cancel", CHAIN(2, 1.441, 2.497), BRIEF},
     {"chain-10", "ten", CHAIN(10, 0.410, 2.853), LONG},
-    {"chain-100", "a hundred", CHAIN(100, 0.0448, 2.883), LONG},
-    {"chain-1000", "a thousand: waves as long as the chain and as short as a link", CHAIN(1000, 0.00452, 2.883), LONG,
-     .slow = true},
+    {"chain-100", "a hundred masses", CHAIN(100, 0.0448, 2.883), LONG},
+    {"chain-1000", "a thousand masses: waves as long as the chain and as short as a link", CHAIN(1000, 0.00452, 2.883),
+     LONG, .slow = true},
     /* two particles */
     {"pair", "two masses on a line and their link: one spring of the reduced mass", PAIR(1), LONG},
-    {"pair-3d", "the same in space, adrift", PAIR(3), LONG},
-    {"pair-briefly", "the same, so few steps that rounding errors cannot cancel", PAIR(3), BRIEF},
+    {"pair-3d", "the same in space, drifting", PAIR(3), LONG},
+    {"pair-briefly", "the same with so few steps that rounding errors cannot cancel", PAIR(3), BRIEF},
     {"pair-damped", "the same with damping along the link", build_damped_pair, .count = 3, .duration = 4,
      STEPS(1024, 256, 64, 0), .omega = 2.97, .length = 1, .formula = "reduced-mass", .solution = solve_damped_pair,
      .external = true},

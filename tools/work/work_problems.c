@@ -266,7 +266,7 @@ spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes)
 {
     spring_scene *scene = NULL;
     if (spring_scene_bytes(def, bytes) != SPRING_OK)
-        cli_fail(CLI_FAILED, "a scene that is none");
+        cli_fail(CLI_FAILED, "an invalid scene");
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
     if (memory == NULL || spring_scene_init(memory, *bytes, def, &scene) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu links", def->links);
@@ -337,7 +337,7 @@ static void find_exact_end(work *w, const scene_case *c)
         unknown = fmax(unknown, scene_distance(c, &w->scene, w->exact, c->digits, c->known));
     w->uncertainty = unknown / w->motion;
     if (!(w->uncertainty <= 1e-9))
-        cli_fail(CLI_FAILED, "%s: its reference is uncertain by %g", w->problem->name, w->uncertainty);
+        cli_fail(CLI_FAILED, "%s: the uncertainty of its reference is %g", w->problem->name, w->uncertainty);
     free(coarse);
 }
 
