@@ -37,15 +37,15 @@ static const cli_program program = {
     .details = "All scenes are simulated, or only the scene of --scene, with all methods, or only the method of\n"
                "--method. The scenes are the defaults of spring-scene, for four seconds.",
     .columns = "scene method particles links substeps dt_s stable_step_s energy_error verdict",
-    .meaning =
-        "substeps is the number of steps per frame of 1/60 s. stable_step_s is the stable step that the\n"
-        "library returns. energy_error is the largest difference between the energy at a frame and the energy\n"
-        "of a run in very short steps, relative to the largest kinetic energy of that run. verdict is fine if\n"
-        "energy_error is at most 0.05. It is exploded if the kinetic energy is more than ten times the\n"
-        "largest, or if the state overflows. Otherwise it is lossy or gaining, by the sign of the difference.\n\n"
-        "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms and\n"
-        "particles_per_ms. The scene is enlarged until a frame takes about a millisecond. frame_ms is the\n"
-        "shortest of five times. A method that is not fine with 64 steps per frame has no row.",
+    .meaning = "substeps is the number of steps per frame of 1/60 s. stable_step_s is the stable step that the\n"
+               "library returns. energy_error is the largest difference between the energy at a frame and the energy\n"
+               "of a run in very short steps, relative to the largest kinetic energy of that run. verdict is fine if\n"
+               "energy_error is at most 0.05. It is exploded if the state overflows, or if the kinetic energy\n"
+               "exceeds ten times the largest kinetic energy of that run. Otherwise it is lossy or gaining, by the\n"
+               "sign of the difference.\n\n"
+               "With --time: scene, method, substeps, dt_s, stable_step_s, particles, links, frame_ms and\n"
+               "particles_per_ms. The scene is enlarged until a frame takes about a millisecond. frame_ms is the\n"
+               "shortest of five times. A method that is not fine with 64 steps per frame has no row.",
     .shown = {"substeps", "energy_error"},
     .examples = {"--scene chain --quick", "--scene rope --method leapfrog -o rope.tsv",
                  "--scene chain --method rk4 --time --quick"},
