@@ -59,7 +59,7 @@ static const cli_option options[] = {
     {"axes", CLI_COUNT, .count = &given.axes, .least = 1, .most = 3, .value = "A",
      .help = "water only: 1 for vertical motion, 3 for all directions (default: 1)"},
     {"links", CLI_CHOICE, .choice = &link_choice, .choices = links, .value = "L",
-     .help = "cloth, jelly and water: all springs, or structural springs only\n"
+     .help = "cloth, jelly, water: all springs, or only structural ones\n"
              "all means structural, shear and bend springs: to the next particle, across, and to the second next\n"
              "particle. Rope and chain have only structural springs."},
     {"length", CLI_POSITIVE, .real = &given.length, .value = "L",

@@ -76,7 +76,7 @@ def test_examples_work(tool, tmp_path):
 def readers(tool, path):
     """The ways that --help tells, for a file that the tool writes, and its rows."""
     run(tool, *MAIN[tool], '-o', path)
-    told = re.search(r'Read FILE with gnuplot: (.*)\n  with awk: (.*)  with pandas: (.*)\n', help_of(tool))
+    told = re.search(r'Read FILE in gnuplot: (.*)\n  in awk: (.*)  in pandas: (.*)\n', help_of(tool))
     return *(command.replace('FILE', str(path)) for command in told.groups()), parse(path.read_text())
 
 

@@ -76,8 +76,8 @@ static void print_columns(const char *words)
 static void print_readers(const cli_program *p)
 {
     const char *x = p->shown[0], *y = p->shown[1];
-    printf("Read FILE with gnuplot: set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\"\n"
-           "  with awk: awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE  with pandas: read_csv(\"FILE\", sep=\"\\t\", "
+    printf("Read FILE in gnuplot: set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\"\n"
+           "  in awk: awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE  in pandas: read_csv(\"FILE\", sep=\"\\t\", "
            "comment=\"#\")\n",
            x, y, column_number(p->columns, x), column_number(p->columns, y));
 }

@@ -354,7 +354,7 @@ static bool quick;
 
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &part, .choices = parts, .value = "P",
-     .help = "closed-form cases, the energy in a box, or a list of the cases"},
+     .help = "closed-form cases, energy in a box, or a list of cases"},
     {"quick", CLI_FLAG, .flag = &quick, .help = "fewer steps, rough results"},
     {.name = NULL},
 };
