@@ -11,9 +11,9 @@ extern "C" {
 
 typedef struct physics_engine {
     const char *name;
-    const char *precision; /* its own */
+    const char *precision;        /* its own */
     const char *(*version)(void); /* with what makes this build slow, if anything; call it before make() */
-    uint32_t axes;         /* it works in two, or in three */
+    uint32_t axes;                /* it works in two, or in three */
 
     /* What it needs for a definition; NULL: no memory. It may take gravity, masses, pins and links from there. */
     void *(*make)(const spring_scene_def *def);
