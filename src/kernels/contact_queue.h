@@ -155,10 +155,11 @@ SPRING_NOINLINE void enqueue(contact_queue *q, const particle_vector *p, const u
         vec_store(each[k][1], value[k]->y);
         vec_store(each[k][2], value[k]->z);
     }
-    for (size_t lane = 0; lane < lanes; lane++) {
-        if (queued[lane] == 0)
-            continue;
-        const size_t at = q->count++;
+    unsigned left = 0; /* bit i: lane i; a branch for each lane would be mispredicted often */
+    for (size_t lane = 0; lane < lanes; lane++)
+        left |= queued[lane] << lane;
+    for (; left != 0; left &= left - 1) {
+        const size_t lane = SPRING_LOWEST_BIT(left), at = q->count++;
         q->particle[at] = (uint32_t)(p->first + lane);
         q->before[at] = before[lane];
         q->inverse_mass[at] = inverse_mass[lane];
