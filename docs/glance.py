@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The tables "Performance at a glance" in README.md, from measurements in docs/data.
+"""The tables of performance in README.md and docs/games.md, from measurements in docs/data.
 
 usage: glance.py --measure BUILD   measure with the programs of a build folder, and fill the tables
        glance.py --check           fail if the tables are not those of the data
@@ -12,12 +12,13 @@ import subprocess
 import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent
-README = DOCS.parent / 'README.md'
 SCENES = {'rope': 'rope', 'cloth': 'cloth, 25 × 25', 'jelly': 'soft body, 8 × 8 × 8'}
+PARTICLES = {'rope': 'ropes', 'cloth': 'cloth', 'jelly': 'soft bodies', 'water': 'height-field water'}
 COMMANDS = {
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
     'engines': ['spring-engines'],
     'stiff': ['spring-work', '--problem', 'stiff-cloth'],
+    'particles': ['spring-scene-map', '--time'],
 }
 OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces'}}
 
@@ -57,8 +58,8 @@ def table(*lines):
     return '\n'.join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def tables():
-    """Return the text between the marks of README.md."""
+def performance():
+    """Return the tables of README.md."""
     scenes = []
     for scene, title in SCENES.items():
         comments, rows = read(f'plan-{scene}')
@@ -83,20 +84,31 @@ def tables():
     ])
 
 
+def particles():
+    """Return the table of docs/games.md."""
+    rows = [row for row in read('particles')[1] if row['method'] == 'leapfrog' and row['scene'] in PARTICLES]
+    return table(('scene', 'steps per frame', 'particles per millisecond'), ['---'] * 3,
+                 *((PARTICLES[row['scene']], row['substeps'], two_digits(row['particles_per_ms'])) for row in rows))
+
+
+PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles}
+
+
 def main():
     option, *build = sys.argv[1:] or ['']
     if (option, len(build)) not in (('--measure', 1), ('--check', 0)):
         raise SystemExit(__doc__)
     if build:
         measure(build[0])
-    text = README.read_text()
-    filled, places = re.subn(r'(<!-- glance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
-    if places != 1:
-        raise SystemExit('README.md has no place for the tables')
-    if build:
-        README.write_text(filled)
-    elif filled != text:
-        raise SystemExit('the tables of README.md are not those of docs/data: docs/glance.py --measure fills them')
+    for page, tables in PAGES.items():
+        text = page.read_text()
+        filled, places = re.subn(r'(<!-- glance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
+        if places != 1:
+            raise SystemExit(f'{page} has no place for the tables')
+        if build:
+            page.write_text(filled)
+        elif filled != text:
+            raise SystemExit(f'the tables of {page} are not those of docs/data: docs/glance.py --measure fills them')
 
 
 main()
