@@ -568,8 +568,8 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
 SPRING_API spring_status spring_scene_drive(spring_scene *s, size_t particle, const double *target, double duration);
 
 /** Returns the tension of a link [N], including its damping, as in spring_link: positive if the link pulls. At length 0
-    no force acts, and the result is the tension of the stiffness alone. 0 for a slack tension-only link. NaN for NULL
-    and for a link that does not exist. */
+    no force acts, and the result is the tension of the stiffness alone. 0 for a slack tension-only link and for a torn
+    link. NaN for NULL and for a link that does not exist. */
 SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */

@@ -43,7 +43,7 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);
         const double extension = length_and_rate(s, &link).length - (double)link.rest;
-        if (extension > 0 || !scene_tension_only(s))
+        if (link.stiffness > 0 && (extension > 0 || !scene_tension_only(s)))
             e.elastic += (double)link.stiffness * extension * extension / 2;
     }
     return e;
@@ -54,6 +54,8 @@ double spring_scene_tension(const spring_scene *s, size_t index)
     if (s == NULL || index >= s->layout.links)
         return NAN;
     const stored_link link = scene_link(s, index);
+    if (!(link.stiffness > 0) && !(link.damping > 0))
+        return 0; /* also if the square of the length overflows */
     const bool reversed = s->layout.axes == 1 && spring_sign_bit((double)link.rest);
     const link_extent now = length_and_rate(s, &link);
     const double tension =
