@@ -63,7 +63,7 @@ typedef enum spring_method {
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
-    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links; long runs with 3 to 6 digits */
+    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links; long runs, 3 to 6 significant digits */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is
