@@ -2,8 +2,8 @@
 /*
  * The command line of a tool: strict numbers, words, options from a table; see cli.h.
  *
- * Options are read here and not by getopt_long(), which accepts abbreviations of long options and cannot be told not
- * to: a script that says --step would change its meaning with the next option that begins so.
+ * getopt_long() is not used because it always accepts abbreviations of long options. A script with the abbreviation
+ * --step could change its meaning when an option is added.
  */
 #define _XOPEN_SOURCE 700 /* open_memstream() */
 #include <assert.h>
@@ -39,7 +39,7 @@ static bool parse_count(const char *text, uint64_t *value)
     return true;
 }
 
-/* What follows the number; NULL: there is none. */
+/* Returns a pointer past the number; NULL: there is no number. */
 static const char *read_real(const char *text, double *value)
 {
     char *end;
@@ -55,7 +55,7 @@ static bool parse_real(const char *text, double *value)
     return end != NULL && *end == '\0';
 }
 
-/* `count` of them, separated by commas; changes nothing otherwise. */
+/* Reads `count` numbers separated by commas. Leaves `values` unchanged on failure. */
 static bool parse_reals(const char *text, double *values, size_t count)
 {
     double parsed[8];
@@ -98,7 +98,7 @@ void cli_list_methods(char *text, size_t size, bool (*offers)(const spring_metho
     }
 }
 
-/* The i-th word that the value of an option can be, and what it stands for; NULL: there are no more, or none. */
+/* Returns the i-th valid word of an option and stores its value; NULL: there are no more. */
 static const char *word_of(const cli_option *o, int i, int *value)
 {
     *value = i;
@@ -136,15 +136,15 @@ static bool parse_word(const char *text, const cli_option *o)
 
 /* -------------------------------------------------------------------------------------------------- did you mean */
 
-enum { LONGEST_WORD = 40 }; /* that is looked at */
+enum { LONGEST_WORD = 40 }; /* longer words get no suggestion */
 
 static size_t least_of(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
 
-/* How many letters have to be changed, added, left out, or exchanged with the next one, until one word is the other.
-   Row i of the table is about the first i letters of `a`, column j about the first j of `b`. */
+/* The edit distance of two words: the least number of substitutions, insertions, deletions and exchanges of adjacent
+   letters. d[i][j] is the distance of the first i letters of `a` and the first j letters of `b`. */
 static size_t distance(const char *a, const char *b)
 {
     const size_t m = strlen(a), n = strlen(b);
@@ -164,9 +164,9 @@ static size_t distance(const char *a, const char *b)
     return d[m][n];
 }
 
-/* The word that is most like what was typed: a third of its letters may be wrong, or it may only be begun. */
+/* The word most similar to the typed one. A third of its letters may be wrong, or the typed word may be a prefix. */
 typedef struct likeness {
-    const char *typed, *word; /* NULL: none is like it */
+    const char *typed, *word; /* NULL: none is similar */
     size_t distance;
 } likeness;
 
@@ -195,7 +195,7 @@ static const cli_option common_options[] = {
     {.name = NULL},
 };
 
-/* For those who install the tools. */
+/* Used by the installation. */
 static const cli_option hidden_options[] = {
     {"man", CLI_FLAG, .flag = &want_man},
     {"completion", CLI_FLAG, .flag = &want_completion},
@@ -256,7 +256,7 @@ enum { MOST_OPTIONS = 64 };
 
 static char defaults[MOST_OPTIONS][32];
 
-/* What a target holds is the default, if it is a value that the option could have. */
+/* The initial value of a target is the default, if it is a valid value of the option. */
 static void note_default(char *text, size_t size, const cli_option *o)
 {
     text[0] = '\0';
@@ -366,7 +366,7 @@ static const cli_option *option_of(const char *word, const char **value)
     *value = NULL;
     if (strcmp(word, "-h") == 0)
         return find_option(common_options, "help", strlen("help"));
-    /* -out: one dash typed for two */
+    /* -out... is a long option with one dash missing, not -o with the value "ut..." */
     if (word[0] == '-' && word[1] == 'o' && word[2] != '=' && strncmp(word, "-out", 4) != 0) {
         if (word[2] != '\0')
             *value = word + 2;
@@ -384,7 +384,7 @@ static const cli_option *option_of(const char *word, const char **value)
     return found;
 }
 
-/* Prints a word as a shell would read it back, on one line. Only words with special characters are quoted. */
+/* Prints a word quoted for a shell, on one line. Only words with special characters are quoted. */
 static void print_quoted(FILE *out, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
@@ -411,8 +411,8 @@ static void print_quoted(FILE *out, const char *word)
     fputc('\'', out);
 }
 
-/* Where the output goes is no part of how it was made: it is not stamped, and of other files that are written only that
-   there are. */
+/* The stamp must not depend on where the output goes. So it omits --output, and contains only the presence of options
+   that name other output files. */
 static void record(FILE *words, const cli_option *o, const char *value)
 {
     if (o == &common_options[0] || o->unstamped)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a tool says of itself, all from its table: --help, its page of the manual, what a shell completes; see cli.h. */
+/* --help, the man page and shell completion of a tool, generated from its table of options; see cli.h. */
 #define _XOPEN_SOURCE 700 /* open_memstream() */
 #include <ctype.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 enum { EXAMPLES = sizeof(((cli_program *)0)->examples) / sizeof(char *) };
 
-/* Of a text, up to the end of its line. */
+/* The length of the first line of a text. */
 static int line_length(const char *text)
 {
     return (int)strcspn(text, "\n");
@@ -44,7 +44,7 @@ static void print_option(size_t i)
     putchar('\n');
 }
 
-/* The number of a column, for awk, which knows no names. */
+/* The number of a column, for awk, which has no column names. */
 static int column_number(const char *columns, const char *name)
 {
     int number = 1;
@@ -57,7 +57,7 @@ static int column_number(const char *columns, const char *name)
     return number;
 }
 
-/* Lines of words, the first one after "Columns:". */
+/* Prints words in lines, the first line after "Columns:". */
 static void print_columns(const char *words)
 {
     enum { right = 98 };
@@ -106,7 +106,7 @@ void cli_print_help(void)
 
 /* ------------------------------------------------------------------------------------------------ the man page */
 
-/* A letter as roff takes it for that letter. */
+/* Prints a character, escaped for roff. */
 static void print_letter(char c)
 {
     static const char special[] = "\\-^~`'";
@@ -129,7 +129,7 @@ static void print_roff(const char *text)
     print_letters(text, (int)strlen(text));
 }
 
-/* What is printed to a file, as text. */
+/* Collects printed text in memory. */
 typedef struct memory {
     FILE *stream;
     char *text;
@@ -203,7 +203,7 @@ static void print_man_option(size_t i)
     putchar('\n');
 }
 
-/* The upper case of the name, as the title of a page is. */
+/* By convention, the title of a man page is the name in upper case. */
 static void print_title(void)
 {
     fputs(".TH ", stdout);
@@ -321,7 +321,7 @@ static const char *kind_of_value(const cli_option *o)
     }
 }
 
-/* A line for each option: its name, what its value is, the words it can be. */
+/* Prints a line for each option: its name, the kind of its value, its valid words. */
 void cli_print_completion(void)
 {
     const cli_option *o;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the tools say on the terminal, and the tables that they write: see cli.h. */
+/* Messages, progress and tables of the tools; see cli.h. */
 #define _XOPEN_SOURCE 700 /* POSIX 2008 with realpath() */
 #include <assert.h>
 #include <errno.h>
@@ -18,14 +18,14 @@
 
 struct cli_table {
     FILE *stream;
-    const char *option;       /* that names the file */
-    const char *name;         /* as it was given */
-    char path[PATH_MAX];      /* what the file will be called */
-    char temporary[PATH_MAX]; /* what it is called until then; empty: it is written directly */
+    const char *option;       /* the option that names the file */
+    const char *name;         /* as given */
+    char path[PATH_MAX];      /* final name of the file */
+    char temporary[PATH_MAX]; /* its name until then; empty: written directly */
     bool stamped;
 };
 
-/* The signal handler needs them. */
+/* Static, because the signal handler needs them. */
 static cli_table tables[4];
 static size_t table_count;
 static bool progress_shown;
@@ -105,7 +105,7 @@ static void remove_temporaries(void)
             unlink(tables[i].temporary);
 }
 
-/* All signals are blocked while this runs. The process dies by `number`, the only one that is unblocked at the end. */
+/* All signals are blocked while this runs. At the end only `number` is unblocked, and it terminates the process. */
 static void on_signal(int number)
 {
     remove_temporaries();
@@ -122,15 +122,15 @@ static void handle_signals(void)
     static const int ending[] = {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU};
     struct sigaction handled = {.sa_handler = on_signal}, before;
     sigfillset(&handled.sa_mask);
-    /* an ignored signal stays ignored: the program was started in the background, or by nohup */
+    /* a signal that is ignored at the start stays ignored: the program runs in the background, or under nohup */
     for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++)
         if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(ending[i], &handled, NULL);
-    signal(SIGXFSZ, SIG_IGN); /* a file size limit is a failed write, with its message */
+    signal(SIGXFSZ, SIG_IGN); /* a write past the file size limit then fails with a message */
 }
 
-/* A standard stream that the caller has closed would lend its number to the next file that is opened, and messages
-   would end up among the data. Opened for reading alone, it cannot be written either. */
+/* If the caller has closed a standard stream, the next file that is opened would get its descriptor, and messages would
+   end up in the data. So closed streams are opened for reading, which makes writing to them fail. */
 static void occupy_standard_streams(void)
 {
     int fd;
@@ -166,8 +166,8 @@ static void close_stream(const cli_table *table)
         fail_to_write(table);
 }
 
-/* Open a file of another name next to it, so that a rename can put it in place at once. It is the same name for the same
-   file, and of no other process: in a container the numbers of processes come again. */
+/* Opens a temporary file in the same directory, so that rename() replaces the target atomically. The name contains the
+   start time as well as the process number, because process numbers repeat in containers. */
 static void open_temporary(cli_table *table)
 {
     char name[PATH_MAX];
@@ -196,15 +196,15 @@ static void open_stream(cli_table *table)
     const bool exists = stat(path, &status) == 0;
     const bool device = strncmp(path, "/dev/", 5) == 0 && strncmp(path, "/dev/shm/", 9) != 0;
     if (device || (exists && !S_ISREG(status.st_mode))) {
-        table->stream = fopen(path, "w"); /* a device, a pipe: there is nothing to put in place */
+        table->stream = fopen(path, "w"); /* a device or a pipe is not replaced */
     } else if (exists) {
-        /* a link stays a link to what it points to, a file keeps its mode */
+        /* a symbolic link is kept and its target replaced; the file keeps its mode */
         if (access(path, W_OK) == 0 && realpath(path, table->path) != NULL)
             open_temporary(table);
         if (table->stream != NULL && fchmod(fileno(table->stream), status.st_mode & 0777) != 0)
             fail_to_write(table);
     } else if (errno == ENOENT && lstat(path, &status) != 0) {
-        /* a new file, and no link to nowhere; its name fits, or stat() had not said ENOENT */
+        /* a new file, not a dangling link; its name fits into the path, or stat() would have failed differently */
         strcpy(table->path, path);
         open_temporary(table);
     }
@@ -214,12 +214,12 @@ static void open_stream(cli_table *table)
 
 cli_table *cli_open_file(const char *option, const char *path)
 {
-    assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more */
+    assert(table_count < sizeof tables / sizeof tables[0]); /* no tool opens more tables */
     cli_table *table = &tables[table_count++];
     *table = (cli_table){.option = option, .name = path != NULL ? path : "/dev/stdout"};
     if (strcmp(table->name, "/dev/stdout") != 0) {
         open_stream(table);
-    } else { /* not opened anew: that would truncate a file behind it */
+    } else { /* not opened again: that would truncate a file to which it is redirected */
         for (size_t i = 0; i < table_count; i++)
             if (tables[i].stream == stdout)
                 fail_as_taken(table);
@@ -250,7 +250,7 @@ cli_table *cli_open_bare_output(void)
     return table;
 }
 
-/* With the first line and not before: a tool may open several tables, and fail at the last. */
+/* Called with the first line, not on opening: a tool may open several tables, and fail at the last. */
 static void stamp(cli_table *table)
 {
     table->stamped = true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the files behind cli.h share. One tool is one process: there is one command line. */
+/* Internal declarations of the files behind cli.h. A process has one command line, so its state is global. */
 #ifndef SPRINGSTEP_CLI_PARTS_H
 #define SPRINGSTEP_CLI_PARTS_H
 
@@ -11,27 +11,27 @@
 typedef struct cli_command {
     const cli_program *program;
     time_t started;
-    const char *output; /* what --output names; NULL: standard output */
-    char *text;         /* for the stamp: the options as they were understood */
+    const char *output; /* the value of --output; NULL: standard output */
+    char *text;         /* the parsed options, for the stamp */
 } cli_command;
 
 extern cli_command cli_asked;
 
 /* cli.c */
 
-/** Those of the tool, then those that every tool has; NULL behind the last one. */
+/** Option i: the options of the tool come first, then the common options; NULL after the last. */
 const cli_option *cli_option_at(size_t i);
 
-/** What option i does where it is not given, as text; "": the table does not say. */
+/** The default of option i as text; "": it has none. */
 const char *cli_default(size_t i);
 
-/** What the value of an option should be: "a finite number". */
+/** Prints a description of valid values: "a finite number". */
 void cli_print_expectation(FILE *out, const cli_option *o);
 
-/** The words that the value of an option is one of, if it is one of some. */
+/** Prints the valid words of an option, if it has a list of them. */
 void cli_print_words(FILE *out, const cli_option *o, const char *separator);
 
-/* cli_help.c: on standard output */
+/* cli_help.c; prints to standard output */
 
 void cli_print_help(void);
 void cli_print_man(void);
@@ -39,14 +39,15 @@ void cli_print_completion(void);
 
 /* cli_output.c */
 
-/** If all goes on as what is done: ", 12 s left", ", 3 min left". The clock ticks in seconds: the first says nothing.
+/** The remaining time, extrapolated from the time spent: ", 12 s left", ", 3 min left". Empty for the first 2 seconds,
+    because the clock has a resolution of 1 s.
     @param spent  [s] */
 void cli_describe_time_left(char *text, size_t size, double fraction, double spent);
 
-/** From now on nothing but complete files is left, whatever ends the program. */
+/** Removes temporary files when the program ends, by exit() or by a signal. */
 void cli_guard_files(void);
 
-/** Close standard output, and end the program: with status 0 if all of it could be written. */
+/** Close standard output and exit, with status 0 if all output could be written. */
 _Noreturn void cli_finish_text(void);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How long a run is: see run_length.h. */
+/* The length of a run; see run_length.h. */
 #include "common/run_length.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ void run_length_settle(run_length *run)
 
 void run_length_remark_end(const run_length *run)
 {
-    const double end = (double)run->steps * run->dt, rounding = 1e-9; /* of what is typed with ten digits */
+    const double end = (double)run->steps * run->dt, rounding = 1e-9; /* of a number typed with ten digits */
     if (!(fabs(end - run->duration) <= rounding * run->duration))
         cli_warn("a duration of %.10g s is not a whole number of steps of %.10g s: the run takes %" PRIu64
                  " and ends at %.10g s",

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A method together with the arithmetic it is computed in: see stepper.h. */
+/* A method and its arithmetic; see stepper.h. */
 #include "common/stepper.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ void stepper_comment(const stepper *m, cli_table *table)
     cli_comment(table, "method: %s, arithmetic: %s", stepper_name(m), stepper_arithmetics[m->arithmetic]);
 }
 
-/* As spring_advance() does it: the state is kept if it would overflow, and that is noticed as soon. */
+/* As spring_advance(): checks for overflow at the same interval, and leaves the state unchanged if it overflows. */
 static spring_status advance_by_stages(spring_state *s, const spring_params *p, double dt, uint64_t n)
 {
     spring_state now = *s;

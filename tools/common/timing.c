@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What tools that measure time share; see timing.h. */
+/* The clock of tools that measure time; see timing.h. */
 #define _DEFAULT_SOURCE /* clock_gettime, getloadavg */
 #include "common/timing.h"
 
@@ -26,7 +26,7 @@ double timing_busy(void)
     return now(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-/* The model of the processor as Linux knows it; elsewhere its architecture. */
+/* The model of the processor on Linux, elsewhere its architecture. */
 static void stamp_processor(cli_table *table)
 {
     char line[256];

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* What tools that measure time share: the clock, and the stamp that says where and when. */
+/* The clock of tools that measure time, and a stamp with host and date. */
 #ifndef SPRINGSTEP_TIMING_H
 #define SPRINGSTEP_TIMING_H
 
 #include "common/cli.h"
 
-double timing_now(void);  /* [ns], from a clock that only runs forward */
-double timing_busy(void); /* [ns] this process has had of the processors: those of other processes do not count */
+double timing_now(void);  /* [ns], from a monotonic clock */
+double timing_busy(void); /* [ns] of processor time that this process has used */
 
-/** Stamp a table with the compiler's flags, the processor, its load and the date. */
+/** Writes the compiler's flags, the processor, its load and the date into the stamp of a table. */
 void timing_stamp(cli_table *table);
 
 #endif

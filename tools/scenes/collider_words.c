@@ -11,7 +11,7 @@ static const char *const shape_names[] = {
 
 enum { shape_count = sizeof shape_names / sizeof shape_names[0] };
 
-/* What a word says, in the order of its fields. */
+/* The values of a word, in the order of its fields. */
 typedef struct collider_numbers {
     double at[3], to[3], normal[3], half[3], radius, velocity[3], spin[3], friction, restitution;
 } collider_numbers;
@@ -103,7 +103,7 @@ static const collider_field *read_field(const char *word, spring_shape shape, co
              text, word, shape_names[shape], known);
 }
 
-/* Returns what follows FIELD=VALUE. */
+/* Returns a pointer past FIELD=VALUE. */
 static const char *read_number(const char *word, spring_shape shape, const char *text, collider_numbers *n)
 {
     const size_t length = strcspn(text, "=,"), rest = strcspn(text, ",");
@@ -119,7 +119,7 @@ static const char *read_number(const char *word, spring_shape shape, const char 
     return text + rest + (text[rest] == ',');
 }
 
-/* On two axes, the second is z. */
+/* On two axes, the second axis is z. */
 static void put(const double from[3], uint32_t axes, double to[3])
 {
     to[0] = from[0], to[1] = from[axes == 2 ? 2 : 1], to[2] = axes == 2 ? 0 : from[2];
@@ -128,12 +128,12 @@ static void put(const double from[3], uint32_t axes, double to[3])
 static void put_spin(const double spin[3], uint32_t axes, double to[3])
 {
     if (axes == 2)
-        to[2] = -spin[1]; /* about the axis that points away from who sees x to the right and z up */
+        to[2] = -spin[1]; /* about the axis away from a viewer who sees x to the right and z up: -y */
     else
         put(spin, axes, to);
 }
 
-/* Of components that are not given, NaN: upwards if none is, else 0. */
+/* Components that are not given are NaN. The default is upwards if all are missing, otherwise missing ones are 0. */
 static void complete_normal(double normal[3])
 {
     const bool given = !isnan(normal[0]) || !isnan(normal[1]) || !isnan(normal[2]);

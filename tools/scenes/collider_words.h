@@ -14,7 +14,7 @@ enum { MOST_COLLIDERS = 32 }; /* of a scene */
  *
  * Coordinates are those of preset_positions(), with z up. A scene on two axes has x and z.
  *
- * Whatever is wrong ends the program with a message.
+ * Any error ends the program with a message.
  *
  * @param[in]  axes  2 or 3
  * @param[out] c     [words->count]

@@ -10,18 +10,18 @@
 
 typedef struct share {
     uint32_t particle;
-    double part; /* of the force of a disturbance */
+    double part; /* fraction of the force of a disturbance */
 } share;
 
 typedef struct entry {
     disturbance what;
-    size_t first, count; /* of its shares */
+    size_t first, count; /* range of its shares */
 } entry;
 
 struct disturbances {
     uint32_t last_axis;
     size_t count, capacity, shares, share_capacity;
-    entry *list; /* [capacity] by start */
+    entry *list; /* [capacity], sorted by start */
     share *share;
 };
 
@@ -73,7 +73,7 @@ disturbance disturbances_box(const preset *r, const preset_settings *s, double s
     return d;
 }
 
-/* The array, with room for one more than there are; NULL, and the array as it was, without memory. */
+/* Returns the array with room for at least one more entry. Out of memory: NULL, and the array is unchanged. */
 static void *grown(void *array, size_t *capacity, size_t count, size_t size)
 {
     if (count < *capacity)
@@ -103,7 +103,7 @@ static bool add_share(disturbances *p, size_t at, size_t particle, double part)
     return true;
 }
 
-/* Writes the shares of one disturbance behind those that there are, and how many to *count. */
+/* Appends the shares of one disturbance and stores their number in *count. */
 static bool spread(disturbances *p, const preset *r, const disturbance *d, size_t *count)
 {
     double sum = 0, least = INFINITY;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Five scenes with all that they are made of; see presets.h. */
+/* Five ready-made scenes; see presets.h. */
 #include "presets.h"
 
 #include <math.h> /* NAN, isnan() */
@@ -75,7 +75,7 @@ static spring_grid grid_of(const preset_settings *s)
         g.count[0] = n;
         g.pinned = SPRING_GRID_FIRST_X;
         break;
-    case PRESET_CLOTH: /* two of its corners are pinned later on */
+    case PRESET_CLOTH: /* two of its corners are pinned later */
         g.count[0] = g.count[1] = n;
         break;
     case PRESET_JELLY:
@@ -99,7 +99,7 @@ static spring_grid grid_of(const preset_settings *s)
     return g;
 }
 
-/* Where the particles of a grid stand, on three axes. */
+/* Fills the initial positions of a grid, on three axes. */
 static void fill_start(preset *r, double spacing)
 {
     const uint32_t *n = r->count;
@@ -113,7 +113,7 @@ static void fill_start(preset *r, double spacing)
             }
 }
 
-/* Drawn aside at its middle, by half the distance of two masses. */
+/* Displaces the middle by half the distance of two masses. */
 static void pluck(preset *r, double spacing)
 {
     const double end = r->count[0] - 1;
@@ -149,7 +149,7 @@ spring_status preset_init(preset *r, const preset_settings *s)
     spring_grid_fill(&g, r->position, r->pinned, r->link);
     fill_start(r, g.spacing);
     r->def = (spring_scene_def){.axes = (uint32_t)s->axes,
-                                .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* disturbances look at the time alone */
+                                .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY, /* disturbances depend on time only */
                                 .particles = particles,
                                 .links = links,
                                 .position = r->position,

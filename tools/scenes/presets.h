@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Five scenes with all that they are made of, and how they look at the start. Like disturbances.h and scene_run.h this
- * takes nothing but the library and memory, so that a scene has the same bits in every program that has it.
+ * Five ready-made scenes: definitions and initial states. Like disturbances.h and scene_run.h, this file depends on the
+ * library only, so that a scene is bit-identical in every program that uses it.
  *
- *     rope   particles in a row, level, held at one end, with gravity: it swings down
- *     cloth  a level sheet that hangs on two of its corners, with gravity
- *     jelly  a block that stands on its lowest layer, with gravity
- *     chain  masses on a line between two that are fixed, plucked in the middle; it moves along itself
- *     water  a sheet whose edges are pinned. On one axis it is a height field: each particle moves up and down only
+ *     rope   a horizontal row of particles, pinned at one end, with gravity: it swings down
+ *     cloth  a horizontal sheet, pinned at two corners, with gravity
+ *     jelly  a soft block whose lowest layer is pinned, with gravity
+ *     chain  masses on a line between two fixed ends, plucked in the middle; longitudinal motion
+ *     water  a sheet with pinned edges. On one axis it is a height field: each particle moves up and down only
  *
- * Source of the water (4 m x 4 m, three families of links of 25 000 N/m, 1 kg a particle, drag 0.5 N s/m): the original
- * study, whose numbers for one spring the report reproduces.
+ * Source of the water (4 m x 4 m; structural, shear and bend springs of 25 000 N/m; 1 kg per particle; drag 0.5 N s/m):
+ * the original study, whose numbers for one spring the report reproduces.
  */
 #ifndef SPRINGSTEP_PRESETS_H
 #define SPRINGSTEP_PRESETS_H
@@ -26,15 +26,15 @@ typedef enum preset_kind {
     preset_kinds
 } preset_kind;
 
-/* The words for them, in that order, ended by NULL. */
+/* The names in this order, ended by NULL. */
 extern const char *const preset_names[];
 
-/* NaN, or 0 for a count, where a scene has no such thing, or where nothing is chosen. */
+/* A value of NaN, or 0 for a count, means that the scene has no such parameter or that none is chosen. */
 typedef struct preset_settings {
     preset_kind kind;
-    uint64_t size;     /* moving masses of a chain, particles of a rope, along an edge of others >= 2 */
+    uint64_t size;     /* moving masses of a chain; particles of a rope; particles along an edge >= 2 of the others */
     uint64_t axes;     /* water: 1 or 3 */
-    uint32_t families; /* of links, SPRING_GRID_...; rope and chain have structural ones alone */
+    uint32_t families; /* of links, SPRING_GRID_...; rope and chain have structural links only */
     double length;     /* [m] > 0 of an edge */
     double mass;       /* [kg] > 0 of a particle */
     double end_mass;   /* [kg] > 0 rope: of the last particle */
@@ -42,43 +42,43 @@ typedef struct preset_settings {
     double damping;    /* [N s/m] of a link */
     double drag;       /* [N s/m] of a particle */
     double gravity;    /* [m/s^2] downwards */
-    double stretch;    /* length over rest length at the start > 0. Water on one axis, where 0 means that its links are
-                         as stiff across as they are along; else > 1: their stiffness across is 1 - 1/stretch of that */
+    double stretch;    /* length over rest length at the start > 0. Water on one axis: if > 1, the transverse stiffness
+                         of its links is 1 - 1/stretch of `stiffness`; if 0, it is equal to `stiffness` */
 } preset_settings;
 
-/* What a scene is made of unless the user says otherwise. */
+/* The defaults of a scene. */
 preset_settings preset_defaults(preset_kind kind);
 
-/** Nothing is chosen but the scene. */
+/** Settings of a scene with nothing chosen. */
 preset_settings preset_unchosen(preset_kind kind);
 
-/** What is chosen, and the defaults for the rest. The end of a rope is as heavy as its other particles unless a mass is
-    chosen for it; what a scene has none of it does not get. */
+/** Completes chosen settings with the defaults. The end mass of a rope defaults to the mass of its particles. Settings
+    that a scene does not have are ignored. */
 preset_settings preset_chosen(const preset_settings *chosen);
 
-/* A definition, and the arrays that it needs. */
+/* A definition and its arrays. */
 typedef struct preset {
     spring_scene_def def;
     uint32_t count[3]; /* particles along x, y, z; particle (i, j, k) has index i + count[0] (j + count[1] k) */
-    double *start;     /* [particles*3] x y z [m], z up, whatever axes the scene has */
+    double *start;     /* [particles*3] x y z [m], z up, for any number of axes */
     double *position;  /* [particles*axes] */
     uint8_t *pinned;   /* [particles] */
     double *mass;      /* [particles] */
     spring_link *link; /* [links] */
 } preset;
 
-/** Make the definition of a scene, except for its methods. SPRING_ERANGE: a scene cannot be of this size; SPRING_ENOMEM.
-    After either there is nothing to clear. */
+/** Makes the definition of a scene, without its methods. On failure (SPRING_ERANGE: the size is out of range;
+    SPRING_ENOMEM) nothing is allocated. */
 spring_status preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);
 
-/** Is the method for this scene? */
+/** Returns true if the scene supports the method. */
 bool preset_takes(const preset *r, spring_method m);
 
-/** Make the scene, in memory of its own of so many bytes: release it with free(). Otherwise *scene is NULL.
+/** Creates the scene in one block of *bytes bytes; release it with free(). On failure *scene is NULL.
 
     @param methods  1u << SPRING_EULER | ...
-    @param flags    SPRING_SCENE_..., besides those of the definition */
+    @param flags    SPRING_SCENE_..., in addition to the flags of the definition */
 spring_status preset_start(const preset *r, uint32_t methods, uint32_t flags, spring_scene **scene, size_t *bytes);
 
 /** Positions [particles*3] x y z [m] as in `start`. */

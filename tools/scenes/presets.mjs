@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The scenes of presets.h and the disturbances of disturbances.h once more, with springstep/scenes: bit-identical to those of
-// spring-scene, which tests/js and tools/live --test check.
+// The scenes of presets.h and the disturbances of disturbances.h in JavaScript, with springstep/scenes. Results are
+// bit-identical to spring-scene; tests/js and tools/live --test check this.
 
-/** What a scene is made of, as in presets.c; null: it has no such thing. */
+/** The defaults of each scene, as in presets.c; null: the scene has no such parameter. */
 const defaults = {
     rope: {
         size: 20,
@@ -25,7 +25,7 @@ export const presetNames = Object.keys(defaults);
 const given = (values) =>
     Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));
 
-/** {scene, size, damping, drag, mass, endMass, stiffness}: all but the scene may be left out. */
+/** {scene, size, damping, drag, mass, endMass, stiffness}: all except the scene are optional. */
 export function chosen(settings) {
     if (!Object.hasOwn(defaults, settings.scene)) throw new RangeError(`no scene "${settings.scene}"`);
     const usual = { damping: 0, ...defaults[settings.scene] };
@@ -91,16 +91,16 @@ export const pushDuration = 0.02; // [s]
 
 export const peakOf = (momentum, duration = pushDuration) => momentum / ((128 / 315) * duration);
 
-/** Round pushes on a preset, along its last axis and downwards. */
+/** Round pushes on a preset, downwards along its last axis. */
 export class Pushes {
     #preset;
-    #list = []; // by start
+    #list = []; // sorted by start
 
     constructor(preset) {
         this.#preset = preset;
     }
 
-    /** The poke that water gets at the start. */
+    /** Adds the default poke of height-field water at the start. */
     pokeWater() {
         const { start, settings } = this.#preset;
         const [x, y] = [start.at(-3) / 2, start.at(-2) / 2];
@@ -140,7 +140,7 @@ export class Pushes {
         return this.#list.length > 0;
     }
 
-    /** Forgets all if all have ended. */
+    /** Empties the list if all pushes have ended. */
     forget(t) {
         if (this.#list.every((push) => push.start + push.duration <= t)) this.#list = [];
     }
@@ -174,7 +174,7 @@ export function hashOf(scene) {
     return [high, low].map((word) => word.toString(16).padStart(8, "0")).join("");
 }
 
-/** Takes steps for as long as positions and velocities are finite, and the energy; returns how many. */
+/** Takes steps while positions, velocities and the energy are finite; returns the number of steps taken. */
 export function takeSteps(scene, method, dt, steps) {
     const take = (n) => {
         const saved = scene.snapshot();

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Numbers that look random and are the same at every run. */
+/* Pseudorandom numbers, the same in every run. */
 #ifndef SPRINGSTEP_RANDOM_H
 #define SPRINGSTEP_RANDOM_H
 
 #include <stdint.h>
 
-/* Uniform in [0, 1), and on to the next. Any state will do to start from.
+/* Returns the next number, uniform in [0, 1). Any initial state is valid.
    Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, OOPSLA 2014. */
 static inline double random_unit(uint64_t *state)
 {

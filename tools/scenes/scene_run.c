@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Steps of a scene for as long as it holds, and a hash of its state; see scene_run.h. */
+/* Runs a scene while its state is finite, and hashes the state; see scene_run.h. */
 #include "scene_run.h"
 
 #include <math.h> /* isfinite() */
