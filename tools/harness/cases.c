@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The catalogue of corner cases; see cases.h. */
+/* The table of corner cases for one spring; see cases.h. */
 #include "harness/cases.h"
 
 #include <math.h>
@@ -36,14 +36,14 @@ bool case_takes(const validation_case *c, spring_method m)
 
 /* ------------------------------------------------------------------------------- what changes from step to step */
 
-/* A frame time within +-50 %, the same at every run: the fractional parts of multiples of the golden ratio. */
+/* Frame times within +-50 %, the same in every run: fractional parts of multiples of the golden ratio. */
 static void jitter(uint64_t i, segment *s)
 {
     const double golden = 0.6180339887498949, part = (double)(i + 1) * golden;
     s->dt *= 0.5 + (part - floor(part));
 }
 
-/* Stiffness 40 % up and down every quarter period of 2 pi/omega = 64 steps: the case of the swing that is pumped. */
+/* Parametric resonance: the stiffness alternates by +-40 % every quarter of the period 2 pi/omega = 64 steps. */
 static void pump(uint64_t i, segment *s)
 {
     s->p.stiffness *= i / 16 % 2 == 0 ? 1.4 : 0.6;
@@ -77,7 +77,7 @@ static void beating_in_middle(uint64_t i, segment *s)
     set_drive(s, beating, ((double)i + 0.5) * s->dt);
 }
 
-/* x = A t sin(w t)/(2 w) added to the free motion at resonance, A (cos d t - cos w t)/(w^2 - d^2) near it. */
+/* Added to the free motion: x = A t sin(w t)/(2 w) at resonance, A (cos d t - cos w t)/(w^2 - d^2) near it. */
 static void driven(const validation_case *c, double frequency, double t, spring_state *s)
 {
     const double w = c->omega, A = drive_amplitude;
@@ -92,8 +92,8 @@ static void driven(const validation_case *c, double frequency, double t, spring_
     }
 }
 
-/* The load's error over a step, against the Green's function H(t) = sin(w t)/w, |H| <= 1/w, |H'| <= 1, in (x, v/w):
-   sampled at the start at most dt/2 |a'|/w a second; in the middle dt^2 (|a'|/12 + |a''|/(24 w)). */
+/* Error in (x, v/w) from holding the load for a step, from the Green's function H(t) = sin(w t)/w, |H| <= 1/w,
+   |H'| <= 1. Sampled at the start: at most dt/2 |a'|/w per second; in the middle: dt^2 (|a'|/12 + |a''|/(24 w)). */
 static double cost_at_start(const validation_case *c, double frequency, double dt, double duration)
 {
     return duration * dt / 2 * drive_amplitude * frequency / c->omega;

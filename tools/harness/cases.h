@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The catalogue of corner cases for one spring. A case is data: to add one is to add one entry to cases.c.
+ * The table of corner cases for one spring. To add a case, add an entry to cases.c.
  */
 #ifndef HARNESS_CASES_H
 #define HARNESS_CASES_H
@@ -10,8 +10,8 @@
 
 #include <springstep/spring.h>
 
-/* Over one segment nothing changes but the state. Most cases are one segment; a drive, a jittered clock or a pumped
-   spring is one segment a step. */
+/* Parameters and step are constant within a segment. Most cases have one segment. Cases with a drive, jittered frame
+   times or varying stiffness have one segment per step. */
 typedef struct segment {
     spring_params p;
     double dt; /* [s] */
@@ -24,25 +24,25 @@ struct validation_case {
     const char *name;
     const char *purpose; /* the fault that the case is designed to find */
 
-    /* the spring, by undamped frequency and damping ratio; omega 0: no stiffness, damping_ratio is damping/mass
-       [1/s] */
+    /* the spring, by undamped frequency and damping ratio; if omega is 0, there is no stiffness, and damping_ratio is
+       damping/mass [1/s] */
     double mass, omega, damping_ratio; /* [kg], [1/s], [] */
-    double rest;                       /* [m] where the load would hold it; without stiffness: load/mass [m/s^2] */
-    double x0, v0;                     /* [m], [m/s]; v0 in units of omega where omega > 0 */
+    double rest;   /* [m] equilibrium position under the load; without stiffness: load/mass [m/s^2] */
+    double x0, v0; /* [m], [m/s]; v0 in units of omega where omega > 0 */
 
-    /* the step: of fixed length, or a fraction of each method's own stable step (0.01/omega where that is 0) */
+    /* the step: a fixed length, or a fraction of the stable step of each method (0.01/omega if that is 0) */
     double dt;              /* [s] */
     double stable_fraction; /* [] */
     uint64_t n;
 
-    bool stable_only; /* not with methods that are not stable at this step; of a fraction: that have no stable step */
+    bool stable_only; /* skip methods that are unstable at this step, or have no stable step */
     bool external;    /* compare with GSL and SUNDIALS as well */
-    double tolerance; /* of their adaptive solvers, relative to the start; 0: the finest to be trusted */
-    bool slow;        /* more than a second: not in the quick catalogue */
+    double tolerance; /* of their adaptive solvers, relative to the initial state; 0: the finest reliable one */
+    bool slow;        /* takes more than a second: not part of quick runs */
 
-    /* What changes from segment to segment; NULL: one segment of n steps. There are n segments otherwise, of one step
-       each, and exact (if there is one) is the state that the continuous drive leads to after duration, with a bound on
-       what sampling the drive once a step costs. */
+    /* NULL: one segment of n steps. Otherwise there are n segments of one step each, and `vary` changes segment i.
+       `exact` (optional) is the exact state under the continuous drive after `duration`, with a bound on the error of
+       sampling the drive once per step. */
     void (*vary)(uint64_t i, segment *s);
     double (*exact)(const validation_case *c, double dt, double duration, spring_state *state);
 };
@@ -50,7 +50,7 @@ struct validation_case {
 extern const validation_case cases[];
 extern const size_t case_count;
 
-/* Is a case tried with this method? */
+/* Returns true if the case is run with this method. */
 bool case_takes(const validation_case *c, spring_method m);
 
 /* The parameters and step of a case for one method. */

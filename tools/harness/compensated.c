@@ -47,7 +47,7 @@ bool compensated_knows(spring_method m)
 void compensated_advance(compensated_state *s, const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     const double w = p->stiffness / p->mass;
-    compensated_state now = *s; /* in registers, as far as they go */
+    compensated_state now = *s; /* a local copy, so that the compiler can keep it in registers */
     (m == SPRING_LEAPFROG ? leapfrog_steps : rk4_steps)(&now, w, dt, n);
     *s = now;
 }

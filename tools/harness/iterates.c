@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The methods a second time; see iterates.h.
+ * Textbook versions of the methods; see iterates.h.
  *
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), sections I.7 and II.1 (Euler,
  *           RK4); Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
@@ -105,9 +105,8 @@ static void last_kick(const iterate_scene *s, double h, const double *a, const d
         v1[i] = (v[i] + h / 2 * a[i]) / (1 + h / 2 * s->drag[i]);
 }
 
-/* Forces that depend on velocities see one that is predicted by a last kick with the acceleration at the start of the
-   step; the acceleration that is found so is that at the start of the next one. To other forces it makes no
-   difference. */
+/* Forces that depend on velocity are evaluated with a predicted velocity: the last kick with the acceleration at the
+   start of the step. The resulting acceleration also starts the next step. Other forces are not affected. */
 static void leapfrog_scene(const iterate_scene *s, double t, double h, double *x, double *v)
 {
     double *a = s->room, *predicted = s->room + s->count;
@@ -181,7 +180,7 @@ static void rk4_scene(const iterate_scene *s, double t, double h, double *x, dou
 
 /* ------------------------------------------------------------------------------------------------ RKN 8(6)9 */
 
-/* Of the nine stages; the last one's are the weights of the positions at the end. */
+/* Number of stages. The coefficients of the last stage are the weights of the final position. */
 enum { RKN_STAGES = 9 };
 typedef struct quotient {
     long of, by;
@@ -217,7 +216,7 @@ static void add_quotient(mpfr_t sum, quotient q, const mpfr_t h, const mpfr_t va
     mpfr_clear(part);
 }
 
-/* Of y = e^(g t/2) (x - x0), whose y'' = e^(g t/2) (a - w x) + (g/2)^2 y. */
+/* Integrates y = e^(g t/2) (x - x0), for which y'' = e^(g t/2) (a - w x) + (g/2)^2 y. */
 static void rkn8_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
 {
     mpfr_t slope[RKN_STAGES - 1], y, dy, growth, square, half, position, zero;
@@ -260,7 +259,7 @@ static double value_of(quotient q)
     return (double)q.of / (double)q.by;
 }
 
-/* Forces do not depend on velocities. The last stage is kept: it is the first of the next step. */
+/* Forces must not depend on velocity. The last stage is kept, since it is the first stage of the next step. */
 static void rkn8_scene(const iterate_scene *s, double t, double h, double *x, double *v)
 {
     const size_t n = s->count;
@@ -293,7 +292,7 @@ static void rkn8_scene(const iterate_scene *s, double t, double h, double *x, do
 
 /* ------------------------------------------------------------------------------------------------------- SRKN6 */
 
-/* The paper's numbers, with all digits by tests/srkn6_coefficients.py. Those with the middle index follow from the sums. */
+/* The coefficients of the paper, to full precision by tests/srkn6_coefficients.py. The middle ones follow from sums. */
 enum { SRKN_STAGES = 11, SRKN_GIVEN = 5 };
 static const char *const srkn_kick[SRKN_GIVEN] = {
     "0.04146499851826284329877813391470493672394", "0.1981286719180665411367264731814969606125",
@@ -304,7 +303,7 @@ static const char *const srkn_drift[SRKN_GIVEN] = {
     "-0.127049212625416915662505053827485934473", "-0.246331761062075404194973489104062862596",
     "0.3572088727959277526198603496193104628369"};
 
-/* out = given[i], and in the middle (1 - 2 (the sum of all given))/halves. */
+/* out = given[i], or (1 - 2 (sum of all given))/halves for the middle coefficient. */
 static void srkn_coefficient(mpfr_t out, const char *const given[SRKN_GIVEN], int i, unsigned long halves)
 {
     mpfr_set_ui(out, i < SRKN_GIVEN ? 0 : 1, nearest);
@@ -328,7 +327,7 @@ static int srkn_mirrored(int i, int n)
     return i < n / 2 ? i : n - 1 - i;
 }
 
-/* x' = v, v' = -g v for the time h: x += v (1 - e^(-g h))/g, v e^(-g h) */
+/* Solves x' = v, v' = -g v over h: x += v (1 - e^(-g h))/g, v *= e^(-g h) */
 static void srkn_drift_spring(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h)
 {
     mpfr_t lost;
@@ -375,7 +374,7 @@ static void srkn_numbers(const char *const given[SRKN_GIVEN], double middle, dou
     }
 }
 
-/* Forces do not depend on velocities. The last one is kept: it is the first of the next step. */
+/* Forces must not depend on velocity. The last force is kept, since it is the first force of the next step. */
 static void srkn6_scene(const iterate_scene *s, double t, double h, double *x, double *v)
 {
     double *const a = s->room, kick[SRKN_GIVEN + 1], drift[SRKN_GIVEN + 1], at = 0;

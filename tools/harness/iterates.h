@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The methods a second time, as textbooks write them and not as the library does: what its steps are compared with.
+ * Independent implementations of the methods, written as in textbooks. Steps of the library are compared with them.
  *
- * One entry a method in iterates.c. Whoever needs the step of a method looks it up here, and finds no other place that
- * would have to know of a new one.
+ * iterates.c has one entry per method. To add a method to all tests and tools, add its entry there.
  */
 #ifndef HARNESS_ITERATES_H
 #define HARNESS_ITERATES_H
@@ -27,25 +26,25 @@ typedef struct iterate_scene {
     void (*acceleration)(const void *data, double t, const double *x, const double *v, double *a); /* 0 where pinned */
     const void *data;
     const double *drag; /* [count] drag/mass [1/s], 0 where pinned */
-    double *room;       /* [iterate_room(count)] for what a step has to keep, also for the next one */
-    bool changes;       /* acceleration may be another one before each step: nothing that it gave is used again */
-    uint64_t step;      /* number of the step in a run of steps; 0: nothing is kept yet */
+    double *room;       /* [iterate_room(count)] work space; also keeps values for the next step */
+    bool changes;       /* the acceleration function may change between steps, so its values are not reused */
+    uint64_t step;      /* index of the step in a run; 0: nothing is kept yet */
 } iterate_scene;
 
 typedef struct iterate {
     /* One step of h. Temporaries have the precision of x. */
     void (*spring)(mpfr_t x, mpfr_t v, const iterate_rates *r, const mpfr_t h);
 
-    /* One step from t to t + h. What is pinned moves on with its velocity. The acceleration that is evaluated last is
-       at the end of the step, or at the last stage. */
+    /* One step from t to t + h. Pinned coordinates keep their velocity. The last evaluation of the acceleration is at
+       the end of the step, or at the last stage. */
     void (*scene)(const iterate_scene *s, double t, double h, double *x, double *v);
-    size_t vectors; /* [count] each, of room */
+    size_t vectors; /* vectors of `count` numbers that need room */
 } iterate;
 
-/* Exits with a message where a method takes no steps, as the exact solution. */
+/* Exits with a message if the method has no steps, such as SPRING_EXACT. */
 const iterate *iterate_of(spring_method m);
 
-/* Numbers of room that a step takes, whatever the method. */
+/* Size of `room`, enough for every method. */
 size_t iterate_room(size_t count);
 
 #endif

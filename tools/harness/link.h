@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The force of a link, from its definition in scene.h and independent of src/: for references, tests and the equation that
- * GSL and SUNDIALS integrate.
+ * The force of a link, written from its definition in scene.h and independently of src/. Used by reference solutions,
+ * tests, and the equation that GSL and SUNDIALS integrate.
  *
  *     tension = stiffness (length - rest) + damping rate,    force on a = tension (b - a)/length,    on b the opposite
  *
@@ -16,11 +16,11 @@
 typedef struct link_force {
     double length, rate; /* [m], [m/s] */
     double tension;      /* [N] */
-    double scale;        /* [N/m] tension/length; 0 for ends at the same place. Not for one axis */
+    double scale;        /* [N/m] tension/length; 0 if the ends coincide. Unused on one axis */
     double force[3];     /* [N] on end a */
 } link_force;
 
-/** Evaluates a link from b - a, in position [m] and velocity [m/s]. A constant number of axes gives straight code. */
+/** Evaluates a link from b - a, in position [m] and velocity [m/s]. With a constant `axes`, compilers unroll loops. */
 static inline link_force link_evaluate(size_t axes, const double *delta, const double *relative, double stiffness,
                                        double damping, double rest)
 {

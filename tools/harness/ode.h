@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * External solvers behind one small interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE, Boost.odeint. C and C++.
+ * External solvers behind one interface: GSL's Runge-Kutta methods, SUNDIALS CVODE and ARKODE, Boost.odeint. For C and
+ * C++.
  *
- * Each takes the state y at t = 0 to its end in place. NULL means done; anything else is a message, and y is
- * unspecified.
+ * Each function integrates the state y from t = 0, in place. It returns NULL on success. Otherwise it returns a
+ * message, and y is unspecified.
  */
 #ifndef HARNESS_ODE_H
 #define HARNESS_ODE_H
@@ -17,11 +18,11 @@ typedef struct ode {
     size_t size;
     void (*derivative)(double t, const double *y, double *dy, const void *data);
     const void *data;
-    const double *scale;   /* [size] the magnitude of each component: tolerances are relative to it */
-    uint64_t evaluations;  /* counted by every solver below */
-    uint64_t steps;        /* counted likewise: those that were not rejected */
-    double (*clock)(void); /* NULL: time is of no interest */
-    double spent;          /* by that clock, added up by every solver below: without setting up */
+    const double *scale;   /* [size] magnitude of each component; tolerances are relative to it */
+    uint64_t evaluations;  /* incremented by every solver below */
+    uint64_t steps;        /* accepted steps, likewise */
+    double (*clock)(void); /* NULL: time is not measured */
+    double spent;          /* time of the integration without setup, by that clock; added up likewise */
 } ode;
 
 static inline void ode_start_clock(ode *o)
@@ -36,55 +37,55 @@ static inline void ode_stop_clock(ode *o)
         o->spent += o->clock();
 }
 
-/* y = (x, v) of one spring, from w, g, a each rounded once; data is a spring_params */
+/* The derivative of y = (x, v) for one spring, with w, g, a each rounded once; `data` is a spring_params */
 void ode_spring_derivative(double t, const double *y, double *dy, const void *data);
 
-/* n calls of apply(h). Each is two RK4 steps of h/2 in GSL 2.7, which doubles its step, and Prince-Dormand 8(9). */
+/* n calls of apply(h), by RK4 and by Prince-Dormand 8(9). An RK4 call is two RK4 steps of h/2 in GSL 2.7. */
 const char *ode_gsl_rk4(ode *o, double *y, double h, uint64_t n);
 const char *ode_gsl_rk8pd_fixed(ode *o, double *y, double h, uint64_t n);
 
-/* The same, adaptive, local tolerance relative to scale. */
+/* The same with adaptive steps; the local tolerance is relative to scale. */
 const char *ode_gsl_rk4_adaptive(ode *o, double *y, double duration, double tolerance);
 const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance);
 
-/* CVODE: variable order, variable step, local tolerance relative to scale; no limit on the number of steps. Adams with
-   fixed-point iteration; BDF with Newton's, by a dense matrix, of more than a hundred unknowns by none: GMRES. */
+/* CVODE: variable order, variable step, local tolerance relative to scale, no limit on the number of steps. Adams uses
+   fixed-point iteration. BDF uses Newton iteration, with a dense matrix up to a hundred unknowns and GMRES above. */
 const char *ode_cvode_adams(ode *o, double *y, double duration, double tolerance);
 const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance);
 
-/* ARKODE with the classical Runge-Kutta table and fixed step h, as ARKStep. */
+/* ARKODE's ARKStep with the classical Runge-Kutta table and fixed step h. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
 
-/* The same with Fehlberg's table of order 8, 13 stages, that comes with ARKODE. */
+/* The same with ARKODE's built-in Fehlberg table of order 8, 13 stages. */
 const char *ode_arkstep_8(ode *o, double *y, double h, uint64_t n);
 
-/* ARKODE's own explicit method of order 4, adaptive, local tolerance relative to scale; no limit on the number of
+/* ARKODE's default explicit method of order 4: adaptive, local tolerance relative to scale, no limit on the number of
    steps. */
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);
 
-/* Boost.odeint, which is optional: programs that are compiled with SPRING_ODEINT have it. n steps of h of Fehlberg's 7(8),
-   which evaluates 13 times a step, and of the symplectic method of order 4 by McLachlan, which evaluates 5 times and requires
-   that accelerations depend on positions alone. Bulirsch-Stoer with odeint's own control of order and step, whose local
-   tolerance is relative to the largest of scale. */
+/* Boost.odeint, only in programs compiled with SPRING_ODEINT. n steps of h by Fehlberg's 7(8), 13 evaluations per step,
+   or by McLachlan's symplectic method of order 4, 5 evaluations per step, for accelerations that depend on positions
+   only. Bulirsch-Stoer uses odeint's own control of order and step; its local tolerance is relative to the largest
+   element of scale. */
 const char *ode_odeint_rkf78(ode *o, double *y, double h, uint64_t n);
 const char *ode_odeint_sb3a_m4(ode *o, double *y, double h, uint64_t n);
 const char *ode_odeint_bulirsch_stoer(ode *o, double *y, double duration, double tolerance);
 
-/* The versions that were found: "2.7.1". */
+/* Versions of the libraries: "2.7.1". */
 const char *ode_gsl_version(void);
 const char *ode_sundials_version(void);
 const char *ode_odeint_version(void);
 
-/* The time that SUNDIALS' linear sum of vectors takes, relative to a plain loop that is compiled with -O3; clock in ns.
-   Negative: no memory. */
+/* The time of SUNDIALS' linear sum of vectors, relative to a plain loop compiled with -O3; clock in ns. Negative: out
+   of memory. */
 double ode_sundials_slowness(double (*clock)(void));
 
-/* From that ratio on SUNDIALS counts as compiled without optimisation. Measured with gcc 12: 1.0 with -O3, about 3 with -O2,
-   which does not vectorise this loop, and 5.3 to 7.6 with -O0. */
+/* At this ratio or above, SUNDIALS is taken to be compiled without optimisation. Measured with gcc 12: 1.0 with -O3,
+   about 3 with -O2, which does not vectorise this loop, and 5.3 to 7.6 with -O0. */
 #define ODE_UNOPTIMISED 4
 
-/* The same as ERKStep, before SUNDIALS 6.7.0 only, for the test that knows its error: it treats the table as
-   first-same-as-last from the second step on. */
+/* RK4 by ERKStep, before SUNDIALS 6.7.0 only, for a test of a known error: from the second step on it treats the table
+   as first-same-as-last. */
 const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Steppers of Boost.odeint; see ode.h. The state is an array of a fixed size for a few numbers, as odeint's users take it,
-// so that the compiler unrolls the loops of a step; it is a vector for more.
+// Steppers of Boost.odeint; see ode.h. Small states are arrays of fixed size, as usual with odeint, so that the
+// compiler unrolls the loops of a step. Larger states are vectors.
 #include <algorithm>
 #include <array>
 #include <boost/version.hpp>
@@ -40,7 +40,7 @@ template <class State> struct Derivative {
     }
 };
 
-// Sets a stepper up outside of the time that is measured, and copies the state.
+// Sets up a stepper and copies the state, outside of the measured time.
 template <class Stepper, class State> void begin(ode *o, const double *y, Stepper &stepper, State &state)
 {
     set_size(state, o->size);
@@ -75,7 +75,7 @@ struct Fehlberg {
 struct BulirschStoer {
     double duration, tolerance;
 
-    // The loop of odeint's integrate_adaptive(), which counts no steps and prints no reason.
+    // The loop of odeint's integrate_adaptive(), which does not count steps or report a reason.
     template <class State>
     static const char *loop(ode *o, double duration, odeint::bulirsch_stoer<State> &stepper, State &state)
     {
@@ -94,8 +94,8 @@ struct BulirschStoer {
 
     template <class State> const char *integrate(ode *o, double *y) const
     {
-        // One tolerance for all components. The error of positions times omega is about that of velocities, so the
-        // larger of their magnitudes bounds both.
+        // One tolerance for all components. Position errors times omega are about as large as velocity errors, so the
+        // larger of the magnitudes bounds both.
         const double largest = *std::max_element(o->scale, o->scale + o->size);
         odeint::bulirsch_stoer<State> stepper(tolerance * largest, 0);
         State state;
@@ -110,7 +110,7 @@ struct McLachlan {
     double h;
     uint64_t n;
 
-    // The derivative has positions and velocities in one array, odeint has them in two.
+    // The derivative has positions and velocities in one array, odeint in two.
     template <class Half> struct Acceleration {
         ode *o;
         double *y, *dy;
@@ -147,7 +147,7 @@ struct McLachlan {
     }
 };
 
-// A state of so many numbers. No exception leaves this file.
+// Selects the type of the state by its size. No exception leaves this file.
 template <class Method> const char *integrate(const Method &method, std::size_t numbers, ode *o, double *y)
 {
     try {

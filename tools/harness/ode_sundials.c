@@ -16,7 +16,7 @@
 #include "harness/ode.h"
 #include "harness/plain_sum.h"
 
-/* Names are those of 7.1, which calls the older ones deprecated. */
+/* Uses the names of version 7.1, in which the older names are deprecated. */
 #if SUNDIALS_VERSION_MAJOR < 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR < 1)
 #define ARKodeEvolve         ARKStepEvolve
 #define ARKodeFree           ARKStepFree
@@ -29,7 +29,7 @@
 #define ARKodeSetUserData    ARKStepSetUserData
 #endif
 
-/* What goes wrong is returned, not printed: since 7.0 the context is told so, before each solver was. */
+/* Errors are returned, not printed. Since 7.0 this is a setting of the context, before of each solver. */
 #if SUNDIALS_VERSION_MAJOR >= 7
 #define CVodeSetErrFile(memory, file)   ((void)0)
 #define ARKStepSetErrFile(memory, file) ((void)0)
@@ -46,7 +46,7 @@ static int derivative(sunrealtype t, N_Vector y, N_Vector dy, void *user)
     return 0;
 }
 
-/* What every integration needs; freed in one place whatever fails. */
+/* The resources of an integration, freed in one place. */
 typedef struct session {
     SUNContext context;
     N_Vector y, tolerance;
@@ -87,7 +87,7 @@ static void close_session(session *s)
         SUNContext_Free(&s->context);
 }
 
-/* Above, CVODE's manual would have a sparse solver or an iterative one, for a dense matrix takes size^3 operations. */
+/* For larger systems, CVODE's manual recommends sparse or iterative solvers: a dense matrix costs size^3 operations. */
 static const size_t dense_at_most = 100;
 
 static const char *set_up_cvode(session *s, ode *o, double duration, int method, double tolerance)
@@ -163,7 +163,7 @@ static ARKodeButcherTable classical_table(void)
     return ARKodeButcherTable_Create(4, 4, 0, c, A, b, NULL);
 }
 
-/* ARKODE adds no error control here: n steps of exactly h, one at a time. Frees the table. */
+/* Takes n steps of exactly h, one at a time, without ARKODE's error control. Frees the table. */
 static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int order, ARKodeButcherTable table)
 {
     session s;
@@ -256,12 +256,12 @@ const char *ode_sundials_version(void)
     return SUNDIALSGetVersion(version, sizeof version) == 0 ? version : "unknown";
 }
 
-/* The least of some times: other processes can only make them longer. */
+/* Uses the minimum of several times, because other processes can only make them longer. */
 static double sum_ratio(double (*clock)(void), N_Vector x, N_Vector y, N_Vector z)
 {
     const int samples = 20, sums = 50;
     const size_t n = (size_t)N_VGetLength(x);
-    const double a = 0.7, b = -1.3; /* neither is 1 or -1, which have loops of their own */
+    const double a = 0.7, b = -1.3; /* 1 and -1 have special loops */
     double theirs = INFINITY, plain = INFINITY;
     for (int i = 0; i < samples; i++) {
         const double begin = clock();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A vector sum as anybody would write it; see plain_sum.h. */
+/* A vector sum as a plain loop; see plain_sum.h. */
 #include "harness/plain_sum.h"
 
 void plain_sum(size_t n, double a, const double *x, double b, const double *y, double *z)

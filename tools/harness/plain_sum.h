@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The loop that SUNDIALS' vector sum is compared with. Compiled with -O3, whatever the build is compiled with. */
+/* The loop with which SUNDIALS' vector sum is compared. It is compiled with -O3 in every build type. */
 #ifndef HARNESS_PLAIN_SUM_H
 #define HARNESS_PLAIN_SUM_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* References in multiple precision; see reference.h. */
+/* Reference solutions in multiple precision; see reference.h. */
 #include "harness/reference.h"
 
 #include <float.h>
@@ -9,14 +9,14 @@
 
 #include "harness/iterates.h"
 
-/* 107 digits: n = 2^64 steps and damping ratios of 1e8 still leave more than 30. */
+/* [bits] With n = 2^64 steps and damping ratios of 1e8, more than 30 significant digits remain. */
 static const mpfr_prec_t precision = 384;
 
 static const mpfr_rnd_t nearest = MPFR_RNDN;
 
 void reference_init(reference *r)
 {
-    mpfr_set_emin(mpfr_get_emin_min()); /* exp(b t) of a heavily damped spring after a long time is beyond 2^(2^30) */
+    mpfr_set_emin(mpfr_get_emin_min()); /* exp(b t) of a heavily damped spring can exceed 2^(2^30) */
     mpfr_set_emax(mpfr_get_emax_max());
     mpfr_inits2(precision, r->x, r->v, r->omega, r->size, (mpfr_ptr)NULL);
 }
@@ -132,8 +132,8 @@ void reference_start(reference *ref, const spring_params *p, spring_state start)
 
 /* ------------------------------------------------------------------------------------------- the exact solution */
 
-/* The solution over t as a map: eigenvalues -b +- r, real or imaginary; at r = 0 by the limit. 107 digits make up for
-   the cancellation that the library avoids. */
+/* The exact solution over t as a map. Its eigenvalues are -b +- r, with r real or imaginary; r = 0 is taken as a limit.
+   The cancellation that the library avoids is harmless at this precision. */
 static void solution_map(affine *f, const spring_params *p, double t)
 {
     mpfr_t w, b, r, C, S, E, H, P, a;
@@ -201,7 +201,7 @@ void reference_exact(reference *ref, const spring_params *p, double t)
 
 /* --------------------------------------------------------------------------------------- the numerical solution */
 
-/* One step as an affine map, by stepping the origin and two basis states. */
+/* One step as an affine map, from steps of the origin and of two basis states. */
 static void step_map(affine *f, spring_method m, const iterate_rates *r, const mpfr_t h)
 {
     const iterate *method = iterate_of(m);
@@ -230,7 +230,7 @@ static void rounded_step_map(affine *f, const spring_params *p, spring_method m,
     mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
 }
 
-/* f becomes n times f; both linear and constant parts. */
+/* Replaces f by f composed n times, linear and constant part. */
 static void affine_power(affine *f, uint64_t n)
 {
     affine all;
@@ -446,7 +446,7 @@ bool reference_turn_of(reference_turn *t, spring_method m, double omega, double 
 
 double reference_turn_norm(const reference_turn *t, uint64_t n)
 {
-    /* Singular values s and 1/s of J, which has det 1, and of which cos + sin J cannot have a larger one. */
+    /* J has det 1, so its singular values are s and 1/s. The norm of cos + sin J is at most s. */
     const double squares = 2 * t->x_to_x * t->x_to_x + t->v_to_x * t->v_to_x + t->x_to_v * t->x_to_v;
     const double norm = (sqrt(squares + 2) + sqrt(fmax(squares - 2, 0))) / 2;
     return norm * exp(fmax((double)n * t->log_growth, 0));
@@ -465,7 +465,7 @@ double reference_distance(const reference *ref, spring_state got)
     return distance;
 }
 
-/* 2/k times the energy; out is none of the others */
+/* 2/k times the energy; `out` must not alias the inputs */
 static void square(mpfr_t out, const mpfr_t x, const mpfr_t v, const mpfr_t omega)
 {
     mpfr_div(out, v, omega, nearest);
@@ -524,7 +524,7 @@ static double plane_norm(const plane_map *f)
     return (hypot(f->a + f->d, f->b - f->c) + hypot(f->a - f->d, f->b + f->c)) / 2;
 }
 
-/* step - solution, subtracted before it is rounded */
+/* step - solution, subtracted before rounding */
 static plane_map plane_difference(affine *step, const affine *solution, double omega)
 {
     for (int i = 0; i < 2; i++) {
@@ -536,7 +536,7 @@ static plane_map plane_difference(affine *step, const affine *solution, double o
 }
 
 typedef struct added {
-    double rounding, truncation; /* [m] by one step, or by all steps that are not walked */
+    double rounding, truncation; /* [m] by one step, or by all steps that are not evaluated one by one */
 } added;
 
 typedef struct walk {
@@ -595,7 +595,7 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     if (!walked) {
         reference_turn turn;
         const bool turns = p->damping == 0 && p->load == 0 && reference_turn_of(&turn, m, omega, dt);
-        const double carried = turns ? reference_turn_norm(&turn, n) : NAN; /* a bound that nothing keeps */
+        const double carried = turns ? reference_turn_norm(&turn, n) : NAN; /* NaN fails every check */
         const double all = (double)n * hypot(b->y.x, b->y.v) * carried;
         b->steps[b->step_count++] = (added){carried * all * local, all * plane_norm(&defect)};
         return;
@@ -626,8 +626,8 @@ void reference_bounds_end(reference_bounds *b, double *rounding, double *truncat
     free(b);
 }
 
-/* Jury's conditions for both eigenvalues in the closed unit circle, |det| <= 1 and |trace| <= 1 + det. Leapfrog
-   without damping has det = 1: the slack is far above what 384 bits round and far below what a double can tell. */
+/* Jury's conditions for both eigenvalues in the closed unit circle: |det| <= 1 and |trace| <= 1 + det. Leapfrog without
+   damping has det = 1. The slack is far above the rounding error of 384 bits and far below that of a double. */
 static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
 {
     iterate_rates r;
@@ -660,7 +660,7 @@ double reference_stable_step(const spring_params *p, spring_method m)
     mpfr_inits2(precision, low, high, middle, (mpfr_ptr)NULL);
     set_omega(high, p);
     mpfr_ui_div(high, 1, high, nearest);
-    mpfr_mul_2si(high, high, -120, nearest); /* a step so small that only a method that is never stable fails */
+    mpfr_mul_2si(high, high, -120, nearest); /* so small that only methods without any stable step fail */
     mpfr_set_zero(low, 1);
     while (stable(p, m, high)) {
         mpfr_set(low, high, nearest);

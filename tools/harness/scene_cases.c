@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The catalogue of corner cases of scenes; see scenes.h.
+ * The table of corner cases of scenes; see scenes.h.
  *
- * Digits at the end of nonlinear cases were computed in quadruple precision, twice, with steps of different length. Of
- * cases that fix k = m = 1 the mass is another, and the forces are as many times larger.
+ * The known digits of nonlinear cases were computed twice in quadruple precision, with different steps. Cases whose
+ * equations have k = m = 1 are run with another mass and with forces scaled accordingly.
  *
- * What the terms of a callback can reach (.callback) follows from energy: of the double pendulum rates^2 <= 59 and 118,
- * of the quartic springs length^4 <= 2; else from the amplitude.
+ * The bound on the terms of a callback (.callback) follows from energy for the double pendulum (rates^2 <= 59 and 118)
+ * and for the quartic springs (length^4 <= 2), otherwise from the amplitude.
  *
- * Largest steps are such that the errors follow their power law: over the whole run the fastest mode is out of phase by
- * less than a tenth, and Euler's method amplifies by less than e. They are powers of two where a force depends on time.
+ * The largest steps are so small that errors follow their power law: over the whole run the phase error of the fastest
+ * mode is less than a tenth, and Euler's method amplifies by less than e. They are powers of two if a force depends on
+ * time.
  */
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +35,7 @@ static void weigh(scene_problem *p, size_t i, double kilograms)
     p->def.mass = p->mass;
 }
 
-/* One coordinate that moves, held to 0 by a link (to particle 1, pinned) unless the stiffness is 0. */
+/* One moving coordinate, attached to 0 by a link (to particle 1, which is pinned) unless the stiffness is 0. */
 static void make_one(scene_problem *p, double x, double v, double stiffness)
 {
     make(p, 1, 2, stiffness > 0);
@@ -129,8 +130,8 @@ static void solve_resonance(const scene_case *c, const scene_problem *p, double 
     y[1] = 0.35 * (sin(t) + t * cos(t));
 }
 
-/* Two angles from the vertical, unit rods, equal masses: the mass matrix depends on the angles, the forces on
-   velocities. */
+/* Two angles from the vertical, unit rods, equal masses. The mass matrix depends on the angles, and the forces depend
+   on velocities. */
 static void double_pendulum(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)particles;
@@ -148,8 +149,8 @@ static void build_double_pendulum(const scene_case *c, scene_problem *p)
     p->def.force = double_pendulum;
 }
 
-/* The potential (q_2i+1 - q_2i)^4 between pairs and to the walls: Fermi, Pasta, Ulam as in Hairer, Lubich, Wanner,
-   Geometric Numerical Integration (2006), section I.5.1. */
+/* The Fermi-Pasta-Ulam problem: the potential (q_2i+1 - q_2i)^4 between pairs and to the walls.
+   Source: Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.5.1. */
 static void soft_quartic(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)v;
@@ -192,7 +193,7 @@ static void build_elastic_pendulum(const scene_case *c, scene_problem *p)
     p->def.gravity[1] = -9.81;
 }
 
-/* A row of particles in the plane, the first one pinned, each half as far down as across. */
+/* A row of particles in the plane, sloping down by half. The first one is pinned. */
 static void make_row(scene_problem *p, size_t particles, double spacing, double stretch)
 {
     make(p, 2, particles, particles - 1);
@@ -228,8 +229,8 @@ static void build_stiffness_ratio(const scene_case *c, scene_problem *p)
         p->link[i].stiffness = i % 2 == 0 ? 2.7e6 : 2.7;
 }
 
-/* Five rows of links (equal ones, some of them turned round; with a gap; of different rest length, stiffness, damping)
-   and two links that lie in no row; in the plane it falls freely. */
+/* Five bands of links (equal links, some with exchanged ends; a gap; different rest length, stiffness, damping) and two
+   unbanded links. In the plane the scene falls freely. */
 static void build_patchwork(const scene_case *c, scene_problem *p)
 {
     const uint32_t axes = (uint32_t)c->count, particles = 14, gap = 6;
@@ -300,10 +301,11 @@ static void build_water(const scene_case *c, scene_problem *p)
     p->def.drag = 0.5;
 }
 
-/* A sheet of 4 m in one of its modes, at rest, N particles along an edge; the name says which: ...-mode-P-Q-KIND-N.
-   Water has structural links alone, or links of all families, or those mirrored at the edges, or it is a sheet in space
-   under tension. All families as spring_grid_fill() makes them have no simple modes: a particle next to the edge lacks
-   the bend link to its mirror image, which has the opposite height. A link twice as stiff to the edge does the same. */
+/* A sheet of 4 m at rest in one of its modes, with N particles along an edge, named ...-mode-P-Q-KIND-N. KIND is
+   height-field water with structural links only, or with structural, shear and bend links, or with these mirrored at
+   the edges, or a sheet in space under tension. The links of spring_grid_fill() have no simple modes if bend links are
+   included: a particle next to the edge lacks the bend link to its mirror image, which has the opposite height. A link
+   of twice the stiffness to the edge replaces it. */
 static void build_mode(const scene_case *c, scene_problem *p)
 {
     unsigned P = 0, Q = 0, N = 0;
@@ -382,10 +384,10 @@ static void chain_modes(const scene_case *c, const scene_problem *p, spring_meth
     free(end);
 }
 
-/* Two particles and a link; all that moves moves along the line from one to the other, or with both. */
+/* Two particles and a link. They move along their common line, and their centre of mass drifts. */
 static const double pair_mass[] = {1.3, 0.4}, pair_stiffness = 2.7, pair_rest = 1.25; /* [kg], [N/m], [m] */
 static const double pair_delta[] = {0.5, 1, 1}, pair_length = 1.5; /* [m] exactly: without rotation */
-static const double pair_rate = -0.75;                             /* [m/s] of the length */
+static const double pair_rate = -0.75;                             /* [m/s] rate of the length */
 static const double pair_drift[] = {0.3, -0.2, 0.1};               /* [m/s] of the first particle */
 
 static void build_pair(const scene_case *c, scene_problem *p)
@@ -409,7 +411,7 @@ static void build_damped_pair(const scene_case *c, scene_problem *p)
     p->link[0].damping = 0.4;
 }
 
-/* Both from the extension of the link and its rate, and the centre of mass. */
+/* Computes both particles from the extension of the link, its rate, and the centre of mass. */
 static void place_pair(const scene_case *c, const scene_problem *p, long double t, long double x, long double v,
                        double *y)
 {
@@ -457,10 +459,10 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
     .iterate = iterate_pair, .slowest = 0, .fastest = 2.972
 #define LONG  .duration = 16, STEPS(1024, 512, 512, 64)
 #define BRIEF .duration = 0.125, STEPS(4, 4, 4, 4)
-/* A mode for some eighths of a second, by methods of order 2 or more. RK4 takes about half its stable step, 2.61/sqrt(8
-   k/m) with structural links, with all families 24 k/m; leapfrog 0.4 of 2/sqrt(8 k/m), since at half of it the step
-   alone makes the frequency of mode (3, 1) at 15 x 15 wrong by z^2/24, more than half a percent. .length and .omega
-   follow from the mode. */
+/* A mode for some eighths of a second, by methods of order 2 or more. RK4 uses about half its stable step,
+   2.61/sqrt(8 k/m) with structural links and 2.61/sqrt(24 k/m) with all links. Leapfrog uses 0.4 of 2/sqrt(8 k/m): at
+   half of it, the frequency error z^2/24 of mode (3, 1) at 15 x 15 exceeds half a percent. .length and .omega follow
+   from the mode. */
 #define MODE(name, purpose, eighths, second, fourth, eighth, takes_long)                                       \
     {                                                                                                          \
         name, purpose, build_mode, .duration = (eighths) / 8.0,                                                \

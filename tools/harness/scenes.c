@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The equation of a scene, a second time; see scenes.h. */
+/* An independent implementation of the equation of a scene; see scenes.h. */
 #include "harness/scenes.h"
 
 #include <float.h>
@@ -58,7 +58,7 @@ size_t scene_problem_grid(scene_problem *p, const spring_grid *g, size_t more_li
     return links;
 }
 
-/* The methods that take a definition. */
+/* The methods that accept a definition. */
 static uint32_t methods_of(spring_scene_def def)
 {
     uint32_t methods = 0;
@@ -145,7 +145,7 @@ static void add_link(const scene_problem *p, const spring_link *link)
     }
 }
 
-/* Acceleration of all that moves, without drag. */
+/* Accelerations of all moving coordinates, without drag. */
 static void accelerations(const void *data, double t, const double *x, const double *v, double *a)
 {
     const scene_problem *p = data;
@@ -187,8 +187,7 @@ void scene_derivative(double t, const double *y, double *dy, const void *data)
     }
 }
 
-/* A step of y from t on, number i of a run; room is for iterate_room(moving) numbers, and holds what is kept from the
-   step before. */
+/* Takes step i of a run, from t. `room` has iterate_room(moving) numbers and keeps values from step to step. */
 static void step(const scene_problem *p, spring_method m, double h, double t, uint64_t i, double *y, double *room)
 {
     const bool promised = (p->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) != 0;
@@ -204,13 +203,13 @@ static void step(const scene_problem *p, spring_method m, double h, double t, ui
 
 /* ----------------------------------------------------------------------------------------------------- rounding */
 
-typedef struct roundings { /* what the formula in scenes.h calls ... */
+typedef struct roundings { /* quantities of the formula in scenes.h */
     double rate;           /* [1/s] z/h */
     double links;          /* L */
     double state;          /* D */
 } roundings;
 
-/* The fastest rate by Gershgorin's circles, or that of the case if a callback is faster. */
+/* The fastest rate by Gershgorin's circles, or the omega of the case if it is larger because of a callback. */
 static roundings count_roundings(const scene_case *c, const scene_problem *p)
 {
     double *sum = numbers(p->def.particles), *links = numbers(p->def.particles), highest = 0;
@@ -232,7 +231,8 @@ static roundings count_roundings(const scene_case *c, const scene_problem *p)
     return r;
 }
 
-/* By a step that ends in y, right after the forces there were computed: their sizes are in p->room. */
+/* The rounding error of a step that ends in y. Call it right after the forces at y were evaluated, since it uses their
+   sizes in p->room. */
 static double added(const scene_case *c, const scene_problem *p, const roundings *r, double h, const double *y)
 {
     const size_t axes = p->def.axes;
@@ -251,9 +251,9 @@ static double added(const scene_case *c, const scene_problem *p, const roundings
            (r->state * sqrt(state) + 4 * h * sqrt(speed) + (15 + r->links) * h * sqrt(force) / c->omega);
 }
 
-/* What many steps of a linear scene do to an error: n steps of a mode have the norm of reference_turn_norm() in (x,
-   v/rate), at most that of the fastest mode. In (x, v/omega) that is larger by the ratio of the rates, but a slow mode
-   cannot do more than drift for as long. */
+/* The growth of an error over many steps of a linear scene. In (x, v/rate), n steps of a mode have the norm of
+   reference_turn_norm(), at most the norm of the fastest mode. In (x, v/omega) it is larger by the ratio of the rates,
+   but for a slow mode at most by the growth of a free drift. */
 typedef struct carrier {
     reference_turn turn; /* of the fastest mode in a step */
     bool turns;
@@ -269,12 +269,12 @@ static carrier carrier_of(const scene_case *c, spring_method m, double h)
 static double carried(const scene_case *c, const carrier *r, double h, uint64_t n)
 {
     const double duration = (double)n * h, slow = fmin(c->omega / c->slowest, 1 + c->omega * duration);
-    const double norm = r->turns ? reference_turn_norm(&r->turn, n) : NAN; /* a bound that nothing keeps */
+    const double norm = r->turns ? reference_turn_norm(&r->turn, n) : NAN; /* NaN fails every check */
     return norm * fmax(1, fmax(slow, c->fastest / c->omega));
 }
 
-/* The matrix of a step in (x, v/omega) by one-sided differences, relative error of about 1e-7 h times a rate. As if the
-   accelerations at its start were those of (x, v): what leapfrog keeps differs from them by a truncation error. */
+/* The matrix of a step in (x, v/omega) by one-sided differences, with a relative error of about 1e-7 h times a rate.
+   Accelerations at the start are evaluated at (x, v); the values that leapfrog keeps differ by a truncation error. */
 static void step_matrix(const scene_case *c, const scene_problem *p, spring_method m, double h, double t,
                         const double *y, double *matrix, double *work)
 {
@@ -292,7 +292,7 @@ static void step_matrix(const scene_case *c, const scene_problem *p, spring_meth
     }
 }
 
-/* An upper bound of the spectral norm: the smaller of Frobenius' and of sqrt(largest column sum largest row sum). */
+/* An upper bound on the spectral norm: the Frobenius norm, or sqrt(largest column sum * largest row sum) if smaller. */
 static double norm_bound(const double *matrix, size_t size, double *column)
 {
     double squares = 0, largest_row = 0, largest_column = 0;
@@ -323,7 +323,7 @@ static void multiply(double *restrict out, const double *restrict a, const doubl
         }
 }
 
-/* Walks back over the states after each step, with the product of the matrices of all later ones. */
+/* Sums backwards over the states after each step, with the product of the matrices of all later steps. */
 static double walked_back(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
                           const double *states, const double *local)
 {
