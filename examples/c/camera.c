@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A camera follows a runner in three dimensions: one spring for each axis, with the same parameters. Frames are of any
- * length.
+ * A camera follows a runner in three dimensions, with one spring per axis. Frame times may vary.
  *
  *     cc -std=c11 camera.c -lspringstep -lm -o camera
  *
- * Critical damping, so the camera never overshoots. Without the velocity of the runner, it lags by about
- * damping/stiffness * u = 2 u / omega behind a runner at speed u. With his velocity, it does not lag.
+ * Damping is critical, so the camera does not overshoot. If it follows only the position of the runner, it lags by
+ * about damping/stiffness * u = 2 u / omega at speed u. With the velocity as well, it does not lag.
  */
 #include <math.h>
 #include <springstep/spring.h>
 #include <stdbool.h>
 #include <stdio.h>
 
-/* The runner at time t [s]: along a slope at 6.5 m/s for three seconds; then he stands. */
+/* The runner at time t [s]: up a slope at 6.5 m/s for three seconds, then at rest. */
 static void runner(double t, double place[3], double velocity[3])
 {
     const double u[3] = {6, 1.5, 2}, start[3] = {10, 0, -4}; /* [m/s], [m] */

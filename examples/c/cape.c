@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A cape on a body that runs, jumps and is teleported, in wind. The body is a capsule. Once a frame the program gives the
- * capsule and the pinned row of the cape the velocity that brings them to the next pose.
+ * A cape in wind, on a body that runs, jumps and is teleported. The body is a capsule. Once per frame, the program sets
+ * the velocities of the capsule and of the pinned row of the cape so that they reach the next pose.
  *
  *     cc -std=c11 cape.c -lspringstep -lm -o cape
  */
@@ -13,7 +13,7 @@
 enum { W = 20, H = 30, N = W * H, STEPS = 20, TELEPORT = 150 /* frame */ };
 static const double frame = 1.0 / 60, mass = 0.002;      /* [s], [kg] of a particle */
 static const double spacing = 0.04, skin = 0.01;         /* [m], radius of a particle */
-static const double radius = 0.2, low = 0.4, high = 1.3; /* [m] of the body, heights of its ends */
+static const double radius = 0.2, low = 0.4, high = 1.3; /* [m] radius and end heights of the body */
 static const double air[3] = {-2, 0, 3}, drag = 0.0015;  /* [m/s], [N s/m] of a particle */
 static double x[N][3], v[N][3], force[N][3];
 
@@ -25,7 +25,7 @@ static void must(spring_status status)
     }
 }
 
-/* Where the body is in frame i: it runs, from t = 1 s on it jumps for 0.6 s. The other way after it was teleported. */
+/* The position of the body in frame i. It runs, and jumps for 0.6 s at t = 1 s. After the teleport it runs back. */
 static void place_body(int i, double facing, double at[2])
 {
     const double t = i * frame, jump = t - 1, run = 4 * (t < 0.5 ? t * t : t - 0.25);
@@ -33,7 +33,7 @@ static void place_body(int i, double facing, double at[2])
     at[1] = jump > 0 && jump < 0.6 ? 9.81 / 2 * jump * (0.6 - jump) : 0;
 }
 
-/* Particle k of the upper edge is on an arc behind the neck. */
+/* Particles of the upper edge are on an arc behind the neck. */
 static void place_pin(int k, const double at[2], double facing, double target[3])
 {
     const double arc = radius + 2 * skin, angle = (k - (W - 1) / 2.0) * spacing / arc;
@@ -42,12 +42,12 @@ static void place_pin(int k, const double at[2], double facing, double target[3]
     target[2] = facing * arc * sin(angle);
 }
 
-/* Drag on each particle; wind.c has the wind on triangles. */
+/* Drag of the wind on each particle. wind.c computes it for triangles. */
 static void blow(spring_scene *cape)
 {
     must(spring_scene_get(cape, SPRING_VELOCITY, v[0], 0, 0, N));
     for (int i = 0; i < N; i++)
-        for (int axis = 0; axis < 3; axis++) /* held for a frame, it may not turn the velocity around */
+        for (int axis = 0; axis < 3; axis++) /* limited: held for a frame, it must not reverse the velocity */
             force[i][axis] = drag / (1 + drag * frame / mass) * (air[axis] - v[i][axis]);
     must(spring_scene_set(cape, SPRING_FORCE, force[0], 0, 0, N));
 }
@@ -84,7 +84,7 @@ static void show(const spring_scene *cape, const double at[2], double facing)
 
 int main(void)
 {
-    static spring_link link[6 * N]; /* less than six of each particle */
+    static spring_link link[6 * N]; /* fewer than six per particle */
     static uint8_t pinned[N];
     double at[2], facing = 1;
     spring_grid sheet = {.count = {W, H}, .spacing = spacing, .stiffness = 150, .damping = 0.01};
@@ -101,12 +101,12 @@ int main(void)
     must(spring_scene_bytes(&def, &bytes));
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
     spring_scene *cape;
-    must(spring_scene_init(memory, bytes, &def, &cape)); /* without memory: SPRING_EINVAL */
+    must(spring_scene_init(memory, bytes, &def, &cape)); /* NULL memory gives SPRING_EINVAL */
     for (int i = 0; i <= 300; i++) {
         place_body(i, facing, at);
         if (i % 30 == 0)
             show(cape, at, facing);
-        if (i == TELEPORT) { /* turned by half, too: x = -100 m - x, z = -z */
+        if (i == TELEPORT) { /* also turned by 180 degrees: x = -100 m - x, z = -z */
             must(spring_scene_transform(cape, (const double[]){-1, 0, 0, -100, 0, 1, 0, 0, 0, 0, -1, 0}));
             place_body(i, facing = -1, at);
             show(cape, at, facing);

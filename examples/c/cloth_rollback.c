@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Cloth in a game over a network: the other player's input arrives six frames late. Until then it is guessed; where the
- * guess was wrong, the cloth goes back to the frame it was for and is replayed. It ends with the bits it would have had
- * with every input in time.
+ * Cloth in a network game. The input of the other player arrives six frames late and is predicted until then. After a
+ * wrong prediction, the cloth is reset to that frame and simulated again. The result is bit-identical to a run in which
+ * every input arrives in time.
  *
  *     cc -std=c11 cloth_rollback.c -lspringstep -lm -o cloth_rollback
  *
@@ -14,7 +14,7 @@
 #include <string.h>
 
 enum { SIDE = 24, N = SIDE * SIDE, FRAMES = 90, LATE = 6, STEPS = 6 };
-static const double dt = 1.0 / 360; /* [s]; STEPS of them are a frame */
+static const double dt = 1.0 / 360; /* [s]; a frame has STEPS steps */
 
 static void must(spring_status status)
 {
@@ -24,7 +24,7 @@ static void must(spring_status status)
     exit(1);
 }
 
-/* What the other player really does in a frame: push the pinned edge back, hold it, push it forth. */
+/* The actual input of the other player: move the pinned edge back, hold it, move it forth. */
 static int input(int frame)
 {
     return frame / 17 % 3 - 1;
@@ -39,7 +39,7 @@ static void simulate(spring_scene *cloth, int push)
     must(spring_scene_advance(cloth, SPRING_LEAPFROG, dt, STEPS));
 }
 
-/* FNV-1a of all positions and velocities. */
+/* FNV-1a hash of all positions and velocities. */
 static unsigned long long digest(const spring_scene *cloth)
 {
     static double state[2][3 * N];
@@ -87,12 +87,12 @@ int main(void)
 
     int used[FRAMES], rollbacks = 0, replayed = 0;
     for (int now = 0; now < FRAMES + LATE; now++) {
-        const int arrived = now - LATE; /* the input of this frame is known from now on */
+        const int arrived = now - LATE; /* the input of this frame arrives now */
         if (arrived >= 0 && used[arrived] != input(arrived)) {
             const int end = now < FRAMES ? now : FRAMES;
             memcpy(cloth, snapshots + (size_t)(arrived % LATE) * bytes, bytes);
             for (int frame = arrived; frame < end; frame++) {
-                used[frame] = input(arrived); /* known for the first of them, a new guess for the others */
+                used[frame] = input(arrived); /* known for the first frame, a new guess for the others */
                 memcpy(snapshots + (size_t)(frame % LATE) * bytes, cloth, bytes);
                 simulate(cloth, used[frame]);
             }
@@ -103,7 +103,7 @@ int main(void)
         if (now >= FRAMES)
             continue;
         simulate(in_time, input(now));
-        used[now] = arrived >= 0 ? input(arrived) : 0; /* the guess: as in the last frame that is known */
+        used[now] = arrived >= 0 ? input(arrived) : 0; /* guess: the last known input */
         memcpy(snapshots + (size_t)(now % LATE) * bytes, cloth, bytes);
         simulate(cloth, used[now]);
         if (now % 17 == 2 || now % 17 == 10) /* while a guess is wrong, and later */

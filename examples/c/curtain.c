@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A curtain that tears: a hand pulls at its lower edge, links break where they are stretched too far, first along a weak
- * seam, and the pieces are counted.
+ * A curtain that tears. Its lower edge is pulled; links that are stretched too far break, first along a weak seam. The
+ * program counts the pieces.
  *
  *     cc -std=c11 curtain.c -lspringstep -lm -o curtain
  */
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 enum { W = 40, H = 25, N = W * H, MOST_LINKS = 4 * N, STEPS = 30 };
-enum { HAND = W / 2 - 6, HELD = 6 };  /* particles of the lowest row that the hand holds */
+enum { HAND = W / 2 - 6, HELD = 6 };  /* the pulled particles of the lowest row */
 enum { SEAM = 12 * W };               /* the seam is below this particle */
 static const double frame = 1.0 / 60; /* [s] */
 
@@ -38,7 +38,7 @@ int main(void)
     must(spring_grid_fill(&sheet, x[0], pinned, link));
     for (int i = HAND; i < HAND + HELD; i++)
         pinned[i] = 1;
-    static double limit[MOST_LINKS]; /* length over rest length where a link breaks */
+    static double limit[MOST_LINKS]; /* length over rest length at which a link breaks */
     for (size_t i = 0; i < links; i++)
         limit[i] = (link[i].a < SEAM) != (link[i].b < SEAM) ? 1.2 : 1.6;
     const spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_TENSION_ONLY,
@@ -61,7 +61,7 @@ int main(void)
 
     size_t torn_links = 0;
     for (int i = 1; i <= 180; i++) {
-        for (int k = HAND; k < HAND + HELD && i <= 120; k++) { /* it pulls for two seconds, down and towards us */
+        for (int k = HAND; k < HAND + HELD && i <= 120; k++) { /* pull for two seconds, down and towards the viewer */
             const double target[] = {x[k][0], x[k][1] - 0.4 * i * frame, x[k][2] + 0.2 * i * frame};
             must(spring_scene_drive(curtain, (size_t)k, i < 120 ? target : NULL, frame));
         }
@@ -70,7 +70,7 @@ int main(void)
         static uint32_t torn[MOST_LINKS];
         size_t count;
         must(spring_scene_tear(curtain, 0, limit, torn, MOST_LINKS, &count));
-        for (size_t k = 0; k < count; k++) /* our own copy says what is still joined, and what to draw */
+        for (size_t k = 0; k < count; k++) /* mark torn links in our copy, for drawing and for counting the pieces */
             link[torn[k]].stiffness = link[torn[k]].damping = 0;
         torn_links += count;
         if (i % 30 != 0)

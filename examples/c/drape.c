@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A cloth falls on a sphere and the ground around it, slides down a little and comes to rest, held by friction.
+ * A cloth falls onto a sphere and the ground, slides a little and comes to rest by friction.
  *
  *     cc -std=c11 drape.c -lspringstep -lm -o drape
  *
- * Particles are kept out of colliders, not the links between them. So their spacing is small compared with the sphere, and
- * their radius keeps links out, too.
+ * Colliders act on particles, not on the links between them. With a spacing that is small compared with the sphere, the
+ * radius of the particles keeps links outside as well.
  */
 #include <springstep/scene.h>
 #include <math.h>
@@ -38,7 +38,7 @@ int main(void)
                                .stiffness = 30,
                                .damping = 0.03};
     static double x[N][3];
-    static spring_link link[6 * N]; /* less than six of each particle */
+    static spring_link link[6 * N]; /* fewer than six per particle */
     size_t particles, links, bytes;
     must(spring_grid_size(&sheet, &particles, &links));
     must(spring_grid_fill(&sheet, x[0], NULL, link));
@@ -67,7 +67,7 @@ int main(void)
     const spring_collider colliders[2] = {
         {.shape = SPRING_SPHERE, .at = {ball[0], ball[1], ball[2]}, .radius = radius, .friction = 0.5},
         {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.8}};
-    must(spring_scene_set_colliders(cloth, colliders, 2)); /* once: they do not move */
+    must(spring_scene_set_colliders(cloth, colliders, 2)); /* set once, since they do not move */
 
     for (int i = 1; i <= 6 * 60; i++) {
         must(spring_scene_advance(cloth, SPRING_LEAPFROG, frame / STEPS, STEPS));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How fast may a hand drag a cloth? The middle of its lower edge is moved to and fro for a second and let go. After that
- * energy can only be lost: what is gained is the error of the step. docs/dragging.md says what to make of the table.
+ * How fast can a cloth be dragged? The middle of its lower edge is moved to and fro for a second and released. After
+ * that, any gain of energy is an error of the step. docs/dragging.md explains the table.
  *
  *     cc -std=c11 -O2 fast_hand.c -lspringstep -lm -o fast_hand
  */
@@ -13,7 +13,7 @@
 enum { SIDE = 17, N = SIDE * SIDE, GRABBED = N - 1 - SIDE / 2, LINKS = 4 * N, FRAMES = 60 };
 static const double frame_time = 1.0 / FRAMES;                    /* [s] */
 static const double spacing = 0.05, stiffness = 200, mass = 0.01; /* [m], [N/m], [kg] */
-static const double stroke = 0.4; /* [m] of the hand, to a side and up: in the cloth's reach */
+static const double stroke = 0.4; /* [m] motion of the hand, sideways and up, within reach of the cloth */
 
 static void must(spring_status status)
 {
@@ -24,8 +24,8 @@ static void must(spring_status status)
 }
 
 typedef struct outcome {
-    double stretch; /* longest link over its rest length, while it is dragged */
-    double gain;    /* most energy gained in two seconds after, over what its links and motion held */
+    double stretch; /* largest ratio of length to rest length during the drag */
+    double gain;    /* largest gain of energy in the next two seconds, relative to the elastic and kinetic energy */
 } outcome;
 
 static double total(spring_scene_energies e)
@@ -46,7 +46,7 @@ static double longest(const spring_scene *cloth, const spring_link *link, size_t
     return most;
 }
 
-/* speed [m/s] of the hand; step over the stable one; damping of links [N s/m] */
+/* speed [m/s] of the hand; step relative to the stable step; damping of links [N s/m] */
 static outcome drag(double speed, double step, double damping)
 {
     static double position[3 * N];
@@ -104,7 +104,7 @@ static outcome drag(double speed, double step, double damping)
 
 int main(void)
 {
-    const double wave = spacing * sqrt(stiffness / mass); /* [m/s]: as fast as the cloth can follow */
+    const double wave = spacing * sqrt(stiffness / mass); /* [m/s] wave speed, the fastest that the cloth can follow */
     const double damping = 0.02;                          /* [N s/m] */
     printf("| hand/wave | hand [m/s] | stretch | gain, step 1 | 1/2 | 1/4 | 1/8 | damped: stretch | gain, step 1 |\n");
     printf("|---|---|---|---|---|---|---|---|---|\n");

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A grappling rope with a body of the program's own on its end: 60 kg, a point here, but it could be of a physics engine.
- * It swings, is reeled in, jumps so that the rope is slack, and falls into the rope, which tears.
+ * A grappling rope with a body of 60 kg at its end. The program simulates the body as a point; a physics engine could
+ * do this instead. The body swings, is reeled in, jumps so that the rope is slack, and falls until the rope tears.
  *
  *     cc -std=c11 grapple.c -lspringstep -lm -o grapple
  *
- * The end of the rope is a pinned particle. Each frame it is moved to where the body goes, and the tension of the last
- * link pulls the body.
+ * The end of the rope is a pinned particle. In each update it is moved to the next position of the body, and the
+ * tension of the last link pulls the body.
  */
 #include <springstep/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LINKS = 24, N = LINKS + 1, STEPS = 12, RATE = 480 }; /* steps of an update, updates a second */
+enum { LINKS = 24, N = LINKS + 1, STEPS = 12, RATE = 480 }; /* steps per update, updates per second */
 static const double update = 1.0 / RATE, weight = 60, gravity = 9.81;
 static spring_scene *rope;
 static spring_link link[LINKS];
@@ -56,7 +56,7 @@ static void tell(const char *what)
            hypot(body[0], body[1]), tension, body[1]);
 }
 
-/* A quarter of the period of a pendulum that starts at rest at this angle: pi/2 sqrt(L/g)/agm(1, cos(angle/2)). */
+/* A quarter period of a pendulum that starts at rest at this angle: pi/2 sqrt(L/g)/agm(1, cos(angle/2)). */
 static double quarter_period(double length, double angle)
 {
     double a = 1, b = cos(angle / 2);
@@ -87,7 +87,7 @@ int main(void)
     size_t bytes;
     must(spring_scene_bytes(&def, &bytes));
     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
-    must(spring_scene_init(memory, bytes, &def, &rope)); /* SPRING_EINVAL without memory */
+    must(spring_scene_init(memory, bytes, &def, &rope)); /* NULL memory gives SPRING_EINVAL */
     for (int a = 0; a < 3; a++)
         body[a] = x[LINKS][a];
     if (!(update / STEPS < spring_scene_stable_step(rope, SPRING_LEAPFROG)))

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A hundred thousand blades of grass in float, bent by a gust that moves over the field: a load that changes with time.
+ * A hundred thousand blades of grass in single precision, bent by a gust that crosses the field: a time-dependent load.
  *
  *     cc -std=c11 -O2 grass.c -lspringstep -lm -o grass
  *
- * Each blade has a stiffness of its own; all share one damping. Before each step the load is set to its value in the
- * middle of the step: that keeps the second order of leapfrog.
+ * Each blade has its own stiffness; all share one damping. Before each step, the load is set to its value at the middle
+ * of the step, which keeps leapfrog second order.
  */
 #include <springstep/batch.h>
 #include <math.h>
@@ -24,7 +24,7 @@ static float place(int i)
     return field * (float)i / BLADES;
 }
 
-/* A hill with its top at gust_speed * t, of finite length: most blades need no arithmetic. */
+/* A bump centred at gust_speed * t. It has finite length, so most blades need no arithmetic. */
 static void blow(float *accel, double t)
 {
     const float top = (float)(gust_speed * t);
@@ -65,7 +65,7 @@ int main(void)
         if ((step + 1) % 120 != 0)
             continue;
         int most = 0;
-        double sum = 0, sum_place = 0; /* where the grass is bent, on average */
+        double sum = 0, sum_place = 0; /* mean position of the bent grass */
         for (int i = 0; i < BLADES; i++) {
             if (tip[i] > tip[most])
                 most = i;

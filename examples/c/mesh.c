@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A scene from a mesh file (Wavefront OBJ): a spring along each edge of its faces and across quadrilaterals. Vertices of a
- * file are in any order; renumbered, neighbours are near each other in memory, and steps are faster.
+ * A scene from a mesh file (Wavefront OBJ), with a spring along each edge and across quadrilaterals. The vertices of a
+ * file can be in any order. Renumbering places neighbours near each other in memory, so steps are faster.
  *
  *     cc -std=c11 mesh.c -lspringstep -lm -o mesh
  *     ./mesh flag.obj
@@ -18,14 +18,14 @@ static spring_link link[MOST];
 static uint8_t pinned[MOST];
 static uint32_t order[MOST], work[4 * MOST + 2 * MOST + 1];
 
-/* By ends, so that an edge of two faces comes twice in a row. */
+/* Sorts links by their ends, so that duplicates from two faces are adjacent. */
 static int compare(const void *left, const void *right)
 {
     const spring_link *l = left, *r = right;
     return l->a != r->a ? (l->a > r->a) - (l->a < r->a) : (l->b > r->b) - (l->b < r->b);
 }
 
-/* Returns false for a file that cannot be used. */
+/* Returns false if the file cannot be used. */
 static bool read_mesh(FILE *file, size_t *vertices, size_t *links)
 {
     char line[512];
@@ -65,7 +65,7 @@ static bool read_mesh(FILE *file, size_t *vertices, size_t *links)
     return *links > 0;
 }
 
-/* A second in the wind; the pole is where x = 0. */
+/* Simulates a second in wind; particles at x = 0 are on the pole. */
 static bool fly(const char *name, double (*x)[3], size_t vertices, size_t links)
 {
     double far = 0, middle[3] = {0};
@@ -114,7 +114,7 @@ int main(int argc, char **argv)
     if (!fly("as in the file", position, vertices, links) ||
         spring_links_renumber(vertices, links, link, order, NULL, work) != SPRING_OK)
         return 1;
-    for (size_t i = 0; i < 3 * vertices; i++) /* order[new] is the old number: for drawing, too */
+    for (size_t i = 0; i < 3 * vertices; i++) /* order[new index] is the old index; drawing needs it as well */
         sorted[i / 3][i % 3] = position[order[i / 3]][i % 3];
     return fly("renumbered", sorted, vertices, links) ? 0 : 1;
 }

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A rope that hangs from a nail, is grabbed, dragged, let go, and cut.
+ * A rope hangs from a nail. It is grabbed, dragged, released, and cut.
  *
  *     cc -std=c11 rope.c -lspringstep -lm -o rope
  *
- * To grab a particle, pin it and drive it; to let it go, free it. The scene has to be SPRING_SCENE_EDITABLE. A hand that
- * is too fast for the rope: docs/dragging.md.
+ * To drag a particle, pin it and move it with spring_scene_drive(). To release it, unpin it. The scene must have the
+ * flag SPRING_SCENE_EDITABLE. For fast drags, see docs/dragging.md.
  */
 #include <springstep/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { N = 24, GRABBED = 23, CUT = 11, STEPS = 8 };              /* particles; the end; between 11 and 12; a frame */
+enum { N = 24, GRABBED = 23, CUT = 11, STEPS = 8 };              /* CUT: between 11 and 12; STEPS: per frame */
 static const double frame_time = 1.0 / 60;                       /* [s] */
 static const double spacing = 0.1, stiffness = 900, mass = 0.05; /* [m], [N/m], [kg] */
 
@@ -24,17 +24,17 @@ static void must(spring_status status, const char *what)
     exit(1);
 }
 
-/* Where the mouse is at time t [s]: on its way up to the right; then it is flicked to the left. */
+/* The mouse at time t [s]: up to the right, then a flick to the left. */
 static void mouse(double t, double at[2])
 {
     at[0] = t < 0.6 ? 1.2 * t : -0.4;
     at[1] = -2.3 + 0.9 * t;
 }
 
-/* The hand follows the mouse, at half the speed of waves in the rope at most: see docs/dragging.md. */
+/* The dragged particle follows the mouse at no more than half the wave speed of the rope; see docs/dragging.md. */
 static void reach(double hand[2], const double to[2])
 {
-    const double most = 0.5 * spacing * sqrt(stiffness / mass) * frame_time; /* [m] in a frame */
+    const double most = 0.5 * spacing * sqrt(stiffness / mass) * frame_time; /* [m] per frame */
     const double way = hypot(to[0] - hand[0], to[1] - hand[1]), part = fmin(1, most / way);
     for (int axis = 0; axis < 2; axis++)
         hand[axis] += way > 0 ? part * (to[axis] - hand[axis]) : 0;
@@ -52,7 +52,7 @@ static void show(const char *what, const spring_scene *rope)
 
 int main(void)
 {
-    /* Along x, as the grid makes it; then hung from its first particle. */
+    /* The grid lays the rope along x. Below, it is hung from its first particle. */
     const spring_grid grid = {.count = {N},
                               .axes = 2,
                               .spacing = spacing,
@@ -94,14 +94,14 @@ int main(void)
     for (int i = 1; i <= 60; i++) {
         mouse(i * frame_time, to);
         reach(hand, to);
-        must(spring_scene_drive(rope, GRABBED, hand, frame_time), "drag"); /* there at the end of this frame */
+        must(spring_scene_drive(rope, GRABBED, hand, frame_time), "drag"); /* arrives at the end of this frame */
         must(spring_scene_advance(rope, SPRING_LEAPFROG, frame_time / STEPS, STEPS), "advance");
         if (i % 4 == 0) {
             printf("mouse %+.6f %+.6f  hand %+.6f %+.6f m\n", to[0], to[1], hand[0], hand[1]);
             show("dragged", rope);
         }
     }
-    must(spring_scene_set_pinned(rope, GRABBED, 1, &no), "let go"); /* it flies on as fast as the hand was */
+    must(spring_scene_set_pinned(rope, GRABBED, 1, &no), "let go"); /* it keeps the velocity of the drag */
     must(spring_scene_advance(rope, SPRING_LEAPFROG, frame_time / STEPS, 30 * STEPS), "advance");
     show("let go", rope);
 
@@ -110,7 +110,7 @@ int main(void)
     must(spring_scene_get_link(rope, index, &cut), "find");
     cut.stiffness = cut.damping = 0;
     must(spring_scene_set_link(rope, index, &cut), "cut");
-    for (int i = 0; i < 3; i++) { /* the lower half falls freely: its height bends by g t^2 */
+    for (int i = 0; i < 3; i++) { /* the lower half falls freely: second differences of its height are -g t^2 */
         show("cut", rope);
         must(spring_scene_advance(rope, SPRING_LEAPFROG, frame_time / STEPS, 15 * STEPS), "advance");
     }

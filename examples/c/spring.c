@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One spring: how it should feel, how long a step may be, a second of motion beside the exact solution.
+ * One spring: parameters from frequency and damping ratio, an accurate step, and a second of motion compared with the
+ * exact solution.
  *
  *     cc -std=c11 spring.c -lspringstep -lm -o spring
  */
@@ -14,7 +15,7 @@ int main(void)
     const spring_state start = {1.0, 0.0};                 /* displaced by 1 m, at rest */
     const double frame_time = 1.0 / 60;                    /* [s] */
 
-    /* The longest step with which one second is right to 1 %, made shorter so that whole steps fill a frame. */
+    /* The longest step with an error below 1 % after one second, shortened to a whole fraction of a frame. */
     const double longest = spring_accurate_step(&p, SPRING_LEAPFROG, 1.0, 0.01);
     if (!(longest > 0))
         return 1;
@@ -31,7 +32,7 @@ int main(void)
         }
         if (frame % 6 != 0)
             continue;
-        spring_state exact = start; /* one evaluation, of any length */
+        spring_state exact = start; /* one evaluation for any duration */
         spring_step_exact(&exact, &p, frame * frame_time);
         printf("%.1f s  x %+.4f m  exact %+.4f m  energy %.3f J\n", frame * frame_time, s.x, exact.x,
                spring_energy(&s, &p));

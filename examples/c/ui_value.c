@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A value on a screen follows a target. The target jumps, once while the value is still moving; frames are of any length;
- * and a value that has settled costs nothing.
+ * An animated UI value follows a target. The target jumps, once while the value is still moving. Frame times vary. A
+ * settled value sleeps and costs no time.
  *
  *     cc -std=c11 ui_value.c -lspringstep -lm -o ui_value
  */
@@ -17,11 +17,11 @@ typedef struct ui_value {
     bool asleep;
 } ui_value;
 
-static const double near_enough = 0.05, slow_enough = 1; /* a twentieth of a pixel, a pixel per second */
+static const double near_enough = 0.05, slow_enough = 1; /* [pixels], [pixels/s] */
 
 static void set_target(ui_value *u, double target)
 {
-    u->target = target; /* the state stays as it is, so neither the value nor its velocity jumps */
+    u->target = target; /* the state is kept, so neither the value nor its velocity jumps */
     u->asleep = false;
 }
 
@@ -38,7 +38,7 @@ static double frame(ui_value *u, double frame_time)
     return u->state.x;
 }
 
-/* The time until the value stays near its target. */
+/* The time until the value has settled near its target. */
 static double time_left(const ui_value *u)
 {
     const spring_state from_target = {u->state.x - u->target, u->state.v};

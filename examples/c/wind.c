@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A flag in wind. Once a frame, the force of the air on each triangle is computed from the state; the scene holds these
- * forces during the steps of the frame.
+ * A flag in wind. Once per frame, the force of the air on each triangle is computed from the state. The scene applies
+ * these forces during all steps of the frame.
  *
  *     cc -std=c11 wind.c -lspringstep -lm -o wind
  *
  * The air pushes a triangle along its normal n, with the force c (u.n) n, where u is the velocity of the air relative to
- * the triangle and c = density/2 area |u.n|. A force that is held too long turns velocities around and adds energy. With
- * c/(1 + c T/m) instead, where T is the frame and m the mass of the triangle, it cannot, however dense the air is.
+ * the triangle and c = density/2 area |u.n|. A force that is held too long reverses velocities and adds energy. This
+ * cannot happen, at any density, with c/(1 + c T/m) instead of c, where T is the frame time and m the mass of the
+ * triangle.
  */
 #include <springstep/scene.h>
 #include <math.h>
@@ -45,7 +46,7 @@ static void push_triangle(int a, int b, int c, const double air[3])
     for (int axis = 0; axis < 3 && twice_area > 0; axis++)
         n[axis] /= twice_area;
     const double speed = dot(u, n), held = density / 2 * twice_area / 2 * fabs(speed);
-    const double limited = held / (1 + held * frame / (mass / 2)); /* a particle has two triangles of its own */
+    const double limited = held / (1 + held * frame / (mass / 2)); /* there are two triangles per particle */
     for (int axis = 0; axis < 3; axis++) {
         const double third = limited * speed * n[axis] / 3;
         force[a][axis] += third, force[b][axis] += third, force[c][axis] += third;
@@ -68,7 +69,7 @@ static void blow(spring_scene *flag, const double air[3])
 
 static void fly(const char *name, const double air[3])
 {
-    static spring_link link[6 * N]; /* less than six of each particle */
+    static spring_link link[6 * N]; /* fewer than six per particle */
     static uint8_t pinned[N];
     const spring_grid sheet = {.count = {W, H},
                                .spacing = 0.06,
@@ -78,7 +79,7 @@ static void fly(const char *name, const double air[3])
     size_t particles, links, bytes;
     must(spring_grid_size(&sheet, &particles, &links));
     must(spring_grid_fill(&sheet, x[0], pinned, link));
-    for (int i = 0; i < N; i++) /* shaken at the start */
+    for (int i = 0; i < N; i++) /* initial disturbance */
         v[i][0] = v[i][1] = 0, v[i][2] = pinned[i] ? 0 : 3 * sin(5 * x[i][0]);
     const spring_scene_def def = {.flags = SPRING_SCENE_FORCES,
                                   .particles = particles,
