@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# What bash completes for the tools of springstep: their options, and the words that these can be. Each tool tells them.
+# Bash completion for the tools of springstep: their options and valid words, as printed by --completion of each tool.
 _springstep()
 {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} name kind words names=
-    local tool=${1/#'~/'/"$HOME/"} # as it is typed
-    type -P "$tool" >/dev/null || tool=${tool##*/} # $FOLDER/spring-run, say
-    if [[ $word == '=' ]]; then # --method=leapfrog comes as three words
+    local tool=${1/#'~/'/"$HOME/"} # as typed
+    type -P "$tool" >/dev/null || tool=${tool##*/} # for example $FOLDER/spring-run
+    if [[ $word == '=' ]]; then # --method=leapfrog is three words here
         word=
     elif [[ $previous == '=' ]]; then
         previous=${COMP_WORDS[COMP_CWORD - 2]}
@@ -20,7 +20,7 @@ _springstep()
             flag) continue ;;
             words) mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word") ;;
             file | folder)
-                compopt -o filenames 2>/dev/null # fails where no key was pressed
+                compopt -o filenames 2>/dev/null # fails outside of interactive completion
                 [[ $kind == file ]] && mapfile -t COMPREPLY < <(compgen -f -- "$word")
                 [[ $kind == folder ]] && mapfile -t COMPREPLY < <(compgen -d -- "$word")
                 ;;

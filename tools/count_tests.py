@@ -15,11 +15,11 @@ import re
 import sys
 import xml.etree.ElementTree
 
-NO_REASON = "", "Skipped", "unconditional skip"  # pytest's words for it
+NO_REASON = "", "Skipped", "unconditional skip"  # as pytest words it
 
 
 def outcome(case, name):
-    """What became of a case. To skip without a reason is to fail: a program that prints nothing does so."""
+    """The result of a case. A skip without a reason is a failure, since a program without output looks the same."""
     if case.find("failure") is not None or case.find("error") is not None:
         return "failed"
     skipped = case.find("skipped")

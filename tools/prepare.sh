@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: MIT
-# What the commands of tools/ have in common: install what is missing, configure, compile. Sourced by them.
+# Common steps of the commands in tools/, which source this file: install missing packages, configure, compile.
 
 set -euo pipefail
 
@@ -13,17 +13,17 @@ say() {
     printf '%s: %s\n' "$me" "$*" >&2
 }
 
-# Is it there? Asked of the thing itself and not of a package manager, so it works on every system.
+# Tests for the program, header or module itself and not with a package manager, so it works on every system.
 present() {
     local kind=$1 name=$2
     case $kind in
     command) command -v "$name" >/dev/null ;;
-    header) # not by including it: SUNDIALS with MPI includes mpi.h, which Meson finds in a folder of its own
+    header) # not #include: SUNDIALS with MPI includes mpi.h, which is in a folder that only Meson finds
         printf '#if !__has_include(<%s>)\n#error\n#endif\n' "$name" | cc -E - >/dev/null 2>&1
         ;;
     pkgconfig) pkg-config --exists "$name" 2>/dev/null ;;
     wasm32) echo 'int main(void) { return 0; }' | "$name" --target=wasm32-wasi -x c - -o /dev/null 2>/dev/null ;;
-    python) /usr/bin/python3 -c "import $name" 2>/dev/null ;; # the one that Meson files name
+    python) /usr/bin/python3 -c "import $name" 2>/dev/null ;; # the interpreter of the Meson files
     *)
         say "packages.txt: unknown kind \"$kind\""
         exit 1
@@ -31,7 +31,7 @@ present() {
     esac
 }
 
-# What every command needs, and what this one does: report, test ...
+# Lists missing packages of all commands and of this command: report, test ...
 missing_packages() {
     local kind name package for
     while read -r kind name package for; do
@@ -65,7 +65,7 @@ install_missing() {
     ((${#missing[@]} == 0)) || give_up 'apt-get succeeded, but the installed files were not found' "${missing[@]}"
 }
 
-# Under sudo, in somebody's own checkout: only the packages needed root. What is built stays theirs.
+# Under sudo in a user's checkout, only the packages need root. The build belongs to the owner of the checkout.
 return_to_owner() {
     local owner
     owner=$(stat -c %u "$root")
@@ -74,7 +74,7 @@ return_to_owner() {
     fi
 }
 
-# Is build/ absent, empty, begun by these commands, or what Meson made of this tree?
+# Succeeds if build/ is absent, empty, started by these commands, or a Meson build of this tree.
 own_build() {
     [[ -e $build || -L $build ]] || return 0
     [[ -d $build && -w $build && -x $build ]] || return
@@ -82,7 +82,7 @@ own_build() {
         [[ -z $(find "$build" -mindepth 1 -maxdepth 1 ! -name 'meson-*' ! -name live ! -name docs ! -name '.*') ]]
         return
     fi
-    command -v python3 >/dev/null || return 0 # Meson cannot run either, and says so
+    command -v python3 >/dev/null || return 0 # Meson cannot run either, and fails with a message
     python3 - "$build" "$root" <<'END' 2>/dev/null
 import json, os, sys
 with open(sys.argv[1] + '/meson-info/meson-info.json', encoding='utf-8') as info:
@@ -96,13 +96,13 @@ check_build() {
     exit 3
 }
 
-# prepare ARGUMENTS...: what the script itself was called with
+# prepare ARGUMENTS...: the arguments of the script
 prepare() {
     check_build
     install_missing
     return_to_owner "$@"
     local -a how=()
-    [[ ! -e $build/build.ninja ]] || how=(--reconfigure) # there may be more to find than when it was configured
+    [[ ! -e $build/build.ninja ]] || how=(--reconfigure) # packages may have been installed since it was configured
     meson setup "${how[@]}" -Dtools=enabled -Dreferences=enabled -Dtests=enabled -Dreport=enabled "$build" "$root" >&2
     meson compile -C "$build" >&2
 }

@@ -121,7 +121,7 @@ int main(int argc, char **argv)
     cli_table *table = cli_open_output();
     stepper_comment(&chosen, table);
     cli_columns(table, program.columns);
-    stepper_remark(&chosen, &spring, (jitter ? 1.5 : 1) * length.dt); /* the longest that may be drawn */
+    stepper_remark(&chosen, &spring, (jitter ? 1.5 : 1) * length.dt); /* the longest random step */
     write_energies(table);
     cli_finish();
     return 0;

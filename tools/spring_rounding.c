@@ -2,7 +2,7 @@
 /*
  * spring-rounding: how the rounding errors of a long run grow, from several starts, with and without compensated sums.
  *
- * The computed state is compared with the same method in exact arithmetic, so all that differs is rounding.
+ * The computed state is compared with the same method in exact arithmetic, so the difference is rounding error only.
  */
 #include <math.h>
 #include <stddef.h>
@@ -109,7 +109,7 @@ static uint64_t next_row(uint64_t n)
 
 int main(int argc, char **argv)
 {
-    const uint64_t leap = UINT64_C(1) << 22; /* steps between two looks at the clock */
+    const uint64_t leap = UINT64_C(1) << 22; /* steps between two calls of cli_progress() */
     cli_parse(&program, argc, argv);
     if (sum == COMPENSATED && !compensated_knows((spring_method)method))
         cli_fail(CLI_USAGE, "--sum: \"compensated\" is for leapfrog and rk4 only; with --method %s it should be plain",

@@ -2,7 +2,7 @@
 /*
  * spring-run: simulates one spring and compares it with its exact solution.
  *
- * Time is i dt from the start, and so is the exact solution: neither is accumulated from row to row.
+ * The time of step i is i dt, and the exact solution is evaluated from the start. Neither accumulates from row to row.
  */
 #include <math.h>
 #include <stddef.h>
@@ -73,13 +73,14 @@ static const cli_program program = {
     .options = options,
 };
 
-/* The time of step i is i span/parts: what was asked for, and so exact. */
+/* The time of step i is i span/parts, from values of the command line, so it does not contain the rounding of dt. */
 static double span, parts;
 
-/* A double only holds that to 6e-14 s at 1000 s: RK4's error is smaller. So the time is a sum of two doubles, and over the second one, far below any dt, the motion is a straight line. */
+/* At 1000 s a double resolves time to 6e-14 s only, and RK4's error is smaller. So the time is a sum of two doubles.
+   The second is far below any dt, so the motion over it is linear. */
 static double exact_x(uint64_t step)
 {
-    int exponent; /* taken out of the duration: no product overflows */
+    int exponent; /* split off the duration, so that no product overflows */
     const double H = frexp(span, &exponent), i = (double)step, n = parts;
     const double product = i * H, t = product / n;
     const double rest = (fma(-t, n, product) + fma(i, H, -product)) / n;
@@ -98,9 +99,9 @@ static void write_state(cli_table *table, uint64_t step, const spring_state *s)
 /* ------------------------------------------------------------------------------------------------- the envelope */
 
 typedef struct envelope {
-    cli_table *table; /* NULL: not wanted */
-    uint64_t part;    /* the one we are in */
-    double min, max;  /* of the error so far in this part [m] */
+    cli_table *table; /* NULL: no envelope */
+    uint64_t part;    /* index of the current part */
+    double min, max;  /* [m] of the error so far in this part */
 } envelope;
 
 static void write_part(const envelope *e)
@@ -125,7 +126,7 @@ static void add_to_envelope(envelope *e, uint64_t step, const spring_state *s)
 
 /* -------------------------------------------------------------------------------------------------------- the run */
 
-/* Until something is to be written, measured, or shown as progress. */
+/* The number of steps until the next output, measurement or progress message. */
 static uint64_t steps_at_once(uint64_t step)
 {
     uint64_t n = stepper_leap;
@@ -136,7 +137,7 @@ static uint64_t steps_at_once(uint64_t step)
     return n < length.steps - step ? n : length.steps - step;
 }
 
-/* Takes n steps, or none if the state or its energy would become infinite. */
+/* Takes n steps, or none if the state or the energy would overflow. */
 static bool take(spring_state *s, uint64_t n)
 {
     spring_state next = *s;
@@ -146,7 +147,7 @@ static bool take(spring_state *s, uint64_t n)
     return true;
 }
 
-/* Taking n steps from here fails: say where. */
+/* Finds and prints the time of the overflow, if n steps from here fail. */
 static void tell_explosion(spring_state *s, uint64_t step, uint64_t n)
 {
     for (; n > 0; n /= 2)
@@ -157,7 +158,7 @@ static void tell_explosion(spring_state *s, uint64_t step, uint64_t n)
              step + 1, (double)(step + 1) * length.dt, s->x, s->v);
 }
 
-/* Returns whether the spring survived. */
+/* Returns false if the state overflowed. */
 static bool run(cli_table *table, envelope *e)
 {
     spring_state s = start;

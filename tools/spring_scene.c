@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-scene: a rope, a cloth, a block of jelly, a chain or a water surface, moved by any method in steps of any
- * length, for as long as it holds.
+ * spring-scene: simulates a preset scene (rope, cloth, jelly, chain or water) by any method with any step, until its
+ * state overflows.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -24,7 +24,7 @@
 static const char *const links[] = {"all", "structural", NULL};
 
 static int kind, method, link_choice;
-enum { MOST_DISTURBANCES = 100 }; /* of a kind, on one command line */
+enum { MOST_DISTURBANCES = 100 }; /* of each kind */
 static uint64_t seed = 1, steps_per_frame, pokes, boxes;
 static run_length length = {.duration = 5};
 static double frame_rate = 60, fps = 60, disturbance_time = disturbance_duration, rain;
@@ -166,7 +166,7 @@ static bool is_disturbed(void)
     return pokes > 0 || boxes > 0 || rain > 0 || kind == PRESET_WATER;
 }
 
-/* On one axis links have a direction rather than a length. */
+/* On one axis, the extension of a link has a sign, so options that need lengths are refused. */
 static void refuse_on_one_axis(const preset_settings *s)
 {
     if (s->axes == 1 && (tension_only || tear > 0 || colliders.count > 0))
@@ -194,7 +194,7 @@ static void set_colliders(spring_scene *scene, const spring_collider *c)
         cli_fail(CLI_USAGE, "--collider: a number in \"%s\" or in a later collider is too large", colliders.word[0]);
 }
 
-/* What has no effect is a mistake. */
+/* An option without effect is an error. */
 static void refuse_what_does_not_count(void)
 {
     const bool line = kind == PRESET_ROPE || kind == PRESET_CHAIN;
@@ -280,7 +280,7 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
         check_poke(r, poke[i]);
     for (uint64_t i = 0; i < boxes; i++)
         check_box(box[i]);
-    const size_t drops = (size_t)(rain * length.duration) + 2; /* one that has begun, a rounded one */
+    const size_t drops = (size_t)(rain * length.duration) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
     disturbance *list = malloc((drops + pokes + 1 + boxes) * sizeof *list);
     if (list == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
@@ -309,8 +309,8 @@ static void name_frame(uint64_t frame)
         cli_fail(CLI_IO, "--frames: cannot write to \"%s\": %s", frames, strerror(ENAMETOOLONG));
 }
 
-/* Frames of an earlier run would pass for those of this one: those that it writes anew are removed now, in case that it
-   fails, and those behind them stop it. */
+/* Frames of an earlier run must not be mistaken for new ones. Files that this run will write are removed now, in case
+   it fails. Files with higher numbers are an error. */
 static void prepare_frames(uint64_t count)
 {
     if (mkdir(frames, 0777) != 0 && errno != EEXIST)
@@ -353,14 +353,14 @@ static void write_frame(uint64_t frame, const preset *r, double t, const double 
 
 /* ------------------------------------------------------------------------------------------------------- the run */
 
-typedef struct view { /* a scene, and what is shown of it */
+typedef struct view { /* a scene and its outputs */
     const preset *preset;
     spring_scene *scene;
-    void *saved;  /* a copy, to return to */
-    size_t bytes; /* of both */
+    void *saved;  /* copy for restoring the scene */
+    size_t bytes; /* size of each */
     cli_table *output, *positions;
     double *xyz;    /* [particles*3] */
-    double lost_at; /* [s] when its energy overflowed */
+    double lost_at; /* [s] time of the overflow */
     size_t torn;    /* links */
 } view;
 
@@ -402,7 +402,7 @@ static void write_pictures(const view *v, uint64_t frame)
         write_positions(v->positions, v->preset, t, v->xyz);
 }
 
-/* Takes n steps, or as many as the scene survives; returns whether that is all of them. */
+/* Takes up to n steps. Returns false if it stopped early because the state would overflow. */
 static bool advance(view *v, uint64_t n)
 {
     const uint64_t leap = 1024;
@@ -426,7 +426,7 @@ static void tear_links(view *v)
     v->torn += count;
 }
 
-/* Returns whether the scene survived. */
+/* Returns false if the state overflowed. */
 static bool run(view *v, uint64_t frame_count)
 {
     uint64_t step = 0;
@@ -449,18 +449,18 @@ static bool run(view *v, uint64_t frame_count)
     return true;
 }
 
-/* The steps of a frame are whole, so that frames are equally far apart. */
+/* A frame has a whole number of steps, so that frames are equally spaced in time. */
 static double default_step(spring_scene *scene, bool disturbed)
 {
     double longest = 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG);
-    if (method != SPRING_LEAPFROG) /* damped links limit the others */
+    if (method != SPRING_LEAPFROG) /* damped links limit the step of the other methods */
         longest = fmin(longest, 0.5 * spring_scene_stable_step(scene, SPRING_RK4));
     if (disturbed)
         longest = fmin(longest, disturbance_time / 8);
     return 1 / (fps * fmax(ceil(1 / (fps * longest)), 1));
 }
 
-/* Without the scene: only a default step needs that, and waits. */
+/* Called before the scene exists. A default step depends on the scene and is chosen later. */
 static void choose_length(void)
 {
     if (steps_per_frame > 0 && cli_given(&length.dt))

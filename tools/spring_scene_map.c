@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-scene-map: what becomes of each preset with each method, when a frame of 1/60 s is one step, two, three ...
+ * spring-scene-map: the stability and energy error of each preset with each method, for 1, 2, 3 ... steps per frame of
+ * 1/60 s.
  *
- * Method    Each scene as spring-scene makes it, for four seconds. Its energy at every frame is compared with that of
- *           leapfrog in steps of a sixteenth of its stable step, in parts of the largest kinetic energy there:
- *           leapfrog's own error is then below 1/256 (z^2/4 of the energy of a mode, z = omega dt <= 2/16).
+ * Method    Each scene of spring-scene runs for four seconds. The reference is leapfrog with a sixteenth of its stable
+ *           step. Errors of the energy at each frame are relative to the largest kinetic energy of the reference.
+ *           The error of the reference is below 1/256 (z^2/4 of the energy of a mode, z = omega dt <= 2/16).
  */
 #include <math.h>
 #include <stddef.h>
@@ -63,7 +64,7 @@ typedef struct subject {
 } subject;
 
 typedef struct outcome {
-    double error; /* in parts of the largest kinetic energy, with its sign; infinite where the state overflows */
+    double error; /* signed, relative to the largest kinetic energy; infinite if the state overflows */
     bool exploded;
 } outcome;
 
@@ -151,8 +152,9 @@ static double stable_step(const subject *s, spring_method m)
     return step;
 }
 
-/* Writes a row for each number of steps a frame, or none to NULL; returns the fewest from which on all are fine and
-   below the stable step, or 0: not every scene that is grown from this one would survive longer ones. */
+/* Writes a row for each number of steps per frame, unless table is NULL. Returns the least number from which all runs
+   are fine and below the stable step, or 0. Runs above the stable step do not count even if they are fine: larger
+   scenes of the same kind could overflow. */
 static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
@@ -175,7 +177,7 @@ static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind,
 
 /* ------------------------------------------------------------------------------------------------------ its time */
 
-/* Milliseconds that the first frames of a scene take, each. */
+/* [ms] per frame, for the first frames of a scene. */
 static double time_frames(const subject *s, spring_method m, uint64_t substeps)
 {
     const double long_enough = 5, nanosecond = 1e-6; /* [ms] */
@@ -199,7 +201,7 @@ static double time_frames(const subject *s, spring_method m, uint64_t substeps)
     return best;
 }
 
-/* Lets a scene grow, by particles at about the same distances, until a frame takes about a millisecond. */
+/* Increases the size of a scene, at about constant spacing, until a frame takes about a millisecond. */
 static void time_method(cli_table *table, preset_kind kind, spring_method m, uint64_t substeps)
 {
     static const double directions[] = {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-stability: where each method breaks, found by taking steps and knowing no formula.
+ * spring-stability: the stability limit of each method, found by taking steps and without any formula.
  *
  * A step is unstable if a generic start grows: ln(max |y| over steps N/2 ... N / max |y| over steps N/4 ... N/2) > 1e-3
- * with N = 10^6. Below a damping ratio of 0.1 growth near the limit is too slow for that (one part in 10^4 outside,
- * Euler at 0.01 grows by 2 % in 10^6 steps), so there the growth of the step's own map is measured instead: stepping
- * two basis states gives its matrix, and that its eigenvalues. The limit is then bisected.
+ * with N = 10^6. Below a damping ratio of 0.1, growth near the limit is too slow for this: one part in 10^4 above the
+ * limit, Euler at 0.01 grows by 2 % in 10^6 steps. There the growth is taken from the eigenvalues of the matrix of a
+ * step, which is formed from steps of two basis states. The limit is found by bisection.
  *
- * With --map: how wrong each method is after ten periods, over the step and the damping ratio, stable or not.
+ * With --map: the error of each method after ten periods, over the step and the damping ratio, stable or not.
  */
 #include <math.h>
 #include <stddef.h>
@@ -46,10 +46,10 @@ static const cli_program program = {
 static const double mass = 1.3, omega = 2.7; /* [kg], [1/s] */
 
 static const uint64_t N = 1000000;        /* steps of a trial */
-static const double growth_seen = 1e-3;   /* of the logarithm from one window to the next */
-static const double least_by_trial = 0.1; /* damping ratio */
-static const double width = 1e-6;         /* relative, of the bisection: the goal is 1e-4 */
-static const double negligible = 1e-200;  /* size at which a spring that started at 1 has decayed */
+static const double growth_seen = 1e-3;   /* increase of the logarithm from one window to the next */
+static const double least_by_trial = 0.1; /* least damping ratio for trials */
+static const double width = 1e-6;         /* relative width of the bisection; the required accuracy is 1e-4 */
+static const double negligible = 1e-200;  /* a state that started at size 1 counts as decayed below this */
 
 static spring_params spring_of(double damping_ratio)
 {
@@ -89,7 +89,7 @@ static bool grows_by_trial(const spring_params *p, spring_method m, double dt)
     return !isfinite(late) || log(late / early) > growth_seen;
 }
 
-/* ln of the larger eigenvalue of the step's matrix, by modulus. */
+/* ln of the modulus of the larger eigenvalue of the matrix of a step. */
 static double growth_of_map(const spring_params *p, spring_method m, double dt)
 {
     spring_step_fn *const step = spring_method_kernel(m);
@@ -101,7 +101,7 @@ static double growth_of_map(const spring_params *p, spring_method m, double dt)
     return under_root < 0 ? log(det) / 2 : log(fabs(half_trace) + sqrt(under_root));
 }
 
-/* The growth of a map that keeps its size comes out as the rounding of its entries. */
+/* The computed growth of a norm-preserving map is the rounding error of its entries. */
 static const double growth_of_rounding = 1e-14;
 
 static bool grows(const spring_params *p, double damping_ratio, spring_method m, double dt)
@@ -111,7 +111,7 @@ static bool grows(const spring_params *p, double damping_ratio, spring_method m,
     return growth_of_map(p, m, dt) > growth_of_rounding;
 }
 
-/* Where no step is stable there is no limit to bisect for: at every size it must grow that a double can show. */
+/* Checks that no step is stable, instead of bisecting: steps of every size with resolvable growth must grow. */
 static bool always_grows(const spring_params *p, spring_method m)
 {
     for (double z = 0.01; z < 10; z *= 1.1)
@@ -141,7 +141,7 @@ static double measured_limit(double damping_ratio, spring_method m)
 
 /* ---------------------------------------------------------------------------------------------------------- rows */
 
-/* The i-th of N values that divide a range evenly on a logarithmic axis. */
+/* The i-th of N values, equally spaced on a logarithmic axis. */
 static double spaced(double first, double last, uint64_t i)
 {
     const double part = points > 1 ? (double)i / (double)(points - 1) : 0;

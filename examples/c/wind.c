@@ -5,7 +5,7 @@
  *
  *     cc -std=c11 wind.c -lspringstep -lm -o wind
  *
- * The air pushes a triangle along its normal n, with the force c (u.n) n, where u is the velocity of the air relative to
+ * The air pushes a triangle along its normal n with the force c (u.n) n, where u is the velocity of the air relative to
  * the triangle and c = density/2 area |u.n|. A force that is held too long reverses velocities and adds energy. This
  * cannot happen, at any density, with c/(1 + c T/m) instead of c, where T is the frame time and m the mass of the
  * triangle.

@@ -165,7 +165,7 @@ static void background(painter *p, const camera *c)
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- surfaces: cloth, water */
+/* ------------------------------------------------------------------------------------------- surfaces: cloth, water */
 
 typedef struct surface {
     const world *w;

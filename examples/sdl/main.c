@@ -259,7 +259,7 @@ static void handle(app *a, const SDL_Event *e)
         world_release(&a->world);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ frames */
+/* ----------------------------------------------------------------------------------------------------------- frames */
 
 /* Take the steps that a frame of so many seconds brings, and find where to draw: between the last two states. */
 static void advance(app *a, double seconds)
@@ -387,7 +387,7 @@ static void describe(app *a, char *text, size_t size)
              w->grabbed != WORLD_NOTHING, shown, s.x, s.y);
 }
 
-/* -------------------------------------------------------------------------------------------------------- the program */
+/* ------------------------------------------------------------------------------------------------------ the program */
 
 typedef struct options {
     const char *world, *method, *script;

@@ -150,7 +150,7 @@ static void blow(void *user, double t, size_t particles, const double *const pos
         force[2][i] += 0.4 * w->wind + s * w->gust[i].along - c * w->gust[i].across;
 }
 
-/* ---------------------------------------------------------------------------------------------- between axes and xyz */
+/* --------------------------------------------------------------------------------------------- between axes and xyz */
 
 /* A coordinate for each axis of the scene: of water that is the height. */
 static void to_axes(const world *w, vec3 p, double own[3])

@@ -11,18 +11,18 @@
 
 #include "common/cli.h"
 
-enum { longest_line = 1 << 24 }; /* [bytes] an element of two million vertices */
+enum { longest_line = 1 << 24 }; /* [bytes] fits an element of two million vertices */
 
 static const char blank[] = " \t\r\n";
 
-/* A file, as far as it is read. */
+/* The contents of a file read so far. */
 typedef struct mesh {
     const char *path;
     size_t line;
     size_t vertices, links, vertex_capacity, link_capacity, corner_capacity;
     double (*position)[3]; /* [vertex_capacity] */
     spring_link *link;     /* [link_capacity] */
-    uint32_t *corner;      /* [corner_capacity] of the element that is read */
+    uint32_t *corner;      /* [corner_capacity] of the current element */
 } mesh;
 
 static _Noreturn void refuse(const mesh *m, const char *what)
@@ -38,7 +38,7 @@ static void *resized(void *array, size_t count, size_t size)
     return memory;
 }
 
-/* The array, with room for one more than there are. */
+/* Returns the array with room for at least one more entry. */
 static void *grown(void *array, size_t *capacity, size_t count, size_t size)
 {
     if (count < *capacity)
@@ -52,7 +52,7 @@ static bool ends_word(char c)
     return strchr(blank, c) != NULL; /* or the line */
 }
 
-/* What follows, a weight or a colour, does not count. */
+/* Ignores a weight or a colour after the coordinates. */
 static void add_vertex(mesh *m, const char *at)
 {
     m->position = grown(m->position, &m->vertex_capacity, m->vertices, sizeof *m->position);
@@ -75,7 +75,7 @@ static void add_link(mesh *m, uint32_t a, uint32_t b)
     m->link[m->links++] = (spring_link){.a = a < b ? a : b, .b = a < b ? b : a};
 }
 
-/* 7, 7/1, 7//3 and 7/1/3 are the seventh vertex, -1 is the last one so far. */
+/* 7, 7/1, 7//3 and 7/1/3 refer to the seventh vertex, -1 to the last vertex so far. */
 static uint32_t read_corner(const mesh *m, const char **at)
 {
     char *end;
@@ -116,7 +116,7 @@ static void read_line(mesh *m, char *line)
         add_edges(m, word + 1, word[0] == 'f');
 }
 
-/* The next line without its end; false: there is none. */
+/* Reads the next line without its end; false: there are no more. */
 static bool next_line(mesh *m, FILE *file, char **line, size_t *capacity)
 {
     int c = getc_unlocked(file);
@@ -164,7 +164,7 @@ static int by_ends(const void *left, const void *right)
     return l->a != r->a ? (l->a > r->a) - (l->a < r->a) : (l->b > r->b) - (l->b < r->b);
 }
 
-/* An edge of two faces comes twice. */
+/* Removes duplicate links: an edge of two faces is read twice. */
 static void join_once(mesh *m, const mesh_settings *settings)
 {
     qsort(m->link, m->links, sizeof *m->link, by_ends);
@@ -185,7 +185,7 @@ static void join_once(mesh *m, const mesh_settings *settings)
     m->links = kept;
 }
 
-/* Positions and links in an order that memory likes. */
+/* Renumbers particles and links for locality in memory. */
 static double *renumber(mesh *m)
 {
     uint32_t *order = resized(NULL, m->vertices, sizeof *order);
@@ -200,7 +200,7 @@ static double *renumber(mesh *m)
     return position;
 }
 
-/* The highest vertices, of those with links; those without stay where they are. */
+/* Pins the highest linked vertices, and all vertices without links. */
 static uint8_t *pin_highest(const mesh *m, const double *position)
 {
     enum { free_to_move, held };
@@ -215,7 +215,7 @@ static uint8_t *pin_highest(const mesh *m, const double *position)
             high = fmax(high, position[3 * ends[end] + 1]);
         }
     }
-    const double rounding = 1e-6; /* of the numbers in a file */
+    const double rounding = 1e-6; /* relative rounding of the numbers in a file */
     bool moves = false;
     for (size_t i = 0; i < m->vertices; i++) {
         if (position[3 * i + 1] >= high - (rounding * high - rounding * low)) /* high - low may overflow */

@@ -12,9 +12,10 @@ typedef struct mesh_settings {
     double drag;      /* [N s/m] of a vertex */
 } mesh_settings;
 
-/** A scene from a Wavefront OBJ file: a particle at each vertex, a link at its rest length along each edge of a face or a
-    line, and across faces of four corners. y is up; the highest vertices are pinned, and those with no link.
-    Particles are renumbered for speed. Exits with a message that names the line of a file that is not such a mesh. Release it with preset_clear(). */
+/** Reads a scene from a Wavefront OBJ file: a particle at each vertex, and a link at its rest length along each edge of
+    a face or a line, and across faces with four corners. y is up. The highest vertices and those without links are
+    pinned. Particles are renumbered for speed. Exits with a message and the line number if the file is not valid.
+    Release the scene with preset_clear(). */
 preset mesh_read(const char *path, const mesh_settings *settings);
 
 #endif

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The stiffness with which a scene hangs by at most a given stretch; see plan.h.
+ * The least stiffness with which the stretch of a hanging scene is within a limit; see plan.h.
  *
- * Method    For a trial stiffness, leapfrog runs with drag until all forces balance, from the positions where the last trial
- *           came to rest. The drag damps a pendulum as long as the scene critically. The stretch of the settled scene is close
- *           to a power of the stiffness (-1 for a rope, -2/3 for a net that two corners hold taut), so the next
- *           trial follows from the secant through the logarithms of the last two. The height with unstretchable links is
- *           extrapolated from two stiff scenes: to first order, height - that height is proportional to 1/stiffness.
+ * Method    For each trial stiffness, leapfrog runs with drag until all forces balance, from the rest positions of the
+ *           last trial. The drag is critical for a pendulum of the length of the scene. The stretch of the settled
+ *           scene is close to a power of the stiffness (-1 for a rope, -2/3 for a net held taut at two corners), so the
+ *           next trial follows from the secant through the logarithms of the last two. The height with unstretchable
+ *           links is extrapolated from two stiff scenes: to first order, the difference from it is proportional to
+ *           1/stiffness.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -15,20 +16,20 @@
 #include "plan.h"
 #include "scenes/start.h"
 
-static const double fraction = 0.5;      /* of the stable step, as scene.h recommends */
-static const double rest_share = 1e-5;   /* of gravity: the largest acceleration of a scene at rest */
-static const double window = 1e-3;       /* the stretch is at most that share smaller than asked for */
-static const double accuracy = 1e-2;     /* of a stretch by an extrapolated height, and more */
-static const double most_work = 2e10;    /* steps times particles and links of a trial: half a minute */
-static const double most_measured = 1e8; /* the same of a run whose time is measured */
+static const double fraction = 0.5;      /* of the stable step, as recommended in scene.h */
+static const double rest_share = 1e-5;   /* largest acceleration of a scene at rest, relative to gravity */
+static const double window = 1e-3;       /* the stretch is smaller than requested by at most this fraction */
+static const double accuracy = 1e-2;     /* of a stretch by an extrapolated height, with a margin */
+static const double most_work = 2e10;    /* steps times particles and links of a trial; half a minute */
+static const double most_measured = 1e8; /* the same for a run whose time is measured */
 
 typedef struct hanging {
     preset *scene;
     double gravity;   /* [m/s^2] */
-    double up[3];     /* against gravity */
+    double up[3];     /* direction against gravity */
     double drag_rate; /* [1/s] drag/mass while the scene settles */
-    bool stands;      /* on its pins */
-    double height;    /* [m] with unstretchable links, once it is known */
+    bool stands;      /* stands on its pins */
+    double height;    /* [m] with unstretchable links, once known */
 } hanging;
 
 static double height_of(const hanging *h, size_t particle)
@@ -51,7 +52,7 @@ static double length_of(const preset *scene, const spring_link *link)
 
 /* ------------------------------------------------------------------------------------------------ what the scene is */
 
-/* A part of the scene without pins would fall for ever. */
+/* A part of the scene without pins would fall forever. */
 static void check_pins(const preset *scene)
 {
     const size_t particles = scene->def.particles;
@@ -73,7 +74,7 @@ static void check_pins(const preset *scene)
     free(held);
 }
 
-/* [m] Of the box around all linked particles. */
+/* [m] Diagonal of the bounding box of all linked particles. */
 static double diagonal_of(const preset *scene)
 {
     const uint32_t axes = scene->def.axes;
@@ -91,7 +92,7 @@ static double diagonal_of(const preset *scene)
     return diagonal;
 }
 
-/* Is the scene above its pins, as far as it is linked to them? */
+/* Returns true if, on balance, the particles linked to pins are above them. */
 static bool is_above_pins(const hanging *h)
 {
     const preset *scene = h->scene;
@@ -122,14 +123,14 @@ static hanging examine(preset *scene)
     return h;
 }
 
-/* Links whose ends are both pinned do not count, nor those that have no length. */
+/* Links with two pinned ends or without length do not count. */
 static bool counts(const preset *scene, const spring_link *link)
 {
     return link->rest > 0 && !(scene->pinned[link->a] && scene->pinned[link->b]);
 }
 
-/* The stiffness with which the links at the pins would carry all, if they all pulled straight up; more for a scene that could
-   collapse. */
+/* The stiffness with which the links at the pins would carry the scene if all pulled straight up. A scene that could
+   collapse gets more. */
 static double first_trial(const hanging *h, double sag)
 {
     const preset *scene = h->scene;
@@ -143,7 +144,7 @@ static double first_trial(const hanging *h, double sag)
     return margin * weight / (sag * rest);
 }
 
-/* ------------------------------------------------------------------------------------------------------- settled scenes */
+/* --------------------------------------------------------------------------------------------------- settled scenes */
 
 static void set_links(preset *scene, double stiffness, double damping)
 {
@@ -159,7 +160,7 @@ static _Noreturn void refuse_sag(double sag, double stiffness, const char *why)
              stiffness, why);
 }
 
-/* Moves the scene to where it comes to rest. Drag alone damps it: damped links would only slow it down. */
+/* Runs the scene until it is at rest. It is damped by drag only, since damped links would slow it down. */
 static void settle(const hanging *h, double sag, double stiffness)
 {
     preset *scene = h->scene;
@@ -218,11 +219,11 @@ static double stretch_of_scene(const hanging *h)
     return stretch_of_height(h, settled_height(h));
 }
 
-/* --------------------------------------------------------------------------------------------------------- the search */
+/* ------------------------------------------------------------------------------------------------------- the search */
 
 static void check_shape(const hanging *h, double sag, double stiffness)
 {
-    const double most = 0.5; /* beyond it spring_scene_stable_step() is no bound */
+    const double most = 0.5; /* beyond it, spring_scene_stable_step() is not a bound */
     if (h->stands && (stretch_of_links(h) > most || !is_above_pins(h)))
         refuse_sag(sag, stiffness, "collapses");
 }
@@ -251,7 +252,7 @@ static double search(const hanging *h, double sag, double first, double stretch_
     refuse_sag(sag, last_stiffness, "comes to rest in more than one shape");
 }
 
-/* The steps for a stiffness. */
+/* Computes the steps for a stiffness. */
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
     set_links(scene, plan->stiffness, damping);

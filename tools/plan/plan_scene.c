@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How many steps of a method a scene needs; see plan.h.
+ * The number of steps that a method needs for a scene; see plan.h.
  *
- * Method    The reference is a run by the method of the highest order that the scene supports, and one with twice as
- *           many steps: fine + (fine - coarse)/(2^order - 1), by Richardson's extrapolation; what that adds is taken for
- *           the uncertainty. Then for each method steps are halved until the error is small enough, and the number of
- *           them is bisected, in whole steps a frame.
+ * Method    The reference uses the method of the highest order that the scene supports, with a coarse and a fine step
+ *           (half the coarse one): fine + (fine - coarse)/(2^order - 1), by Richardson extrapolation. The correction is
+ *           taken as the uncertainty. For each method, steps are halved until the error is small enough. Then the
+ *           number of steps per frame is bisected, in whole numbers.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -16,15 +16,15 @@
 #include "plan.h"
 #include "scenes/start.h"
 
-static const double most_numbers = 2e7; /* of the reference that are kept: a second of 10^5 particles */
-static const double patience = 30;      /* times the work that is wanted, where a reference takes more */
-static const double law_holds = 0.5;    /* an error below this falls by the order of the method */
+static const double most_numbers = 2e7; /* kept by the reference: a second of 10^5 particles */
+static const double patience = 30;      /* a reference may take this many times the requested work */
+static const double law_holds = 0.5;    /* errors below this follow the order of the method */
 
 struct plan_scene {
     const preset *preset;
     uint64_t frames;
     double frame;       /* [s] */
-    size_t numbers;     /* of the positions */
+    size_t numbers;     /* of positions per frame */
     double *reference;  /* [frames*numbers] */
     double motion;      /* [m] the largest distance of the reference from the start */
     double uncertainty; /* of the reference, over the motion */
@@ -65,14 +65,14 @@ static double stable_step(const plan_scene *s, spring_method m)
     return step;
 }
 
-/* Of so many steps a frame, for all frames: force evaluations times what there is to do in one. */
+/* The work of all frames: force evaluations times particles and links. */
 static double work_of(const plan_scene *s, spring_method m, double substeps)
 {
     return substeps * (double)s->frames * spring_method_describe(m)->forces_per_step *
            (double)(s->preset->def.particles + s->preset->def.links);
 }
 
-/* Positions at the ends of all frames. */
+/* Runs the scene and stores the positions at the ends of all frames. */
 static bool run(const plan_scene *s, spring_method m, uint64_t substeps, double *out)
 {
     spring_scene *scene = start(s, m);
@@ -85,7 +85,7 @@ static bool run(const plan_scene *s, spring_method m, uint64_t substeps, double 
     return holds;
 }
 
-/* Infinite where the state overflows. */
+/* Returns the error of a run; infinite if the state overflows. */
 static double error_of(const plan_scene *s, spring_method m, uint64_t substeps)
 {
     spring_scene *scene = start(s, m);
@@ -101,7 +101,7 @@ static double error_of(const plan_scene *s, spring_method m, uint64_t substeps)
     return most;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the reference */
+/* ---------------------------------------------------------------------------------------------------- the reference */
 
 static spring_method best_method(const plan_scene *s)
 {
@@ -189,7 +189,7 @@ uint64_t plan_scene_frames(const plan_scene *s)
     return s->frames;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the search */
+/* ------------------------------------------------------------------------------------------------------- the search */
 
 double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* How many steps of a method one spring needs; see plan.h. */
+/* The number of steps that a method needs for one spring; see plan.h. */
 #include <math.h>
 
 #include "common/timing.h"
 #include "plan.h"
 
-static const double most_steps = 3e8; /* that are taken: a second or two */
+static const double most_steps = 3e8; /* of a measured run: a second or two */
 
 /* The largest singular value of (a b; c d). */
 static double norm(double a, double b, double c, double d)
@@ -13,8 +13,8 @@ static double norm(double a, double b, double c, double d)
     return (hypot(a + d, b - c) + hypot(a - d, b + c)) / 2;
 }
 
-/* Of a run of the library from both unit states, compared with the exact solution: at the first 2^16 steps, where what decays
-   fast is wrong, and at so many of the others. */
+/* Compares a run from both unit states with the exact solution: at each of the first 2^16 steps, where fast-decaying
+   components have their error, and at as many of the others. */
 static double measured_error(const spring_params *p, spring_method m, double duration, double steps)
 {
     const double dense = 65536, omega = fmax(sqrt(p->stiffness / p->mass), 1 / duration), dt = duration / steps;
@@ -38,7 +38,7 @@ static double measured_error(const spring_params *p, spring_method m, double dur
     return most;
 }
 
-/* [s] The shortest of five loops of at least 0.2 ms. */
+/* Running time [s]: the shortest of five loops of at least 0.2 ms. */
 static double time_of(const spring_params *p, spring_method m, double dt, uint64_t n)
 {
     const double long_enough = 2e5; /* [ns] */

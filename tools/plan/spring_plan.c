@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-plan: an error and a duration in, methods and their steps out, the best first; for one spring, a preset scene, or
- * a mesh. Or a stretch in, and the stiffness and steps out with which a scene hangs by at most that.
+ * spring-plan: from an error and a duration, computes the steps of each method and sorts the methods, for one spring, a
+ * preset scene, or a mesh. From a stretch, computes the least stiffness of a hanging scene and its steps.
  */
 #include <float.h>
 #include <math.h>
@@ -131,7 +131,7 @@ static void check_error(void)
 
 static void check_sag(void)
 {
-    if (!(sag >= 1e-4 && sag <= 1)) /* less takes minutes, and is proportional to 1/stiffness */
+    if (!(sag >= 1e-4 && sag <= 1)) /* smaller stretches take minutes, and are proportional to 1/stiffness */
         refuse("sag", sag, "should be a stretch from 1e-4 to 1, such as 0.02 for 2 %");
     if (kind < 0 && mesh == NULL)
         refuse("sag", sag, "requires --scene or --mesh");
@@ -187,8 +187,8 @@ static double error_of(const plan_row *r)
     return isnan(r->measured) ? r->predicted : r->measured;
 }
 
-/* The best row first: the most accurate of those that take less than a tenth longer than the fastest. Then the best of the
-   others, and so on. */
+/* The best row comes first: the most accurate row among those that take at most a tenth longer than the fastest. Then
+   the best of the remaining rows, and so on. */
 static void sort_rows(void)
 {
     const double as_fast = 1.1;
@@ -241,7 +241,7 @@ static void plan_one_scene(const preset *scene)
     plan_scene_free(s);
 }
 
-/* A scene of spring-scene, with its poke if it is water. */
+/* A scene of spring-scene, with a poke if it is height-field water. */
 static preset poked_preset(const preset_settings *settings, disturbances **poke)
 {
     preset scene;
@@ -274,7 +274,7 @@ static const plan_row *first_stepper(void)
     return NULL;
 }
 
-/* The first row in words, and of one spring the first stepper too. */
+/* Prints the first row in words and, for one spring, the first row of a step method. */
 static void say(cli_table *table)
 {
     const plan_row *first = &rows[0], *stepper = first_stepper();

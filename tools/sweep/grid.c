@@ -12,7 +12,7 @@
 #include <string.h>
 
 static const uint64_t most_points = UINT64_C(1) << 53;
-static const uint64_t most_blocks = 16384; /* unless they would be too large: parts of 10^4 machines have work, each */
+static const uint64_t most_blocks = 16384; /* enough to give work to 10^4 machines; more if blocks would be too large */
 
 void grid_init(grid *g)
 {
@@ -53,8 +53,8 @@ bool grid_set_scene(grid *g, const char *name)
 
 /* ------------------------------------------------------------------------------------------------------------- axes */
 
-/* base^exponent for 0 <= exponent < 1, from its binary digits: each is a square root more. Powers of the C library differ
-   in their last digits from one to the next; this is off by 53 roundings at most, and the same everywhere. */
+/* base^exponent for 0 <= exponent < 1, from the binary digits of the exponent and repeated square roots. pow() differs
+   between C libraries in the last digits. This function has an error of at most 53 roundings and is reproducible. */
 static double power(double base, double exponent)
 {
     double result = 1;
@@ -69,7 +69,7 @@ static double power(double base, double exponent)
     return result;
 }
 
-/* To 12 digits, so that 0.1 is 0.1; unless neighbours on the axis would become equal. */
+/* Rounds to 12 digits, so that 0.1 is 0.1, unless neighbours on the axis would become equal. */
 static double round_digits(const axis *a, double x)
 {
     char text[32];
@@ -102,7 +102,7 @@ static const char *read_number(const char *text, double *value)
     return end != text && isfinite(*value) ? end : NULL;
 }
 
-/* "N", at least 2. */
+/* Reads "N", at least 2. */
 static bool read_count(const char *text, uint64_t *count)
 {
     char *end;
@@ -111,7 +111,7 @@ static bool read_count(const char *text, uint64_t *count)
     return isdigit((unsigned char)text[0]) && *end == '\0' && errno == 0 && *count >= 2 && *count <= most_points;
 }
 
-/* "A:B:N" or "A:B:log:N" */
+/* Reads "A:B:N" or "A:B:log:N". */
 static bool read_range(axis *a, const char *text)
 {
     const char *end = read_number(text, &a->first);
@@ -124,7 +124,7 @@ static bool read_range(axis *a, const char *text)
     return read_count(end + (a->kind == AXIS_LOGARITHMIC ? 5 : 1), &a->count);
 }
 
-/* "A,B,..." */
+/* Reads "A,B,...". */
 static bool read_list(axis *a, const char *text)
 {
     size_t count = 1;
@@ -167,7 +167,7 @@ static bool find_parameter(grid *g, const char *text, sweep_parameter *found)
                   g->scene == SWEEP_SPRING ? "one" : "the scene", sweep_scene_name(g->scene), offered);
 }
 
-/* Is each value within limits? They lie between the first and the last one, except for those of a list. */
+/* Checks that all values are within limits. Except in a list, they are between the first and the last value. */
 static bool check_values(grid *g, const axis *a, const char *text)
 {
     const sweep_parameter_info *p = &sweep_parameters[a->parameter];
@@ -299,9 +299,9 @@ bool grid_add_measures(grid *g, const char *names)
     return for_each(g, names, add_measure);
 }
 
-/* ------------------------------------------------------------------------------------------------- points and blocks */
+/* ------------------------------------------------------------------------------------------------ points and blocks */
 
-/* A scene takes a thousand times as long as one spring. */
+/* A scene takes about a thousand times as long as one spring. */
 static uint64_t largest_block(const grid *g)
 {
     return g->scene == SWEEP_SPRING ? 1024 : 16;
@@ -328,7 +328,7 @@ uint64_t grid_block_size(const grid *g, uint64_t block)
     return left < g->points_of_block ? left : g->points_of_block;
 }
 
-/* The parameters of a point, NaN where there is no axis. */
+/* The parameters of a point; NaN for parameters without an axis. */
 static void find_point(const grid *g, uint64_t point, double *value)
 {
     for (int p = 0; p < SWEEP_PARAMETERS; p++)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The grid of a sweep: its axes, the values of a point, and the blocks in which points are done.
+ * The grid of a sweep: axes, values of points, and blocks of points.
  *
- * The first axis changes slowest, methods change fastest. Values have the same bits wherever they are computed: of
- * + - * / and sqrt() alone. Nothing here prints or ends the program.
+ * The first axis changes slowest, methods change fastest. Values use only + - * / and sqrt(), so they are bit-identical
+ * on all systems. Nothing here prints or ends the program.
  */
 #ifndef SPRINGSTEP_SWEEP_GRID_H
 #define SPRINGSTEP_SWEEP_GRID_H
@@ -30,36 +30,35 @@ typedef struct grid {
     axis axis[SWEEP_PARAMETERS];
     size_t methods;
     spring_method method[SPRING_METHOD_COUNT];
-    size_t measures; /* besides those that are always there */
+    size_t measures; /* in addition to the default measures */
     sweep_measure measure[SWEEP_MEASURES];
     uint64_t points, blocks, points_of_block;
-    char message[400]; /* what is wrong, after a function that has returned false */
+    char message[400]; /* error message after a function returned false */
 } grid;
 
-/* No axes yet, no methods, of one spring. */
+/* An empty grid for one spring, without axes and methods. */
 void grid_init(grid *g);
 void grid_clear(grid *g);
 
-bool grid_set_scene(grid *g, const char *name); /* before the axes */
-bool grid_add_axis(grid *g, const char *text);  /* NAME=A:B:N, NAME=A:B:log:N, NAME=A,B,... */
-bool grid_add_methods(grid *g,
-                      const char *names); /* separated by commas; all: those there are for one spring, or scenes */
+bool grid_set_scene(grid *g, const char *name);     /* before the axes */
+bool grid_add_axis(grid *g, const char *text);      /* NAME=A:B:N, NAME=A:B:log:N, NAME=A,B,... */
+bool grid_add_methods(grid *g, const char *names);  /* separated by commas, or "all" */
 bool grid_add_measures(grid *g, const char *names); /* separated by commas */
-bool grid_finish(grid *g);                          /* all is said: is it a grid? Counts points and blocks */
+bool grid_finish(grid *g);                          /* checks the grid; counts points and blocks */
 
 double axis_value(const axis *a, uint64_t i);
 
 /**
- * Measure points.
+ * Measures points.
  *
- * @param[out] values   [count*axes] of the axes
+ * @param[out] values   [count*axes] values of the axes
  * @param[out] results  [count*methods]
  * @return false: no memory
  */
 bool grid_measure(const grid *g, sweep_memory *memory, uint64_t first, uint64_t count, double *values,
                   sweep_result *results);
 
-/** How many points a block has: the last one may have fewer. */
+/** The number of points of a block. The last block can have fewer points. */
 uint64_t grid_block_size(const grid *g, uint64_t block);
 
 #endif

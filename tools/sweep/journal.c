@@ -17,7 +17,7 @@
 
 char journal_message[1000];
 
-/* Where a whole block lies in a file. */
+/* The position of an intact block in a file. */
 typedef struct record {
     uint64_t block;
     long long begin, end;
@@ -25,16 +25,16 @@ typedef struct record {
 
 struct journal {
     const char *path;
-    char target[PATH_MAX]; /* of the path, if that is a link; only of a damaged file */
-    char other[PATH_MAX];  /* the file that is written in place of a damaged one, until it is whole again */
-    FILE *in;              /* what there was; kept open, as whoever closes a file loses its lock */
-    int fd;                /* that is written */
-    bool made;             /* was there no file of this name? */
-    int damaged_fd;        /* that is replaced; -1: none is */
-    long long end;         /* of the last whole block that was written */
-    record *later;         /* [laters] of the damaged file, behind the damage */
+    char target[PATH_MAX]; /* of the path, if it is a symbolic link; only for a damaged file */
+    char other[PATH_MAX];  /* replacement of a damaged file, until it is complete */
+    FILE *in;              /* the existing file; kept open, because closing it would release the lock */
+    int fd;                /* the file being written */
+    bool made;             /* the file did not exist before */
+    int damaged_fd;        /* the file being replaced; -1: none */
+    long long end;         /* end of the last complete block written */
+    record *later;         /* [laters] intact blocks after the damage */
     size_t laters, taken;
-    uint64_t next;         /* the first block that is not in the file yet, or not known to be */
+    uint64_t next;         /* the first block that is not known to be in the file */
     uint64_t first, every; /* blocks first, first + every, ... */
     uint64_t blocks;       /* of the whole sweep */
     time_t synced;
@@ -76,7 +76,7 @@ static const char ending[] = "# block ";
 
 enum { longest_ending = sizeof "# block 18446744073709551615 ffffffff\n" };
 
-/* The last line of a block, whose number is in the CRC, too. */
+/* Prints the last line of a block. The CRC includes the number of the block. */
 static size_t print_ending(char *line, uint64_t block, const char *rows, size_t length)
 {
     const int digits = snprintf(line, longest_ending, "%s%" PRIu64, ending, block);
@@ -84,9 +84,9 @@ static size_t print_ending(char *line, uint64_t block, const char *rows, size_t 
     return (size_t)snprintf(line, longest_ending, "%s%" PRIu64 " %08" PRIx32 "\n", ending, block, crc);
 }
 
-enum { longest_line = 65536 }; /* [bytes] as long as a whole header may be */
+enum { longest_line = 65536 }; /* [bytes] longest header */
 
-/* A line, "\n" included, behind what is in *text; false: there is none, or no end of it. */
+/* Appends a line with its "\n" to *text; false: there is no complete line. */
 static bool append_line(FILE *in, char **text, size_t *length, size_t *size)
 {
     int c;
@@ -109,7 +109,7 @@ static bool append_line(FILE *in, char **text, size_t *length, size_t *size)
     return false;
 }
 
-/* Rows up to the next line that looks like the end of a block, that line included. False: there is none. */
+/* Reads rows up to and including the next line that looks like the end of a block. False: there is none. */
 static bool read_record(FILE *in, char **text, size_t *length, size_t *size, uint64_t *block, bool *whole)
 {
     *length = 0;
@@ -128,9 +128,9 @@ static bool read_record(FILE *in, char **text, size_t *length, size_t *size, uin
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
-/* All or nothing: what a failure leaves is cut off. */
+/* Writes all or nothing: a partial write is truncated. */
 static bool write_at_end(journal *j, const char *bytes, size_t length)
 {
     size_t done = 0;
@@ -142,7 +142,7 @@ static bool write_at_end(journal *j, const char *bytes, size_t length)
             const int reason = written == 0 ? ENOSPC : errno;
             refuse("cannot write \"%s\": %s", j->path, strerror(reason));
             if (ftruncate(j->fd, (off_t)j->end) != 0)
-                return false; /* then the next one cuts it off */
+                return false; /* the next open truncates it */
             return false;
         }
         done += (size_t)written;
@@ -151,7 +151,7 @@ static bool write_at_end(journal *j, const char *bytes, size_t length)
     return true;
 }
 
-/* Against a machine that stops; a process that does has written already. */
+/* Protects against a crash of the machine. After a crash of the process alone, written data are safe without it. */
 static bool sync_now(journal *j)
 {
     j->synced = time(NULL);
@@ -171,11 +171,11 @@ static bool lock(const journal *j, int fd)
     return false;
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is there */
+/* ---------------------------------------------------------------------------------------------------- what is there */
 
 static bool keep_later(journal *j, uint64_t block, long long begin, long long end)
 {
-    if ((j->laters & (j->laters - 1)) == 0) { /* a power of two, or none: full */
+    if ((j->laters & (j->laters - 1)) == 0) { /* full: 0 or a power of two */
         record *more = realloc(j->later, (j->laters == 0 ? 1 : 2 * j->laters) * sizeof *more);
         if (more == NULL)
             return refuse("out of memory");
@@ -190,7 +190,7 @@ static bool is_ours(const journal *j, uint64_t block)
     return block < j->blocks && block >= j->first && (block - j->first) % j->every == 0;
 }
 
-/* Finds the end of the whole blocks, and the whole blocks behind damaged ones. */
+/* Finds the end of the intact blocks, and intact blocks after damaged ones. */
 static bool scan(journal *j)
 {
     char *text = NULL;
@@ -215,7 +215,7 @@ static bool scan(journal *j)
     return kept;
 }
 
-/* Does the file start as it should? One that is shorter was torn there. */
+/* Returns true if the file starts with the header. If the file ends within the header, it was torn there. */
 static bool has_header(const char *path, FILE *in, const char *header, bool *torn)
 {
     const size_t length = strlen(header);
@@ -264,8 +264,8 @@ static bool copy_range(journal *j, int from, long long begin, long long end)
     return true;
 }
 
-/* A second file takes all that is whole, and what is done again, in order; it has the name once nothing of the first is
-   left to take. A link stays a link. */
+/* A second file receives all intact and repeated blocks, in order. It replaces the first file once all intact blocks
+   are copied. A symbolic link is kept. */
 static bool begin_repair(journal *j)
 {
     const long long good = j->end;
@@ -293,9 +293,9 @@ static bool end_repair(journal *j)
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------- is it still there? */
+/* ----------------------------------------------------------------------------------------------- is it still there? */
 
-/* Copies a file that was removed, and is still open, to a new file of its name. */
+/* Copies a removed file that is still open to a new file with its name. */
 static bool write_again(journal *j)
 {
     const int removed = j->fd;
@@ -312,7 +312,7 @@ static bool write_again(journal *j)
                           j->path);
 }
 
-/* Does the path still lead to the open file? Otherwise its rows would be lost when it is closed. */
+/* Checks that the path still refers to the open file. Otherwise its rows would be lost when it is closed. */
 static bool check_name(journal *j)
 {
     struct stat own, named;
@@ -327,7 +327,7 @@ static bool check_name(journal *j)
     return refuse("\"%s\" was moved or replaced during the run; it should stay in place until the end", path);
 }
 
-/* ------------------------------------------------------------------------------------------------------- what is seen */
+/* ----------------------------------------------------------------------------------------------------- what is seen */
 
 journal *journal_open(const char *path, const char *header, uint64_t first, uint64_t every, uint64_t blocks)
 {
@@ -411,7 +411,7 @@ bool journal_close(journal *j)
         if (close(j->fd) != 0 && done)
             done = refuse("cannot write \"%s\": %s", j->path, strerror(errno));
     }
-    if (j->damaged_fd >= 0) { /* it failed while it was repaired: the old one stays */
+    if (j->damaged_fd >= 0) { /* the repair failed, so the old file is kept */
         close(j->damaged_fd);
         unlink(j->other);
     }
@@ -422,7 +422,7 @@ bool journal_close(journal *j)
     return done;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static FILE *open_at(const journal_reader *reader)
 {

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A part of a sweep is a file, and the file is the journal of its work: a header, then the rows of one block after the
- * other, each ended by a line
+ * The journal of a part of a sweep is its output file: a header, then blocks of rows, each ended by a line
  *
  *     # block K CRC
  *
- * that is written with them. So who is killed loses no more than the block at work; what is torn or damaged is seen by
- * the CRC; and who comes next goes on behind the last whole block. Blocks are in their order, first, first + every, ...
+ * that is written with the rows. A killed process loses the current block only, the CRC detects torn or damaged blocks,
+ * and the next run continues after the last intact block. Blocks are in the order first, first + every, ...
  *
- * Nothing here prints or ends the program. A function that fails leaves a message.
+ * Nothing here prints or ends the program. A function that fails sets journal_message.
  */
 #ifndef SPRINGSTEP_SWEEP_JOURNAL_H
 #define SPRINGSTEP_SWEEP_JOURNAL_H
@@ -19,47 +18,47 @@
 
 typedef struct journal journal;
 
-/* What is wrong; it names the file. */
+/* The error message, with the name of the file. */
 extern char journal_message[1000];
 
 /**
- * Open the file of a part, or make it. It is locked until journal_close().
+ * Opens or creates the file of a part. It is locked until journal_close().
  *
- * @param header  lines that the file has to start with
- * @return NULL: it is in use, is not this part's, or cannot be read or written
+ * @param header  the lines with which the file must start
+ * @return NULL: the file is in use, belongs to another part, or cannot be read or written
  */
 journal *journal_open(const char *path, const char *header, uint64_t first, uint64_t every, uint64_t blocks);
 
-/** Is there no such file, or one that starts with the header, as far as it goes? Nothing is written or locked. */
+/** Returns true if the file does not exist, or starts with the header, possibly torn. Does not write or lock. */
 bool journal_fits(const char *path, const char *header);
 
-/** Was the file found damaged, before blocks that are whole? Then these are kept, and the others are done again. */
+/** Returns true if there are intact blocks after damaged ones. Intact blocks are kept, the others are repeated. */
 bool journal_damaged(const journal *j);
 
-/** Is the block there? Blocks are asked for in their order, and one that is not there is added before the next. */
+/** Looks a block up. Call it in the order of the blocks, and add a missing block before the next call. */
 bool journal_has(journal *j, uint64_t block, bool *there);
 bool journal_add(journal *j, uint64_t block, const char *rows, size_t length);
 
-/** All are there. Fails if the file was moved, replaced or removed; a file that was removed is written again first. May be
-    called with NULL, and after a failure. */
+/** Closes the complete journal. Fails if the file was moved, replaced or removed; a removed file is written again
+    first. Accepts NULL, and can be called after a failure. */
 bool journal_close(journal *j);
 
 /* --------------------------------------------------------------------------------------------------------- reading */
 
-/* Whole parts are read block by block, one file open at a time: there may be more parts than files that may be open. */
+/* Complete parts are read block by block with one open file, because there can be more parts than open files. */
 typedef struct journal_reader {
     const char *path;
-    long long offset; /* of the next block */
+    long long offset; /* position of the next block */
 } journal_reader;
 
-/** The header of a file, up to its first line that does not start with "#", that line included; released by free().
-    NULL: cannot be read, or there is no such line. */
+/** Returns the header of a file, up to and including the first line that does not start with "#"; release it with
+    free(). NULL: the file cannot be read, or there is no such line. */
 char *journal_header(const char *path, journal_reader *reader);
 
-/** The rows of a block, which should be the next one; released by free(). NULL: it is not there, torn or damaged. */
+/** Returns the rows of the next block, which must be `block`; release them with free(). NULL: missing or damaged. */
 char *journal_read(journal_reader *reader, uint64_t block, size_t *length);
 
-/** Is there nothing behind the last block that was read? */
+/** Returns true if the file ends after the last block that was read. */
 bool journal_ends(const journal_reader *reader);
 
 #endif

@@ -2,7 +2,7 @@
 /* One point of a sweep; see point.h. */
 #include "sweep/point.h"
 
-#include <math.h> /* sqrt(), fabs(), fmax(), fmin(), ceil(), floor(), rint(), isfinite(): exact everywhere */
+#include <math.h> /* sqrt(), fabs(), fmax(), fmin(), ceil(), floor(), rint(), isfinite(): exact on all systems */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,9 +11,9 @@
 #include "scenes/scene_run.h"
 
 static const double frame_rate = 60;            /* [1/s] */
-static const double most_steps = 1e7;           /* of one spring: a tenth of a second */
-static const double most_particle_steps = 1e10; /* of a scene: a minute or two */
-static const double most_numbers = 2e7;         /* that a reference keeps: 160 MB */
+static const double most_steps = 1e7;           /* of one spring; a tenth of a second */
+static const double most_particle_steps = 1e10; /* of a scene; a minute or two */
+static const double most_numbers = 2e7;         /* kept by a reference: 160 MB */
 static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------------------------------------------ parameters */
@@ -27,10 +27,10 @@ enum {
     SPRING = 1 << SWEEP_SPRING,
     FALLING = ROPE | CLOTH | JELLY,
     SCENES = FALLING | CHAIN | WATER,
-    NOTHING = SWEEP_PARAMETERS /* in whose place it is */
+    NOTHING = SWEEP_PARAMETERS /* replaces no other parameter */
 };
 
-/* What is too small or too large for any use is refused, before it is divided by. */
+/* Values outside of these limits are rejected before divisions. */
 static const double tiny = 1e-9, huge = 1e12;
 
 const sweep_parameter_info sweep_parameters[SWEEP_PARAMETERS] = {
@@ -86,7 +86,7 @@ static double chosen(const double *value, sweep_parameter p, double otherwise)
 
 /* -------------------------------------------------------------------------------------------------- what both share */
 
-/* What is found out while looking at a run. */
+/* Measurements of a run. */
 typedef struct looks {
     double error, energy_error; /* the largest so far */
     double exploded_at;         /* [s] infinite: not yet */
@@ -144,7 +144,7 @@ static double norm(double a, double b, double c, double d)
 
 static const spring_state starts[2] = {{1, 0}, {0, 1}};
 
-/* Compared with the exact solution, at t. */
+/* Compares a run with the exact solution at t. */
 static void look_at_spring(looks *l, const spring_params *p, const spring_state *run, double t)
 {
     const double settled = 0.01, hundredfold = 100;
@@ -179,7 +179,7 @@ static void run_spring(looks *l, const spring_params *p, spring_method m, double
     }
 }
 
-/* Without a run. */
+/* Computes the step for a tolerance, without a run. */
 static void plan_spring(sweep_result *r, const spring_params *p, spring_method m, double duration, double tolerance)
 {
     const double dt = spring_accurate_step(p, m, duration, tolerance);
@@ -216,25 +216,25 @@ static void measure_spring(sweep_result *r, const double *value, spring_method m
     r->status = dt < stable ? SWEEP_STABLE : l.exploded_at < INFINITY ? SWEEP_EXPLODED : SWEEP_GROWING;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ scenes */
+/* ----------------------------------------------------------------------------------------------------------- scenes */
 
 typedef struct subject {
     preset preset;
     disturbances *poke; /* NULL: none */
-    size_t numbers;     /* of the positions */
+    size_t numbers;     /* size of all positions */
     double frame, dt;   /* [s] */
     uint64_t frames;
 } subject;
 
-/* RK4 in short steps. */
+/* The reference: RK4 with short steps. */
 struct sweep_memory {
-    double key[SWEEP_PARAMETERS + 3]; /* what it was run for: scene, values, frame and frames */
+    double key[SWEEP_PARAMETERS + 3]; /* the inputs of the run: scene, values, frame and frames */
     bool known, overflows;
-    double *position; /* [(frames + 1)*numbers], the start included */
+    double *position; /* [(frames + 1)*numbers], including the start */
     double *energy;   /* [frames + 1] */
     double kinetic;   /* [J] the largest */
     double motion;    /* [m] the largest distance from the start */
-    bool moves;       /* further than rounding does */
+    bool moves;       /* by more than rounding errors */
 };
 
 sweep_memory *sweep_memory_new(void)
@@ -285,14 +285,14 @@ static preset_settings settings_of(int scene, const double *value)
     return s;
 }
 
-/* How many there will be, before there is memory for them. */
+/* The number of particles, computed before memory is allocated. */
 static double particles_of(const preset_settings *s)
 {
     const double n = (double)s->size;
     return s->kind == PRESET_JELLY ? n * n * n : s->kind == PRESET_CLOTH || s->kind == PRESET_WATER ? n * n : n;
 }
 
-/* The sine and cosine of the library, which are the same everywhere: of the exact solution at the time `angle`. */
+/* Rotates by the reproducible sine and cosine of the library: the exact solution at the time `angle`. */
 static void turn(preset *r, double angle)
 {
     const spring_params unit = {1, 1, 0, 0};
@@ -342,7 +342,7 @@ static spring_scene *start(const subject *s, spring_method m)
     return scene;
 }
 
-/* Steps in a frame, at most a sixteenth of the stable steps of leapfrog and of RK4 each. Damped links limit RK4 alone. */
+/* Steps per frame, each at most a sixteenth of the stable steps of leapfrog and RK4. Damped links limit RK4 only. */
 static double reference_steps(const subject *s, spring_scene *scene)
 {
     const double leapfrog = spring_scene_stable_step(scene, SPRING_LEAPFROG);
@@ -371,7 +371,7 @@ static void run_reference(sweep_memory *r, const subject *s, spring_scene *scene
     r->moves = r->motion > 1e-9 * extent;
 }
 
-/* The reference for a point, unless it is the last one. Those of points that differ in their steps alone are equal. */
+/* Computes the reference of a point, unless it is already known. Points that differ only in the step share it. */
 static sweep_status remember(sweep_memory *r, const subject *s, int scene_number, const double *value)
 {
     double key[SWEEP_PARAMETERS + 3];
@@ -403,11 +403,12 @@ static sweep_status remember(sweep_memory *r, const subject *s, int scene_number
     return status;
 }
 
-/* Stops where the scene explodes. */
+/* Runs a scene and stops when it explodes. */
 static bool run_scene(looks *l, const sweep_memory *r, const subject *s, spring_scene *scene, spring_method m,
                       uint64_t substeps)
 {
-    const double tenfold = 10, quiet = 1e-4; /* of the largest kinetic energy; a hundredth of the speed */
+    const double tenfold = 10,
+                 quiet = 1e-4; /* relative to the largest kinetic energy; quiet is a hundredth of the speed */
     double *now = malloc(s->numbers * sizeof *now);
     if (now == NULL)
         return false;
@@ -433,7 +434,8 @@ static bool too_long(const subject *s, double particles, double substeps)
     return !(particles * 3 * (frames + 1) <= most_numbers && particles * frames * substeps <= most_particle_steps);
 }
 
-/* Steps a frame as they are chosen, or from the stable step: then a frame is a whole number of them, about 1/60 s. */
+/* Steps per frame, as chosen or from the stable step. In the latter case a frame is a whole number of steps, about
+   1/60 s. */
 static double divide(subject *s, const double *value, double stable)
 {
     double substeps = chosen(value, SWEEP_STEPS_PER_FRAME, 8);

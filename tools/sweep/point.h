@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One point of a sweep: one spring or one preset scene, with some of its parameters chosen, by one method.
+ * One point of a sweep: one spring or one preset scene with chosen parameters, by one method.
  *
- * What is measured comes from the library, the harness and the four operations alone, so it has the same bits on every
- * processor, in the command-line tool and in the package for Python. Nothing here prints or ends the program.
+ * Results depend only on the library, the harness and the four basic operations. So they are bit-identical on every
+ * processor, in the command-line tool and in the Python package. Nothing here prints or ends the program.
  */
 #ifndef SPRINGSTEP_SWEEP_POINT_H
 #define SPRINGSTEP_SWEEP_POINT_H
@@ -13,10 +13,10 @@
 
 #include <springstep/spring.h>
 
-/* Of what a point is: one spring, or a preset of scenes/presets.h, its number plus 1. */
+/* The subject of a point: one spring, or a preset of scenes/presets.h, as its number plus 1. */
 enum { SWEEP_SPRING };
 
-/** The word for it, "spring" or that of the preset; NULL: there are no more. */
+/** The name of a subject, "spring" or the name of the preset; NULL: there are no more. */
 const char *sweep_scene_name(int scene);
 
 /* ------------------------------------------------------------------------------------------------------ parameters */
@@ -43,13 +43,13 @@ typedef enum sweep_parameter {
 } sweep_parameter;
 
 typedef struct sweep_parameter_info {
-    const char *name;   /* as it is chosen: "stiffness" */
-    const char *column; /* with its unit: "stiffness_N_per_m" */
+    const char *name;   /* for selection: "stiffness" */
+    const char *column; /* with unit: "stiffness_N_per_m" */
     const char *help;
-    double least, most; /* that are accepted */
+    double least, most; /* accepted range */
     bool whole;         /* a whole number */
     uint32_t scenes;    /* bit i: scene i has it */
-    int instead;        /* the parameter that it takes the place of, or SWEEP_PARAMETERS */
+    int instead;        /* the parameter that it replaces, or SWEEP_PARAMETERS */
 } sweep_parameter_info;
 
 extern const sweep_parameter_info sweep_parameters[SWEEP_PARAMETERS];
@@ -61,7 +61,7 @@ bool sweep_has(int scene, sweep_parameter p);
 typedef enum sweep_measure {
     SWEEP_ERROR,
     SWEEP_ENERGY_ERROR,
-    SWEEP_STEPS, /* from here on, those that have to be asked for */
+    SWEEP_STEPS, /* from here on only on request */
     SWEEP_FORCE_EVALUATIONS,
     SWEEP_DT,
     SWEEP_STABLE_STEP,
@@ -73,15 +73,15 @@ typedef enum sweep_measure {
 extern const char *const sweep_measure_names[SWEEP_MEASURES + 1];
 
 typedef enum sweep_status {
-    SWEEP_STABLE,  /* a spring: below the stable step. A scene: it never has ten times the kinetic energy it should */
-    SWEEP_GROWING, /* a spring: at the stable step or beyond, and not exploded in this time */
-    SWEEP_EXPLODED, /* a spring: as that, and has a hundredfold energy. A scene: not stable, or no finite numbers; what is
-                       measured is of the time until then */
-    SWEEP_UNSUPPORTED, /* the method is not for this */
-    SWEEP_NO_STEP,     /* no step is accurate enough; the stable step is 0 */
-    SWEEP_TOO_LONG,    /* more steps than a point may take, or more to remember than it may keep */
-    SWEEP_INVALID,     /* numbers that the library refuses, or nothing moves */
-    SWEEP_FAILED       /* no memory */
+    SWEEP_STABLE,   /* spring: below the stable step. Scene: kinetic energy always below ten times the reference */
+    SWEEP_GROWING,  /* spring: at or above the stable step, but not exploded within the duration */
+    SWEEP_EXPLODED, /* spring: at or above the stable step, with a hundredfold energy. Scene: not stable, or not finite.
+                       Measurements end at that time */
+    SWEEP_UNSUPPORTED, /* the method does not support this subject */
+    SWEEP_NO_STEP,     /* no step is accurate enough, or the stable step is 0 */
+    SWEEP_TOO_LONG,    /* too many steps, or too much memory for a reference */
+    SWEEP_INVALID,     /* invalid parameters, or nothing moves */
+    SWEEP_FAILED       /* out of memory */
 } sweep_status;
 
 extern const char *const sweep_status_names[];
@@ -91,29 +91,29 @@ typedef struct sweep_result {
     int status;                    /* a sweep_status */
 } sweep_result;
 
-/** What points of one sweep share: the reference that the last one needed. NULL: no memory. */
+/** Memory shared by the points of a sweep: the last reference. NULL: out of memory. */
 typedef struct sweep_memory sweep_memory;
 sweep_memory *sweep_memory_new(void);
 void sweep_memory_free(sweep_memory *memory);
 
 /**
- * Measure a point. The result depends on scene, value and method alone.
+ * Measures a point. The result depends on scene, value and method only.
  *
  * One spring has mass 1 kg and stiffness 1 N/m, so omega is 1/s. It is run from (x, v) = (1, 0) and from (0, 1), and
- * looked at after each of the first 256 steps, and then whenever a 128th of the time so far has passed:
+ * measured after each of the first 256 steps, then at intervals of a 128th of the elapsed time:
  *
- *     error         the largest norm of the matrix (run - exact) of both, which is the error from the worst start
- *     energy_error  the difference of the energy from that of the exact solution, over that of the start: the largest
+ *     error         the largest norm of the matrix (run - exact) of both runs, the error from the worst initial state
+ *     energy_error  the largest difference of the energy from the exact solution, relative to the initial energy
  *
- * With a tolerance the step is spring_accurate_step(), there is no run, and the error is spring_step_error().
+ * With a tolerance, the step is spring_accurate_step(), there is no run, and the error is spring_step_error().
  *
- * A scene is run as it is, water with a poke, and compared with RK4 in steps of at most a sixteenth of its stable step and of
- * leapfrog's, and looked at after each frame:
+ * A scene is run as it is (water with a poke) and measured after each frame. The reference is RK4 with at most a
+ * sixteenth of the stable steps of RK4 and of leapfrog:
  *
- *     error         the largest distance of all positions, root of the sum of squares, over the largest distance of the
- *                   reference from its start
- *     energy_error  the difference of the energy from that of the reference, over the largest kinetic energy of the
- *                   reference: the largest; infinite where the state overflows
+ *     error         the largest Euclidean distance of all positions from the reference, relative to the largest
+ *                   distance of the reference from its start
+ *     energy_error  the largest difference of the energy from the reference, relative to the largest kinetic energy of
+ *                   the reference; infinite if the state overflows
  *
  * @param[in] value  [SWEEP_PARAMETERS] NaN: not chosen
  */

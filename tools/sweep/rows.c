@@ -21,7 +21,7 @@ void grid_columns(const grid *g, char *text, size_t size)
     fclose(out);
 }
 
-/* A NaN has no sign here: the one that 0/0 gives differs between processors. */
+/* Prints NaN without sign, because the sign of 0/0 differs between processors. */
 static void print_number(FILE *out, double x)
 {
     if (isnan(x))

@@ -5,10 +5,10 @@
 
 #include "sweep/grid.h"
 
-/** The names of the columns, separated by tabs, and "\n"; at most `size` characters. */
+/** Writes the names of the columns, separated by tabs, and "\n"; at most `size` characters. */
 void grid_columns(const grid *g, char *text, size_t size);
 
-/** The rows of a block as text, released by free(); NULL: no memory. */
+/** Returns the rows of a block as text; release it with free(). NULL: out of memory. */
 char *grid_block(const grid *g, sweep_memory *memory, uint64_t block, size_t *length);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-sweep: what becomes of one spring, or of a preset scene, at every point of a grid of parameters.
+ * spring-sweep: measures one spring or a preset scene at every point of a grid of parameters.
  *
- * Points are independent, so the grid is cut into blocks, and every N-th block is a part: a file that is the journal of its
- * own work (journal.h). Parts are done by processes that know nothing of each other, here or on other machines, and joined
- * in the order of the grid. The rows, and the lines above them, do not say how many there were.
+ * Points are independent. The grid is divided into blocks; each part consists of every N-th block and is a file that is
+ * its own journal (journal.h). Parts are computed by independent processes, on one or several machines, and joined in
+ * the order of the grid. The joined output does not depend on the number of parts.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <errno.h>
@@ -26,7 +26,7 @@
 enum { most_parts = 1000000, header_size = 65536 };
 
 static cli_words over, methods, measures, part, joined;
-static uint64_t jobs; /* 0: not asked for */
+static uint64_t jobs; /* 0: not given */
 static int scene;
 static const char *scenes[preset_kinds + 2]; /* filled in before options are read */
 static bool list;
@@ -86,7 +86,7 @@ static const cli_program program = {
     .stamps_itself = true,
 };
 
-/* ---------------------------------------------------------------------------------------------------------- the grid */
+/* --------------------------------------------------------------------------------------------------------- the grid */
 
 static void check(bool done, const char *option, const grid *g)
 {
@@ -122,7 +122,7 @@ static void list_parameters(void)
     cli_finish();
 }
 
-/* The lines above the rows; those of a part say which. No compiler: the rows do not depend on it. */
+/* The header of the output, with the part number in a part. It omits the compiler, since rows do not depend on it. */
 static void print_header(char *text, size_t size, const grid *g, uint64_t number, uint64_t parts)
 {
     char columns[1000], line[100] = "";
@@ -135,13 +135,13 @@ static void print_header(char *text, size_t size, const grid *g, uint64_t number
         cli_fail(CLI_USAGE, "--over: the description of these axes is too long");
 }
 
-/* ------------------------------------------------------------------------------------------------------------- parts */
+/* ------------------------------------------------------------------------------------------------------------ parts */
 
 typedef struct work {
     const grid *grid;
     const char *path;
     uint64_t number, parts; /* part `number` of 1 to `parts` */
-    int done;               /* a byte for each block is written to it; -1: to none */
+    int done;               /* file descriptor that receives a byte per block; -1: none */
 } work;
 
 static _Noreturn void fail_journal(journal *j)
@@ -168,7 +168,7 @@ static sweep_memory *new_memory(void)
     return memory;
 }
 
-/* Who waits for the bytes may be gone: then this process ends by SIGPIPE, and its journal holds what was done. */
+/* If the reading process has ended, this process ends by SIGPIPE, and its journal keeps the completed blocks. */
 static void tell_done(const work *w, uint64_t block)
 {
     if (w->done < 0)
@@ -227,14 +227,14 @@ static void do_one_part(const grid *g)
     do_part(&(work){.grid = g, .path = cli_output_path(), .number = number, .parts = parts, .done = -1});
 }
 
-/* -------------------------------------------------------------------------------------------------------------- join */
+/* ------------------------------------------------------------------------------------------------------------- join */
 
 typedef struct found {
     journal_reader reader;
     bool there;
 } found;
 
-/* Takes the line "# part I of N, K blocks" out of a header. */
+/* Removes the line "# part I of N, K blocks" from a header. */
 static bool take_part_line(char *header, uint64_t *number, uint64_t *parts, uint64_t *blocks)
 {
     static const char start[] = "\n# part ";
@@ -298,7 +298,7 @@ static void look_at_part(const char *path, const char *first_path, found **all, 
         free(own);
 }
 
-/* Fails for the first few parts that are not there. */
+/* Fails with the numbers of the first few missing parts, if any are missing. */
 static void check_missing(const found *all, uint64_t parts)
 {
     char names[100] = "";
@@ -315,14 +315,14 @@ static void check_missing(const found *all, uint64_t parts)
                  missing > 5 ? ", ..." : "");
 }
 
-/* Text that ends with "\n", as it is. */
+/* Writes text that ends with "\n". */
 static void write_text(cli_table *table, const char *text, size_t length)
 {
     if (length > 0)
         cli_row(table, "%.*s", (int)length - 1, text);
 }
 
-/* All blocks in their order; NULL: they are only looked at. */
+/* Reads all blocks in order, and writes them unless table is NULL. */
 static void read_blocks(found *all, uint64_t parts, uint64_t blocks, cli_table *table)
 {
     for (uint64_t block = 0; block < blocks; block++) {
@@ -336,7 +336,7 @@ static void read_blocks(found *all, uint64_t parts, uint64_t blocks, cli_table *
     }
 }
 
-/* What is torn is found before a row is written. */
+/* Finds torn blocks before the first row is written. */
 static void check_blocks(const found *all, uint64_t parts, uint64_t blocks)
 {
     found *copy = malloc(parts * sizeof *copy);
@@ -350,7 +350,7 @@ static void check_blocks(const found *all, uint64_t parts, uint64_t blocks)
     free(copy);
 }
 
-/* The output must not be written over a part, by whatever name. */
+/* The output must not replace a part, under any name. */
 static void check_no_part_is_replaced(const char *const *paths, size_t count)
 {
     struct stat output, read;
@@ -379,9 +379,9 @@ static void join(const char *const *paths, size_t count)
     free(all);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- jobs */
+/* ------------------------------------------------------------------------------------------------------------- jobs */
 
-/* Without a journal. */
+/* Writes the rows directly to the output, without a journal. */
 static void stream(const grid *g)
 {
     char header[header_size];
@@ -417,14 +417,14 @@ static void start_jobs(const grid *g, const char *const *paths, const int ends[2
         if (child < 0)
             cli_fail(CLI_FAILED, "cannot start a process: %s", strerror(errno));
         if (child == 0) {
-            close(ends[0]); /* only while the first process holds it can be written */
+            close(ends[0]); /* writing then fails as soon as the first process has ended */
             do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = jobs, .done = ends[1]});
             exit(0);
         }
     }
 }
 
-/* Until no process is there to write. */
+/* Shows the progress until all writing processes have ended. */
 static void show_progress(const grid *g, int done)
 {
     char bytes[4096];
@@ -458,7 +458,7 @@ static void wait_for_jobs(const char *const *paths)
                  cli_output_path(), jobs);
 }
 
-/* What would be refused when all is done is refused before the work. */
+/* Reports problems with the output before the work starts, not after. */
 static void check_output(void)
 {
     const char *path = cli_output_path();
@@ -466,7 +466,7 @@ static void check_output(void)
     if (path == NULL)
         cli_fail(CLI_USAGE, "--jobs: requires --output, because results are stored next to that file");
     const bool good = stat(path, &status) == 0 ? S_ISREG(status.st_mode) && access(path, W_OK) == 0
-                                               : lstat(path, &status) != 0; /* no link to nowhere */
+                                               : lstat(path, &status) != 0; /* not a dangling link */
     if (!good)
         cli_fail(CLI_IO,
                  "--output: cannot write \"%s\"; with --jobs it should be a file that can be created or replaced",
