@@ -18,7 +18,7 @@ SPRING_INLINE void euler_prepare(step_coefficients *c, spring_rates r, real h, b
 {
     c->omega2 = h * r.omega2;
     if (damped)
-        c->gamma = h * r.gamma + 0; /* + 0: no -0 for a negative step */
+        c->gamma = h * r.gamma + 0; /* + 0 turns the -0 of a negative step into 0 */
     if (loaded)
         c->accel = h * r.accel + 0;
 }

@@ -5,8 +5,8 @@
  * Method    kick   v' = v - (K x - A + q v)          K = w h/2,  A = a h/2,  q = g h/2
  *           drift  x1 = x + h v'
  *           kick   v1 = (v' - (K x1 - A)) / (1 + q)
- *           Kick and drift are shears, which preserve the phase-space area at any rounding error of K. So the energy error
- *           of an undamped spring stays bounded over any number of steps.
+ *           Kick and drift are shears, which preserve the phase-space area at any rounding error of K. So the energy
+ *           error of an undamped spring stays bounded over any number of steps.
  * Order     2. Undamped phase error after time T: w^(3/2) h^2 T/24; energy error at most z^2/4 of E,
  *           z^2 = w h^2, from a start at rest, and z^2/4/(1 - z^2/4) of E from any.
  * Limit     h sqrt(w) < 2 at every damping: the step has trace 2 (1 - w h^2/2)/(1 + q), determinant (1 - q)/(1 + q).
@@ -36,7 +36,7 @@ SPRING_INLINE real leapfrog_force(real x, const step_coefficients *c, bool loade
     return loaded ? c->omega2 * x - c->accel : c->omega2 * x;
 }
 
-/* force: at x; the last kick of a step leaves it to the first kick of the next */
+/* force: at x; the first kick of the next step reuses it */
 SPRING_INLINE void leapfrog_step(real *x, real *v, real *force, real h, const step_coefficients *c, bool damped,
                                  bool loaded)
 {
@@ -56,7 +56,7 @@ void spring_step_leapfrog(spring_state *s, const spring_params *p, double dt)
 
 static double leapfrog_stable_step(const spring_roots *r)
 {
-    return 2 / r->omega; /* IEEE 754: infinite without stiffness */
+    return 2 / r->omega; /* infinite without stiffness, by IEEE 754 */
 }
 
 static step_terms leapfrog_terms(step_rates r)

@@ -7,8 +7,8 @@
  * The loops around them are take_steps() below and those of kernels/springs.h. Two flags, damped and loaded, are
  * constants in every loop, so that a spring without damping or load does not pay for it.
  *
- * The rest of the file is compiled for one spring only: the stable step, the step as a matrix, the entry in the table of
- * methods, and the public one-step function. Steps of scenes are in scene/steppers.c.
+ * The rest of the file is compiled for one spring only: the stable step, the step as a matrix, the entry in the table
+ * of methods, and the public one-step function. Steps of scenes are in scene/steppers.c.
  */
 #ifndef SPRINGSTEP_METHOD_H
 #define SPRINGSTEP_METHOD_H
@@ -24,15 +24,15 @@ typedef struct step_coefficients {
     real omega2, gamma, accel; /* the rates times the step; leapfrog: times half the step */
     implicit_factors damping;  /* of symplectic Euler and leapfrog */
     real xx, xv, vx, vv;       /* Runge-Kutta methods: correction of x and v, by x and v */
-    real x_load, v_load;       /* minus the correction by the load; subtracting a zero changes no bit */
+    real x_load, v_load;       /* minus the correction by the load; subtracting 0 changes no bit */
 } step_coefficients;
 
-/* kept: a force that the end of a step leaves to the start of the next, of methods that have a start(). */
+/* kept: in methods with a start(), the force at the end of a step, for the start of the next step. */
 typedef void method_prepare(step_coefficients *c, spring_rates r, real h, bool damped, bool loaded);
 typedef real method_start(real x, const step_coefficients *c, bool loaded);
 typedef void method_step(real *x, real *v, real *kept, real h, const step_coefficients *c, bool damped, bool loaded);
 
-/* The start() of methods that keep no force. */
+/* The start() of methods that do not keep a force. */
 SPRING_INLINE real keeps_nothing(real x, const step_coefficients *c, bool loaded)
 {
     (void)x;
@@ -41,7 +41,7 @@ SPRING_INLINE real keeps_nothing(real x, const step_coefficients *c, bool loaded
     return splat(0);
 }
 
-/* function(..., damped, loaded) with the flags as constants: one branch here, none in the loops of the function. */
+/* Calls function(..., damped, loaded) with constant flags, so that the loops of the function have no branches. */
 #define SPRING_BY_FEATURES(damped, loaded, function, ...)         \
     (!(damped) && !(loaded) ? function(__VA_ARGS__, false, false) \
      : !(damped)            ? function(__VA_ARGS__, false, true)  \
@@ -53,7 +53,7 @@ typedef struct method_row {
     spring_method_info info;
     spring_step_fn *kernel;                       /* NULL: not for springs */
     double (*stable_step)(const spring_roots *r); /* [s] */
-    step_terms_fn *terms;                         /* NULL: the error of a step is rounding error alone */
+    step_terms_fn *terms;                         /* NULL: the error of a step is rounding error only */
     uint64_t digest;                              /* see spring/self_test.c */
 } method_row;
 

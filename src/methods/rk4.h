@@ -13,10 +13,10 @@
  *               x1 = x + (h v           + (-W E x   + h F v         + h^2 E a))
  *               v1 = v + (h (a - w x - g v) + (-w h F x - (W E + G F) v + h F a))
  *
- *           Euler's step and the correction are added separately, because this has smaller rounding errors: the correction
- *           is small, so its error is small too, and h v is rounded once. (The rounding error of a summed coefficient
- *           would be the same in every step, and would accumulate.)
- * Order     4. Undamped phase error after time T: w^(5/2) h^4 T/120; energy is lost at (w h^2)^3/72 a step.
+ *           Euler's step and the correction are added separately, because this has smaller rounding errors: the
+ *           correction is small, so its error is small too, and h v is rounded once. (The rounding error of a summed
+ *           coefficient would be the same in every step, and would accumulate.)
+ * Order     4. Undamped phase error after time T: w^(5/2) h^4 T/120; relative energy loss (w h^2)^3/72 per step.
  * Limit     |R(h r)| = 1 over the roots r of the spring, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: h omega = 2 sqrt 2
  *           without damping, h = 2.785.../(fast root) for real roots, Newton's method on |R|^2 = 1 in between.
  * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
@@ -30,7 +30,7 @@
 SPRING_INLINE void rk4_prepare(step_coefficients *c, spring_rates r, real h, bool damped, bool loaded)
 {
     const real hw = h * r.omega2, W = h * hw, G = h * r.gamma;
-    /* Without damping G is 0, and the short forms have the bits of the long ones. */
+    /* Without damping G is 0, and the short forms are bit-identical to the long ones. */
     const real E = (damped ? 12 - 4 * G + (G * G - W) : 12 - W) * (scalar)(1.0 / 24);
     const real F = (damped ? 4 * (G * G - W) - 12 * G + G * (2 * W - G * G) : 0 - 4 * W) * (scalar)(1.0 / 24);
     c->omega2 = hw;
@@ -39,7 +39,7 @@ SPRING_INLINE void rk4_prepare(step_coefficients *c, spring_rates r, real h, boo
     c->vx = -hw * F;
     c->vv = c->xx - G * F;
     if (damped)
-        c->gamma = G + 0; /* + 0: no -0 for a negative step */
+        c->gamma = G + 0; /* + 0 turns the -0 of a negative step into 0 */
     if (loaded) {
         c->accel = h * r.accel + 0;
         c->x_load = 0 - h * E * (h * r.accel);

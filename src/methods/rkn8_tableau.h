@@ -7,7 +7,7 @@
 
 enum { rkn8_stages = 7 }; /* after the first */
 
-/* Of the second to the eighth stage. */
+/* Coefficients of the second to the eighth stage. */
 static const double rkn8_c[rkn8_stages] = {1. / 20, 1. / 10, 3. / 10, 1. / 2, 7. / 10, 9. / 10, 1};
 #define QUOTIENT(p, q) ((scalar)((double)(p) / (q)))
 /* clang-format off */

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The symplectic Runge-Kutta-Nystrom method of order 6 with 11 stages of Blanes and Moan (SRKN11b), for scenes whose forces
- * depend on positions, and on velocities by drag alone.
+ * The symplectic Runge-Kutta-Nystrom method of order 6 with 11 stages of Blanes and Moan (SRKN11b), for scenes whose
+ * forces depend on positions, and on velocities only through drag.
  *
  * Method    for i = 1 ... 11:  v += h b_i a(x),  x += h a_i v;   then  v += h b_12 a(x)
- *           It is symmetric: b_(13-i) = b_i, a_(12-i) = a_i. The last kick and the first kick of the next step use the same
- *           force: eleven forces a step.
- * Drag      of g = drag/mass belongs to the drift, x' = v, v' = -g v, which is solved exactly:
+ *           It is symmetric: b_(13-i) = b_i, a_(12-i) = a_i. The last kick and the first kick of the next step use the
+ *           same force, so a step evaluates eleven forces.
+ * Drag      with g = drag/mass belongs to the drift, x' = v, v' = -g v, which is solved exactly:
  *               x += v (1 - e^(-g a_i h))/g,   v += v (e^(-g a_i h) - 1)
- *           Order 6 needs that the triple commutator of the kick with the drift vanishes. It does: x' is of degree 1 in v,
- *           v' = -g v as well, and each commutator with the kick lowers these degrees by one. (With drag in the kick, this
- *           would not hold.) With drag alone the step is exact.
- * Order     6. Undamped phase error a step: 8.04e-8 z^7, z = h omega; the energy error of an oscillator
+ *           Order 6 requires that the triple commutator of the kick with the drift vanishes. It does: x' and v' = -g v
+ *           are of degree 1 in v, and each commutator with the kick lowers these degrees by one. (With drag in the kick,
+ *           this would not hold.) With drag as the only force the step is exact.
+ * Order     6. Undamped phase error per step: 8.04e-8 z^7, z = h omega; the energy error of an oscillator
  *           is at most 2.84e-7 z^6 (1 + 0.3 z^2) at any time.
- * Limit     z = 9.0734 without drag. With drag h^2 omega^2 < 82.3 and g h < 20 suffice, see tests/test_srkn6.c: some a_i
- *           are negative, so heavy drag grows as e^(0.25 g h) within a step.
- * Source    Blanes, Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, J. Comput. Appl.
- *           Math. 142 (2002)
+ * Limit     z = 9.0734 without drag. With drag, h^2 omega^2 < 82.3 and g h < 20 are sufficient (tests/test_srkn6.c).
+ *           Some a_i are negative, so velocities grow by e^(0.25 g h) within a step under heavy drag.
+ * Source    Blanes, Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, J. Comput.
+ *           Appl. Math. 142 (2002)
  */
 #ifndef SPRINGSTEP_SRKN6_H
 #define SPRINGSTEP_SRKN6_H

@@ -5,12 +5,12 @@
 
 #include "../simd/arithmetic.h"
 
-/* Of (x, v/Omega), Omega any frequency. */
+/* A matrix on (x, v/Omega), for any frequency Omega. */
 typedef struct spring_matrix {
     double xx, xv, vx, vv;
 } spring_matrix;
 
-/* A spring and a step h without units: h times the matrix of the spring is Z = (0, a; -c, -G). */
+/* A spring and a step h in dimensionless form: h times the matrix of the spring is Z = (0, a; -c, -G). */
 typedef struct step_rates {
     double a; /* h Omega */
     double c; /* h w/Omega */
@@ -19,7 +19,7 @@ typedef struct step_rates {
 
 enum { STEP_TERMS = 5 }; /* more than the largest power of h in a step */
 
-/* One step is (1 + term[1] + term[2] + ...)/(1 + implicit G), where term[k] is proportional to h^k; term[0] is not read. */
+/* One step is (1 + term[1] + term[2] + ...)/(1 + implicit G). term[k] is proportional to h^k; term[0] is not read. */
 typedef struct step_terms {
     double implicit; /* fraction of the step over which the damping is implicit */
     spring_matrix term[STEP_TERMS];
@@ -44,14 +44,15 @@ static inline spring_matrix matrix_of(step_rates r) /* Z */
     return (spring_matrix){0, r.a, -r.c, -r.G};
 }
 
-/* Z^k/k! from that of k - 1. */
+/* Z^k/k! from Z^(k-1)/(k-1)!. */
 static inline spring_matrix next_power(spring_matrix power, spring_matrix Z, int k)
 {
     const spring_matrix none = {0};
     return matrix_sum(none, 1.0 / k, matrix_product(power, Z));
 }
 
-/* The terms of a method that is the exponential series up to its order, as Runge-Kutta methods of up to four stages. */
+/* The terms of a method whose step is the exponential series up to its order, such as Runge-Kutta methods of up to four
+   stages. */
 static inline step_terms exponential_terms(step_rates r, int order)
 {
     const spring_matrix Z = matrix_of(r);
