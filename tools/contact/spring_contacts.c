@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* spring-contacts: contacts of scenes against closed forms, compared with two schemes of game engines. */
+/* spring-contacts: contacts of scenes compared with exact solutions and with two schemes of game engines. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}
 
 /* --------------------------------------------------------------------------------------------------------- cases */
 
-/* [m] height of the third bounce, from a drop of 1 m: the energy at its highest point. */
+/* [m] height of the third bounce after a drop from 1 m, from the energy at its highest point. */
 static double bounce(contact_scheme scheme, double dt)
 {
     const double x[3] = {0, 1, 0}, v[3] = {0};
@@ -112,7 +112,7 @@ static double oblique(contact_scheme scheme, double dt)
     return hypot(y[0] - at - speed * (end - t), y[1] - (impact * (end - t) - g / 2 * (end - t) * (end - t)));
 }
 
-/* d/dt of the angle from the top of a sphere of 1 m, and of its rate, of a particle that slides down. */
+/* A particle slides down a sphere of 1 m: d/dt of its angle from the top and of the angular rate. */
 static void sliding(const double s[2], double mu, double out[2])
 {
     out[0] = s[1];
@@ -121,7 +121,7 @@ static void sliding(const double s[2], double mu, double out[2])
 
 static void slide_exactly(double s[2], double mu, double end)
 {
-    enum { steps = 4096 }; /* of RK4: an error of 1e-14 */
+    enum { steps = 4096 }; /* of RK4, error 1e-14 */
     const double h = end / steps;
     for (int i = 0; i < steps; i++) {
         double k[4][2], at[2];
@@ -151,7 +151,7 @@ static double sphere(contact_scheme scheme, double dt)
 
 static const double slope = 3.14159265358979323846 / 6;
 
-/* [m] how far a block gets in 2 s that is released on an incline. */
+/* [m] distance of a block 2 s after its release on an incline. */
 static double incline(contact_scheme scheme, double dt, double mu)
 {
     const double x[3] = {0}, v[3] = {0};
@@ -172,7 +172,7 @@ static double slide(contact_scheme scheme, double dt)
     return incline(scheme, dt, 0.3);
 }
 
-/* [m] of a block that slides at 3 m/s, with friction 0.4, in 3 s. */
+/* [m] distance in 3 s of a block that slides at 3 m/s with friction 0.4. */
 static double stopping(contact_scheme scheme, double dt)
 {
     const double x[3] = {0}, v[3] = {3, 0, 0};
@@ -184,7 +184,7 @@ static double stopping(contact_scheme scheme, double dt)
     return y[0];
 }
 
-/* Ratio of the tensions of a rope that is drawn over a cylinder, by half a turn, with friction 0.3. */
+/* Ratio of the tensions of a rope pulled over a cylinder, half a turn, with friction 0.3. */
 static double capstan(contact_scheme scheme, double dt)
 {
     enum { count = 64 };
@@ -215,13 +215,13 @@ static double capstan(contact_scheme scheme, double dt)
         .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = 0.3};
     trial t;
     trial_open(&t, &def, &c, scheme, dt);
-    const double frame = 1.0 / 60, moving = mass / spacing * speed * speed; /* momentum that the rope carries along */
+    const double frame = 1.0 / 60, moving = mass / spacing * speed * speed; /* momentum flux of the rope */
     const int frames = (int)lround(end / frame);
     double pulled = 0, loaded = 0;
     for (int i = 0; i < frames; i++) {
         double u[3];
         spring_scene_get(t.scene, SPRING_VELOCITY, u, 0, 0, 1);
-        force[1] = -load - 20 * mass * u[1]; /* the load, and drag on it that calms the rope */
+        force[1] = -load - 20 * mass * u[1]; /* the load, with drag that damps the rope */
         spring_scene_set(t.scene, SPRING_FORCE, force, 0, 0, 1);
         trial_advance(&t, (uint64_t)llround(frame / dt));
         if (i < frames / 2)
@@ -233,7 +233,7 @@ static double capstan(contact_scheme scheme, double dt)
     return pulled / loaded;
 }
 
-/* Particles of 1000 at rest that a plate of 1 cm passes through. */
+/* Of 1000 particles at rest, the number that a plate of 1 cm passes through. */
 static double plate(contact_scheme scheme, double dt, double speed)
 {
     enum { count = 1000 };
@@ -276,7 +276,7 @@ typedef struct contact_case {
     const char *name, *purpose;
     double (*run)(contact_scheme scheme, double dt);
     double exact;
-    int schemes; /* of contact_scheme_names, the first ones */
+    int schemes; /* number of schemes, the first of contact_scheme_names */
 } contact_case;
 
 enum { case_count = 10 };
@@ -303,7 +303,7 @@ static void make_cases(contact_case c[case_count])
 
 /* -------------------------------------------------------------------------------------------------------- energy */
 
-/* The largest energy over that at the start, in a minute, of a soft body that is thrown about in a box of six planes. */
+/* The largest energy in a minute, relative to the initial energy, of a soft body thrown into a box of six planes. */
 static double energy_in_box(double restitution, double damping, double fraction, double *dt)
 {
     const spring_grid grid = {.count = {4, 4, 4}, .spacing = 0.1, .families = 7, .stiffness = 40, .damping = damping};

@@ -17,7 +17,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Of a ball around a centre. */
+/* Gap and normal of a ball. */
 static double gap_of_ball(const double centre[3], double radius, const double x[3], double n[3])
 {
     for (int a = 0; a < 3; a++)
@@ -38,7 +38,7 @@ static double gap_of_capsule(const spring_collider *c, const double x[3], double
     return gap_of_ball(centre, c->radius, x, n);
 }
 
-/* Of a box along the axes. Inside, the nearest face counts. */
+/* Gap and normal of an axis-aligned box. Inside, the nearest face counts. */
 static double gap_of_box(const spring_collider *c, const double x[3], double n[3])
 {
     double centre[3], nearest = -INFINITY;
@@ -78,7 +78,7 @@ static double gap_at(const trial *t, double time, const double x[3], double n[3]
 
 /* ---------------------------------------------------------------------------------------------------- projection */
 
-/* Friction: subtracts the part of d along the surface, or `most` of its length if it is longer. */
+/* Friction: subtracts the component of d along the surface, shortened to the length `most` if it is longer. */
 static void rub(const double n[3], double most, const double d[3], double from[3])
 {
     const double along = dot(d, n);
@@ -132,7 +132,7 @@ static void push_out(void *user, double time, size_t particles, const double *co
                      const double *const velocity[3], double *const force[3])
 {
     const trial *t = user;
-    const double slow = 1e-3; /* [m/s] below it friction is in proportion to the speed */
+    const double slow = 1e-3; /* [m/s] below this, friction is proportional to the speed */
     for (size_t i = 0; i < particles; i++) {
         const double x[3] = {position[0][i], position[1][i], position[2][i]};
         double n[3], u[3];

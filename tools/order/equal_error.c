@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The smallest n from which on the error never exceeds E.
+ * The least number of steps from which the error never exceeds E.
  *
- * In exact arithmetic n steps of any method of z = H/n turn the start (see reference_turn):
+ * In exact arithmetic, n steps of any method with z = H/n rotate the initial state (see reference_turn):
  *
  *     x_n = A (cos(H + d) + a sin(H + d)),   A = exp(n log_growth), d = n ahead, a = x_to_x
  *
- * Hence |x_n - cos H| <= |A - 1| + |d| + A |a|. All three fall as n grows while z <= 1: log_growth/z, ahead/z and a are
- * power series in z of which the first term outweighs the others there; that the bound falls is looked at, too. So
- * where it comes down to E, found by bisection, everything above is settled.
- * Below, x_n itself is looked at. Since A, d and a are monotone, x_n at one end of a range of n differs from all others
- * in it by no more than
+ * Hence |x_n - cos H| <= |A - 1| + |d| + A |a|. For z <= 1, all three terms decrease as n grows: log_growth/z, ahead/z
+ * and a are power series in z that are dominated by their first term. (The program also checks that the bound
+ * decreases.) The n at which the bound is E is found by bisection; the error is below E for all larger n.
+ * For smaller n, x_n itself is evaluated. Since A, d and a are monotone, x_n at one end of a range of n differs from
+ * all others in the range by no more than
  *
  *     |difference of A| (1 + |a|) + A (1 + |a|) |difference of d| + A |difference of a|        (the largest A and |a|)
  *
- * and is no larger than A sqrt(1 + a^2): a whole range is passed at once where that settles it.
- * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps a step (harness/reference.h), which the bound includes; it grows
- * with n and would in the end exceed any E, so "never" is meant up to that.
+ * and |x_n| <= A sqrt(1 + a^2). A whole range is skipped at once if these bounds decide it.
+ * Rounding adds at most 2 eps (1 + z^2)^2 <= 8 eps per step (harness/reference.h), which the bound includes. It grows
+ * with n and eventually exceeds any E, so "never" means: before that.
  */
 #include "equal_error.h"
 
@@ -28,7 +28,7 @@
 
 static const spring_params spring = {.mass = 1, .stiffness = 1};
 
-typedef struct iterate_end { /* what n steps lead to */
+typedef struct iterate_end { /* the result of n steps */
     double A, d, a;
     double error; /* |x_n - cos H| */
 } iterate_end;
@@ -62,7 +62,7 @@ static _Noreturn void fail_for_rounding(spring_method m, double error)
              spring_method_name(m), error);
 }
 
-/* Longer steps than 1 s, where the turn may be none: by the n-th power of the step, one n after the other. */
+/* For steps above 1 s, which may not be rotations, each n is evaluated from the n-th power of the step. */
 static const uint64_t most_tried = 100000;
 
 static double error_of_long_steps(spring_method m, double duration, uint64_t n)
@@ -72,10 +72,10 @@ static double error_of_long_steps(spring_method m, double duration, uint64_t n)
     return fabs((double)x - cos(duration));
 }
 
-/* Of at most 1 s. */
+/* The least number of steps of at most 1 s. */
 static uint64_t fewest(double duration)
 {
-    return (uint64_t)fmin(fmax(ceil(duration), 1), 0x1p62); /* longer durations are refused */
+    return (uint64_t)fmin(fmax(ceil(duration), 1), 0x1p62); /* longer durations are rejected */
 }
 
 static uint64_t settled_from(spring_method m, double duration, double error)
@@ -102,7 +102,7 @@ static uint64_t settled_from(spring_method m, double duration, double error)
     return high;
 }
 
-/* How much x_n can differ from that at one end of a range, given both ends. */
+/* A bound on the difference of x_n from its value at one end of a range, from both ends. */
 static double spread(const iterate_end *p, const iterate_end *q)
 {
     const double A = fmax(p->A, q->A), a = fmax(fabs(p->a), fabs(q->a));
@@ -163,7 +163,8 @@ uint64_t equal_error_first_steps(spring_method m, double duration, double error)
 double error_coefficient(spring_method m, double duration)
 {
     const int order = spring_method_describe(m)->order;
-    const int bits = order * 60 <= 240 ? 60 : 240 / order; /* n^-order leaves a hundred bits of the references */
+    const int bits =
+        order * 60 <= 240 ? 60 : 240 / order; /* after n^-order, a hundred bits of the references are left */
     reference r;
     mpfr_t error;
     reference_init(&r);

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What theory says of the error in position of any method, on the ideal spring of the original study: m = k = 1, from 1
- * m at rest, so that the exact position after H seconds is cos H. From the multiple-precision iterate, without
- * rounding.
+ * The theoretical position error of any method, without rounding, from steps in multiple precision. The spring is the
+ * ideal one of the original study: m = k = 1, from 1 m at rest, so the exact position after H seconds is cos H.
  */
 #ifndef SPRINGSTEP_EQUAL_ERROR_H
 #define SPRINGSTEP_EQUAL_ERROR_H
 
 #include <springstep/spring.h>
 
-/** C of the leading term C n^-order of the error in n steps over the duration [m]. */
+/** The constant C [m] of the leading term C n^-order of the error after n steps over the duration. */
 double error_coefficient(spring_method m, double duration);
 
-/** The smallest n from which on the error after duration [s] never exceeds error [m] < 2, among steps of at most 1 s
-    where that is more than 10^5 s; not for the exact solution. Exits with CLI_FAILED if rounding is of that size. */
+/** The least n from which the error after duration [s] never exceeds error [m] < 2. For durations above 10^5 s, only
+    steps of at most 1 s are considered. Not for the exact solution. Exits with CLI_FAILED if the rounding error is as
+    large as the error. */
 uint64_t equal_error_steps(spring_method m, double duration, double error);
 
-/** The smallest n whose error happens not to exceed it; it may do so again beyond. 0: not looked for, where the
-    duration is longer. */
+/** The least n whose error does not exceed `error`; larger n may exceed it again. 0 for durations above 10^5 s, for
+    which it is not computed. */
 uint64_t equal_error_first_steps(spring_method m, double duration, double error);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-order: the error of a method after a fixed time, against the number of steps.
+ * spring-order: the error of a method after a fixed time as a function of the number of steps.
  *
  * The spring has mass 1 kg and stiffness 1 N/m and starts at rest from x = 1 m, so its exact position is cos(t).
  */
@@ -99,8 +99,7 @@ static void write_errors(cli_table *table)
 
 /* ------------------------------------------------------------------------------------------------ the power law */
 
-/* The line through (log n, log error). Sums are taken about the means in a second pass: the runs are cheap, and
-   nothing cancels. */
+/* Fits a line through (log n, log error). Sums are about the means, in a second pass, to avoid cancellation. */
 static void write_fit(cli_table *table)
 {
     double points = 0, mean_x = 0, mean_y = 0;
@@ -129,7 +128,7 @@ static void write_match(cli_table *table)
 {
     const uint64_t n = equal_error_steps((spring_method)chosen.method, duration, match_error);
     const double error = measured_error(n), previous = n > 1 ? measured_error(n - 1) : INFINITY;
-    const bool longest = (double)n - 1 < duration; /* steps of more than 1 s may not have been looked at */
+    const bool longest = (double)n - 1 < duration; /* steps above 1 s may not have been considered */
     if (!(error <= match_error && (previous > match_error || longest)))
         cli_fail(CLI_FAILED,
                  "theory predicts %" PRIu64 " steps, but their error is %.17g m, and with one step less %.17g m", n,

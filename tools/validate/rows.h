@@ -17,13 +17,13 @@ typedef struct validate_row {
     bool scene;
 } validate_row;
 
-/* The table that rows are written to from now on. */
+/* Sets the table for the following rows. */
 void validate_into(cli_table *table);
 
-/* Write a row with its verdict. */
+/* Writes a row with its verdict. */
 void validate_check(const validate_row *row);
 
-/* How many of them failed. */
+/* The number of failed rows. */
 unsigned validate_failures(void);
 
 #endif

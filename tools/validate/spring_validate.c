@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-validate: every method on every corner case, against independent references; scenes are in validate_scene.c.
+ * spring-validate: compares every method on every corner case with independent references. Scenes are in
+ * validate_scene.c.
  *
- * For each case and method: the same method in exact arithmetic (what differs is rounding), the exact solution (what
- * differs is rounding and truncation), and external solvers. Every bound is derived, and says from what.
+ * Each case and method is compared with the same method in exact arithmetic (the difference is rounding error), with
+ * the exact solution (rounding and truncation error), and with external solvers. Every bound is derived, and its row
+ * names the derivation.
  */
 #include <float.h>
 #include <math.h>
@@ -57,7 +59,7 @@ static const cli_program program = {
 
 /* ------------------------------------------------------------------------ multiple precision, segment by segment */
 
-/* What the exact solution itself may lose (spring.h), and what the response to a load adds. */
+/* The accuracy of spring_step_exact() (spring.h), and the contribution of the response to a load. */
 static double exact_bound(const reference *exact, const segment *s, double t)
 {
     const double omega = sqrt(s->p.stiffness / s->p.mass), g = s->p.damping / s->p.mass;
@@ -131,7 +133,7 @@ static void against_references(const validation_case *c, spring_method m)
 
 /* -------------------------------------------------------------------------------------- external solvers */
 
-/* RK4 with the same step in another implementation: what differs is rounding, on both sides. */
+/* RK4 with the same step in another implementation: the difference is the rounding error of both. */
 static void against_rk4(const validation_case *c, const char *reference_name,
                         const char *(*solve)(ode *, double *, double, uint64_t), unsigned our_steps_a_step)
 {
@@ -161,9 +163,9 @@ static void against_rk4(const validation_case *c, const char *reference_name,
 
 typedef const char *adaptive_solver(ode *o, double *y, double duration, double tolerance);
 
-/* The exact solution against a solver that knows nothing of springs. Its error is not known, only estimated, by a run
-   with ten times its tolerance: if the error of this one is at most two thirds of that one's, it is at most twice the
-   difference. The last step may be off by the local tolerance whatever the difference. */
+/* The exact solution against a general solver. The error of the solver is estimated by a second run with ten times the
+   tolerance: if the error of the first run is at most two thirds of the error of the second, it is at most twice their
+   difference. The local tolerance is added for the last step. */
 static void against_adaptive(const validation_case *c, const char *reference_name, adaptive_solver *solve)
 {
     const double finest = 1e-11; /* below, CVODE's errors stop falling */

@@ -2,21 +2,22 @@
 /*
  * The part of spring-validate for scenes.
  *
- * Every method takes n, 2n and 4n steps, h = duration/n. Let R = 2^p, p its order, and its error C h^p + D h^(p+1) +
- * ... Extrapolated values, y_2n + (y_2n - y_n)/(R - 1) and the same from 4n and 2n, are wrong by multiples of D h^(p+1)
- * and differ by
+ * Every method takes n, 2n and 4n steps, h = duration/n. Let R = 2^p, where p is its order, and let its error be
+ * C h^p + D h^(p+1) + ... The extrapolated values, y_2n + (y_2n - y_n)/(R - 1) and the same from 4n and 2n, have errors
+ * that are multiples of D h^(p+1), and they differ by
  *
  *     b = |D| h^(p+1) (2R - 1)/(4R (R - 1))
  *
- * With C from y_n and y_2n alone, and D from b, taken twice since h is not infinitely small, the bounds are
+ * With C from y_n and y_2n only, and D from b, doubled since h is finite, the bounds are
  *
  *     y_2n            |y_2n - y_n|/(R - 1)        + 2 b 2R/(2R - 1)
  *     y_4n            |y_2n - y_n|/(R - 1)/R      + 2 b (3R - 1)/(R (2R - 1))
  *     extrapolated                                  2 b/(2R - 1)
  *
- * and rounding. No reference enters them. The second holds only if the error really falls by R, and the third says how
- * far from R: a method of order p - 1 would miss it by factors of 3.5 (leapfrog) and 2.2 (RK4). Steps are small enough,
- * and not so small that rounding matters, for the second to be at most 1.5/R of the first (tests/test_validate.c).
+ * plus rounding. They are independent of any reference. The second holds only if the error falls by R, and the third
+ * limits the deviation from R: a method of order p - 1 would exceed it by factors of 3.5 (leapfrog) and 2.2 (RK4).
+ * Steps are so small that the second is at most 1.5/R of the first, but not so small that rounding matters
+ * (tests/test_validate.c).
  */
 #include <math.h>
 #include <stdio.h>
@@ -33,11 +34,11 @@ typedef struct trial {
     const scene_case *c;
     const scene_problem *p;
     spring_method m;
-    uint64_t steps;           /* of the shortest run */
+    uint64_t steps;           /* n */
     double *run[3], *best[2]; /* n, 2n, 4n steps; extrapolated from the first and the last two */
-    double b;                 /* [m] the distance of those */
+    double b;                 /* [m] distance of the extrapolated values */
     double rounding;          /* [m] of n steps */
-    double rounding_of_all;   /* [m] of every run, and of what is extrapolated from them */
+    double rounding_of_all;   /* [m] of every run and of the extrapolated values */
 } trial;
 
 static double ratio_of(spring_method m) /* 2^order */
@@ -53,7 +54,7 @@ static void *vectors(const scene_problem *p, size_t count)
     return room;
 }
 
-/* NaN wherever the library does not do as it is told. */
+/* Stores NaN if the library does not follow its specification. */
 static void run(const scene_problem *p, spring_method m, double dt, uint64_t n, double *y)
 {
     const spring_scene_def *def = &p->def;
@@ -95,7 +96,7 @@ static validate_row row(const trial *t, const char *by, int run_index)
                           .scene = true};
 }
 
-/* The same method with the same step, by another program: what differs is rounding, on as many sides as do. */
+/* The same method with the same step, by another program. The difference is rounding error, of `sides` programs. */
 static void against_same(const trial *t, const char *by, const double *y, int sides, uint64_t evaluations)
 {
     validate_row f = row(t, by, 0);
@@ -106,8 +107,7 @@ static void against_same(const trial *t, const char *by, const double *y, int si
     validate_check(&f);
 }
 
-/* The exact solution, as far as the reference knows it: y_2n and y_4n if runs, and in any case the extrapolated
-   value. */
+/* The exact solution, for its `known` components. Checks the extrapolated value and, if `runs`, y_2n and y_4n. */
 static void against_solution(const trial *t, const char *by, const double *y, size_t known, bool runs,
                              double uncertainty, double reference_bound, uint64_t evaluations)
 {
@@ -144,8 +144,8 @@ static void try_method(trial *t)
         for (size_t i = 0; i < 2 * t->p->moving; i++)
             t->best[k][i] = t->run[k + 1][i] + (t->run[k + 1][i] - t->run[k][i]) / (R - 1);
     t->b = scene_distance(t->c, t->p, t->best[0], t->best[1], 0);
-    /* Four times the steps are four times the rounding, and what carries it on differs little; twice that. The
-       extrapolated value has it R/(R - 1) times from 4n steps, and 1/(R - 1) times from 2n. */
+    /* Four times the steps have four times the rounding error; its amplification differs little, which a factor of 2
+       covers. The extrapolated value has R/(R - 1) times the error of 4n steps and 1/(R - 1) times that error of 2n. */
     t->rounding_of_all = 8 * t->rounding * (R + 1) / (R - 1);
 }
 
@@ -173,7 +173,7 @@ static void against_rk4(const trial *t, const char *by, const char *(*solve)(ode
     free(scale);
 }
 
-/* A solver with steps of its own, once more with a tenth of its tolerance: the difference is its uncertainty. */
+/* An adaptive solver, run again with a tenth of its tolerance; the difference is its uncertainty. */
 typedef struct adaptive {
     const char *name;
     const char *(*solve)(ode *o, double *y, double duration, double tolerance);
@@ -182,7 +182,7 @@ typedef struct adaptive {
     uint64_t evaluations;
 } adaptive;
 
-static const double finest = 1e-13; /* relative to the length of the case */
+static const double finest = 1e-13; /* tolerance relative to the length of the case */
 
 static void solve_adaptive(adaptive *a, const scene_case *c, const scene_problem *p)
 {
@@ -206,28 +206,28 @@ static void solve_adaptive(adaptive *a, const scene_case *c, const scene_problem
 /* ------------------------------------------------------------------------------------------------- modes of sheets */
 
 /*
- * A mode is followed step by step through the phase of its amplitude q, the projection of the motion on its shape: the
- * angle of (q, -p/(omega s)), p the projection of the velocity, s the ratio of axes that the method gives the ellipse.
- * It starts with an amplitude of 1 m over the whole phase, so that its path in (x, v/omega) is 1 m long: distances
- * along it [m] are relative errors of the frequency, too.
+ * The phase of a mode is followed step by step. It is the angle of (q, -p/(omega s)), where q and p are the projections
+ * of displacement and velocity on the shape, and s is the ratio of the axes of the ellipse under the method. The
+ * initial amplitude is 1 m divided by the total phase, so that the path in (x, v/omega) is 1 m long. So distances along
+ * it [m] are also relative errors of the frequency.
  *
  * With a = P pi/(N - 1), b = Q pi/(N - 1) the frequency on an infinite lattice is
  *
  *     omega^2 = k/m sum over d of (2 - 2 cos d)
  *
- * with d = a, b of structural links, d = a + b, a - b of shear, d = 2a, 2b of bend links. That of long waves has d^2
- * for 2 - 2 cos d, which is too much by at most d^4/12.
+ * with d = a, b for structural, d = a + b, a - b for shear, and d = 2a, 2b for bend links. The frequency of long waves
+ * has d^2 instead of 2 - 2 cos d, which is larger by at most d^4/12.
  */
 typedef struct sheet_mode {
     unsigned P, Q, N;
     char kind[16];
-    double stiffness_over_mass; /* [1/s^2] across the sheet */
+    double stiffness_over_mass; /* [1/s^2] transverse */
     double omega;               /* [1/s] */
     double uncertainty;         /* of omega, relative */
-    double compared;            /* [1/s] long waves, or the infinite lattice where it is not the relation */
+    double compared;            /* [1/s] of long waves, or of the infinite lattice if omega is not from it */
     double comparison_bound;    /* relative */
-    const char *comparison;     /* what that is made of */
-    double nonlinear;           /* relative change of omega by an amplitude of 1 m, at most */
+    const char *comparison;     /* contributions to the bound */
+    double nonlinear;           /* bound on the relative change of omega by an amplitude of 1 m */
     double *shape;              /* [N*N], squares add up to 1 */
 } sheet_mode;
 
@@ -247,7 +247,7 @@ static double lattice_sum(const sheet_mode *s, int power)
     return sum;
 }
 
-/* m/k times what links of all families do to a sheet of heights u, from the stencil; 0 at the edges. */
+/* m/k times the force of structural, shear and bend links on a sheet of heights u, from the stencil; 0 at the edges. */
 static void pull_sheet(unsigned N, const double *u, double *force)
 {
     static const int offset[][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
@@ -277,7 +277,7 @@ static void normalise(size_t count, double *u)
         u[i] /= size;
 }
 
-/* u becomes the solution of pull_sheet(u) = right, by conjugate gradients; work has room for three sheets. */
+/* Solves pull_sheet(u) = right for u by conjugate gradients; `work` has room for three sheets. */
 static void solve_sheet(unsigned N, const double *right, double *u, double *work)
 {
     const size_t count = (size_t)N * N;
@@ -300,9 +300,9 @@ static void solve_sheet(unsigned N, const double *right, double *u, double *work
     }
 }
 
-/* Keeps the part of u with the symmetry of sin(Pa x) sin(Qa y) - sin(Qa x) sin(Pa y), or the first alone if P = Q:
-   turned by half a turn, with x and y swapped, and if P and Q are both even or odd with x mirrored. Rounding would let
-   slower modes in. */
+/* Projects u on the symmetry of sin(Pa x) sin(Qa y) - sin(Qa x) sin(Pa y), or of the first term if P = Q: rotation by
+   180 degrees, exchange of x and y and, if P and Q are both even or both odd, reflection of x. Otherwise rounding
+   errors would excite slower modes. */
 static void keep_symmetry(const sheet_mode *s, double *u, double *work)
 {
     const size_t N = s->N, last = N - 1;
@@ -320,16 +320,16 @@ static void keep_symmetry(const sheet_mode *s, double *u, double *work)
     }
 }
 
-/* The slowest mode of that symmetry by inverse iteration. Its Rayleigh quotient is wrong by at most the residual. */
+/* The slowest mode of that symmetry, by inverse iteration. The residual bounds the error of its Rayleigh quotient. */
 static void find_mode(sheet_mode *s)
 {
-    const int most = 100; /* then what is left of other modes is in the uncertainty */
+    const int most = 100; /* the uncertainty includes the rest of other modes */
     const unsigned N = s->N;
     const size_t count = (size_t)N * N;
     double *before = malloc(5 * count * sizeof *before), *image = before + count, *work = before + 2 * count;
     if (before == NULL)
         cli_fail(CLI_FAILED, "out of memory");
-    const double enough = 1e-10; /* squared in what the shape does to the projection */
+    const double enough = 1e-10; /* its effect on the projection is quadratic */
     double quotient, residual;
     for (int k = 0;; k++) {
         keep_symmetry(s, s->shape, before);
@@ -351,7 +351,7 @@ static void find_mode(sheet_mode *s)
     free(before);
 }
 
-/* Of a case that is one. The shape comes from where the scene starts. */
+/* The mode of a case, if it is one. The shape is the initial state of the scene. */
 static bool mode_of(const scene_case *c, const scene_problem *p, sheet_mode *s)
 {
     *s = (sheet_mode){.P = 0};
@@ -369,12 +369,11 @@ static bool mode_of(const scene_case *c, const scene_problem *p, sheet_mode *s)
     for (size_t i = 0; i < count; i++)
         largest = fmax(largest, fabs(s->shape[i]));
     s->stiffness_over_mass = link->stiffness / p->mass[0];
-    if (axes == 3) { /* the share of its length by which a link is drawn out pulls across it */
+    if (axes == 3) { /* the transverse stiffness is the extension over the length */
         const double spacing = p->position[3], drawn = 1 - link->rest / spacing;
         s->stiffness_over_mass *= drawn;
         const double slope = largest * acos(-1) / (spacing * (s->N - 1));
-        s->nonlinear =
-            slope * slope / 4 / drawn; /* a link is longer by slope^2/2, the frequency changes half as much */
+        s->nonlinear = slope * slope / 4 / drawn; /* the length grows by slope^2/2, the frequency by half of that */
     }
     const double lattice = sqrt(s->stiffness_over_mass * lattice_sum(s, 0));
     s->omega = lattice;
@@ -390,12 +389,12 @@ static bool mode_of(const scene_case *c, const scene_problem *p, sheet_mode *s)
     return true;
 }
 
-/* Where the mode is in (q, p/omega), and the phase it has gone through. */
+/* The state of the mode in (q, p/omega), and its total phase. */
 typedef struct followed {
     double q, p, phase;
 } followed;
 
-/* What turns with q as sine and cosine do: see reference_turn. */
+/* The coordinate that is in quadrature with q; see reference_turn. */
 static double across(const reference_turn *step, const followed *f)
 {
     return step->x_to_x * f->q + step->v_to_x * f->p;
@@ -444,10 +443,10 @@ static followed follow(const trial *t, const sheet_mode *s, const reference_turn
     return well ? f : (followed){NAN, NAN, NAN};
 }
 
-static const double requirement = 0.005; /* of a frequency, relative */
+static const double requirement = 0.005; /* relative, of a frequency */
 
-/* The frequency against the relation as it is; the motion against the relation and what the step does to it; and how
-   far the frequency is from a simpler theory. */
+/* Checks the frequency against the dispersion relation, the motion against the relation with the effect of the step,
+   and the distance of the frequency from a simpler theory. */
 static void check_mode(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
     const double h = step_of(t, 0), n = (double)t->steps, whole = s->omega * t->c->duration;
@@ -471,7 +470,7 @@ static void check_mode(const trial *t, const sheet_mode *s, const reference_turn
     validate_check(&row_of);
 }
 
-/* The turn in steps that are so short that they alone shift the frequency by no more than most of the requirement. */
+/* Chooses steps so short that their shift of the frequency stays below most of the requirement. */
 static reference_turn choose_steps(trial *t, const sheet_mode *s)
 {
     reference_turn step;
@@ -536,7 +535,7 @@ static void solutions(const trial *t, const adaptive *solvers, size_t solver_cou
         against_solution(t, c->formula, y, 0, true, 0, 0, 0);
         free(y);
     }
-    const bool unknown = c->known == 0 && c->solution == NULL; /* then the first solver stands in */
+    const bool unknown = c->known == 0 && c->solution == NULL; /* then the first solver is the reference */
     for (const adaptive *a = solvers; a < solvers + solver_count; a++)
         against_solution(t, a->name, a->y, 0, unknown && a == solvers, a->uncertainty,
                          2 * a->uncertainty + finest * c->length, a->evaluations);

@@ -4,7 +4,7 @@
 
 #include "harness/scenes.h"
 
-/* Check a scene with every method, against every reference that it has. */
+/* Checks a scene with every method against all its references. */
 void validate_scene(const scene_case *c);
 
 #endif

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-work: time against error, for every stepper of the library and for GSL, SUNDIALS and Boost.odeint on the same
- * problems.
+ * spring-work: error versus time (work-precision data) for every step method of the library and for GSL, SUNDIALS and
+ * Boost.odeint on the same problems.
  *
  * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five
- *           times, or twice where a run takes longer than a hundredth of a second; the time is the shortest. Solvers
- *           are called as their manuals recommend, do no output while they are timed, and all external ones evaluate
- *           the same right-hand side. What sets a solver or a scene up is not timed.
+ *           times, or twice if a run takes longer than a hundredth of a second; the shortest time counts. Solvers are
+ *           called as their manuals recommend and produce no output while they are timed. All external solvers
+ *           evaluate the same right-hand side. The setup of solvers and scenes is not timed.
  * Error     |(x, v/omega) - exact| at the end, relative to the size of the motion; see work_problems.c.
  */
 #include <math.h>
@@ -87,7 +87,7 @@ typedef struct work_row {
     double time, error;
 } work_row;
 
-static work_row rows[MOST_ROWS]; /* of the problem that is open */
+static work_row rows[MOST_ROWS]; /* of the current problem */
 static size_t row_count;
 
 static void remember(const work_solver *s, uint64_t steps, double time, double error)
@@ -97,12 +97,12 @@ static void remember(const work_solver *s, uint64_t steps, double time, double e
     rows[row_count++] = (work_row){s, steps, time, error};
 }
 
-/* Seconds that a run takes: the shortest of some loops. A long one will be interrupted by other processes: by a clock
-   that stops then, which is too slow for short ones. */
+/* The time of a run [s], the shortest of several loops. Long runs are interrupted by other processes, so they use the
+   processor time, whose clock is too slow for short runs. */
 static double time_of(work *w, const work_solver *s, work_effort e, double first, double *y)
 {
     const double long_enough = 2e-4, long_run = 0.01, interrupted = 1e-3; /* [s] */
-    const int loops = first > long_run ? 1 : 5;                           /* the first run is another */
+    const int loops = first > long_run ? 1 : 5;                           /* in addition to the first run */
     double best = first > long_run ? first : INFINITY;
     uint64_t runs = 1;
     w->clock = first > interrupted ? timing_busy : timing_now;
@@ -118,13 +118,13 @@ static double time_of(work *w, const work_solver *s, work_effort e, double first
     return best;
 }
 
-/* Writes a row if there is one. Returns what the first run took [s]. */
+/* Writes a row if the run succeeded. Returns the time of the first run [s]. */
 static double measure(cli_table *table, work *w, const work_solver *s, work_effort e, const char *why)
 {
     double *y = scene_room(w->size, sizeof *y);
     w->clock = timing_busy;
     const work_result r = work_run(w, s, e, 1, y);
-    const double error = work_error(w, y), lost = 3; /* in opposite phase it is about 2 */
+    const double error = work_error(w, y), lost = 3; /* opposite phase is an error of about 2 */
     if (r.failure == NULL && error <= lost) {
         const bool scene = w->problem->kind == WORK_SCENE;
         const uint64_t evaluations =
@@ -147,7 +147,7 @@ static double longest(const work *w)
     return w->problem->longest * (quick ? 0.1 : 1);
 }
 
-/* No external solver was nearer to the exact end than the last row of this one. */
+/* Returns true if the last row is of this external solver and has the smallest error of all external rows. */
 static bool leads(const work_solver *s)
 {
     if (row_count == 0 || rows[row_count - 1].solver != s || s->side != WORK_EXTERNAL)
@@ -158,8 +158,9 @@ static bool leads(const work_solver *s)
     return true;
 }
 
-/* Whether a sweep goes on after a run that took so long. External solvers have more time while they lead, so that small
-   errors have an opponent, and if they choose their steps, for they take long at any tolerance. */
+/* Returns whether a sweep continues after a run of this time. External solvers get more time while they have the
+   smallest error, so that small errors are compared as well, and if they are adaptive, since these are slow at any
+   tolerance. */
 static bool goes_on(const work *w, const work_solver *s, double spent)
 {
     const double more = 4;
@@ -169,8 +170,8 @@ static bool goes_on(const work *w, const work_solver *s, double spent)
 static void sweep_steps(cli_table *table, work *w, const work_solver *s)
 {
     const double finest = quick ? fmax(w->finest, w->duration / 2e6) : w->finest;
-    const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* of a scene: infinity */
-    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED;             /* from one a frame on */
+    const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* infinite for a scene */
+    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED;             /* from one step per frame */
     double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
            spent = 0;
     for (; n < most * 0.999 && goes_on(w, s, spent); n = ceil(n * factor))
@@ -187,7 +188,8 @@ static void sweep_tolerances(cli_table *table, work *w, const work_solver *s)
         spent = measure(table, w, s, (work_effort){.tolerance = tolerance}, "sweep");
 }
 
-/* The original study's comparison: as exact as Euler in 10^7 steps, by its numbers of steps and by those found here. */
+/* The comparison of the original study: the accuracy of 10^7 Euler steps, with the step numbers of the study and with
+   those of equal_error_steps(). */
 static void equal_error(cli_table *table, work *w)
 {
     static const uint64_t of_the_study[SPRING_METHOD_COUNT] = {
@@ -214,7 +216,7 @@ static double error_after(work *w, spring_method m, uint64_t steps)
     return work_error(w, y);
 }
 
-/* The smallest number of force evaluations from which on RK4 is ahead, up to `most` a period. */
+/* Finds the least number of force evaluations, up to `most` per period, from which RK4 is more accurate. */
 static void crossing(cli_table *table, work *w)
 {
     const uint64_t least = 24 * w->problem->periods, most = 80 * w->problem->periods;
@@ -232,7 +234,7 @@ static void crossing(cli_table *table, work *w)
 
 /* ---------------------------------------------------------------------------------------------------- the table */
 
-/* No larger error, nor with the next finer steps or tolerance: an error can be small by accident. */
+/* Returns true if this row and the next finer one are within the error, since one small error can be accidental. */
 static bool is_enough(size_t i, double error)
 {
     const bool last = i + 1 == row_count || rows[i + 1].solver != rows[i].solver;
@@ -272,10 +274,10 @@ typedef struct force_times {
     double ours, others, xpbd; /* [ns] */
 } force_times;
 
-/* Loops of each, by turns, and the shortest: interruptions and clock rates are the same for all. */
+/* Times loops of each in turn and takes the shortest, so that interruptions and clock rates affect all equally. */
 static force_times time_forces(work *w)
 {
-    /* Leapfrog handles heavy damping apart from other forces. */
+    /* Leapfrog treats heavy damping separately from other forces. */
     const spring_method m = w->damped ? SPRING_SYMPLECTIC_EULER : SPRING_LEAPFROG;
     const int loops = quick ? 10 : 50;
     const bool scene = w->problem->kind == WORK_SCENE;
@@ -348,7 +350,7 @@ static void work_on(cli_table *table, cli_table *levels, cli_table *forces, cons
     work_close(&w);
 }
 
-/* The versions of the others, and whether SUNDIALS is as fast as it can be. */
+/* Stamps the versions of the external libraries, and whether SUNDIALS is optimised. */
 static void stamp_versions(cli_table *table)
 {
     static double slowness;
@@ -364,7 +366,7 @@ static void stamp_versions(cli_table *table)
 #endif
 }
 
-/* NULL: not asked for. */
+/* Opens the table of an option; NULL if the option is not given. */
 static cli_table *open_further(const char *option, const char *path, const char *columns)
 {
     if (path == NULL)

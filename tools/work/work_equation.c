@@ -4,11 +4,9 @@
 
 #include "work_lanes.h"
 
-enum {
-    TILE = 8
-}; /* vectors whose forces are computed before they are added up, so that they are in the cache, and stored */
+enum { TILE = 8 }; /* vectors per block: forces of a block are computed, then added up while they are in the cache */
 
-/* The band of a link; the number of bands if it has none yet. */
+/* The index of the band of a link, or the number of bands if it has none yet. */
 static size_t band_of(const work_equation *e, const spring_link *l)
 {
     size_t b = 0;
@@ -17,7 +15,6 @@ static size_t band_of(const work_equation *e, const spring_link *l)
     return b;
 }
 
-/* Finds the bands. */
 static bool find_bands(work_equation *e, const scene_problem *p)
 {
     for (size_t i = 0; i < p->def.links; i++) {
@@ -42,7 +39,7 @@ bool work_equation_applies(const scene_problem *p)
     return (p->def.axes == 1 || p->def.axes == WORK_AXES) && p->def.force == NULL && find_bands(&e, p);
 }
 
-/* Sets up arrays that may be read before the first slot and behind the last one: there are no links. */
+/* Allocates arrays that can be read before the first and after the last slot, where there are no links. */
 static void make_arrays(work_equation *e, const scene_problem *p)
 {
     size_t widest = 0;
@@ -111,11 +108,11 @@ void work_equation_clear(work_equation *e)
 
 /* ------------------------------------------------------------------------------------------------------- forces */
 
-/* Of the links of a band that begin in eight slots. */
+/* Computes the forces of the links of a band in eight slots. */
 INLINE void find_forces(size_t axes, bool damped, const work_equation *e, const work_band *band, size_t at,
                         const lanes *x, const lanes *v)
 {
-    const double smallest = 1e-30; /* [m^2] slots without a link may be at one place: no NaN */
+    const double smallest = 1e-30; /* [m^2] avoids NaN in slots without a link, whose ends may coincide */
     lanes delta[WORK_AXES], other, stiffness, damping, scale, square = {0}, rate = {0}, inverse;
     LOAD(stiffness, band->stiffness + at);
     LOAD(damping, band->damping + at);
@@ -184,7 +181,7 @@ INLINE void find_accelerations(size_t axes, bool damped, const work_equation *e)
     }
 }
 
-/* A loop for each number of axes, with damping and without. */
+/* Selects a loop for the number of axes, with or without damping. */
 INLINE void accelerations_of(const work_equation *e)
 {
     if (e->axes == 1)

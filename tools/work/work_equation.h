@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The right-hand side that other solvers integrate for ropes and sheets, with the same vector instructions as the library.
+ * The right-hand side that external solvers integrate for ropes and sheets, with the same SIMD instructions as the
+ * library.
  *
- * The state holds the particles that move, axis by axis. Links with one offset between their ends form a band: forces of a
- * band are computed for eight slots at a time, kept, and added up for both ends, as in the library. They are the harness's
- * own, and use nothing of src/.
+ * The state holds the moving particles, axis by axis. Links with one offset between their ends form a band. Forces of a
+ * band are computed for eight slots at a time, stored, and added up for both ends, as in the library. The code is
+ * independent of src/.
  */
 #ifndef SPRINGSTEP_WORK_EQUATION_H
 #define SPRINGSTEP_WORK_EQUATION_H
@@ -20,8 +21,8 @@ typedef struct work_band {
     double *force[WORK_AXES];    /* [slots] on the lower ends */
 } work_band;
 
-typedef struct work_segment {    /* particles that move and have no pinned one between them */
-    size_t first, moving, count; /* the first one's number among all, and among those that move */
+typedef struct work_segment {    /* moving particles without a pinned one between them */
+    size_t first, moving, count; /* index of the first one among all particles, and among moving ones */
 } work_segment;
 
 typedef struct work_equation {
@@ -34,10 +35,10 @@ typedef struct work_equation {
     double *memory;
 } work_equation;
 
-/** Whether a scene is a rope or a sheet in space, or a sheet of heights: bands of links of one rest length each. */
+/** Returns true for a rope or a sheet in space, or a height field: all links in bands of one rest length each. */
 bool work_equation_applies(const scene_problem *p);
 
-/** Sorts the coordinates of the problem by axes. Exits without memory. */
+/** Sorts the coordinates of the problem by axes. Exits if out of memory. */
 void work_equation_init(work_equation *e, scene_problem *p);
 void work_equation_clear(work_equation *e);
 

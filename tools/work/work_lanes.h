@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Eight numbers at a time, for what spring-work compares the library with. Files that include this are compiled with
- * -fno-math-errno, or each root would be a call, and call their loops from functions for the instruction sets that the
- * library has kernels for.
+ * SIMD vectors of eight numbers, for the code with which spring-work compares the library. Files that include this are
+ * compiled with -fno-math-errno, since otherwise each square root would be a call. They call their loops from functions
+ * compiled for the same instruction sets as the kernels of the library.
  */
 #ifndef SPRINGSTEP_WORK_LANES_H
 #define SPRINGSTEP_WORK_LANES_H
@@ -20,18 +20,18 @@ typedef float floats __attribute__((vector_size(LANES * sizeof(float))));
 
 #define INLINE static inline __attribute__((always_inline))
 
-/* A macro, since a function that returns long vectors has another convention for each instruction set. */
+/* Macros, because the calling convention for long vectors depends on the instruction set. */
 #define LOAD(vector, array)  memcpy(&(vector), (array), sizeof(vector))
 #define STORE(array, vector) memcpy((array), &(vector), sizeof(vector))
 
-/* Before a loop over axes whose arrays should be kept in registers. */
+/* Placed before a loop over axes, so that its arrays stay in registers. */
 #if defined(__clang__)
 #define UNROLL _Pragma("clang loop unroll(full)")
 #else
 #define UNROLL _Pragma("GCC unroll 3")
 #endif
 
-/* Zeros, at the start of a cache line; exits without memory. */
+/* Zeroed memory, aligned to a cache line; exits if out of memory. */
 static inline void *aligned_room(size_t bytes)
 {
     const size_t line = 64, whole = (bytes + line - 1) / line * line;
@@ -41,7 +41,8 @@ static inline void *aligned_room(size_t bytes)
     return memset(room, 0, whole);
 }
 
-/* 1/sqrt(a) by a square root and a quotient in float, and one step of third order in double: 1 ulp, for 1e-30 < a < 1e30. */
+/* 1/sqrt(a) by a square root and a quotient in single precision and one iteration of third order in double precision.
+   Error at most 1 ulp for 1e-30 < a < 1e30. */
 INLINE void inverse_root(const lanes *a, lanes *root)
 {
     float each[LANES];

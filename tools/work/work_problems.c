@@ -2,9 +2,9 @@
 /*
  * The problems of spring-work; see work.h.
  *
- * The exact end   Of a spring in multiple precision. Of a scene by Prince-Dormand 8(9) of GSL with fixed steps, once
- *                 more with half as many: the difference, and the distance to the digits that the harness knows, is its
- *                 uncertainty.
+ * Exact state     A spring: in multiple precision. A scene: by GSL's Prince-Dormand 8(9) with fixed steps, and again
+ *                 with half as many. The uncertainty is the difference, or the distance from known digits of the
+ *                 harness.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ enum { SIDE = 25 }; /* particles along an edge of a sheet */
 
 #define ALL_FAMILIES SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND
 
-/* Hangs by one edge, falls from the horizontal. */
+/* Hangs by one edge and falls from the horizontal. */
 static void build_cloth(const scene_case *c, scene_problem *p)
 {
     const spring_grid g = {.count = {SIDE, SIDE, 1},
@@ -59,7 +59,7 @@ static void build_water(const scene_case *c, scene_problem *p)
 
 /* ------------------------------------------------------------------------------------------------- stiff scenes */
 
-/* Gives all links one stiffness and one damping, by the numbers that decide how many steps a frame of 1/60 s takes:
+/* Gives all links one stiffness and one damping, from the numbers that determine the steps per frame of 1/60 s:
    stiff = sqrt(L)/60 Hz, where L is the bound of spring_scene_stable_step(), and damped = damping/mass/60 Hz. */
 static void stiffen(scene_problem *p, double stiff, double damped)
 {
@@ -79,10 +79,10 @@ static void stiffen(scene_problem *p, double stiff, double damped)
     free(sum);
 }
 
-static const double stiff_scene = 50, damped_scene = 100; /* steps of leapfrog a frame: half the first */
+static const double stiff_scene = 50, damped_scene = 100; /* leapfrog takes half the first number in steps per frame */
 
-/* One metre and one kilogram, level at the start and not stretched. The particles are a hundredth of the spacing above
-   or below the plane, so that buckling does not start from rounding errors. */
+/* One metre and one kilogram, initially level and unstretched. Particles are a hundredth of the spacing above or below
+   the plane, so that buckling does not start from rounding errors. */
 static void build_stiff(scene_problem *p, const spring_grid *g)
 {
     scene_problem_grid(p, g, 0, 1.0 / (g->count[0] * g->count[1]));
@@ -106,14 +106,14 @@ static void build_stiff_cloth(const scene_case *c, scene_problem *p)
     build_stiff_sheet(p, 32, 0);
 }
 
-/* Smaller: the reference, which is explicit, takes hundreds of steps a frame. */
+/* Smaller, because the explicit reference takes hundreds of steps per frame. */
 static void build_damped_cloth(const scene_case *c, scene_problem *p)
 {
     (void)c;
     build_stiff_sheet(p, 16, damped_scene);
 }
 
-/* Hangs by one end; the particle at the other is a hundred times as heavy. */
+/* Hangs by one end. The particle at the other end is a hundred times as heavy. */
 static void build_stiff_rope(const scene_case *c, scene_problem *p)
 {
     const uint32_t particles = 32;
@@ -139,7 +139,7 @@ static const scene_case water = {.name = "water", .build = build_water, .duratio
 
 /* ------------------------------------------------------------------------- right-hand sides of a few numbers */
 
-/* Written out for each problem, as its user would. */
+/* Written out for each problem, as a user would do. */
 static void move_spring(double t, const double *y, double *dy, const void *data)
 {
     const work_constants *c = data;
@@ -172,7 +172,7 @@ static double soft(double stretch)
     return 4 * stretch * stretch * stretch;
 }
 
-/* Walls, and soft springs between the stiff ones, which join particles 0 and 1, 2 and 3, 4 and 5. */
+/* Stiff springs join particles 0 and 1, 2 and 3, 4 and 5. Soft springs join these pairs and the walls. */
 static void move_stiff_and_soft(double t, const double *y, double *dy, const void *data)
 {
     const work_constants *c = data;
@@ -241,8 +241,7 @@ static void open_spring(work *w)
     reference_exact(&w->reference, p, w->duration);
     w->exact[0] = mpfr_get_d(w->reference.x, MPFR_RNDN);
     w->exact[1] = mpfr_get_d(w->reference.v, MPFR_RNDN);
-    /* more than any solver's steps can be: GSL's rk4 halves them and is then stable up to 2.83/omega, without
-       damping */
+    /* above the limit of every solver: GSL's rk4 halves steps and is then stable up to 2.83/omega, without damping */
     w->coarsest = 6 / w->omega;
     w->finest = w->problem->finest;
     w->constants =
@@ -310,9 +309,9 @@ static double distance(const work *w, const double *a, const double *b)
     return scene_distance(&(scene_case){.omega = w->omega}, &w->scene, a, b, 0);
 }
 
-enum { PARTS = 32 }; /* of the reference run: where the motion is looked at */
+enum { PARTS = 32 }; /* parts of the reference run after which the motion is measured */
 
-/* In n steps; no equation here depends on time. Returns the largest distance from the start. */
+/* Runs the reference in n steps; no equation here depends on time. Returns the largest distance from the start. */
 static double refer(const work *w, uint64_t n, double *y)
 {
     ode o = {.size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale};
@@ -341,7 +340,7 @@ static void find_exact_end(work *w, const scene_case *c)
     free(coarse);
 }
 
-/* One that is written out for the problem, or that of sheets. */
+/* Chooses the equation written out for the problem, or the equation of sheets. */
 static void choose_equation(work *w)
 {
     const spring_scene_def *def = &w->scene.def;
@@ -384,7 +383,7 @@ static void open_scene(work *w)
     w->uses_velocity = w->damped || w->scene.def.drag > 0 ||
                        (w->scene.def.force != NULL && !(w->scene.def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY));
     find_exact_end(w, c);
-    /* likewise; the stable step is a bound, and takes no notice of callbacks */
+    /* likewise; the stable step is a bound that does not include callbacks */
     w->coarsest = fmin(5 * spring_scene_stable_step(w->fresh, SPRING_LEAPFROG), c->duration / 4);
     w->finest = 0;
 }
@@ -427,14 +426,14 @@ void work_close(work *w)
 
 double work_error(const work *w, const double *y)
 {
-    const double resolved = 5; /* uncertainties: the error is within a quarter where it is more than that */
+    const double resolved = 5; /* uncertainties; larger errors are accurate to a quarter */
     if (w->problem->kind != WORK_SCENE)
         return reference_distance(&w->reference, (spring_state){y[0], y[1]}) / w->motion;
     const double error = distance(w, y, w->exact) / w->motion;
     return error > (resolved - 1) * w->uncertainty || isnan(error) ? error : resolved * w->uncertainty;
 }
 
-/* Where all particles of a scene are, or how fast; in `to`. */
+/* Expands positions or velocities of moving particles to all particles, in `to`. */
 static void spread(const work *w, const double *fixed, const double *y, double *to)
 {
     const scene_problem *p = &w->scene;
@@ -460,7 +459,7 @@ static double kinetic_energy(const work *w, const double *y)
     return sum;
 }
 
-/* Without that of pinned particles, which is constant. */
+/* Omits the energy of pinned particles, which is constant. */
 static double scene_energy(const work *w, const double *y)
 {
     const scene_problem *p = &w->scene;

@@ -61,7 +61,7 @@ bool work_applies(const work *w, const work_solver *s)
     return scene ? (w->scene.def.methods >> s->method & 1) != 0 : spring_method_describe(s->method)->springs;
 }
 
-/* What a run of a spring takes may be less than a look at the clock: all runs together. */
+/* Times all runs together, since one run can be shorter than a call of the clock. */
 static work_result run_spring(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
 {
     const spring_params *p = &w->problem->p;
@@ -95,7 +95,7 @@ static void gather(const work *w, const spring_scene *scene, spring_quantity wha
         y[i] = w->gathered[p->coordinate[i]];
 }
 
-/* From the start as it is in `fresh`, in the memory of `moved`. */
+/* Each run copies the initial scene `fresh` to `moved`. */
 static work_result run_scene_of(const work *w, spring_scene *moved, const spring_scene *fresh, size_t bytes,
                                 spring_method m, uint64_t steps, uint64_t runs, double *y)
 {
@@ -120,7 +120,7 @@ static work_result run_scene(const work *w, const work_solver *s, uint64_t steps
 
 static work_result run_softened(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
 {
-    const double fraction = 0.95; /* of the stable step: short runs, without the resonance of long ones */
+    const double fraction = 0.95; /* of the stable step; runs are too short for resonances */
     spring_scene_def def = w->scene.def;
     spring_link *link = scene_room(def.links, sizeof *link);
     size_t bytes;
@@ -129,7 +129,7 @@ static work_result run_softened(const work *w, const work_solver *s, uint64_t st
         def.link = link;
         spring_scene *fresh = work_make_scene(&def, &bytes), *moved = work_make_scene(&def, &bytes);
         r = run_scene_of(w, moved, fresh, bytes, s->method, steps, runs, y);
-        const uint64_t each = w->damped ? 2 : 1; /* as work_count() has it */
+        const uint64_t each = w->damped ? 2 : 1; /* as counted by work_count() */
         r.evaluations = each * steps + 1;
         free(fresh);
         free(moved);

@@ -6,22 +6,22 @@
 
 enum { AXES = 3 };
 
-/* How the ends of a block lie in memory. All but the first are moved as whole vectors. */
+/* Memory layouts of the ends of a block. All except the first are loaded and stored as whole vectors. */
 typedef enum layout {
     SCATTERED,
-    ROWS,  /* a, and b, one after the other */
+    ROWS,  /* a and b each contiguous */
     PAIRS, /* abababab... */
     FOURS  /* aabbaabb... */
 } layout;
 
-/* Eight links of one colour: four cache lines. Lanes without a link have shares of 0, and change nothing. */
+/* Eight links of one colour, in four cache lines. Lanes without a link have shares of 0, so they change nothing. */
 typedef struct block {
     uint32_t a[LANES], b[LANES];
     double rest[LANES];
     double share_a[LANES], share_b[LANES]; /* w_a and w_b over (1 + c) (w_a + w_b) + 1/(k h^2), for a substep of h */
 } block;
 
-typedef struct block_links { /* of a block, apart from it: substeps do not read them without damping */
+typedef struct block_links { /* separate from the block, since substeps without damping do not read them */
     double stiffness[LANES], damping[LANES];
     double ratio[LANES]; /* c = damping/(k h) */
 } block_links;
@@ -32,12 +32,12 @@ typedef struct group { /* blocks of one layout */
 } group;
 
 struct work_xpbd {
-    size_t room, blocks, groups; /* room: particles, with those of unused lanes, and whole vectors */
+    size_t room, blocks, groups; /* room: particles, including unused lanes, in whole vectors */
     block *block;
     group *group;
     block_links *links;                    /* [blocks] */
     double *x[AXES], *old[AXES], *v[AXES]; /* [room] */
-    double *inverse_mass, *moving, *decay; /* [room] moving 1 or, pinned, 0; decay 1/(1 + h drag/mass) */
+    double *inverse_mass, *moving, *decay; /* [room] moving: 1, or 0 if pinned; decay: 1/(1 + h drag/mass) */
     double *memory;
     double gravity[AXES], drag, h;
     bool damped;
@@ -67,8 +67,9 @@ static int by_colour(const void *left, const void *right)
     return l->a < r->a ? -1 : l->a > r->a;
 }
 
-/* The links in order of their colours. Links with one offset between their ends have colours of their own: that of the
-   link before if it is free at both ends, or else the first that is. In a sheet that leaves whole rows in one colour. */
+/* Sorts the links by colour. Links with different offsets between their ends have different colours. A link gets the
+   colour of the previous link if it is unused at both ends, otherwise the first unused colour. In a sheet, whole rows
+   get one colour. */
 static coloured *colour(const scene_problem *p)
 {
     const size_t links = p->def.links;
@@ -88,7 +89,7 @@ static coloured *colour(const scene_problem *p)
             order[i].colour = order[i - 1].colour;
         if (taken >> order[i].colour & 1)
             for (order[i].colour = 0; taken >> order[i].colour & 1;)
-                order[i].colour++; /* two links of one offset meet at a particle: three colours are enough */
+                order[i].colour++; /* at most two links of one offset meet at a particle, so three colours suffice */
         used[l->a] |= UINT64_C(1) << order[i].colour;
         used[l->b] |= UINT64_C(1) << order[i].colour;
     }
@@ -97,7 +98,7 @@ static coloured *colour(const scene_problem *p)
     return order;
 }
 
-/* Where the end a of lane j is, behind that of lane 0. */
+/* The offset of end a of lane j from end a of lane 0. */
 static uint32_t lane_offset(layout at, uint32_t j)
 {
     return at == ROWS ? j : at == PAIRS ? 2 * j : 4 * (j / 2) + j % 2;
@@ -108,7 +109,7 @@ static layout layout_of(uint32_t offset)
     return offset >= LANES ? ROWS : offset == 1 ? PAIRS : offset == 2 ? FOURS : SCATTERED;
 }
 
-/* The number of links from i on that fill a block. */
+/* The number of links from i that fit into a block. */
 static size_t block_length(const scene_problem *p, const coloured *order, size_t i, layout at)
 {
     const spring_link *first = &p->link[order[i].link];
@@ -126,7 +127,7 @@ static size_t block_length(const scene_problem *p, const coloured *order, size_t
 static void fill_block(block *k, block_links *links, const scene_problem *p, const coloured *order, size_t count,
                        layout at)
 {
-    const uint32_t unused = (uint32_t)p->def.particles; /* and those behind */
+    const uint32_t unused = (uint32_t)p->def.particles; /* and all above */
     const spring_link *first = &p->link[order[0].link];
     for (uint32_t j = 0; j < LANES; j++) {
         if (j < count) {
@@ -154,7 +155,7 @@ static void make_blocks(work_xpbd *s, const scene_problem *p)
         layout at = first->a < first->b ? layout_of(order[i].offset) : SCATTERED;
         const bool goes_on =
             s->groups > 0 && s->group[s->groups - 1].layout == at && order[i].offset == order[i - 1].offset;
-        if (block_length(p, order, i, at) < LANES / 2 && !goes_on) /* the end of a row is a block of its own */
+        if (block_length(p, order, i, at) < LANES / 2 && !goes_on) /* the end of a row is a separate block */
             at = SCATTERED;
         const size_t count = block_length(p, order, i, at);
         fill_block(&s->block[s->blocks], &s->links[s->blocks], p, order + i, count, at);
@@ -267,7 +268,7 @@ INLINE void load_ends(const double *array, const block *k, layout at, lanes *a, 
                        : SHUFFLE(low, high, 2, 3, 6, 7, 10, 11, 14, 15);
 }
 
-/* The vectors come by address: by value, their registers depend on the instruction set. */
+/* Vectors are passed by address, because passing by value depends on the instruction set. */
 INLINE void store_ends(double *array, const block *k, layout at, const lanes *at_a, const lanes *at_b)
 {
     const lanes a = *at_a, b = *at_b;
@@ -293,7 +294,7 @@ INLINE void store_ends(double *array, const block *k, layout at, const lanes *at
 
 INLINE void solve_block(const work_xpbd *s, const block *k, const block_links *links, layout at, bool damped)
 {
-    const double smallest = 1e-30; /* [m^2] ends at one place: no direction, and no NaN */
+    const double smallest = 1e-30; /* [m^2] avoids NaN for coinciding ends, which have no direction */
     lanes a[AXES], b[AXES], delta[AXES], square = {0}, moved = {0}, inverse, rest, share_a, share_b;
     UNROLL
     for (int d = 0; d < AXES; d++) {
@@ -387,7 +388,7 @@ INLINE void substeps_of(const work_xpbd *s, uint64_t n)
         substeps(s, n, false);
 }
 
-/* The instruction sets that the library has kernels for. */
+/* The instruction sets of the kernels of the library. */
 #if defined(__x86_64__)
 __attribute__((target("avx512f,avx512dq,avx512vl"))) static void with_avx512(const work_xpbd *s, uint64_t n)
 {
