@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Puts the live page into one file: scripts bundled by esbuild, with the WebAssembly that is in them, and styles.
+// Bundles the live page into one file: scripts bundled by esbuild, including their WebAssembly, and styles.
 //
 // usage: node bundle.mjs FOLDER     writes FOLDER/index.html
 import { execFileSync } from "node:child_process";
@@ -10,8 +10,8 @@ import { fileURLToPath } from "node:url";
 const [folder] = process.argv.slice(2);
 const page = join(dirname(fileURLToPath(import.meta.url)), "page");
 
-// `values`: for each global name of the script, its value as an expression. They are too long for a command line, so the
-// bundle has placeholders for them first.
+// `values`: for each global name of the script, its value as an expression. The values are too long for a command line,
+// so the bundle first has placeholders.
 function bundled(entry, format, values = {}) {
     const options = [
         "--bundle",
@@ -35,7 +35,7 @@ function bundled(entry, format, values = {}) {
 
 const script = bundled("main.mjs", "esm", { WORKER: JSON.stringify(bundled("worker.mjs", "iife")) });
 const styles = [join(page, "../node_modules/uplot/dist/uPlot.min.css"), join(page, "style.css")];
-// What would end the element or the template is written otherwise; a function, for a string would read "$&".
+// Escapes text that would end the element or the template. Replaced by functions, since strings would interpret "$&".
 const safe = script.replaceAll("</script", "<\\/script");
 const html = readFileSync(join(page, "index.html"), "utf8")
     .replace("/*STYLE*/", () => styles.map((name) => readFileSync(name, "utf8")).join("\n"))

@@ -3,16 +3,16 @@
 --
 --     LUA_PATH='build/?.lua;;' love examples/love
 --
--- The first particle is pinned and driven to where the pointer is, at a limited speed; steps are fixed, and what is
--- drawn lies between the last two states. Lengths are in metres, y points down as on the screen.
+-- The first particle is pinned and follows the pointer at a limited speed. Steps are fixed, and drawing interpolates
+-- between the last two states. Lengths are in metres; y points down, as on the screen.
 local ffi = require "ffi"
 local spring = require "springstep"
 
-local N, STEPS = 36, 16 -- particles; steps a frame of 1/60 s
+local N, STEPS = 36, 16 -- particles; steps per frame of 1/60 s
 local dt = 1 / 60 / STEPS -- [s]
 local spacing, stiffness, damping, mass, ball = 0.03, 3000, 0.2, 0.02, 0.25 -- [m] [N/m] [N s/m] [kg] [kg]
-local pixels = 260 -- to a metre
-local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] how fast the rope can follow
+local pixels = 260 -- per metre
+local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] wave speed, at which the rope can follow
 
 local scene, clock, hand, previous, current, whole, step_cost
 
@@ -24,7 +24,7 @@ local function start(x, y)
   local position, pinned = ffi.new("double[?]", 2 * N), ffi.new("uint8_t[?]", N)
   local link, masses = ffi.new("spring_link[?]", N - 1), ffi.new("double[?]", N, mass)
   must(spring.spring_grid_fill(grid, position, pinned, link), "grid")
-  for i = 0, N - 1 do -- along x as it comes; from the pointer down, a little aside
+  for i = 0, N - 1 do -- the grid is along x; turn it down from the pointer, slightly to the side
     local along = position[2 * i]
     position[2 * i], position[2 * i + 1] = x + 0.28 * along, y + 0.96 * along
     masses[i] = i < N - 1 and mass or ball
@@ -45,7 +45,7 @@ local function start(x, y)
   end
 end
 
--- The hand follows the pointer, at half the speed of waves in the rope at most: see docs/dragging.md.
+-- The hand follows the pointer at no more than half the wave speed of the rope; see docs/dragging.md.
 local function reach(x, y, duration)
   local dx, dy, most = x - hand[0], y - hand[1], 0.5 * wave * duration
   local part = math.min(1, most / math.max(math.sqrt(dx * dx + dy * dy), 1e-9))
@@ -66,7 +66,7 @@ function love.update(frame)
   local x, y = love.mouse.getPosition()
   local before = love.timer.getTime()
   reach(x / pixels, y / pixels, n * dt)
-  must(spring.spring_scene_drive(scene, 0, hand, n * dt), "drive") -- there after these n steps
+  must(spring.spring_scene_drive(scene, 0, hand, n * dt), "drive") -- arrives after these n steps
   must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, n - 1), "advance")
   must(spring.spring_scene_get(scene, spring.SPRING_POSITION, previous, 0, 0, N), "get")
   must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, 1), "advance")
@@ -75,14 +75,14 @@ function love.update(frame)
   step_cost = step_cost + (step_cost > 0 and 0.05 or 1) * (cost - step_cost)
 end
 
--- Where a particle is drawn [pixels].
+-- The position of a particle on the screen [pixels].
 local function at(i)
   local x = previous[2 * i] + alpha[0] * (current[2 * i] - previous[2 * i])
   local y = previous[2 * i + 1] + alpha[0] * (current[2 * i + 1] - previous[2 * i + 1])
   return x * pixels, y * pixels
 end
 
--- A click cuts the middle of what still hangs from the pointer.
+-- A click cuts the rope in the middle of the piece that hangs from the pointer.
 function love.mousepressed()
   local hanging = 0
   while whole[hanging + 1] do
@@ -107,7 +107,7 @@ function love.keypressed(key)
   end
 end
 
--- The whole links: dark, then lighter and narrower, so that the rope looks round; discs where two of them meet.
+-- Draws intact links dark, then lighter and narrower, so that the rope looks round, with discs at the joints.
 local function draw_rope()
   for _, look in ipairs {{11, 0.36, 0.26, 0.16}, {8, 0.60, 0.45, 0.28}, {4, 0.82, 0.67, 0.44}} do
     love.graphics.setLineWidth(look[1])
@@ -125,7 +125,7 @@ local function draw_rope()
 end
 
 local function draw_ball(x, y, radius)
-  for i = 0, 20 do -- discs towards the light, each brighter
+  for i = 0, 20 do -- brighter discs towards the light
     local part = i / 20
     love.graphics.setColor(0.20 + 0.45 * part, 0.26 + 0.48 * part, 0.36 + 0.50 * part)
     love.graphics.circle("fill", x - 0.35 * radius * part, y - 0.4 * radius * part, radius * (1 - 0.85 * part))

@@ -68,7 +68,7 @@ vec3 camera_pick(const camera *c, double x, double y, double depth)
     return add(add(ahead, depth * (x - c->x) / c->focal, c->right), depth * (c->y - y) / c->focal, c->up);
 }
 
-/* What is at (x, h, z) is seen at y where up.d = q forward.d, d = (x, h, z) - eye: linear in h. */
+/* The point (x, h, z) is at y on the screen if up.d = q forward.d, where d = (x, h, z) - eye; this is linear in h. */
 vec3 camera_pick_height(const camera *c, double y, vec3 above)
 {
     const double q = (c->y - y) / c->focal;
@@ -109,7 +109,7 @@ void painter_close(painter *p)
     *p = (painter){0};
 }
 
-/* Red, green, blue from 0 to 1, lit by so much. */
+/* Lights a colour, given as red, green, blue from 0 to 1. */
 static SDL_Color shade(vec3 color, double light, double shine)
 {
     const double rgb[3] = {color.x * light + shine, color.y * light + shine, color.z * light + shine};
@@ -130,7 +130,7 @@ static bool make_room(painter *p)
     return true;
 }
 
-/* Without memory there is a triangle less, and paint_world() says so. */
+/* Out of memory, the triangle is omitted, and paint_world() returns false. */
 static void corner(painter *p, double x, double y, SDL_Color color)
 {
     if (p->vertices == p->room && !make_room(p))
@@ -139,13 +139,12 @@ static void corner(painter *p, double x, double y, SDL_Color color)
         p->vertex[p->vertices++] = (SDL_Vertex){{(float)x, (float)y}, color, {0, 0}};
 }
 
-/* SDL counts pixels in int, and a world that explodes goes far. */
+/* SDL has int pixels, which the positions of an exploding world can exceed. */
 static bool near_the_window(const camera *c, const spot *s)
 {
     return s->depth > 0.05 && fabs(s->x - c->x) < 8 * c->x && fabs(s->y - c->y) < 8 * c->y;
 }
 
-/* Two triangles. */
 static void quad(painter *p, const double x[4], const double y[4], const SDL_Color color[4])
 {
     static const int corners[6] = {0, 1, 2, 2, 1, 3};
@@ -153,7 +152,7 @@ static void quad(painter *p, const double x[4], const double y[4], const SDL_Col
         corner(p, x[corners[i]], y[corners[i]], color[corners[i]]);
 }
 
-/* In bands, which are faster than a shaded triangle where there is no graphics processor. */
+/* Painted in bands, which are faster than shaded triangles without a GPU. */
 static void background(painter *p, const camera *c)
 {
     enum { BAND = 6 }; /* [pixels] */
@@ -172,8 +171,8 @@ typedef struct surface {
     const camera *c;
     const vec3 *at; /* [particles] */
     spot *seen;     /* [particles] */
-    vec3 *normal;   /* [particles] towards the viewer where row and column run as at the start */
-    SDL_Color *lit; /* [particles] of water; cloth has two sides */
+    vec3 *normal;   /* [particles] towards the viewer in the initial orientation */
+    SDL_Color *lit; /* [particles] water only, since cloth has two sides */
 } surface;
 
 typedef struct triangle {
@@ -187,7 +186,7 @@ static int farthest_first(const void *left, const void *right)
     return (a < b) - (a > b);
 }
 
-/* Both triangles of each cell, but those of which an edge is cut. */
+/* Lists both triangles of each cell, except triangles with a cut edge. */
 static size_t find_triangles(const surface *s, triangle *list)
 {
     const world *w = s->w;
@@ -205,7 +204,7 @@ static size_t find_triangles(const surface *s, triangle *list)
     return n;
 }
 
-/* Of a corner: the sum of those of its triangles, each as long as its triangle is large. */
+/* The normal of a corner is the area-weighted sum of the normals of its triangles. */
 static void find_normals(surface *s, const triangle *list, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -219,7 +218,7 @@ static void find_normals(surface *s, const triangle *list, size_t n)
         s->normal[i] = unit(s->normal[i]);
 }
 
-/* Stripes woven in; the other side is paler. */
+/* Woven stripes; the back is paler. */
 static SDL_Color cloth_color(const surface *s, uint32_t i, uint32_t cell, bool front)
 {
     static const vec3 red = {0.78, 0.16, 0.15}, cream = {0.93, 0.85, 0.70}, sun = {-0.35, 0.50, 0.79};
@@ -233,7 +232,7 @@ static SDL_Color cloth_color(const surface *s, uint32_t i, uint32_t cell, bool f
     return shade(color, 0.34 + 0.78 * facing, shine);
 }
 
-/* Deep water is dark, what is seen at a flat angle mirrors the sky (Schlick's approximation), and the sun glitters. */
+/* Deep water is dark. At flat angles it reflects the sky (Schlick's approximation), and the sun glitters. */
 static SDL_Color water_color(const surface *s, uint32_t i)
 {
     static const vec3 deep = {0.01, 0.16, 0.26}, shallow = {0.10, 0.55, 0.58};
@@ -269,7 +268,7 @@ static vec3 middle_of_body(const world *w)
     return (vec3){(b->at[0] + to[0]) / 2, (b->at[1] + to[1]) / 2, (b->at[2] + to[2]) / 2};
 }
 
-/* A body is painted behind the triangles that are nearer than it, and over the others. */
+/* Paints a body over the triangles behind it, and before the triangles in front of it. */
 static void paint_surface(painter *p, const camera *c, const world *w, const vec3 *at)
 {
     surface s = {.w = w, .c = c, .at = at};
@@ -305,7 +304,7 @@ static void paint_surface(painter *p, const camera *c, const world *w, const vec
     free(s.lit);
 }
 
-/* A flat piece between four corners. */
+/* A flat slab between four corners. */
 static void paint_slab(painter *p, const camera *c, const vec3 corners[4], vec3 color, double light_from,
                        double light_to)
 {
@@ -320,7 +319,7 @@ static void paint_slab(painter *p, const camera *c, const vec3 corners[4], vec3 
     quad(p, x, y, colors);
 }
 
-/* The rim of the pool: the far side and the flanks behind the water, the near side before it. */
+/* The rim of the pool. The far side and the flanks are painted before the water, the near side after it. */
 static void paint_rim(painter *p, const camera *c, bool near_side)
 {
     static const vec3 stone = {0.74, 0.70, 0.64};
@@ -352,7 +351,7 @@ static void paint_rim(painter *p, const camera *c, bool near_side)
     paint_slab(p, c, right, stone, 0.80, 0.95);
 }
 
-/* The rod that the curtain's hooks run on. */
+/* The rod of the curtain. */
 static void paint_rod(painter *p, const camera *c, const world *w)
 {
     static const vec3 brass = {0.80, 0.62, 0.30};
@@ -365,7 +364,7 @@ static void paint_rod(painter *p, const camera *c, const world *w)
 
 /* ------------------------------------------------------------------------------------------------------------- rope */
 
-/* On a smooth curve through b and c, a part t of the way from b to c (Catmull and Rom). */
+/* A point of the Catmull-Rom curve from b = q[1] to c = q[2], at the fraction t. */
 static vec3 on_curve(const vec3 q[4], double t)
 {
     const double u = t * t, v = t * u;
@@ -377,16 +376,13 @@ static vec3 on_curve(const vec3 q[4], double t)
     return sum;
 }
 
-enum {
-    ROPE_PIECES = 5,
-    ROPE_STRIPS = 6
-}; /* of a link along, and across; the outermost strips fade into what is behind */
+enum { ROPE_PIECES = 5, ROPE_STRIPS = 6 }; /* strips along and across a link; the outermost fade into the background */
 
 typedef struct rib {
-    double x, y, across_x, across_y; /* [pixels] on the screen; of the whole thickness */
+    double x, y, across_x, across_y; /* [pixels] position on the screen; vector across the whole thickness */
 } rib;
 
-/* Light on a cylinder, and strands that wind around it. side from -1 to 1, along in thicknesses. */
+/* The light on a cylinder with strands wound around it. side: -1 to 1; along: in units of the thickness. */
 static SDL_Color rope_color(double side, double along)
 {
     static const vec3 hemp = {0.80, 0.66, 0.43};
@@ -437,7 +433,7 @@ static void paint_link(painter *p, const camera *c, const world *w, const vec3 *
     }
 }
 
-/* A disc whose middle is lit from the upper left, as a ball is. */
+/* A disc, shaded as a ball lit from the upper left. */
 static void paint_ball(painter *p, const camera *c, vec3 at, double radius, vec3 color)
 {
     enum { SECTORS = 40, RINGS = 8 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures of worlds, and text, by SDL's renderer alone: triangles whose corners are coloured, the farthest first. */
+/* Pictures of worlds, and text, with SDL's renderer only: triangles with coloured corners, from back to front. */
 #ifndef SPRINGS_DRAW_H
 #define SPRINGS_DRAW_H
 
@@ -7,16 +7,16 @@
 
 #include "world.h"
 
-/* From where a world is seen. */
+/* The view of a world. */
 typedef struct camera {
     vec3 eye, right, up, forward;
-    double focal, x, y; /* [pixels] a length of 1 m at a distance of 1 m; the middle of the window */
+    double focal, x, y; /* [pixels] size of 1 m at a distance of 1 m; middle of the window */
 } camera;
 
-/* Where on the screen, and how far away. */
+/* A position on the screen, and its depth. */
 typedef struct spot {
     double x, y;  /* [pixels] */
-    double depth; /* [m] along the line of sight; what is not positive is behind the camera */
+    double depth; /* [m] along the line of sight; <= 0 is behind the camera */
 } spot;
 
 typedef struct painter {
@@ -24,35 +24,35 @@ typedef struct painter {
     SDL_Texture *font;
     SDL_Vertex *vertex; /* [room] corners of triangles, three by three */
     size_t vertices, room;
-    bool incomplete; /* there was no memory for a triangle */
+    bool incomplete; /* out of memory for a triangle */
 } painter;
 
-/** Everything to draw with. False with a message in SDL_GetError(); the painter is empty then. */
+/** Opens a painter. On failure it returns false with a message in SDL_GetError(), and the painter is empty. */
 bool painter_open(painter *p, SDL_Renderer *renderer);
 void painter_close(painter *p);
 
-/** The camera for a world in a window of so many pixels. */
+/** The camera for a world in a window of this size in pixels. */
 camera camera_for(world_kind kind, int width, int height);
 
 spot camera_project(const camera *c, vec3 at);
 
-/** The point that is seen there: of cloth and rope at that depth; of water, straight above or below another. */
+/** The point at a position on the screen: at a given depth, or (for water) straight above or below another point. */
 vec3 camera_pick(const camera *c, double x, double y, double depth);
 vec3 camera_pick_height(const camera *c, double y, vec3 above);
 
-/** A world whose particles are at [particles]. False without memory. */
+/** Paints a world with its particles at the positions at[particles]. Returns false if out of memory. */
 bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at);
 
-/** A ring around what is held, and a line to where it is to go. */
+/** Paints a ring around the held particle and a line to its target. */
 void paint_hand(painter *p, spot held, double mouse_x, double mouse_y);
 
-/** A line of text; returns its width [pixels]. */
+/** Paints a line of text and returns its width [pixels]. */
 int paint_text(painter *p, int x, int y, SDL_Color color, const char *text);
 
-/** A rectangle, translucent as its colour says. */
+/** Paints a rectangle with the transparency of its colour. */
 void paint_box(painter *p, SDL_Rect box, SDL_Color color);
 
-/** A curve through values [count], the least at the lower, the greatest at the upper edge of a box; NaN is left out. */
+/** Paints a curve through value[count], scaled from the bottom (least) to the top (greatest) of a box; omits NaN. */
 void paint_curve(painter *p, SDL_Rect box, SDL_Color color, const double *value, int count);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Letters of 8 x 13 pixels, from space to ~: "fixed" 8x13 of the X Window System, which is in the public domain. A byte a
-   row, the highest bit to the left. */
+/* Letters of 8 x 13 pixels, from space to ~: "fixed" 8x13 of the X Window System, which is in the public domain. One
+   byte per row, the highest bit at the left. */
 #ifndef SPRINGS_FONT_H
 #define SPRINGS_FONT_H
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Cloth, a rope and water in a window, to pull, cut and poke.
+ * Cloth, rope, water, drape and cape in a window, to drag, cut and poke.
  *
  *     cc -std=c11 -O2 main.c world.c draw.c script.c $(sdl2-config --cflags --libs) -lspringstep -lm -o springs
  *
- * world.c is what to do with the library: scenes, the hand, cuts, pokes, two states to draw between. Here are the window,
- * keys, mouse, and fixed steps from frames of any length; draw.c makes pictures of it.
+ * world.c uses the library: scenes, dragging, cuts, pokes, and two states for interpolation. This file has the window,
+ * keys, mouse, and fixed steps with variable frame times. draw.c draws.
  */
 #include <SDL.h>
 #include <springstep/clock.h>
@@ -20,10 +20,10 @@
 #include "world.h"
 
 enum { HISTORY = 600, MOST_STEPS = 64, LINE = 13 + 4 };
-static const double frame_time = 1.0 / 60;                                      /* [s] for which steps are counted */
-static const double dampings[] = {0, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}; /* of links, 1 is critical */
+static const double frame_time = 1.0 / 60; /* [s] frame for which steps are counted */
+static const double dampings[] = {0, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2}; /* of links; 1 is critical */
 enum { DAMPINGS = sizeof dampings / sizeof *dampings };
-/* About half the stable step of leapfrog; of water a third. */
+/* About half the stable step of leapfrog, for water a third. */
 static const uint64_t usual_steps[WORLD_KINDS] = {16, 20, 4, 16, 20};
 
 typedef struct app {
@@ -32,17 +32,17 @@ typedef struct app {
     painter painter;
     camera camera;
     world world;
-    vec3 *drawn;      /* [particles] where they are drawn */
+    vec3 *drawn;      /* [particles] positions for drawing */
     int method_index; /* for spring_method_at() */
-    uint64_t steps;   /* a frame */
+    uint64_t steps;   /* per frame */
     int damping;      /* index of dampings[] */
     bool wind, running, failed;
     spring_clock clock;
-    spring_status trouble;  /* SPRING_OK, or why the world stands still */
+    spring_status trouble;  /* SPRING_OK, or the reason why the simulation stopped */
     double step_cost;       /* [s] smoothed */
     double energy[HISTORY]; /* [J] of the last frames */
     int mouse_x, mouse_y;
-    double depth; /* [m] from the camera, of what is held */
+    double depth; /* [m] distance of the held particle from the camera */
 } app;
 
 /* ------------------------------------------------------------------------------------------------------- settings */
@@ -57,7 +57,7 @@ static double step(const app *a)
     return frame_time / (double)a->steps;
 }
 
-/* The next method that scenes offer, or the one before. */
+/* Selects the next or the previous method for scenes. */
 static void change_method(app *a, int delta)
 {
     do
@@ -75,7 +75,7 @@ static bool choose_method(app *a, const char *name)
     return false;
 }
 
-/* A world as it begins, with the settings as they are. */
+/* Starts a world with the current settings. */
 static bool start(app *a, world_kind kind)
 {
     world_close(&a->world);
@@ -110,10 +110,10 @@ static void quit(app *a, bool failed)
 
 /* ------------------------------------------------------------------------------------------------------------ mouse */
 
-/* The particle nearest to the mouse; of those as near, such as in folds of a cloth, the one in front. */
+/* The particle nearest to the mouse. Of equally near particles, such as in folds of a cloth, the one in front. */
 static uint32_t under_mouse(const app *a)
 {
-    const double most = 60, before = 40; /* [pixels]; [pixels] that a metre to the front is worth */
+    const double most = 60, before = 40; /* [pixels]; [pixels/m] bonus for being in front */
     uint32_t found = WORLD_NOTHING;
     double best = INFINITY;
     for (uint32_t i = 0; i < a->world.particles; i++) {
@@ -148,7 +148,7 @@ static void poke(app *a)
         world_poke(&a->world, particle);
 }
 
-/* What is held is to go to where the mouse is: at its distance from the camera, water up and down. */
+/* Moves the target of the held particle to the mouse, at its distance from the camera; water moves up and down. */
 static void pull(app *a)
 {
     world *w = &a->world;
@@ -160,7 +160,7 @@ static void pull(app *a)
         world_pull(w, camera_pick(&a->camera, a->mouse_x, a->mouse_y, a->depth));
 }
 
-/* Do the segments from a to b and from c to d cross? Each has the ends of the other on both sides. */
+/* Two segments ab and cd cross if each has the ends of the other on different sides. */
 static bool cross_over(spot a, spot b, spot c, spot d)
 {
     const double abc = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -170,7 +170,7 @@ static bool cross_over(spot a, spot b, spot c, spot d)
     return (abc < 0) != (abd < 0) && (cda < 0) != (cdb < 0);
 }
 
-/* Cut the links over which the mouse has moved. Water is not cut but poked. */
+/* Cuts the links that the mouse has crossed. Water is poked instead. */
 static void cut(app *a, int from_x, int from_y)
 {
     world *w = &a->world;
@@ -208,7 +208,7 @@ static void key(app *a, SDL_Keycode pressed)
         change_method(a, pressed == SDLK_m ? 1 : -1);
         break;
     case SDLK_UP:
-    case SDLK_DOWN: /* a clock keeps to one length of steps */
+    case SDLK_DOWN: /* a clock has one step length, so it is reset */
         if (pressed == SDLK_UP ? a->steps < MOST_STEPS : a->steps > 1)
             a->steps = pressed == SDLK_UP ? a->steps + 1 : a->steps - 1;
         a->clock = (spring_clock){0};
@@ -232,7 +232,7 @@ static void key(app *a, SDL_Keycode pressed)
     default:
         return;
     }
-    if (!exploded(a)) /* what the method does not offer, another may */
+    if (!exploded(a)) /* another method may support the scene */
         a->trouble = SPRING_OK;
 }
 
@@ -261,7 +261,7 @@ static void handle(app *a, const SDL_Event *e)
 
 /* ----------------------------------------------------------------------------------------------------------- frames */
 
-/* Take the steps that a frame of so many seconds brings, and find where to draw: between the last two states. */
+/* Takes the steps of a frame of this duration, and interpolates between the last two states for drawing. */
 static void advance(app *a, double seconds)
 {
     double alpha;
@@ -286,7 +286,7 @@ static void advance(app *a, double seconds)
 static const SDL_Color white = {235, 238, 242, 255}, grey = {165, 172, 182, 255};
 static const SDL_Color amber = {255, 190, 70, 255}, red = {255, 104, 88, 255}, green = {120, 215, 150, 255};
 
-/* A word in grey, and what it is in white. */
+/* Draws a label in grey and its value in white. */
 static void row(app *a, int line, const char *word, const char *text)
 {
     paint_text(&a->painter, 20, 20 + line * LINE, grey, word);
@@ -319,7 +319,7 @@ static void draw_settings(app *a)
     paint_curve(&a->painter, (SDL_Rect){20, 24 + 7 * LINE, 342, 36}, green, a->energy, HISTORY);
 }
 
-/* What is wrong, and what to do about it, in the window, below the middle. */
+/* Draws an error and its remedy below the middle of the window. */
 static void draw_trouble(app *a, int width, int height)
 {
     const char *label = spring_method_describe(method(a))->label;
@@ -371,7 +371,7 @@ static bool draw(app *a)
     return true;
 }
 
-/* One line for a script: names and values. */
+/* Writes names and values in one line, for a script. */
 static void describe(app *a, char *text, size_t size)
 {
     const world *w = &a->world;
@@ -422,7 +422,7 @@ static bool find_world(const char *name, world_kind *kind)
     return false;
 }
 
-/* Frames wait for the screen, those of a script for nothing. */
+/* Frames are synchronised to the screen, except in a script. */
 static bool open_window(app *a, Uint32 renderer_flags)
 {
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
@@ -435,7 +435,7 @@ static bool open_window(app *a, Uint32 renderer_flags)
     return a->renderer != NULL && painter_open(&a->painter, a->renderer);
 }
 
-/* Until the user has enough, or the script is played. */
+/* Runs until the user quits or the script ends. */
 static void run(app *a, script *played)
 {
     Uint64 before = SDL_GetPerformanceCounter();

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const Uint32 from_script = UINT32_MAX; /* no window has this number */
+static const Uint32 from_script = UINT32_MAX; /* not the number of any window */
 
 static int SDLCALL only_from_script(void *unused, SDL_Event *e)
 {
@@ -42,7 +42,7 @@ void script_close(script *s)
     s->file = NULL;
 }
 
-/* The events are what SDL makes of the real thing; the queue is never full of so few. */
+/* Pushes the same events as SDL for a real key. They are so few that the queue cannot be full. */
 static bool push_key(const char *name)
 {
     const SDL_Keycode key = SDL_GetKeyFromName(name);

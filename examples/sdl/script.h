@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Keys and mouse from a file, for tests: a program of your own does without.
+ * Keys and mouse from a file, for tests. Your own program does not need this.
  *
- *     wait 30            draw so many frames
- *     frame 0.02         frames take so many seconds from here on; 1/60 before
+ *     wait 30            draw 30 frames
+ *     frame 0.02         set the frame time [s]; the default is 1/60
  *     key M              press and release a key, by SDL's name
- *     move 400 300       the mouse
- *     press left         a button where the mouse is: left, middle, right; then release left
+ *     move 400 300       move the mouse
+ *     press left         press a button (left, middle, right) at the mouse; "release left" releases it
  *     say                print the state of the program
- *     save picture.bmp   what is drawn
+ *     save picture.bmp   save the window
  */
 #ifndef SPRINGS_SCRIPT_H
 #define SPRINGS_SCRIPT_H
@@ -27,11 +27,11 @@ typedef struct script {
     bool failed;
 } script;
 
-/** False, with a message, if the file cannot be read. From here on real keys and a real mouse do nothing. */
+/** Returns false, with a message, if the file cannot be read. From now on, real keys and mouse are ignored. */
 bool script_open(script *s, const char *path);
 
-/** Play the lines up to the next frame, between drawing and presenting one; state is for say. False at the end, and after
-    an error, which is said. */
+/** Plays the lines up to the next frame. Call it between drawing and presenting a frame; `say` prints `state`. Returns
+    false at the end, and after an error, which it prints. */
 bool script_play(script *s, SDL_Renderer *renderer, const char *state);
 
 void script_close(script *s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Cloth, rope, water, drape and cape as scenes of springs; see world.h. */
+/* Cloth, rope, water, drape and cape as mass-spring scenes; see world.h. */
 #include "world.h"
 
 #include <math.h>
@@ -8,8 +8,9 @@
 
 const char *const world_names[WORLD_KINDS] = {"cloth", "rope", "water", "drape", "cape"};
 
-/* A curtain on hooks, a rope with a ball at its end, a pool 4 m wide, a cloth above a sphere, a cape. A sum of links, 8 a particle in a sheet, decides on
-   the step: in water it makes one step a frame of 1/60 s too long for leapfrog, in the others about a dozen. */
+/* A curtain on hooks, a rope with a ball at its end, a pool 4 m wide, a cloth above a sphere, a cape. The stable step
+   depends on the sum of the stiffnesses at a particle, 8 links in a sheet. For leapfrog, one step per frame of 1/60 s
+   is too long in water, and about a dozen are too long in the other scenes. */
 static const struct recipe {
     spring_grid grid;
     double mass, drag; /* [kg], [N s/m] of a particle */
@@ -57,19 +58,18 @@ static const struct recipe {
 
 static const double skin = 0.012;       /* [m] radius of the particles of drape and cape */
 static const double sphere = 0.35;      /* [m] radius, under the drape */
-static const double body_radius = 0.18; /* [m] of the capsule with the cape, between these heights: */
+static const double body_radius = 0.18; /* [m] of the capsule with the cape; heights of its ends below */
 static const double body_low = 0.35, body_high = 1.3;
-static const double pace = 2.2,
-                    course = 3.0; /* [m/s] of the body, [m] from where it appears to where it is taken back */
+static const double pace = 2.2, course = 3.0; /* [m/s] of the body, [m] its path between teleports */
 
 static const double ball = 0.5;        /* [kg] at the end of the rope */
 static const double strongest = 0.035; /* [N] on a particle: a third of its weight */
-static const uint32_t hook_every = 6;  /* particles of the upper edge */
-static const double gathered = 0.85;   /* width of the curtain over that of its cloth */
-static const double most_energy = 1e5; /* [J] no hand brings in so much: the method gains it */
+static const uint32_t hook_every = 6;  /* one hook per so many particles of the upper edge */
+static const double gathered = 0.85;   /* width of the curtain relative to its cloth */
+static const double most_energy = 1e5; /* [J] more than dragging can add, so the method is unstable */
 static const double two_pi = 6.28318530717958648;
 
-/* What the functions below ask of the library they ask rightly: a refusal is a mistake of this file. */
+/* For calls that are valid: a failure is an error in this file. */
 static void must(spring_status status, const char *what)
 {
     if (status == SPRING_OK)
@@ -80,7 +80,7 @@ static void must(spring_status status, const char *what)
 
 /* ------------------------------------------------------------------------------------------------ how worlds begin */
 
-/* Folds from hook to hook: a sine that is as long as the cloth it is made of. */
+/* Folds from hook to hook: a sine with the arc length of the cloth. */
 static vec3 curtain(double column, double row, double spacing)
 {
     const double fold = two_pi * column / hook_every, deep = 0.13 * hook_every * spacing * gathered;
@@ -92,7 +92,7 @@ static vec3 hanging_aside(double along)
     return (vec3){0.8 * along, -0.6 * along, 0};
 }
 
-/* The drape: level, above the sphere and turned a little. */
+/* The drape starts level above the sphere, turned a little. */
 static vec3 above_the_sphere(double column, double row, double spacing)
 {
     const double x = spacing * (column - 15), z = spacing * (row - 15);
@@ -106,10 +106,10 @@ static vec3 behind_the_neck(double column, double row, double spacing)
     return (vec3){-arc * cos(angle), body_high + 0.05 - spacing * row, arc * sin(angle)};
 }
 
-/* Where the body of the cape is at a time [s]: it jumps once in each course, and appears again where it began. */
+/* The position of the body at a time [s]. It jumps once on its path, then starts again. */
 static vec3 body_at(const world *w, double time)
 {
-    const double far = pace * time - w->away, jump = (far - 1.1) / pace; /* [s] since it left the ground */
+    const double far = pace * time - w->away, jump = (far - 1.1) / pace; /* [s] since the jump */
     return (vec3){far - course / 2, jump > 0 && jump < 0.55 ? 9.81 / 2 * jump * (0.55 - jump) : 0, 0};
 }
 
@@ -137,8 +137,8 @@ static void set_home(world *w)
         }
 }
 
-/* Gusts that run across the cloth, as sin(t - phase) = sin(t) cos(phase) - cos(t) sin(phase): a callback is called at
-   each step. It uses no velocities: see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
+/* Gusts that travel across the cloth. The callback runs in each step, so sin(t - phase) is computed as
+   sin(t) cos(phase) - cos(t) sin(phase). It does not use velocities; see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
 static void blow(void *user, double t, size_t particles, const double *const position[3],
                  const double *const velocity[3], double *const force[3])
 {
@@ -152,7 +152,7 @@ static void blow(void *user, double t, size_t particles, const double *const pos
 
 /* --------------------------------------------------------------------------------------------- between axes and xyz */
 
-/* A coordinate for each axis of the scene: of water that is the height. */
+/* Coordinates along the axes of the scene. For water, the only axis is the height. */
 static void to_axes(const world *w, vec3 p, double own[3])
 {
     own[0] = w->axes == 1 ? p.y : p.x;
@@ -170,8 +170,9 @@ static void get_positions(const world *w, vec3 *out)
 
 /* ------------------------------------------------------------------------------------------------- making, freeing */
 
-/* Every method that scenes offer, so that the user may change it while all moves on. RKN8 and SRKN6 are not for damped
-   links: the links are made without damping, world_set_damping() comes later. Nor do they have contacts. */
+/* All methods for scenes, so that the user can change the method at any time. RKN8 and SRKN6 do not support damped
+   links, so links are created without damping, and world_set_damping() is called later. They do not support contacts
+   either. */
 static uint32_t all_methods(const world *w)
 {
     uint32_t methods = 0;
@@ -225,7 +226,7 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
     if (memory == NULL)
         return false;
     const bool made = spring_scene_init(memory, bytes, &def, &w->scene) == SPRING_OK;
-    if (!made) /* else the scene begins where its memory does */
+    if (!made) /* otherwise the scene is freed with its memory */
         free(memory);
     return made;
 }
@@ -236,8 +237,8 @@ static void set_bodies(world *w)
     must(spring_scene_set_colliders(w->scene, w->body, WORLD_BODIES), "bodies");
 }
 
-/* The capsule and the pinned edge of the cape go to where the body is at the end of these steps. At the end of its course
-   everything is moved back by a transform, which stretches no link. */
+/* Moves the capsule and the pinned edge of the cape to the position of the body at the end of these steps. At the end
+   of its path everything is moved back by a transform, which does not stretch links. */
 static void move_body(world *w, double duration)
 {
     const double time = spring_scene_time(w->scene);
@@ -299,7 +300,7 @@ bool world_open(world *w, world_kind kind)
     } else if (kind == WORLD_CAPE)
         move_body(w, 1);
     else if (kind == WORLD_WATER)
-        world_poke(w, w->columns / 3 + w->columns * (w->rows / 2)); /* something to look at */
+        world_poke(w, w->columns / 3 + w->columns * (w->rows / 2)); /* starts with a wave */
     return made;
 }
 
@@ -319,8 +320,8 @@ void world_close(world *w)
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
 
-/* The hand follows the mouse at half the speed of waves at most: a faster one stretches the links next to it, and asks for
-   shorter steps (docs/dragging.md). */
+/* The dragged particle follows the mouse at no more than half the wave speed. A faster drag stretches the adjacent
+   links and requires shorter steps (docs/dragging.md). */
 static void reach(world *w, double duration)
 {
     const vec3 d = {w->goal.x - w->hand.x, w->goal.y - w->hand.y, w->goal.z - w->hand.z};
@@ -335,7 +336,7 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
         return SPRING_OK;
     if (w->kind == WORLD_CAPE)
         move_body(w, (double)n * dt);
-    if (w->grabbed != WORLD_NOTHING) { /* it will be there after these n steps, and the links feel how fast it goes */
+    if (w->grabbed != WORLD_NOTHING) { /* arrives after these n steps; link damping sees its velocity */
         double own[3];
         reach(w, (double)n * dt);
         to_axes(w, w->hand, own);
@@ -349,12 +350,12 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
     status = spring_scene_advance(w->scene, method, dt, 1);
     if (status != SPRING_OK)
         return status;
-    if (!(world_energy(w) < most_energy)) /* on its way to where it is not finite any more */
+    if (!(world_energy(w) < most_energy)) /* about to overflow */
         return SPRING_ENONFINITE;
     w->spare = w->previous;
     w->previous = before;
     get_positions(w, w->current);
-    if (w->kind == WORLD_CAPE) /* where it is drawn */
+    if (w->kind == WORLD_CAPE) /* for drawing */
         for (int axis = 0; axis < 2; axis++) {
             w->body[0].at[axis] += (double)n * dt * w->body[0].velocity[axis];
             w->body[0].to[axis] += (double)n * dt * w->body[0].velocity[axis];
@@ -390,7 +391,7 @@ void world_set_damping(world *w, double ratio)
         }
 }
 
-/* Setting the force says, too, that it is another one now: a force may have been kept. */
+/* Setting the callback also discards a kept force, which may be out of date. */
 void world_set_wind(world *w, bool blows)
 {
     w->wind = blows && (w->kind == WORLD_CLOTH || w->kind == WORLD_CAPE) ? strongest : 0;
@@ -416,7 +417,7 @@ void world_release(world *w)
     if (w->grabbed == WORLD_NOTHING)
         return;
     const uint8_t no = 0;
-    if (w->pinned[w->grabbed]) /* stays, and would go on as fast as the hand was */
+    if (w->pinned[w->grabbed]) /* stays pinned, and would keep the velocity of the drag */
         must(spring_scene_drive(w->scene, w->grabbed, NULL, 0), "stop");
     else
         must(spring_scene_set_pinned(w->scene, w->grabbed, 1, &no), "let go");
@@ -460,7 +461,7 @@ void world_poke(world *w, uint32_t particle)
         const vec3 p = w->current[i];
         const double x = p.x - at.x, y = p.y - at.y, z = p.z - at.z;
         const double part = exp(-(x * x + y * y + z * z) / (push->radius * push->radius));
-        if (part < 0.01 || w->pinned[i] || i == w->grabbed) /* a pin goes on as fast as it is told */
+        if (part < 0.01 || w->pinned[i] || i == w->grabbed) /* a pinned particle would keep the velocity */
             continue;
         double v[3] = {0};
         must(spring_scene_get(w->scene, SPRING_VELOCITY, v, 0, i, 1), "poke");

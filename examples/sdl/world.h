@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What moves: a cloth, a rope, water, a cloth that falls on a sphere, or a cape on a body that runs, jumps and is
- * teleported; and the hand that is at it. Nothing here knows of windows.
+ * The simulation: a cloth, a rope, water, a cloth that falls on a sphere, or a cape on a body that runs, jumps and is
+ * teleported; dragging, cutting and poking. It is independent of windows and drawing.
  *
- * Lengths are in metres; x to the right, y up, z towards the viewer.
+ * Lengths are in metres; x points right, y up, z towards the viewer.
  */
 #ifndef SPRINGS_WORLD_H
 #define SPRINGS_WORLD_H
@@ -14,20 +14,20 @@ typedef struct vec3 {
     double x, y, z;
 } vec3;
 
-/* How the wind comes to a particle: cosine and sine of the phase of its gusts. */
+/* Cosine and sine of the phase of the gusts at a particle. */
 typedef struct gust {
     double along, across;
 } gust;
 
 typedef enum world_kind { WORLD_CLOTH, WORLD_ROPE, WORLD_WATER, WORLD_DRAPE, WORLD_CAPE, WORLD_KINDS } world_kind;
 
-enum { WORLD_BODIES = 2 }; /* of a drape or a cape: a sphere or capsule, and the ground */
+enum { WORLD_BODIES = 2 }; /* of drape and cape: a sphere or capsule, and the ground */
 
 extern const char *const world_names[WORLD_KINDS];
 
 static const uint32_t WORLD_NOTHING = UINT32_MAX; /* no particle */
 
-/* The link from a particle to its neighbour in the grid, as a bit of world.torn. */
+/* Bits of world.torn: the links from a particle to its neighbours in the grid. */
 enum { TORN_RIGHT = 1, TORN_DOWN = 2, TORN_DOWN_RIGHT = 4, TORN_DOWN_LEFT = 8 };
 
 /* Particle (column, row) has index column + columns * row. */
@@ -38,57 +38,57 @@ typedef struct world {
     size_t particles, links;
     double spacing, wave; /* [m] between particles at rest; [m/s] speed of waves along them */
     double damping;       /* [N s/m] of each link */
-    double wind;          /* [N] on a particle, at most; only a cloth or a cape feels it */
+    double wind;          /* [N] largest force on a particle; only for cloth and cape */
     gust *gust;           /* [particles] */
-    spring_link *link;    /* [links] as the grid made them */
-    uint8_t *pinned;      /* [particles] as they were at the start */
-    uint8_t *torn;        /* [particles] bits TORN_... of their links that are cut */
+    spring_link *link;    /* [links] initial links */
+    uint8_t *pinned;      /* [particles] at the start */
+    uint8_t *torn;        /* [particles] bits TORN_... of cut links */
     vec3 *home;           /* [particles] at the start */
-    vec3 *previous;       /* [particles] before the last step, and */
-    vec3 *current;        /* [particles] after it: what is drawn lies between them */
+    vec3 *previous;       /* [particles] before the last step */
+    vec3 *current;        /* [particles] after it; drawing interpolates between both */
     vec3 *spare;          /* [particles] */
     spring_collider body[WORLD_BODIES];
-    double away;      /* [m] the body of the cape has been teleported back by so much */
+    double away;      /* [m] total distance by which the body was teleported back */
     uint32_t grabbed; /* particle, or WORLD_NOTHING */
-    vec3 hand, goal;  /* where the hand is, and where the mouse wants it */
+    vec3 hand, goal;  /* position of the drag, and its target at the mouse */
 } world;
 
-/** Make a world. False without memory, or if the library refuses it; the world is empty then. */
+/** Creates a world. Returns false if out of memory, or if the definition is rejected; the world is then empty. */
 bool world_open(world *w, world_kind kind);
 
-/** Free what it holds; an empty one holds nothing. */
+/** Frees a world; an empty world is allowed. */
 void world_close(world *w);
 
-/** Take n steps of dt [s], and the hand with them. After a failure what is drawn stays as it was.
+/** Takes n steps of dt [s], and moves the drag. After a failure, the states for drawing are unchanged.
 
-    Returns what spring_scene_advance() does; SPRING_ENONFINITE, too, where there is more energy than can be. */
+    Returns the status of spring_scene_advance(), or SPRING_ENONFINITE if the energy is implausibly large. */
 spring_status world_advance(world *w, spring_method method, double dt, uint64_t n);
 
-/** Whether there are colliders; methods that require smooth forces, and Euler, have no contacts. */
+/** Returns true if there are colliders. Euler and methods that require smooth forces do not support contacts. */
 bool world_has_bodies(const world *w);
 
-/** Positions [particles] a part alpha of the way from the state before the last step to that after it. */
+/** Writes positions [particles], interpolated by alpha between the states before and after the last step. */
 void world_between(const world *w, double alpha, vec3 *out);
 
 /** Kinetic, elastic and potential energy [J]. */
 double world_energy(const world *w);
 
-/** Damp every link that is not cut, as a part of 2 sqrt(mass stiffness). */
+/** Sets the damping of every link that is not cut, relative to 2 sqrt(mass stiffness). */
 void world_set_damping(world *w, double ratio);
 
-/** Let the wind blow, or not. */
+/** Turns the wind on or off. */
 void world_set_wind(world *w, bool blows);
 
-/** Take hold of a particle; where the hand is to go with it; let go. What was pinned at the start stays. */
+/** Grabs a particle, sets the target of the drag, releases it. Particles that were pinned at the start stay pinned. */
 void world_grab(world *w, uint32_t particle);
 void world_pull(world *w, vec3 goal);
 void world_release(world *w);
 
-/** Cut a link. */
+/** Cuts a link. */
 void world_cut(world *w, size_t link);
 bool world_is_cut(const world *w, size_t link);
 
-/** Push the surroundings of a particle: cloth and cape away from the viewer, a rope to the right, a drape up, water down. */
+/** Pushes a particle and its surroundings: cloth and cape away from the viewer, rope right, drape up, water down. */
 void world_poke(world *w, uint32_t particle);
 
 #endif

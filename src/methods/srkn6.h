@@ -9,8 +9,8 @@
  * Drag      with g = drag/mass belongs to the drift, x' = v, v' = -g v, which is solved exactly:
  *               x += v (1 - e^(-g a_i h))/g,   v += v (e^(-g a_i h) - 1)
  *           Order 6 requires that the triple commutator of the kick with the drift vanishes. It does: x' and v' = -g v
- *           are of degree 1 in v, and each commutator with the kick lowers these degrees by one. (With drag in the kick,
- *           this would not hold.) With drag as the only force the step is exact.
+ *           are of degree 1 in v, and each commutator with the kick lowers these degrees by one. (With drag in the
+ *           kick, this would not hold.) With drag as the only force the step is exact.
  * Order     6. Undamped phase error per step: 8.04e-8 z^7, z = h omega; the energy error of an oscillator
  *           is at most 2.84e-7 z^6 (1 + 0.3 z^2) at any time.
  * Limit     z = 9.0734 without drag. With drag, h^2 omega^2 < 82.3 and g h < 20 are sufficient (tests/test_srkn6.c).

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Buttons, selects, and what is written beside the scene.
+// Buttons, selects, and the text next to the scene.
 import { Plot } from "./plots.mjs";
 import { presets, sentences } from "./presets.mjs";
 
 const $ = (id) => document.getElementById(id);
 const names = { water: "Water", cloth: "Cloth", rope: "Rope", jelly: "Jelly", curtain: "Curtain" };
-const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01, curtain: 0.01 }; // [N s/m] a notch
-const report = "../report/index.html"; // beside the page, where tools/report writes it
+const dampingUnit = { water: 5, cloth: 0.01, rope: 0.3, jelly: 0.01, curtain: 0.01 }; // [N s/m] per notch
+const report = "../report/index.html"; // relative to the page, as written by tools/report
 const drawEvery = 150; // [ms] numbers and plots
 
 function option(value, text, disabled = false) {
@@ -49,7 +49,7 @@ export class Controls {
             this.checked(what, value, values.includes(value), usual);
         const speeds = Array.from($("speed").options, ({ value }) => Number(value));
         const limiter = (id, what) => {
-            const [least, most] = [Number($(id).min), Number($(id).max)]; // as the page was written
+            const [least, most] = [Number($(id).min), Number($(id).max)]; // the range in the page
             return (value, usual) => {
                 const nearest = Math.max(least, Math.min(most, value));
                 return this.checked(what, value, value === nearest, Number.isNaN(nearest) ? usual : nearest);
@@ -93,7 +93,7 @@ export class Controls {
         };
     }
 
-    /** Returns the value if it is good; otherwise says so and returns the usual one. Scripts can set any value. */
+    /** Returns the value if it is valid, otherwise shows an error and returns the usual value. Scripts can set any. */
     checked(what, value, good, usual) {
         this.remark = good
             ? ""
@@ -254,7 +254,7 @@ export class Controls {
         $("no-command").hidden = Boolean(words);
     }
 
-    /** The scene stands still until a new one is made. */
+    /** Stops the scene until a new one is created. */
     fail(message) {
         this.trouble = `The physics has stopped: ${message}. Reset starts it again.`;
         this.notice();
@@ -311,7 +311,7 @@ export class Controls {
         return this.info.methods.find(({ name }) => name === method).stable;
     }
 
-    /** Now and then: the eye reads no faster. */
+    /** Draws at intervals, no faster than one can read. */
     draw() {
         const now = performance.now();
         if (now - this.drawn < drawEvery || !this.dirty) return;

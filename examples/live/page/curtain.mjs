@@ -26,12 +26,12 @@ export function curtain(grid, { size: n = 25, damping = 0 }) {
     return { definition, count: [n, n, 1], start: Float64Array.from(made.position), settings };
 }
 
-const front = -0.7; // [m] where a sphere appears, and where it vanishes
+const front = -0.7; // [m] where a sphere appears; below, where it vanishes
 const back = 1.1;
 const speed = 5; // [m/s]
-const fastest = 4; // [m/s] to the sides, after the pointer
+const fastest = 4; // [m/s] sideways, following the pointer
 
-/** A sphere that moves away from the viewer, and to the sides after a pointer. */
+/** A sphere that moves away from the viewer and follows a pointer sideways. */
 export class Sphere {
     constructor(x, z) {
         Object.assign(this, { at: [x, front, z], target: [x, z], radius: 0.24, held: true });
@@ -46,7 +46,7 @@ export class Sphere {
         return !this.held && this.at[1] >= back;
     }
 
-    /** Moves on; returns the collider of this time, as it was at its start. */
+    /** Advances the sphere. Returns its collider at the start of this time. */
     advance(duration) {
         const { at, target, radius } = this;
         const [dx, dz] = [target[0] - at[0], target[1] - at[2]];

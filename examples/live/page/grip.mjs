@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The hand in a scene: it grabs a particle, and pulls it no faster than the scene can follow.
+// Grabs a particle and drags it no faster than the scene can follow.
 
 export class Hand {
     constructor(lab) {
         const { settings, definition } = lab.preset;
         const spacing = lab.length / (settings.size - 1);
-        // [m/s] Half of the speed of waves, with which links stretch to two or three times their length at worst.
+        // [m/s] Half the wave speed, at which links stretch to two or three times their length at most.
         this.fastest = 0.5 * spacing * Math.sqrt(settings.stiffness / settings.mass);
         this.shown = { 1: [2], 2: [0, 2], 3: [0, 1, 2] }[definition.axes]; // axes of the scene in x y z with z up
         this.lab = lab;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Pointer, touch and keyboard on the scene: poke water, grab a particle, cut, or turn the view. The keyboard moves a cursor
-// that does what a finger does.
+// Pointer, touch and keyboard input: poke water, grab a particle, cut, or turn the view. The keyboard moves a cursor
+// that acts like a finger.
 import { Vector3 } from "three";
 
-const pokeEvery = 70; // [ms] while a pointer is drawn over the water
-const reach = 56; // [CSS px] from a particle that is grabbed
+const pokeEvery = 70; // [ms] while a pointer moves over the water
+const reach = 56; // [CSS px] largest distance for grabbing a particle
 
 export class Hand {
-    /** act: {poke(x, y), push(x, z), letGo(), grab(particle), drag([x, y, z]), release(), snip(particle)}; scissors(): is cutting chosen? */
+    /** act: {poke(x, y), push(x, z), letGo(), grab(particle), drag([x, y, z]), release(), snip(particle)};
+        scissors(): true if cutting is chosen */
     constructor(stage, cursor, act, scissors) {
         Object.assign(this, { stage, cursor, act, scissors });
         this.doing = null;
@@ -26,7 +27,7 @@ export class Hand {
         });
     }
 
-    /** A new scene: nothing is held, and the cursor has no place in it. */
+    /** Resets the state for a new scene: nothing is held, and the cursor has no position. */
     begun() {
         this.doing = null;
         this.place = null;
@@ -39,7 +40,7 @@ export class Hand {
         try {
             this.stage.canvas.setPointerCapture(event.pointerId);
         } catch {
-            // a pointer that is gone already, or one that a script made up
+            // the pointer has already gone, or is not a real one
         }
         this.begin(event.offsetX, event.offsetY, event.pointerId);
     }
@@ -130,7 +131,7 @@ export class Hand {
         this.cursor.style.top = `${this.place[1]}px`;
     }
 
-    // On something: the middle of the first pane of water, else a particle.
+    // Starts in the middle of the first pane for water, otherwise on a particle.
     startPlace() {
         const { stage } = this;
         const box = stage.box(0);

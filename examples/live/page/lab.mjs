@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A lab is a pane of the page: a preset scene, what disturbs it, and what is drawn of it.
+// A lab is the simulation of one pane: a preset scene, its disturbances, and its states for drawing.
 import { grid, methods, Scene } from "springstep/scenes";
 import { hashOf, preset, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
 import { curtain, Sphere } from "./curtain.mjs";
@@ -10,13 +10,13 @@ const frameRate = 60;
 
 export const methodTable = new Map(); // by name, in the order of tables
 
-/** Fills methodTable, which compiles the library if it is not compiled yet. */
+/** Fills methodTable. This compiles the library if it is not compiled yet. */
 export function listMethods() {
     for (const method of methods()) methodTable.set(method.name, method);
 }
 
 function takes(definition, method) {
-    if (definition.colliders && method === "euler") return false; // it has no contacts, and fails when it advances
+    if (definition.colliders && method === "euler") return false; // Euler does not support contacts, and would fail when it advances
     try {
         new Scene({ ...definition, methods: [method] }).free();
         return true;
@@ -27,14 +27,14 @@ function takes(definition, method) {
 }
 
 export class Lab {
-    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene may be left out. */
+    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene are optional. */
     constructor(run) {
         if (methodTable.size === 0) listMethods();
         const asked = { ...run, calm: undefined, size: run.size || undefined };
         this.preset = run.scene === "curtain" ? curtain(grid, asked) : preset(grid, asked);
         const { definition, count, settings } = this.preset;
         this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
-        // Of water nothing is edited, and links that cannot be edited take less memory.
+        // Water is not edited, and links that cannot be edited take less memory.
         const editable = run.scene !== "water";
         this.scene = new Scene({ ...definition, editable, methods: [...this.taken] });
         const { particles, links } = this.scene;
@@ -59,8 +59,9 @@ export class Lab {
         this.scene.free();
     }
 
-    // Without a callback steps take one pass over memory, with the same bits. But leapfrog keeps the force of damped links from
-    // step to step as a part of the state, and evaluates it again after a change of the callback. So there the callback stays.
+    // Without a callback, steps take one pass over memory, with bit-identical results. But leapfrog keeps the force of
+    // damped links as a part of the state, and evaluates it again after a change of the callback. So with damped links
+    // the callback is kept.
     feel() {
         const needed = this.windSpeed > 0 || this.preset.settings.damping > 0 || this.pushes.any;
         if (needed !== (this.scene.force !== null)) this.scene.force = needed ? this.force : null;
@@ -88,7 +89,8 @@ export class Lab {
         return this.taken.has(method);
     }
 
-    // All of n steps, and what is drawn before the last of them. If the scene explodes, false, and it is as it was.
+    // Takes n steps and stores the state before the last step for drawing. If the scene explodes, returns false and
+    // restores the scene.
     take(method, dt, n) {
         const saved = this.scene.snapshot();
         try {
@@ -103,7 +105,7 @@ export class Lab {
         return false;
     }
 
-    /** Takes n steps of 1/(60 stepsPerFrame) s, or as many as the scene survives; returns how many. */
+    /** Takes up to n steps of 1/(60 stepsPerFrame) s, until the scene explodes; returns the number taken. */
     advance(method, stepsPerFrame, n) {
         if (n === 0) return 0;
         const dt = 1 / (frameRate * stepsPerFrame);
@@ -115,7 +117,7 @@ export class Lab {
         const all = this.take(method, dt, n);
         const taken = all ? n : takeSteps(this.scene, method, dt, n);
         this.now = this.xyz();
-        if (!all) this.before = this.now; // what take() has seen is not a state of this scene
+        if (!all) this.before = this.now; // the state stored by take() was undone
         this.pushes.forget(this.time);
         this.feel();
         if (this.sphere?.gone) {
@@ -125,16 +127,16 @@ export class Lab {
         return taken;
     }
 
-    /** How many steps are due after so many seconds; what is beyond the most is dropped. */
+    /** Returns the number of steps due after a time; more than `most` are dropped. */
     due(seconds, stepsPerFrame, most) {
-        if (!(seconds >= 0)) return 0; // the first frame may have begun before the page
+        if (!(seconds >= 0)) return 0; // the first frame can begin before the page
         const dt = 1 / (frameRate * stepsPerFrame);
         const total = this.pending + seconds;
         this.pending = total % dt;
         return Math.min(Math.round((total - this.pending) / dt), most);
     }
 
-    /** x y z of all particles, between the last two states: at the time of the clock. */
+    /** x y z of all particles at the time of the clock, interpolated between the last two states. */
     positions(stepsPerFrame) {
         const alpha = Math.min(this.pending * frameRate * stepsPerFrame, 1);
         const { before, now } = this;
@@ -179,7 +181,7 @@ export class Lab {
         return Math.sqrt(sum / this.particles);
     }
 
-    /** A push of `peak` newtons at most, as spring-scene --poke. */
+    /** Adds a push with a peak force [N], as spring-scene --poke does. */
     poke(x, y, peak, area, start = this.time) {
         this.pushes.add({ start, x, y, peak, area });
         this.feel();
@@ -197,13 +199,13 @@ export class Lab {
         this.hand.release();
     }
 
-    /** A sphere comes from the viewer, or goes on at (x, z) [m]. */
+    /** Starts a sphere at the viewer, or moves the target of the current one to (x, z) [m]. */
     push(x, z) {
         this.sphere ??= new Sphere(x, z);
         Object.assign(this.sphere, { target: [x, z], held: true });
     }
 
-    /** Without a pointer the sphere goes on to where it vanishes. */
+    /** Releases the sphere, which then moves straight on until it vanishes. */
     letGo() {
         if (this.sphere) this.sphere.held = false;
     }
@@ -225,7 +227,7 @@ export class Lab {
     wind(speed) {
         this.windSpeed = this.preset.definition.axes === 3 ? speed : 0;
         this.feel();
-        if (this.scene.force) this.scene.force = this.force; // a kept force is of the wind before
+        if (this.scene.force) this.scene.force = this.force; // discards a kept force, which has the old wind
     }
 
     rain(dropsPerSecond) {
@@ -252,7 +254,7 @@ export class Lab {
         this.ball = new Ball(this, x, y, height);
     }
 
-    /** [m] of the water at a place. */
+    /** Height [m] of the water at a point. */
     level(x, y) {
         const spacing = this.length / (this.count[0] - 1);
         const [i, j] = [x, y].map((each) => Math.round(each / spacing));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The live page: what is chosen, what that asks of the physics, and what is shown of its answers.
+// The live page: connects the controls, the physics worker and the stage.
 import { Controls } from "./controls.mjs";
 import { Hand } from "./hand.mjs";
 import { Physics } from "./physics.mjs";
 import { commandOf, heavyEnd, heavySteps, presets } from "./presets.mjs";
 import { Stage } from "./stage.mjs";
 
-/* global WORKER */ // put in by bundle.mjs
+/* global WORKER */ // defined by bundle.mjs
 
 function newStage() {
     try {
@@ -30,7 +30,7 @@ const state = {
     steps: presets.water.steps,
     speed: presets.water.speed,
     paused: still.matches,
-    size: 0, // 0: that of the preset
+    size: 0, // 0: as in the preset
     damping: 0,
     heavy: false,
     reference: false,
@@ -38,7 +38,7 @@ const state = {
     rain: 0,
     scissors: false,
 };
-let touched = false; // since the scene began: no command does the same
+let touched = false; // since the scene began, so that no command reproduces it
 
 function touch(kind, how) {
     touched = true;
@@ -46,7 +46,7 @@ function touch(kind, how) {
     controls.command();
 }
 
-/** Before the first step it is a setting of the scene. */
+/** Changes a setting of a running scene. Before the first step, it is a setting of the scene itself. */
 function changeMidway(kind, how) {
     if (!state.paused || controls.time > 0) touched = true;
     physics.order(kind, how);
@@ -137,7 +137,7 @@ const actions = {
     letGo: () => physics.order("letGo"),
     ball: (x, y, height) => touch("ball", { x, y, height }),
     hash: () => physics.ask("hash"),
-    /** That prints the hash of the first pane; "": there is none. */
+    /** The command that prints the hash of the first pane; "": there is none. */
     command() {
         if (touched || presets[state.scene].own || state.wind > 0 || state.rain > 0) return "";
         return commandOf(run(), state.method, state.steps, controls.time).join(" ");
@@ -173,7 +173,7 @@ physics.onframe = (frame) => {
     fresh = true;
 };
 
-// Times of the last frames [ms]: from one to the next, and of drawing alone.
+// Times of the last frames [ms]: intervals between frames, and drawing only.
 const intervals = [];
 const drawings = [];
 
@@ -208,8 +208,8 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
 });
 still.addEventListener("change", () => actions.pause(still.matches));
 
-/** For tests, and for whoever opens the console: of the first pane. step() stops the clock; a scene that was running, and
-    that nobody has touched, begins again, so that as many frames have passed as it is told. */
+/** For tests and for the console; acts on the first pane. step() stops the clock. A running scene that was not touched
+    is restarted first, so that exactly the given number of frames have passed. */
 window.springstepLab = {
     async step(frames) {
         if (!state.paused && !touched) remake();

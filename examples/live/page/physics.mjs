@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The page's end of the worker: orders go out as soon as it is ready, one tick is under way at a time, questions get a
-// Promise. After an exception in it nothing goes out until start().
+// The interface of the page to the worker. Commands are sent when the worker is ready, one tick is pending at a time,
+// and questions return a Promise. After an exception in the worker, nothing is sent until start().
 import { hasSimd } from "springstep/scenes";
 
 export class Physics {
-    /** source: of the worker */
+    /** source: source text of the worker */
     constructor(source) {
         this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
         this.simd = hasSimd();
@@ -13,7 +13,7 @@ export class Physics {
         this.start();
     }
 
-    /** A new worker, without a scene. */
+    /** Starts a new worker without a scene. */
     start() {
         this.worker?.terminate();
         this.worker = new Worker(this.source);
@@ -37,7 +37,7 @@ export class Physics {
         this.ready.then(() => worker.postMessage({ kind, ...more }));
     }
 
-    /** Advances by so many seconds, unless the last tick is still under way: then false. */
+    /** Advances by a time [s]. Returns false if the last tick is still pending. */
     tick(elapsed) {
         if (this.underWay || this.failed) return false;
         this.underWay = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small plots against the time of the scene, one line a pane.
+// Small plots over the time of the scene, with one line per pane.
 import uPlot from "uplot";
 
 const most = 900; // points kept
@@ -8,7 +8,7 @@ function ink(name) {
     return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** What a plot should show: all of the lines that hold; of one that has exploded alone, what it was before. */
+/** The range of a plot: all lines that have not exploded, or the part of a single line before it exploded. */
 function limits(lines, exploded, log) {
     const held = lines.filter((_, i) => !exploded[i]);
     let values = (held.length ? held : lines).flat().filter((y) => Number.isFinite(y) && (!log || y > 0));
@@ -22,7 +22,7 @@ function limits(lines, exploded, log) {
     return [low - room, high + room];
 }
 
-/** Powers of ten, at most five of them. */
+/** At most five powers of ten. */
 function decades(u, axis, low, high) {
     const [first, last] = [Math.round(Math.log10(low)), Math.round(Math.log10(high))];
     const stride = Math.max(1, Math.ceil((last - first) / 4));

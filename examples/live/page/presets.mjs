@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The scenes of the page: what they begin with, what they say, and the command that gives the same bits.
+// The scenes of the page: their settings, their texts, and the commands with bit-identical results.
 
-/** steps: a frame of 1/60 s, half the stable step of leapfrog and as spring-scene takes them; speed: of the playback; own:
-    spring-scene has no such scene. */
+/** steps: per frame of 1/60 s, each half the stable step of leapfrog, as in spring-scene; speed: of the playback; own:
+    not a scene of spring-scene. */
 export const presets = {
     water: { steps: 13, speed: 1 / 8, sizes: [17, 25, 33, 49] },
     cloth: { steps: 19, speed: 1, sizes: [13, 25, 33] },
@@ -11,7 +11,7 @@ export const presets = {
     curtain: { steps: 15, speed: 1, sizes: [19, 25, 33], own: true },
 };
 
-/** A rope whose end is 10^4 times as heavy as its other particles; it takes stiff links, and many steps. */
+/** A rope with an end 10^4 times as heavy as its other particles, which requires stiff links and many steps. */
 export const heavyEnd = { mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
 export const heavySteps = 150;
 
@@ -32,7 +32,7 @@ export function commandOf(run, method, steps, duration) {
     return words;
 }
 
-/** What to try, what it shows, and the figure of the report that measures it. */
+/** What to try, what it shows, and the corresponding figure of the report. */
 export const sentences = {
     water: [
         "Poke it, let it rain, drop the ball. Then choose Euler: the water explodes, where leapfrog stays calm with the same work. With 300 steps a frame you can watch Euler's waves grow.",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One canvas, divided into panes that show the same scene from the same eye; a lost context comes back by itself.
+// One canvas, divided into panes that show the same scene from the same viewpoint. A lost context is restored.
 import {
     Color,
     NoToneMapping,
@@ -34,7 +34,7 @@ function themeOf(element) {
     };
 }
 
-// Is everything drawn by the processor? Then smooth edges cost more than the rest of the picture.
+// Returns true for software rendering, in which antialiasing costs more than the rest of the picture.
 function isSoftware() {
     const gl = document.createElement("canvas").getContext("webgl2");
     const info = gl?.getExtension("WEBGL_debug_renderer_info");
@@ -56,7 +56,7 @@ export class Stage {
         this.canvas = canvas;
         this.software = isSoftware();
         const antialias = !this.software;
-        this.sharpness = 1; // pixels drawn for one that would be
+        this.sharpness = 1; // rendered pixels per pixel of the screen
         this.paces = [];
         this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias, stencil: true });
         this.renderer.toneMapping = NoToneMapping;
@@ -69,7 +69,7 @@ export class Stage {
         canvas.addEventListener("webglcontextlost", (event) => {
             event.preventDefault();
             this.lost = true;
-            for (const pane of this.panes) pane.stale = true; // what it had in the context is gone
+            for (const pane of this.panes) pane.stale = true; // its resources in the context are lost
         });
         canvas.addEventListener("webglcontextrestored", () => {
             this.lost = false;
@@ -79,7 +79,7 @@ export class Stage {
         this.resize();
     }
 
-    /** A view for each pane. */
+    /** Creates a view for each pane. */
     build(info, panes) {
         for (const pane of this.panes) if (!pane.stale) dispose(pane);
         const theme = themeOf(this.canvas);
@@ -108,7 +108,7 @@ export class Stage {
         this.draw();
     }
 
-    /** From one frame to the next, in milliseconds: where that is slow for long, fewer pixels are drawn. */
+    /** Records the time between two frames [ms]. If frames are slow for long, fewer pixels are rendered. */
     pace(interval) {
         const slow = 22; // [ms]
         this.paces.push(interval);
@@ -120,7 +120,7 @@ export class Stage {
         this.resize();
     }
 
-    /** Of pane i, in CSS pixels from the left and the top. Panes stand side by side, or on each other where it is narrow. */
+    /** The box of pane i, in CSS pixels from the left and the top. Panes are side by side, stacked in narrow windows. */
     box(i) {
         const { clientWidth: w, clientHeight: h } = this.canvas;
         const n = Math.max(1, this.panes.length);
@@ -135,7 +135,7 @@ export class Stage {
         const flat = Math.hypot(arm.x, arm.y);
         const angle = Math.atan2(arm.y, arm.x) + yaw;
         const high = Math.max(-0.4, Math.min(1.45, Math.atan2(arm.z, flat) + pitch));
-        // the scene fits into a box of this shape: before a narrower pane the eye steps back
+        // the scene fits into a box of this shape; for narrower panes the camera is farther away
         const reach = arm.length() * Math.max(1, (fit * box.h) / box.w);
         this.camera.position.set(
             target.x + reach * Math.cos(high) * Math.cos(angle),
@@ -158,7 +158,7 @@ export class Stage {
         });
     }
 
-    // What has flown out of sight is no picture: the last one stays.
+    // If particles are out of sight, the last picture is kept.
     tame(positions) {
         const most = 40 * this.info.length;
         return positions.every((x) => Math.abs(x) < most);
@@ -203,7 +203,7 @@ export class Stage {
         return caster.ray;
     }
 
-    /** Where the ray meets the water at rest, [x, y] of the scene, or null. */
+    /** The intersection of the ray with the water at rest, [x, y] of the scene, or null. */
     onWater(ray) {
         const hit = ray.intersectPlane(new Plane(new Vector3(0, 0, 1), 0), new Vector3());
         if (!hit) return null;
@@ -212,7 +212,7 @@ export class Stage {
         return x >= 0 && x <= length && y >= 0 && y <= length ? [x, y] : null;
     }
 
-    /** Where the ray meets the plane of a curtain, [x, z] of the scene, or null beside it. */
+    /** The intersection of the ray with the plane of a curtain, [x, z] of the scene, or null outside of it. */
     onCurtain(pane, ray) {
         const hit = ray.intersectPlane(new Plane(new Vector3(0, 1, 0), 0), new Vector3());
         if (!hit) return null;
@@ -221,7 +221,7 @@ export class Stage {
         return x > -0.1 && x < length + 0.1 && z > -length - 0.1 && z < 0.1 ? [x, z] : null;
     }
 
-    /** The particle nearest to the ray, if it is within so many CSS pixels; of those that are alike the foremost. */
+    /** The particle nearest to the ray within a number of CSS pixels; of equally near particles, the one in front. */
     nearest(pane, ray, pixels) {
         const { positions, view } = this.panes[pane];
         if (!positions) return null;
@@ -247,7 +247,7 @@ export class Stage {
         return best;
     }
 
-    /** A plane through a particle, towards the eye. */
+    /** A plane through a particle, facing the camera. */
     planeThrough(pane, particle) {
         const { positions, view } = this.panes[pane];
         const p = new Vector3().fromArray(positions, 3 * particle).add(view.group.position);
@@ -257,7 +257,7 @@ export class Stage {
         return new Plane().setFromNormalAndCoplanarPoint(normal, p);
     }
 
-    /** CSS pixels of a particle of a pane. */
+    /** The position of a particle of a pane in CSS pixels. */
     pixelOf(pane, particle) {
         const { positions, view } = this.panes[pane];
         const box = this.box(pane);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Smooth surfaces through grids of numbers: uniform cubic B-splines, whose ends are the ends of the grid.
+// Smooth surfaces from grids of numbers: uniform cubic B-splines that end at the ends of the grid.
 
-// Weights of four neighbours at fine point i of `times` a cell, and the first of them; indices may be -1 and n.
+// Weights of four neighbours at fine point i, with `times` points per cell, and the index of the first; indices -1 and
+// n are possible.
 function weights(n, times) {
     const fine = (n - 1) * times + 1;
     const table = [];
@@ -19,7 +20,7 @@ function weights(n, times) {
         const each = new Float32Array(n);
         for (let k = 0; k < 4; k++) {
             const at = cell - 1 + k;
-            // beyond the ends the grid goes on straight
+            // the grid is extended linearly beyond its ends
             if (at < 0) {
                 each[0] += 2 * w[k];
                 each[1] -= w[k];
@@ -34,7 +35,7 @@ function weights(n, times) {
     return table;
 }
 
-/** From n*n numbers, `stride` apart, to fine*fine of them. */
+/** Interpolates n*n numbers to fine*fine numbers. */
 export class Upsampler {
     constructor(n, times) {
         this.n = n;

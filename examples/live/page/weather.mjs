@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Wind, rain, and a ball that falls into the water.
+// Wind, rain, and a ball falling into the water.
 import { Spring } from "springstep";
 import { peakOf } from "../../../tools/scenes/presets.mjs";
 
-/** Numbers from 0 to 1 that look random and are the same in every run: a 32-bit xorshift generator. */
+/** Pseudorandom numbers from 0 to 1, the same in every run: a 32-bit xorshift generator. */
 export function random(seed) {
     let state = seed ^ 0x9e3779b9 || 1;
     return () => {
@@ -30,7 +30,7 @@ function noise(t, stream) {
     return 2 * (first + part * part * (3 - 2 * part) * (at(whole + 1) - first)) - 1;
 }
 
-/** Adds the pressure of a gusty wind on a sheet, F = rho/2 |w| (w n) A, where n and A are of the cells around a particle. */
+/** Adds the pressure of a gusty wind on a sheet, F = rho/2 |w| (w n) A; n and A are from the cells around a particle. */
 export function wind(speed, [columns, rows], t, position, force) {
     const density = 1.2; // [kg/m^3]
     const gust = 0.75 + 0.25 * noise(1.3 * t, 1000);
@@ -59,7 +59,7 @@ export function wind(speed, [columns, rows], t, position, force) {
 
 const gravity = 9.81; // [m/s^2]
 
-/** It falls, hits the water, and floats: a single spring whose target is the height of the water. */
+/** A ball that falls, hits the water, and floats: a single spring whose target is the height of the water. */
 export class Ball {
     constructor(lab, x, y, height) {
         Object.assign(this, { lab, x, y, height, radius: 0.28, mass: 12, velocity: 0, spring: null });
@@ -77,7 +77,7 @@ export class Ball {
         if (this.height < level + 0.5 * this.radius) this.splash();
     }
 
-    /** The water gets the momentum of the ball. */
+    /** Transfers the momentum of the ball to the water. */
     splash() {
         const area = Math.PI * this.radius ** 2;
         this.lab.poke(this.x, this.y, peakOf(-this.mass * this.velocity), area);

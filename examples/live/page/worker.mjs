@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Physics, in a worker so that it never waits for drawing, nor drawing for it. The page asks for one tick at a time; a
-// tick advances every pane by what is due and sends back what is drawn of it.
+// The simulation, in a worker so that it and drawing do not wait for each other. The page requests one tick at a time.
+// A tick advances every pane by the time due and returns the positions to draw.
 import { ready } from "springstep/scenes";
 import { Lab, listMethods, methodTable } from "./lab.mjs";
 import { presets } from "./presets.mjs";
 
-const longestTick = 0.1; // [s]; beyond, the scene falls behind
-const tooFar = 15; // lengths of the scene: what has gone so far has exploded, though its numbers hold on for a while
-const tearing = 2.2; // lengths over rest lengths at which links tear while something is held
-const frail = 1.25; // at which those of a curtain tear
+const longestTick = 0.1; // [s]; with longer ticks the scene runs slower than real time
+const tooFar = 15; // lengths of the scene; beyond, it counts as exploded although the numbers are still finite
+const tearing = 2.2; // length over rest length at which links tear while a particle is held
+const frail = 1.25; // the same for links of a curtain
 
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}
@@ -29,7 +29,7 @@ function newPane(method) {
     return { lab: new Lab(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
 }
 
-// The most accurate method. Its steps divide those of the panes, so that all can be compared at the same times.
+// The reference uses the most accurate method. Its steps divide the steps of the panes, so that all have common times.
 function newReference() {
     const lab = new Lab(run);
     const offered = [...methodTable.values()].filter(({ name }) => lab.takes(name));
@@ -134,7 +134,7 @@ function tick(elapsed) {
     show("frame");
 }
 
-// What the page's tests and buttons ask for, with an answer.
+// Requests of tests and buttons of the page that return an answer.
 const questions = {
     step(frames) {
         for (let frame = 0; frame < frames; frame++) {
@@ -190,5 +190,5 @@ const orders = {
 
 onmessage = ({ data }) => orders[data.kind](data);
 onunhandledrejection = ({ reason }) => {
-    throw reason; // else the page would not hear of it
+    throw reason; // so that the page is notified
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Chromium without a window, for the tests: software WebGL, and no request to anywhere.
+// Headless Chromium for the tests, with software WebGL and without network requests.
 import { chromium } from "playwright-core";
 
 const flags = [
@@ -18,13 +18,13 @@ export function launch() {
     return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: flags });
 }
 
-/** A page that is ready; what it says on the console, and what it asks the network for, is kept in page.complaints. */
+/** Opens a page and waits until it is ready. page.complaints keeps console messages and network requests. */
 export async function open(browser, url, how = {}, before = null) {
     const context = await browser.newContext({ viewport: { width: 1280, height: 860 }, ...how });
     const page = await context.newPage();
     page.complaints = [];
     page.on("console", (message) => {
-        const screenshot = message.text().includes("GL Driver Message"); // it is slow, and says so
+        const screenshot = message.text().includes("GL Driver Message"); // a performance warning
         if (["error", "warning"].includes(message.type()) && !screenshot)
             page.complaints.push(message.text());
     });

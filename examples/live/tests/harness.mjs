@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The least of a test frame: cases run one after the other, and are counted.
+// A minimal test framework: cases run one after the other and are counted.
 
 export class Cases {
     constructor(suite) {

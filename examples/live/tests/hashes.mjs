@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Do the labs of the live page have the bits of spring-scene? Each scene with each method, 600 frames with a scripted poke, and
-// scenes as the page's controls make them. tests/js compares the package without SIMD.
+// Checks that the labs of the live page are bit-identical to spring-scene: each scene with each method, 600 frames with
+// a scripted poke, and scenes with settings of the controls. tests/js compares the package without SIMD.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 
@@ -11,7 +11,7 @@ import { Cases } from "./harness.mjs";
 const frames = 600;
 const pokeAt = 37; // frames
 
-/** What spring-scene --hash prints; status 1 is a scene that blows up. */
+/** The output of spring-scene --hash; status 1 is a scene that overflows. */
 export function native(tool, run, method, steps, duration, poke = []) {
     const words = [...commandOf(run, method, steps, duration).slice(1), ...poke];
     return new Promise((resolve, reject) =>
@@ -22,15 +22,15 @@ export function native(tool, run, method, steps, duration, poke = []) {
     );
 }
 
-/** The poke that a scene gets: [x, y, force, area]. */
+/** The poke of a scene: [x, y, force, area]. */
 export function pokeOf(scene, length) {
     const along = scene === "rope" ? 0 : 0.3 * length;
     return [0.4 * length, along, scene === "water" ? 5e4 : 2, (length * length) / 20];
 }
 
 function inLab(run, method, steps) {
-    const lab = new Lab({ ...run, calm: true }); // spring-scene pokes water that is not poked
-    lab.poke(...pokeOf(run.scene, lab.length), pokeAt / 60); // known from the start, as spring-scene knows it
+    const lab = new Lab({ ...run, calm: true }); // without a poke, spring-scene would add its default one
+    lab.poke(...pokeOf(run.scene, lab.length), pokeAt / 60); // added at the start, as in spring-scene
     for (let frame = 0; frame < frames; frame++) if (lab.advance(method, steps, steps) < steps) break;
     const hash = lab.hash();
     lab.free();
@@ -70,7 +70,7 @@ export async function testHashes(tool) {
         const [steps, many] = [1, 1000];
         assert.ok(lab.advance("euler", steps, many) < many);
         const drawn = lab.positions(steps);
-        lab.advance("euler", steps, 1); // explodes at once: before and after are the last state
+        lab.advance("euler", steps, 1); // explodes at once, so both states for drawing are the last one
         assert.deepEqual(drawn, lab.positions(steps));
         assert.ok(drawn.every((x) => !Number.isNaN(x)));
         lab.free();

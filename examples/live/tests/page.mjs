@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The live page in Chromium: its bits, its methods, hands on it, explosions, sizes, what it survives.
+// The live page in Chromium: bit-identical results, methods, dragging, explosions, sizes, error recovery.
 import assert from "node:assert/strict";
 import { pathToFileURL } from "node:url";
 import { join } from "node:path";
@@ -19,7 +19,7 @@ async function choose(page, scene, method, steps) {
     await begin(page);
 }
 
-/** At the start, and paused. */
+/** Restarts and pauses the page. */
 async function begin(page) {
     if ((await page.textContent("#pause")) === "Pause") await page.click("#pause");
     await page.click("#reset");
@@ -31,7 +31,7 @@ const methodsOf = (page) =>
         options.filter((each) => !each.disabled).map((each) => each.value),
     );
 
-/** How many colours a picture has, of the part of the page that the scene takes. */
+/** The number of colours in a picture of the scene. */
 async function colours(page) {
     const picture = (await page.locator("#stage").screenshot()).toString("base64");
     return page.evaluate(async (data) => {
@@ -59,7 +59,7 @@ async function testBits(cases, page, tool) {
                 await choose(page, scene, method, steps);
                 const poke = [];
                 if (scene !== "water") {
-                    // the water has had one
+                    // water already has its default poke
                     await ask(page, "step", pokeAt);
                     const length = { cloth: 2, rope: 2, jelly: 0.7 }[scene];
                     const at = await ask(page, "time");
@@ -301,7 +301,7 @@ async function testHands(cases, page) {
     });
 }
 
-/** Gives a control a value that it does not offer, as only a page that was changed can. */
+/** Sets a control to a value that it does not offer, as only a modified page can. */
 const force = (page, id, value) =>
     page.$eval(
         `#${id}`,

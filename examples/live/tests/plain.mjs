@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cloth and the water of the page once more, as one would write them in JavaScript: leapfrog over links in typed
-// arrays, without drag. For times.mjs.
+// The cloth and the water of the page in plain JavaScript, for times.mjs: leapfrog over links in typed arrays, without
+// drag.
 
 const pinnedOf = (lab) => Uint8Array.from(lab.pinned);
 
@@ -42,7 +42,7 @@ function drift(dt, v, x) {
     for (let i = 0; i < x.length; i++) x[i] += dt * v[i];
 }
 
-/** What lab.advance() does, of a scene with this mass and stiffness. */
+/** The counterpart of lab.advance(), for a scene with this mass and stiffness. */
 export class Plain {
     constructor(lab, mass, stiffness, gravity) {
         const water = gravity === 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of the live page. The last line counts them: "N passed, N failed, N skipped".
 //
-// usage: node run.mjs FOLDER SPRING-SCENE     the folder that tools/live has written
+// usage: node run.mjs FOLDER SPRING-SCENE     the output folder of tools/live
 import { spawn } from "node:child_process";
 import { resolve } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -10,7 +10,7 @@ import { testHashes } from "./hashes.mjs";
 import { testPage } from "./page.mjs";
 
 const [folder, tool] = process.argv.slice(2, 4).map((path) => resolve(path));
-const alone = process.argv[4] === "bits"; // the other process, beside which the browser is tested
+const alone = process.argv[4] === "bits"; // a second process, which runs while the browser is tested
 
 function beside() {
     const child = spawn(process.execPath, [fileURLToPath(import.meta.url), folder, tool, "bits"]);

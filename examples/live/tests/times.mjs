@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How long steps of the live page take beside plain JavaScript, and how long frames, drawn in software at 960 x 540: two
-// tables in TSV. Nothing is judged.
+// Times of steps of the live page compared with plain JavaScript, and times of frames rendered in software at 960 x
+// 540: two tables in TSV. There is no verdict.
 //
-// usage: node times.mjs FOLDER [SECONDS]     the folder that tools/live has written; on a quiet machine
+// usage: node times.mjs FOLDER [SECONDS]     the output folder of tools/live; use a quiet machine
 import assert from "node:assert/strict";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -14,12 +14,12 @@ import { Plain } from "./plain.mjs";
 
 const [folder, seconds = "5"] = process.argv.slice(2);
 
-// --- steps, in Node.js: the engine is that of Chromium ------------------------------------------------------------------
+// --- steps, in Node.js, which has the same engine as Chromium ---------------------------------------------------------
 
-// Ten frames a call: what the page asks for once a frame, energy and positions, is no step.
+// Ten frames per call, since the page also requests energy and positions once per frame.
 const frames = 10;
 
-// Microseconds a frame, the least of many, of both in turn.
+// Microseconds per frame, the minimum of many runs, alternating between both.
 function framesOf(scene, size, mass, stiffness, gravity) {
     const { steps } = presets[scene];
     const dt = 1 / (60 * steps);
@@ -35,17 +35,17 @@ function framesOf(scene, size, mass, stiffness, gravity) {
             const start = process.hrtime.bigint();
             advance();
             least[i] = Math.min(least[i], Number(process.hrtime.bigint() - start) / 1000 / frames);
-            if (round === 0 && i === 1) compare(lab, plain, dt); // before small differences grow
+            if (round === 0 && i === 1) compare(lab, plain, dt); // before rounding errors grow
         });
     const { links } = lab;
     lab.free();
     return [scene, size, links, steps, ...least.map((us) => us.toFixed(0)), (least[1] / least[0]).toFixed(2)];
 }
 
-// What is drawn is at most a step behind.
+// The drawn state is at most one step behind.
 function compare(lab, plain, dt) {
     const ours = lab.positions(1);
-    const last = ours.length - 1; // a corner that has fallen, or water at rest
+    const last = ours.length - 1; // a fallen corner, or water at rest
     const theirs = plain.x.at(-1);
     assert.ok(
         Math.abs(ours[last] - theirs) <= 1.01 * dt * Math.abs(plain.v.at(-1)) + 1e-6,
@@ -59,7 +59,7 @@ for (const size of [25, 35, 50]) {
     console.log(framesOf("water", size, 1, 25000, 0).join("\t"));
 }
 
-// --- frames, in Chromium -------------------------------------------------------------------------------------------------
+// --- frames, in Chromium ----------------------------------------------------------------------------------------------
 
 const browser = await launch();
 const page = await open(browser, pathToFileURL(join(resolve(folder), "index.html")).href, {
@@ -73,7 +73,7 @@ for (const scene of Object.keys(presets))
     for (const method of ["leapfrog", "rk4"]) {
         await page.selectOption("#scene", scene);
         await page.selectOption("#method", method);
-        await page.selectOption("#speed", "1"); // slow motion would take fewer steps
+        await page.selectOption("#speed", "1"); // slow motion takes fewer steps
         await page.click("#reset");
         if ((await page.textContent("#pause")) === "Play") await page.click("#pause");
         await page.waitForTimeout(1000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A cloth that hangs on two of its corners. Cells lose their triangles where links are torn.
+// A cloth that hangs on two of its corners. Cells with torn links lose their triangles.
 import {
     BufferAttribute,
     BufferGeometry,
@@ -38,7 +38,7 @@ const fabric = /* glsl */ `
 
 const metal = plain("0.55, 0.50, 0.44", 0.7);
 
-// Triangles of the cells, and the links along their sides.
+// The triangles of the cells, and the links along their sides.
 function weave(columns, rows, ends) {
     const particles = columns * rows;
     const named = new Map();

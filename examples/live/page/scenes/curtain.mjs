@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The cloth, as a curtain, and the sphere that is pushed through it.
+// The cloth as a curtain, and the sphere that is pushed through it.
 import { Mesh, ShaderMaterial, SphereGeometry } from "three";
 
 import { Cloth } from "./cloth.mjs";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A block of jelly: its six faces as smooth surfaces, that share their edges; light shines through where it is thin.
+// A block of jelly. Its six faces are smooth surfaces that share their edges. Light shines through thin parts.
 import {
     BackSide,
     BufferAttribute,
@@ -15,7 +15,7 @@ import {
 import { smoothNormals, Upsampler } from "../surface.mjs";
 import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
 
-const times = 3; // fine cells a cell
+const times = 3; // fine cells per cell
 const plate = -0.05; // [m]
 
 const flesh = /* glsl */ `
@@ -74,7 +74,7 @@ export class Jelly {
         this.group.add(...this.skins, dish, below, dishShadow, shadowOf(this.geometry, -0.0005, 0.25));
     }
 
-    // Points of the surface of a fine lattice, each once, and where each face finds its own.
+    // The points of the surface of a fine lattice, each once, and the indices of the points of each face.
     buildSkin(fine) {
         const named = new Map();
         const name = (i, j, k) => {

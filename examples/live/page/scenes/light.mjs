@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What cloth, rope and jelly share: one sun and a sky, a floor that fades out, and shadows on it.
+// Common parts of cloth, rope and jelly: one sun, a sky, a floor that fades out, and shadows on it.
 import {
     CircleGeometry,
     DoubleSide,
@@ -12,7 +12,7 @@ import {
 
 export const sun = new Vector3(-0.45, -0.55, 0.75).normalize();
 
-/** Of a surface of this colour, with normal n towards the eye, direction v to it; gloss from 0 to 1. */
+/** The light from a surface of a colour, with normal n and direction v towards the eye; gloss from 0 to 1. */
 export const lighting = /* glsl */ `
     uniform vec3 skyLow, skyHigh, ground;
     const vec3 sun = vec3(${sun.toArray().map((x) => x.toFixed(4))});
@@ -30,7 +30,7 @@ export const lighting = /* glsl */ `
         return colour * (0.62 * round + 0.14 * clamp(dot(n, v), 0.0, 1.0) + 0.72 * day * vec3(1.0, 0.95, 0.86)) + glint + mirror * rim * (0.10 + 0.5 * gloss);
     }`;
 
-/** The vertex shader of whatever has positions, normals and uv. */
+/** The vertex shader for geometries with positions, normals and uv. */
 export const vertex = /* glsl */ `
     varying vec3 n, v;
     varying vec2 at;
@@ -42,7 +42,7 @@ export const vertex = /* glsl */ `
         gl_Position = projectionMatrix * viewMatrix * p;
     }`;
 
-/** The fragment shader of something in one colour: three numbers as text, gloss as in lit(). */
+/** The fragment shader for one colour, given as three numbers in text; gloss as in lit(). */
 export function plain(colour, gloss) {
     return /* glsl */ `
     ${lighting}
@@ -76,7 +76,7 @@ export function floorAt(z, uniforms, radius = 4) {
     return mesh;
 }
 
-/** The same geometry, cast by the sun to the floor. The stencil keeps it from being darkened twice. */
+/** The shadow of a geometry on the floor. The stencil prevents darkening a pixel twice. */
 export function shadowOf(geometry, z, strength = 0.2) {
     const material = new ShaderMaterial({
         transparent: true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A rope held at one end, as a tube along a Catmull-Rom curve through its particles; a heavy end is a ball of iron.
+// A rope held at one end, drawn as a tube along a Catmull-Rom curve through its particles. A heavy end is an iron ball.
 import {
     BufferAttribute,
     BufferGeometry,
@@ -16,7 +16,7 @@ import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.
 const floor = -2.55; // [m]
 const radius = 0.032; // [m]
 const around = 10;
-const along = 6; // rings a link
+const along = 6; // rings per link
 
 const strands = /* glsl */ `
     ${lighting}
@@ -105,7 +105,7 @@ export class Rope {
             }
         }
         smoothNormals(x, this.index, this.normal.array);
-        const { array } = this.normal; // the seam: first and last of a ring are one
+        const { array } = this.normal; // the seam: the first and last point of a ring coincide
         for (let r = 0; r < this.rings; r++)
             for (let axis = 0; axis < 3; axis++) {
                 const a = 3 * r * (around + 1) + axis;

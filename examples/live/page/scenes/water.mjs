@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Water in a tiled pool. The surface reflects a sky and refracts the pool below it: every fragment follows one ray to the
-// floor or a wall, whose tiles are a formula, and looks up there how waves above gather the light.
+// Water in a tiled pool. The surface reflects a sky and refracts the pool: every fragment follows one ray to the floor
+// or a wall, computes the colour of its tiles by a formula, and looks up the caustics of the waves there.
 import {
     BufferAttribute,
     BufferGeometry,
@@ -24,7 +24,7 @@ import {
 import { Upsampler } from "../surface.mjs";
 
 const depth = 1.15; // [m]
-const rim = 0.05; // [m] of the pool over the water
+const rim = 0.05; // [m] height of the pool above the water
 const exaggeration = 2; // of heights
 
 const shared = /* glsl */ `
