@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, batches: every method over 10^3 to 10^7 springs, and the cost of each feature, compared with what the memory
- * and the arithmetic alone would take (bench_limits.h).
+ * spring-bench, batches: every method for 10^3 to 10^7 springs, and the cost of each feature, compared with limits from
+ * memory bandwidth and arithmetic (bench_limits.h).
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,15 +15,15 @@
 #include "parts.h"
 #include "rows.h"
 
-enum { alignment = 64 }; /* bytes: the widest vector, a line of the cache */
+enum { alignment = 64 }; /* [bytes] the widest vector, and a cache line */
 
-typedef enum sharing { NONE, SHARED, OWN, ZERO } sharing; /* ZERO: an array of zeros, which is paid for */
+typedef enum sharing { NONE, SHARED, OWN, ZERO } sharing; /* ZERO: an array of zeros, which is not free */
 
-/* What the kernel is compared with. */
+/* The limit of the kernel. */
 typedef enum against {
     LIMITS,   /* the kernels of bench_limits.h */
-    ORDINARY, /* the same kernel with an ordinary start in aligned arrays */
-    TEXTBOOK  /* the textbook's formula, spring by spring */
+    ORDINARY, /* the same kernel with an ordinary initial state in aligned arrays */
+    TEXTBOOK  /* the textbook formula, one spring at a time */
 } against;
 
 typedef struct subject {
@@ -39,14 +39,14 @@ typedef struct subject {
 
 /* ------------------------------------------------------------------------------------------------------- the memory */
 
-static const double dt = 1e-4; /* [s]: over the minutes that a row lasts for a spring nothing overflows or dies out */
+static const double dt = 1e-4; /* [s]; over the minutes that a row simulates, nothing overflows or decays to 0 */
 
-/* Of an array, what it holds for the first springs; then it repeats. */
+/* Arrays repeat after this number of springs. */
 enum { period = 1000 };
 
 typedef struct array {
     void *memory;
-    double mean; /* of the springs' values, which differ by a tenth */
+    double mean; /* of the values, which vary by a tenth */
     sharing sharing;
 } array;
 
@@ -73,7 +73,7 @@ static double get(const void *memory, bool single, size_t i)
     return single ? (double)((const float *)memory)[i] : ((const double *)memory)[i];
 }
 
-/* Overdamped so far that over minutes no spring settles either. */
+/* So overdamped that no spring settles within minutes. */
 static const double overdamped = 1000;
 
 static void fill(const array *a, const subject *s, double scale)
@@ -84,11 +84,11 @@ static void fill(const array *a, const subject *s, double scale)
     for (size_t i = 0; i < period; i++)
         set(memory, s->single, i,
             a->sharing == ZERO ? 0 : scale * a->mean * (i % 2 ? odd : 1) * (1 + 0.1 * (double)(i % 7) / 7));
-    for (size_t i = period; i < s->count + alignment; i += period) /* vectors may reach beyond the last spring */
+    for (size_t i = period; i < s->count + alignment; i += period) /* vectors can extend beyond the last spring */
         memcpy(memory + i * element, memory, period * element);
 }
 
-/* The batch, freshly filled if it is another one than last time. */
+/* Prepares the batch, and fills it if it differs from the last one. */
 static void prepare(const subject *s, bool settled)
 {
     static const subject *filled;
@@ -171,7 +171,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
     const subject *s = row->subject;
     const bench_limits *limits = bench_limits_of(s->single);
     const double springs = (double)s->count * (double)s->steps / (double)limits->springs * (double)calls;
-    const uint64_t steps = (uint64_t)springs + 1; /* of the arithmetic, for as many springs as the calls advance */
+    const uint64_t steps = (uint64_t)springs + 1; /* of the arithmetic kernel, for the same number of springs */
     const bool as_it_is = which == 0;
     prepare(s, as_it_is && s->settled);
     const double begin = timing_busy();
@@ -189,7 +189,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
 
 /* --------------------------------------------------------------------------------------------------------- the rows */
 
-/* In one run, of what is possible: one step over springs in memory, several steps. */
+/* Ratios to the limit in the same run: one step over springs in memory, and several steps. */
 static const double memory_goal = 1 / 0.88, memory_goal_rk4 = 1 / 0.85, steps_goal = 1 / 0.8;
 static const size_t from_memory = 10000000, in_cache = 1000;
 
@@ -219,13 +219,13 @@ static void add(const char *feature, subject s)
 
 static void add_counts(spring_method m, uint64_t steps)
 {
-    const bool exact = m == SPRING_EXACT; /* of own stiffnesses: add_special() */
+    const bool exact = m == SPRING_EXACT; /* with own stiffnesses: see add_special() */
     for (int single = 0; single < 2; single++)
         for (size_t count = in_cache; count <= from_memory; count *= 10)
             add(exact ? "_shared_omega2" : "", (subject){m, count, steps, exact ? SHARED : OWN, .single = single});
 }
 
-/* Every method, at every count, in both precisions. */
+/* Adds every method, at every count, in both precisions. */
 static void add_methods(void)
 {
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
@@ -239,14 +239,14 @@ static void add_methods(void)
     }
 }
 
-/* Of order 2 or more. */
+/* Order 2 or more. */
 static bool is_accurate(spring_method m)
 {
     const spring_method_info *info = spring_method_describe(m);
     return info->springs && info->order > 1;
 }
 
-/* One feature after the other. */
+/* Adds the features one by one. */
 static void add_features(void)
 {
     static const struct {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits of batches and scenes, for each vector and precision; the kernels are in bench_limits_kernels.h. GNU C. */
+/* The limits of batches and scenes, for each vector width and precision; kernels in bench_limits_kernels.h. GNU C. */
 #include "bench_limits.h"
 
 #include <math.h>
@@ -8,24 +8,24 @@
 #include <immintrin.h>
 #endif
 
-/* An empty instruction that may change a vector, for all the compiler knows: it has to be in a register then, and what
-   was loaded before and is stored afterwards cannot be left out. */
+/* An empty asm statement that could change a vector. It forces the compiler to have the vector in a register, and to
+   keep the loads before and the stores after it. */
 #if defined(__x86_64__)
 #define TOUCH(vector) __asm__ volatile("" : "+v"(vector))
 #elif defined(__aarch64__)
 #define TOUCH(vector) __asm__ volatile("" : "+w"(vector))
 #else
-#define TOUCH(vector) __asm__ volatile("" : "+m"(vector)) /* by way of memory: slower */
+#define TOUCH(vector) __asm__ volatile("" : "+m"(vector)) /* through memory, which is slower */
 #endif
 
-#define INLINE static inline __attribute__((always_inline)) /* constant flags shape the kernels */
+#define INLINE static inline __attribute__((always_inline)) /* specialises kernels for constant flags */
 #if defined(__clang__)
 #define UNROLL _Pragma("clang loop unroll(full)")
 #else
 #define UNROLL _Pragma("GCC unroll 16")
 #endif
 
-/* Coefficients of a step and the state it starts from: of the size of real ones, and not known to the compiler. */
+/* Coefficients and initial state of a step: realistic in size, and unknown to the compiler. */
 static volatile const double coefficient[] = {1e-4, 2.1e-4, 3.2e-6, 7.1e-5, 0.9999, -1.3e-5}, start[] = {0.83, -0.59};
 
 #define PASTE(name, precision, bytes)  name##_##precision##_##bytes

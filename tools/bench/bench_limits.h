@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What no batch and no scene can be faster than: kernels that only move the memory, and kernels that only do the
- * arithmetic.
+ * Lower limits on the time of batches and scenes: kernels that only move memory, and kernels that only do arithmetic.
  *
- * streams     reads x, v and the parameters that are there, one by one, and writes x and v as they were.
+ * streams     reads x, v and the existing parameters, and writes x and v unchanged.
  * read        reads memory.
- * arithmetic  does the multiplications and additions of a step and nothing else: states and coefficients stay in
- *             registers, on as many independent vectors as run best. A method that has none here gets that of one kick
- *             and one drift, less than which no step does.
- * links       does what the force of a link takes: differences, length, quotient, both ends' sums; all in registers.
+ * arithmetic  does only the multiplications and additions of a step. States and coefficients stay in registers, for the
+ *             number of independent vectors that is fastest. Methods without an entry get one kick and one drift, the
+ *             least that any step does.
+ * links       does the arithmetic of the force of a link: differences, length, quotient, sums of both ends; all in
+ *             registers.
  *
- * Like the library's they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the processor has is
- * used.
+ * Like the kernels of the library, they are compiled for vectors of 16, 32 and 64 bytes, and the widest that the
+ * processor supports is used.
  */
 #ifndef SPRINGSTEP_BENCH_LIMITS_H
 #define SPRINGSTEP_BENCH_LIMITS_H
@@ -23,9 +23,9 @@
 #include <springstep/spring.h>
 
 typedef struct bench_streams {
-    size_t count; /* springs; memory is touched up to the next whole vector */
+    size_t count; /* springs; memory is accessed up to the next whole vector */
     void *x, *v;
-    const void *w, *g, *a; /* NULL: not there */
+    const void *w, *g, *a; /* NULL: absent */
 } bench_streams;
 
 typedef struct bench_arithmetic {
@@ -33,16 +33,16 @@ typedef struct bench_arithmetic {
 } bench_arithmetic;
 
 typedef struct bench_limits {
-    size_t springs;                                                   /* that the arithmetic is done for, at once */
-    void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by: there is w, g, a */
-    bench_arithmetic arithmetic[SPRING_METHOD_COUNT];                 /* by method; NULL: as little as there can be */
+    size_t springs;                                                   /* springs per step of `arithmetic` */
+    void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by presence of w, g, a */
+    bench_arithmetic arithmetic[SPRING_METHOD_COUNT];                 /* by method; NULL: use `least` */
     bench_arithmetic least;
     void (*read)(const void *memory, size_t bytes, uint64_t times); /* up to the next whole vector */
-    size_t together;                                                /* links that are computed at once */
+    size_t together;                                                /* links computed at once */
     void (*links[3])(uint64_t times);                               /* by axes - 1 */
 } bench_limits;
 
-/** The limits in the widest vectors; single: of float instead of double. */
+/** The limits for the widest vectors; single: in single precision. */
 const bench_limits *bench_limits_of(bool single);
 
 static inline const bench_arithmetic *bench_arithmetic_of(const bench_limits *l, spring_method m)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The limits in one vector and precision; see bench_limits.h. Included by bench_limits.c with SCALAR and BYTES set, and
-   ROOT where there is an instruction for it. */
+/* The limits for one vector width and precision; see bench_limits.h. Included by bench_limits.c, which defines SCALAR
+   and BYTES, and ROOT if there is an instruction for it. */
 
 typedef SCALAR NAME(real) __attribute__((vector_size(BYTES)));
 typedef SCALAR NAME(unaligned) __attribute__((vector_size(BYTES), aligned(sizeof(SCALAR)), may_alias));
@@ -85,7 +85,7 @@ INLINE void NAME(link)(uint64_t times, int axes)
         real delta[3], square = {0};
         UNROLL
         for (int a = 0; a < axes; a++) {
-            TOUCH(to[a]); /* another link, for all the compiler knows */
+            TOUCH(to[a]); /* to the compiler, this is a different link */
             delta[a] = to[a] - from[a];
             square += delta[a] * delta[a];
         }
@@ -116,7 +116,7 @@ LINK(3)
 
 /* ------------------------------------------------------------------------------------------------------- arithmetic */
 
-/* One step of a vector of springs; c holds the coefficients, whatever they are called. */
+/* One step of a vector of springs with the coefficients c. */
 typedef void NAME(step)(real *x, real *v, const real *c, bool damped, bool loaded);
 
 INLINE real NAME(pull)(const real *x, const real *v, const real *c, bool damped, bool loaded)
@@ -158,7 +158,7 @@ INLINE void NAME(rk4)(real *x, real *v, const real *c, bool damped, bool loaded)
 
 INLINE void NAME(exact)(real *x, real *v, const real *c, bool damped, bool loaded)
 {
-    (void)damped; /* in the coefficients */
+    (void)damped; /* included in the coefficients */
     const real x0 = *x, v0 = *v;
     *x = c[4] * (c[4] * x0 + c[1] * v0);
     *v = c[4] * (c[4] * v0 - c[2] * x0);
@@ -168,7 +168,7 @@ INLINE void NAME(exact)(real *x, real *v, const real *c, bool damped, bool loade
     }
 }
 
-enum { NAME(together) = BYTES == 64 ? 12 : 6 }; /* vectors: more do not fit into 32, or 16, registers */
+enum { NAME(together) = BYTES == 64 ? 12 : 6 }; /* vectors that fit into 32, or 16, registers */
 
 INLINE void NAME(run)(NAME(step) * step, uint64_t steps, bool damped, bool loaded)
 {
@@ -180,14 +180,14 @@ INLINE void NAME(run)(NAME(step) * step, uint64_t steps, bool damped, bool loade
     for (int k = 0; k < NAME(together); k++) {
         x[k] = (SCALAR)start[0] - (real){0};
         v[k] = (SCALAR)start[1] - (real){0};
-        TOUCH(x[k]); /* or all would be found to be the same */
+        TOUCH(x[k]); /* otherwise the compiler sees that all are equal */
         TOUCH(v[k]);
     }
     for (; steps > 0; steps--) {
         UNROLL
         for (int k = 0; k < NAME(together); k++) {
             step(&x[k], &v[k], c, damped, loaded);
-            TOUCH(x[k]); /* or the compiler interleaves so many steps that registers run out */
+            TOUCH(x[k]); /* otherwise the compiler interleaves steps until registers spill */
             TOUCH(v[k]);
         }
     }

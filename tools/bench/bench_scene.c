@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, scenes: how their rows are timed, compared with a plain loop over the links and with what memory and
- * arithmetic alone would take (bench_limits.h).
+ * spring-bench, scenes: timing of the rows, compared with a plain loop over the links and with limits from memory
+ * bandwidth and arithmetic (bench_limits.h).
  *
- * The work of a scene is proportional to its links, so those are what counts.
+ * The work of a scene is proportional to its links, so times are per link.
  */
 #include "bench_scene.h"
 
@@ -16,8 +16,8 @@
 #include "common/timing.h"
 #include "plain_loop.h"
 
-static scene_arrays all, shuffled; /* shuffled: as all were before they were renumbered */
-static double dt;                  /* [s] half of what is safe for leapfrog */
+static scene_arrays all, shuffled; /* shuffled: copy of `all` before renumbering */
+static double dt;                  /* [s] half the safe step of leapfrog */
 
 /* ----------------------------------------------------------------------------------------------------------- scenes */
 
@@ -41,7 +41,7 @@ static spring_scene_def definition(const scene_feature *f, scene_shape shape)
     return def;
 }
 
-/* The definition of a float scene; no row of one has a callback. */
+/* The definition of a single-precision scene; none of these rows has a callback. */
 static spring_scenef_def single(const spring_scene_def *d)
 {
     spring_scenef_def def = {
@@ -67,12 +67,12 @@ static void check(spring_status status)
         cli_fail(CLI_FAILED, "a scene of %zu links: %s", all.links, spring_status_string(status));
 }
 
-/* The scene of a row, and that which it is compared with. */
+/* The scene of a row, or of its comparison. */
 typedef struct built {
     void *memory;
     size_t bytes;
     bool single;
-    spring_scene *scene; /* one of the two */
+    spring_scene *scene; /* one of these is set */
     spring_scenef *scenef;
     double stable_step; /* [s] of its method */
 } built;
@@ -109,7 +109,7 @@ static void build(built *b, const scene_feature *f, scene_shape shape, bool is_s
 
 static void advance(const built *b, spring_method method, uint64_t steps, uint64_t calls)
 {
-    /* where no step is stable a scene blows up: here after more steps than a row takes */
+    /* if no step is stable, the step is so short that the scene overflows only after more steps than a row takes */
     const double h = b->stable_step > 0 ? fmin(dt, 0.5 * b->stable_step) : 1e-6 * dt;
     for (; calls > 0; calls--)
         check(b->single ? spring_scenef_advance(b->scenef, method, h, steps)
@@ -141,8 +141,8 @@ static void build_plain(plain_scene *p, const scene_arrays *a, const scene_featu
 
 /* ------------------------------------------------------------------------------------------------------ the samples */
 
-/* Positions and velocities are read and written, forces read, and of each link what a scene keeps: of equal links in
-   rows a byte, of listed ones two indices and two numbers. The memory is that of the definition, as far as it goes. */
+/* Reads and writes positions and velocities, and reads forces and the data of each link: a byte for equal links in
+   bands, two indices and two numbers for listed links. Uses the memory of the definition where possible. */
 static void move_memory(const scene_subject *s, uint64_t passes)
 {
     const bench_limits *limits = bench_limits_of(s->single);
@@ -199,7 +199,7 @@ static void prepare(const bench_row *row)
         build_plain(&plain_shuffled, &shuffled, &s->feature);
 }
 
-/* Of links in random order, which are copied for that. */
+/* Times renumbering of a copy of the links in random order. */
 static void renumber(uint64_t calls)
 {
     uint32_t *order = scene_allocate(all.particles * sizeof *order);
@@ -243,7 +243,7 @@ double scene_time(const bench_row *row, int which, uint64_t calls)
 {
     const scene_subject *s = row->subject;
     prepare(row);
-    /* a step of the plain loop, or of a limit, takes as long as any other: in large scenes one stands for those of a
+    /* all steps of the plain loop and of limits take the same time, so in large scenes one step is timed instead of a
        call */
     const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS && s->against != SHUFFLED_LIST);
     const uint64_t share = all.links > 300000 && !scenes ? s->steps : 1, steps = s->steps / share;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What a row of spring-bench on scenes is about. */
+/* The subject of a row of spring-bench on scenes. */
 #ifndef SPRINGSTEP_BENCH_SCENE_H
 #define SPRINGSTEP_BENCH_SCENE_H
 
 #include "rows.h"
 #include "scene_grids.h"
 
-/* What a scene has besides its links, gravity and pins, or how it is advanced. */
+/* Features of a scene besides links, gravity and pins, and of its steps. */
 typedef struct scene_feature {
     spring_method method;
     uint32_t flags;
@@ -15,16 +15,16 @@ typedef struct scene_feature {
     bool masses;
 } scene_feature;
 
-/* What a row is compared with. */
+/* The comparison of a row. */
 typedef enum scene_against {
     LIMITS,        /* the kernels of bench_limits.h */
     LEAPFROG,      /* the scene without its feature, by leapfrog */
-    IN_DOUBLE,     /* the scene in double */
-    SIXTEEN_STEPS, /* the scene, 16 steps a call */
-    SHUFFLED_LIST  /* the plain loop, before the scene was renumbered */
+    IN_DOUBLE,     /* the scene in double precision */
+    SIXTEEN_STEPS, /* the scene with 16 steps per call */
+    SHUFFLED_LIST  /* the plain loop over the scene before renumbering */
 } scene_against;
 
-/* What is timed. */
+/* The timed work. */
 typedef enum scene_work { STEPS, INIT, RENUMBER } scene_work;
 
 typedef struct scene_subject {
@@ -32,10 +32,10 @@ typedef struct scene_subject {
     uint32_t side; /* particles along an edge */
     scene_order order;
     scene_feature feature;
-    uint64_t steps; /* a call */
+    uint64_t steps; /* per call */
     scene_against against;
-    bool single;     /* float */
-    scene_work work; /* all but STEPS are compared with reading the links of the definition */
+    bool single;     /* single precision */
+    scene_work work; /* except STEPS, compared with reading the links of the definition */
 } scene_subject;
 
 /** The time of a row whose subject is a scene_subject. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, scenes of one to six particles: the library compared with the same method written out in C for that one scene.
+ * spring-bench, scenes of one to six particles: the library compared with the same method, written in C for each scene.
  *
- * Figures are per force evaluation. The limit of duffing is its callback alone.
+ * Times are per force evaluation. The limit of duffing is the time of its callback.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@
 #include "parts.h"
 #include "rows.h"
 
-/* The tables alone: what is written out below must not be slower for its coefficients. */
+/* The tables only, so that the code below has the same constant coefficients as the library. */
 #include "../../src/methods/rkn8_tableau.h"
 #include "../../src/methods/srkn6_coefficients.h"
 
@@ -28,7 +28,7 @@ typedef double *const *force_arrays;
 typedef void accelerate(const double *x, double *a);
 
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline)) /* the constant arguments shape the loops */
+#define INLINE static inline __attribute__((always_inline)) /* specialises loops for constant arguments */
 #else
 #define INLINE static inline
 #endif
@@ -115,14 +115,14 @@ INLINE void plain_steps(spring_method m, accelerate *f, int axes, double *x, dou
 
 /* ----------------------------------------------------------------------------------------------------- the scenes */
 
-/* A particle on a spring of 1 N/m per kilogram to a pinned one, and x^3 by the callback. */
+/* A particle with a spring of 1 N/m per kilogram to a pinned one, and x^3 by the callback. */
 static void cubic(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)particles, (void)v;
     force[0][1] -= mass * x[0][1] * x[0][1] * x[0][1];
 }
 
-/* x^4 between pairs of particles and to the walls: tools/harness/scene_cases.c. */
+/* The potential x^4 between pairs of particles and to the walls; see tools/harness/scene_cases.c. */
 static void soft_quartic(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
     (void)user, (void)t, (void)v;
@@ -214,7 +214,7 @@ static double time_library(const subject *s, uint64_t calls)
     return time;
 }
 
-/* As many calls as a run makes, through a pointer as the library has it. */
+/* Times the callbacks of a run, called through a pointer as in the library. */
 static double time_callback(const subject *s, uint64_t calls)
 {
     const uint64_t forces = (uint64_t)spring_method_describe(s->method)->forces_per_step;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, one spring: the library compared with the plain loop that anybody would write.
+ * spring-bench, one spring: the library compared with a plain loop.
  *
- * Start and parameters come out of volatile objects and the end goes into one: nothing can be computed by the compiler,
- * or left out.
+ * The initial state and the parameters are read from volatile objects, and the result is written to one, so that the
+ * compiler cannot evaluate or omit anything.
  */
 #include <stdio.h>
 
@@ -12,8 +12,8 @@
 #include "parts.h"
 #include "rows.h"
 
-/* Light damping and short steps: over the few hundred seconds that a sample lasts for the spring,
-   nothing overflows, dies out or becomes denormal. */
+/* Light damping and short steps: within the few hundred seconds that a sample simulates, nothing overflows, decays to 0
+   or becomes subnormal. */
 static volatile const double mass = 1.3, stiffness = 2.7, damping = 0.06, load = 0.9, x0 = 0.83, v0 = -0.59;
 static volatile const double dt = 1e-4;
 static volatile double sink;
@@ -21,7 +21,7 @@ static volatile double sink;
 /* ------------------------------------------------------------------------------------------------- the plain loop */
 
 #if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline)) /* constant arguments shape the loops */
+#define INLINE static inline __attribute__((always_inline)) /* specialises loops for constant arguments */
 #else
 #define INLINE static inline
 #endif
@@ -128,9 +128,9 @@ static spring_state run_plain(spring_method method, spring_state s, const spring
     case SPRING_EXACT:
         for (; n > 0; n--)
             s = bench_textbook(s, m.w, m.g, m.a, dt, m.damped,
-                               m.loaded); /* volatile dt: evaluated anew at every step, as the library does */
+                               m.loaded); /* volatile dt: evaluated in every step, as in the library */
         return s;
-    default: /* "kicks": one and a drift for each force evaluation */
+    default: /* "kicks": a kick and a drift for each force evaluation */
         return plain_steps(plain_kick_and_drift, s, m, h / (double)forces, n * forces);
     }
 }
@@ -165,7 +165,7 @@ typedef struct subject {
     spring_method method;
     form form;
     bool damped, loaded;
-    double size; /* of the start; if it is not 1, the limit is the same kernel at 1 */
+    double size; /* of the initial state; if it is not 1, the limit is the same kernel at 1 */
 } subject;
 
 static double run(const bench_row *row, int which, uint64_t n)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A physics engine that spring-engines times: the same sheet in each, behind one interface. C and C++. */
+/* The interface of spring-engines to physics engines, which all simulate the same sheet. C and C++. */
 #ifndef SPRINGSTEP_BENCH_ENGINE_H
 #define SPRINGSTEP_BENCH_ENGINE_H
 
@@ -11,11 +11,11 @@ extern "C" {
 
 typedef struct physics_engine {
     const char *name;
-    const char *precision;        /* its own */
-    const char *(*version)(void); /* with what makes this build slow, if anything; call it before make() */
-    uint32_t axes;                /* it works in two, or in three */
+    const char *precision;        /* of the engine */
+    const char *(*version)(void); /* notes if the build is a slow one; call it before make() */
+    uint32_t axes;                /* 2 or 3 */
 
-    /* What it needs for a definition; NULL: no memory. It may take gravity, masses, pins and links from there. */
+    /* Creates a world from the gravity, masses, pins and links of a definition; NULL: out of memory. */
     void *(*make)(const spring_scene_def *def);
     void (*step)(void *world, double dt);
     void (*position)(const void *world, size_t particle, double *x); /* [m] */

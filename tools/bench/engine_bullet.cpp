@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A sheet as a soft body of Bullet, in a world of its own, where nothing collides. Its links have no stiffness in N/m:
-// each is brought to its length by moving both ends, in one iteration of the position solver a step, which is the work
-// of one force a link. The links are in random order, as in Bullet's own examples: one after the other in the order of a
-// grid, each waits for the one before, which takes half as long again, and stiff sheets explode.
+// A sheet as a soft body of Bullet, in its own world without collisions. Bullet's links have no stiffness in N/m. The
+// position solver moves both ends of each link to its length, in one iteration per step, which is the work of one force
+// per link. The links are in random order, as in Bullet's own examples. In grid order, each link depends on the result
+// of the previous one, which takes half as long again, and stiff sheets explode.
 #include "engine.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -31,7 +31,7 @@ struct World {
     btSoftBody *body;
 };
 
-const btScalar share_of_velocity = btScalar(0.01); // that damping takes
+const btScalar share_of_velocity = btScalar(0.01); // removed by damping
 
 btVector3 vector(const double *v)
 {
@@ -59,7 +59,7 @@ void *make(const spring_scene_def *def)
     body->m_cfg.piterations = 1;
     body->m_cfg.kDP = share_of_velocity;
     body->m_cfg.collisions = 0;
-    body->setActivationState(DISABLE_DEACTIVATION); // or it stops when it is at rest
+    body->setActivationState(DISABLE_DEACTIVATION); // otherwise it stops when at rest
     world->world.addSoftBody(body);
     world->body = body;
     return world;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A sheet of Chipmunk's bodies and damped springs, in two dimensions. The force of a link is the same as ours, by one
-   iteration of its solver a step; the bodies have no shapes, so nothing collides. */
+/* A sheet of Chipmunk's bodies and damped springs, in two dimensions. The force of a link is the same as in the
+   library, with one iteration of the solver per step. Bodies have no shapes, so nothing collides. */
 #define _XOPEN_SOURCE 700 /* POSIX 2008: dup() */
 #include "engine.h"
 
@@ -12,11 +12,11 @@
 
 typedef struct world {
     cpSpace *space;
-    cpBody *body[]; /* by particle */
+    cpBody *body[]; /* [particles] */
 } world;
 
-/* A Chipmunk that was compiled with assertions, as Debian's is, reports that on standard output when it creates its
-   first space. Returns whether it did; standard output is where the table is written, so the report is discarded. */
+/* A build of Chipmunk with assertions, such as Debian's, prints a note on standard output when it creates its first
+   space. Returns true if it did. The note is discarded, because the table is written to standard output. */
 static bool first_space_reports(void)
 {
     FILE *report = tmpfile();

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-# The loops of an assembly file that tools/bench/instructions marks, as regions for llvm-mca: from the last label
-# before a mark that a branch behind it goes back to, up to that branch. Called by tools/bench/instructions.
+# Extracts the loops that tools/bench/instructions marks in an assembly file, as regions for llvm-mca. A region starts
+# at the last label before a mark to which a branch after the mark jumps back, and ends with that branch.
 #
-# A region is called FUNCTION,THING,COUNT; the compiler may have unrolled the loop: then it has several marks, whose
-# counts add up. A mark in no loop any more, where the compiler knows that it runs once, is left out, and so is one whose
-# loop is not the innermost. With -v pattern=REGEX only those of functions with such names are printed.
+# A region is named FUNCTION,THING,COUNT. An unrolled loop has several marks, whose counts are added. Marks outside of
+# any loop (because the compiler found that it runs once) and marks in loops that are not innermost are omitted. With
+# -v pattern=REGEX, only loops of functions with matching names are printed.
 
-# Does a loop hold another, or a part of it?
+# Returns 1 if a loop contains another loop or a part of one.
 function around_another(start, end, loops, from,   i) {
     for (i = 1; i <= loops; i++)
         if (start[i] <= end[from] && end[start[i]] >= from && !(start[i] <= from && end[from] <= end[start[i]]))
@@ -41,7 +41,7 @@ function flush_function(   m, l, b, best, from, to, i, loops, start, thing, coun
             continue
         print "# LLVM-MCA-BEGIN " name "," thing[from] "," count[from]
         for (l = from; l <= end[from]; l++)
-            if (text[l] != "" && text[l] !~ /^[ \t]+(ret|call)/) # where the loop is left, or what is rare: not in its passes
+            if (text[l] != "" && text[l] !~ /^[ \t]+(ret|call)/) # exits and rare paths, not part of a pass
                 print text[l]
         print "# LLVM-MCA-END"
     }
@@ -57,7 +57,7 @@ function flush_function(   m, l, b, best, from, to, i, loops, start, thing, coun
     next
 }
 /^\.L[A-Za-z0-9_.$]*:/ {
-    text[++lines] = $1 # for branches inside
+    text[++lines] = $1 # for branches inside the loop
     sub(/:.*/, "", $1)
     label[$1] = lines
     next

@@ -7,13 +7,13 @@
 
 #include <springstep/spring.h>
 
-/* Each puts the rows of its part into the table. */
+/* Each function adds the rows of its part to the table. */
 void bench_add_springs(void);
 void bench_add_batches(void);
 void bench_add_scenes(void);
 void bench_add_small_scenes(void);
 
-/** The textbook formula of a spring that is not critically damped; damped, loaded: say false where g, a are zero. */
+/** The textbook formula of a spring that is not critically damped; `damped`, `loaded` are false if g, a are zero. */
 spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);
 
 #endif

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The plain loop; see plain_loop.h. Compiled with -O2 whatever the rest is compiled with, as most programs are.
+ * The plain loop; see plain_loop.h. Compiled with -O2 in every build type, as most programs are.
  *
- * A division and a square root a link, each force computed once and added to both ends, one pass over the particles
- * before the links and one after. Link damping is that of the velocities half a step earlier, as in most games: one
- * evaluation a step.
+ * There is one division and one square root per link. Each force is computed once and added to both ends. There is one
+ * pass over the particles before the links and one after. Link damping uses velocities half a step earlier, as in most
+ * games, so there is one evaluation per step.
  */
 #include "plain_loop.h"
 
 #include <math.h>
 
-/* One axis; a coordinate after the other is written out, since -O2 leaves a loop over three of them a loop. */
+/* Handles one axis. Callers write out the three axes, because -O2 would not unroll a loop. */
 static inline double kicked(const plain_scene *s, const plain_particle *p, int axis, double h, bool dragged)
 {
     const double force = dragged ? p->force[axis] - s->drag * p->v[axis] : p->force[axis];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The loop that scenes are compared with: what a good programmer writes, a structure a particle, an array of links. */
+/* The loop with which scenes are compared: well written, with a structure per particle and an array of links. */
 #ifndef SPRINGSTEP_BENCH_PLAIN_LOOP_H
 #define SPRINGSTEP_BENCH_PLAIN_LOOP_H
 
@@ -19,10 +19,10 @@ typedef struct plain_scene {
     plain_particle *particle;
     const spring_link *link;
     double gravity[3], drag;
-    bool damped; /* the links are */
+    bool damped; /* links are damped */
 } plain_scene;
 
-/** Leapfrog; the forces at the end of a step are those at the start of the next. */
+/** Leapfrog; the forces at the end of a step are reused at the start of the next. */
 void plain_advance(const plain_scene *s, double dt, uint64_t steps);
 
 #endif

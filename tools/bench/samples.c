@@ -8,7 +8,7 @@
 
 enum { most_samples = 51, timed = bench_baseline + 1 }; /* the kernel, its limits, the baseline */
 
-/* As many calls as fill the time. */
+/* The number of calls that fill this time. */
 static uint64_t calls_for(const bench_row *r, int which, double time_ns)
 {
     uint64_t n = 1;
@@ -73,5 +73,5 @@ bench_times bench_measure(const bench_row *r, bool quick)
 
 bool bench_is_noisy(double spread)
 {
-    return !(spread <= 0.05); /* --help says it, too */
+    return !(spread <= 0.05); /* also in the help text */
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How long what is in a row of rows.h takes.
+ * Timing of a row of rows.h.
  *
- * Method    A sample is the time of a fixed number of calls. Samples of the library and of what they are compared with
- *           alternate, so that what slows the machine down for a while slows all of them; each figure is the median of
- *           its samples. Of two limits the slower one counts: nothing can be faster than either. Processor time is what
- *           is measured: other processes take part of the caches and of the memory's time, but not of the clock's.
+ * Method    A sample is the time of a fixed number of calls. Samples of the library and of its comparisons alternate,
+ *           so that temporary slowdowns of the machine affect all of them. Each result is the median of its samples. If
+ *           there are two limits, the slower one counts. Samples are processor time, so other processes affect them
+ *           only through caches and memory bandwidth.
  */
 #ifndef SPRINGSTEP_BENCH_SAMPLES_H
 #define SPRINGSTEP_BENCH_SAMPLES_H
@@ -14,14 +14,14 @@
 
 typedef struct bench_times {
     double ours, limit, baseline; /* [ns] per spring, or link, and step; NAN: there is none */
-    const char *limit_name;       /* of the slower limit */
-    double spread;                /* the distance between the quartiles over the median, the largest of the three */
+    const char *limit_name;       /* the slower limit */
+    double spread;                /* interquartile range over median, the largest of the three */
 } bench_times;
 
-/** Measure a row; quick: by fewer and shorter samples. */
+/** Measures a row; quick: with fewer and shorter samples. */
 bench_times bench_measure(const bench_row *row, bool quick);
 
-/** Of a spread: was the machine busy, and the row proves nothing? */
+/** Returns true if the spread is so large that the row is inconclusive, because the machine was busy. */
 bool bench_is_noisy(double spread);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The scenes that spring-bench times; see scene_grids.h. All of them have a pinned edge. */
+/* The scenes of spring-bench; see scene_grids.h. All have a pinned edge. */
 #include "scene_grids.h"
 
 #include <stdlib.h>
@@ -26,7 +26,7 @@ static spring_grid grid_of(scene_shape shape, uint32_t side, double damping)
         .count = {side, shape == ROPE ? 1 : side, shape == JELLY ? side : 1},
         .height = shape == WATER,
         .spacing = 0.1,
-        .stretch = 1.05, /* so that no sheet crumples: springs that are pressed together need shorter steps */
+        .stretch = 1.05, /* so that sheets do not crumple: compressed springs need shorter steps */
         .families =
             shape == ROPE ? SPRING_GRID_STRUCTURAL : SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
         .stiffness = 20000,
@@ -49,7 +49,7 @@ size_t scene_links(scene_shape shape, uint32_t side)
     return links;
 }
 
-/* Knuth's 64-bit generator, high bits: below n. */
+/* A pseudorandom number below n, from the high bits of Knuth's 64-bit generator. */
 static size_t below(uint64_t *state, size_t n)
 {
     *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
@@ -66,7 +66,7 @@ static void shuffle_links(scene_arrays *all, uint64_t *state)
     }
 }
 
-/* Puts particles[order[i]] at i. */
+/* Moves particle order[i] to i. */
 static void permute(scene_arrays *all, const uint32_t *order)
 {
     double *position = scene_allocate(all->particles * 3 * sizeof *position);
@@ -86,7 +86,7 @@ static void shuffle_particles(scene_arrays *all, uint64_t *state)
 {
     uint32_t *number = scene_allocate(all->particles * sizeof *number);
     uint32_t *order = scene_allocate(all->particles * sizeof *order);
-    for (size_t i = 0; i < all->particles; i++) { /* the same, from the inside out */
+    for (size_t i = 0; i < all->particles; i++) { /* the same, inside-out variant */
         const size_t j = below(state, i + 1);
         number[i] = number[j];
         number[j] = (uint32_t)i;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, scenes: the rows. Ropes, sheets, blocks of jelly and water, in natural order and in others, what each
- * feature costs, and what it costs to make a scene.
+ * spring-bench, scenes: the rows. Ropes, sheets, blocks of jelly and water, in natural and in other orders, the cost of
+ * each feature, and the cost of creating a scene.
  */
 #include <stdio.h>
 #include <string.h>
@@ -14,14 +14,14 @@ static const scene_feature plainly = {.method = SPRING_LEAPFROG};
 
 /* ------------------------------------------------------------------------------------------------------------ goals */
 
-/* What the library promises by the doubles in a vector: of AVX-512, of AVX2, of 16 bytes. */
+/* Goals for vectors of AVX-512, of AVX2, and of 16 bytes. */
 static double by_vector(double avx512, double avx2, double others)
 {
     const size_t lanes = bench_limits_of(false)->together;
     return lanes == 8 ? avx512 : lanes == 4 ? avx2 : others;
 }
 
-/* Over the plain loop; 0: none. */
+/* The required speedup over the plain loop; 0: none. */
 static double goal_speedup(const scene_subject *s)
 {
     if (s->shape == ROPE)
@@ -38,13 +38,13 @@ static double goal_speedup(const scene_subject *s)
                                              : 0;
 }
 
-/* The time over that of the limit; INFINITY: none. */
+/* The largest allowed ratio to the time of the limit; INFINITY: none. */
 static double goal_ratio(const scene_subject *s)
 {
     if (s->work != STEPS || s->against == SIXTEEN_STEPS)
         return INFINITY;
     if (s->against == SHUFFLED_LIST)
-        return s->side == 400 ? 1 / 2.5 : INFINITY; /* of 10^6 links */
+        return s->side == 400 ? 1 / 2.5 : INFINITY; /* 10^6 links */
     if (s->single)
         return 0.5;
     if (s->feature.method == SPRING_RK4)
@@ -54,12 +54,12 @@ static double goal_ratio(const scene_subject *s)
     return s->shape == WATER ? 2.2 : INFINITY;
 }
 
-static const double most_init = 18;   /* [ns] a link, of scenes of 10^6 particles */
-static const double most_excess = 25; /* [ns] a step that is a call by itself, compared with one of 16 steps */
+static const double most_init = 18;   /* [ns] per link, for scenes of 10^6 particles */
+static const double most_excess = 25; /* [ns] overhead per step of one step per call, compared with 16 steps per call */
 
 /* ------------------------------------------------------------------------------------------------------------- rows */
 
-/* Is it compared with a plain loop? That moves on three axes, in double, by leapfrog, and calls nobody back. */
+/* The plain loop supports only three axes, double precision and leapfrog, without a callback. */
 static bool is_looped(const scene_subject *s)
 {
     return s->shape != WATER && !s->single && s->work == STEPS && s->feature.method == SPRING_LEAPFROG &&
@@ -116,13 +116,13 @@ static void add_ropes(void)
     }
 }
 
-/* By one step a call and by sixteen. */
+/* Adds rows for one and for sixteen steps per call. */
 static void add_both(scene_subject s)
 {
     s.steps = 1;
     add("", &s);
     if ((s.order == LINKS_SHUFFLED || s.order == SHUFFLED) &&
-        s.side > 128) /* slow, and nothing of it stays in a cache from step to step */
+        s.side > 128) /* slow, and no data stay in the cache between steps */
         return;
     s.steps = 16;
     add("", &s);
@@ -158,7 +158,7 @@ static void blow(void *user, double t, size_t particles, const double *const pos
         z[i] += 0.02;
 }
 
-/* The other methods, then one feature after the other, compared with the scene without it. */
+/* Adds the other methods, then the features one by one, compared with the scene without them. */
 static void add_features(uint32_t side)
 {
     static const struct {
@@ -181,7 +181,7 @@ static void add_features(uint32_t side)
     }
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
         s.feature = features[i].feature;
-        if (side <= 128 || s.feature.damping > 0) /* the one that goes through the links again */
+        if (side <= 128 || s.feature.damping > 0) /* the feature with a second pass over the links */
             add(features[i].name, &s);
     }
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench: what a step of a spring costs, compared with a limit that is measured in the same run; samples.h says how.
+ * spring-bench: the cost of a step of a spring, compared with limits measured in the same run. See samples.h for the
+ * method.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-engines: the same sheet by the library and by physics engines that games use, in one run; samples.h says how
- * it is measured.
+ * spring-engines: the same sheet in the library and in physics engines for games, measured in one run. See samples.h
+ * for the method.
  *
- * A sheet, pinned along two edges, hangs under gravity, with structural, shear and bend links, all of them damped. The
- * step is the same for both: half of what is stable.
+ * A sheet, pinned along two edges, hangs under gravity, with damped structural, shear and bend links. Both use the same
+ * step, half the stable step.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -54,14 +54,15 @@ static const cli_program program = {
     .options = options,
 };
 
-static const double least_speedup = 15; /* --help says it, too */
-static const double most_distance = 1;  /* [m] of the middle of a sheet by an engine from ours; materials may differ */
+static const double least_speedup = 15; /* also in the help text */
+static const double most_distance =
+    1; /* [m] of the middle of an engine's sheet from the library's; materials may differ */
 
 /* ------------------------------------------------------------------------------------------------------- the sheets */
 
 typedef struct sheet {
     const physics_engine *engine;
-    void *world; /* the engine's */
+    void *world; /* of the engine */
     spring_scene *scene;
     double dt; /* [s] */
     size_t particles;
@@ -91,7 +92,7 @@ static spring_scene *scene_of(const spring_scene_def *def)
     return scene;
 }
 
-/* Leaves out links between particles that are both pinned, which Chipmunk refuses. */
+/* Removes links between two pinned particles, which Chipmunk rejects. */
 static size_t movable(spring_link *link, size_t links, const uint8_t *pinned)
 {
     size_t kept = 0;
@@ -107,7 +108,7 @@ static sheet make(const physics_engine *engine, uint32_t side, size_t *links)
         .count = {side, side},
         .axes = engine->axes,
         .spacing = 0.1,
-        .stretch = 1.05, /* or it crumples, which needs shorter steps */
+        .stretch = 1.05, /* otherwise it crumples, which needs shorter steps */
         .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
         .stiffness = 20000,
         .damping = 0.5,
@@ -141,7 +142,7 @@ static sheet make(const physics_engine *engine, uint32_t side, size_t *links)
     return (sheet){engine, world, scene, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG), particles};
 }
 
-/* An engine whose sheet has exploded, or does not move, computes no sheet. */
+/* Rejects an engine whose sheet has exploded or does not move. */
 static void check_engine(const sheet *s)
 {
     double from[3], to[3];

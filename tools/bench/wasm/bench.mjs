@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The library as WebAssembly compared with the loop over links that one would write in JavaScript, on typed arrays.
+// The library as WebAssembly compared with a plain JavaScript loop over links in typed arrays.
 //
 // usage: node bench.mjs cloth|water FLAGS MODULE.wasm [--quick]       (called by tools/bench/wasm/run)
 //
-// Prints a row. A process for each: what V8 has seen of another scene makes plain functions slower.
+// Prints one row per process, because V8's type feedback from another scene makes plain functions slower.
 import {readFileSync} from 'node:fs';
 
-const MASS = 0.1, GRAVITY = -9.81, STEPS = 16; // [kg], [m/s^2], steps a call
+const MASS = 0.1, GRAVITY = -9.81, STEPS = 16; // [kg], [m/s^2], steps per call
 const SIDE = 35;
 
 async function load(path) {
     const module = await WebAssembly.compile(readFileSync(path));
-    const imports = {}; // of libc, for printing and leaving: never called
+    const imports = {}; // libc functions for printing and exiting, never called
     for (const {module: from, name} of WebAssembly.Module.imports(module))
         (imports[from] ??= {})[name] = () => { throw new Error(name); };
     const {exports} = await WebAssembly.instantiate(module, imports);
@@ -19,7 +19,7 @@ async function load(path) {
     return exports;
 }
 
-// Functions of arrays: as methods that read them from an object they take twice as long and more.
+// Functions with array arguments. Methods that read the arrays from an object take more than twice as long.
 function forceCloth(links, a, b, rest, stiffness, x, f) {
     f.fill(0);
     for (let l = 0; l < links; l++) {
@@ -68,7 +68,7 @@ function drift(dt, v, x) {
         x[i] += dt * v[i];
 }
 
-// The scene of a module once more: its positions, and what advances them.
+// The scene of a module in plain JavaScript: its positions, and a function that advances them.
 function plainScene(c, water) {
     const particles = c.particles(), links = c.links(), size = (water ? 1 : 3) * particles;
     const x = new Float64Array(c.memory.buffer, c.positions(), size).slice();
@@ -92,7 +92,7 @@ function plainScene(c, water) {
     return {x, links, advance};
 }
 
-// Nanoseconds a link and step, the least of several runs, of both in turn.
+// Nanoseconds per link and step, the minimum of several runs, alternating between both.
 function times(both, links, runs, calls) {
     const least = both.map(() => Infinity);
     for (let r = 0; r < runs; r++)
@@ -105,7 +105,7 @@ function times(both, links, runs, calls) {
     return least;
 }
 
-// The largest difference of positions [m]. It is from sums in another order, and grows with the square of the steps.
+// The largest difference of positions [m]. It is due to the order of sums, and grows with the square of the steps.
 function difference(c, plain) {
     const ours = new Float64Array(c.memory.buffer, c.state(), plain.x.length);
     return plain.x.reduce((most, x, i) => Math.abs(x - ours[i]) <= most ? most : Math.abs(x - ours[i]), 0);
@@ -121,7 +121,7 @@ const ours = (steps) => {
         throw new Error('the scene did not advance');
 };
 const theirs = (steps) => plain.advance(dt, steps);
-const compared = 160, longest = 3.5; // steps; [m], of all positions
+const compared = 160, longest = 3.5; // steps; [m], largest of all positions
 ours(compared);
 theirs(compared);
 const off = difference(c, plain), bound = compared ** 2 * longest * Number.EPSILON;

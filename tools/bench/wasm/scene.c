@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene for bench.mjs: one sheet of cloth or water, its arrays open to JavaScript, its steps by the library. */
+/* A scene for bench.mjs: one sheet of cloth or water, advanced by the library, with arrays accessible to JavaScript. */
 #include <stdlib.h>
 
 #include <springstep/scene.h>
@@ -14,7 +14,8 @@ static struct {
     spring_scene *scene;
 } all;
 
-/* A sheet of side x side particles, pinned at two edges, all three families of links. True if it is there. */
+/* Creates a sheet of side x side particles, pinned at two edges, with structural, shear and bend links. Returns false if
+   out of memory. */
 EXPORT bool make(uint32_t side, bool water, double mass, double gravity)
 {
     const spring_grid grid = {
@@ -72,7 +73,7 @@ EXPORT uint32_t links(void)
     return (uint32_t)all.links;
 }
 
-/* As defined. */
+/* Positions of the definition. */
 EXPORT const double *positions(void)
 {
     return all.position;
@@ -98,7 +99,7 @@ EXPORT double link_stiffness(uint32_t link)
     return all.link[link].stiffness;
 }
 
-/* As they are now. */
+/* Current positions. */
 EXPORT const double *state(void)
 {
     spring_scene_get(all.scene, SPRING_POSITION, all.now, 0, 0, all.particles);
