@@ -14,8 +14,8 @@ static struct {
     spring_scene *scene;
 } all;
 
-/* Creates a sheet of side x side particles, pinned at two edges, with structural, shear and bend links. Returns false if
-   out of memory. */
+/* Creates a sheet of side x side particles, pinned at two edges, with structural, shear and bend links. Returns false
+   on failure. */
 EXPORT bool make(uint32_t side, bool water, double mass, double gravity)
 {
     const spring_grid grid = {
