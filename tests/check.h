@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Checks that say what they saw, random numbers from a printed seed, and what runs tests through CUnit as TAP. */
+/* Checks that print the compared values, random numbers from a printed seed, and a runner for CUnit tests with TAP. */
 #ifndef CHECK_H
 #define CHECK_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* vec_inverse_sqrt() in vectors of SPRING_VECTOR bytes, or without vectors, under the name INVERSE_SQRT. See
+/* vec_inverse_sqrt() for vectors of SPRING_VECTOR bytes, or without vectors, as a function named INVERSE_SQRT. See
    test_inverse_sqrt.c. */
 #include <math.h>
 #include <stdbool.h>

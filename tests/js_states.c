@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Advances the springs of standard input and writes their states, for tests/js: the package for JavaScript has to give the
-   same bits. Numbers are doubles in the byte order of the machine.
+/* Advances the springs of standard input and writes their states, for tests/js: the JavaScript package must give
+   bit-identical results. Numbers are doubles in the byte order of the machine.
        js_states single    records of one spring, struct single; after each step its status, x and v
-       js_states set       records of springs with shared parameters, struct set; x, v, how many move, the status
-   A single spring at rest on its target is not advanced: backwards it might get a velocity of -0. */
+       js_states set       records of springs with shared parameters, struct set; x, v, number of moving springs, status
+   A single spring at rest on its target is not advanced, because backwards it could get a velocity of -0. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

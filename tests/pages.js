@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Measures the page that is open: its value is what is wrong there, lines of "kind, picture, what", with tabs between, the
-// last of which says what was measured. Called by tests/pages.
+// Measures the open page. Its value is a list of problems: lines of "kind, picture, what", separated by tabs. The last
+// line lists the measurements. Called by tests/pages.
 "use strict";
 
 const LEAST_CONTRAST = 4.5; // what WCAG 2.2 asks of text, 1.4.3

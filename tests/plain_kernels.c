@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The kernels as compilers without vectors of GNU C compile them: `real` is one number (simd/real_number.h). The
- * headers of the system and of the library come first, since they need to know their compiler.
+ * The kernels as compiled by compilers without the vector extensions of GNU C: `real` is one number
+ * (simd/real_number.h). System and library headers are included first, since they depend on the actual compiler.
  */
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* One spring as a scene of two particles, for methods that are offered for scenes only. Choose a power of two for its mass,
-   so that w and g are what the references work from. */
+/* One spring as a scene of two particles, for methods that support scenes only. Its mass should be a power of two, so
+   that w and g are exactly those of the reference solutions. */
 #ifndef SPRING_IN_SCENE_H
 #define SPRING_IN_SCENE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* CUnit speaking TAP (its JUnit writer aborts when a test fails, CUnit 2.1-3), and the checks. */
+/* TAP output for CUnit (whose JUnit writer aborts when a test fails, CUnit 2.1-3), and the checks. */
 #include <CUnit/CUnit.h>
 #include <CUnit/TestRun.h>
 #include <math.h>

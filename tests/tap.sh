@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# Test points for shell scripts, in the Test Anything Protocol. Sourced; gives the script a directory $scratch.
+# Test points for shell scripts, in the Test Anything Protocol. Sourced; creates a directory $scratch for the script.
 set -u
 
 scratch=$(mktemp -d)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The accurate step and the error of a step, against runs in multiple precision that know nothing of their formulas. */
+/* The accurate step and the error of a step, compared with runs in multiple precision that do not use the formulas. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* spring_advance(): n kernel calls bit for bit, every error path, and no change of state after an error;
-   the table of methods. */
+/* spring_advance(): bit-identical to n kernel calls, every error path, and an unchanged state after an error. The table
+   of methods. */
 #include <math.h>
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Batches against single springs, with one instruction set: v128, v256 or v512 on the command line. Built twice: once
- * with SPRING_FLOAT, for the single-precision version.
+ * Batches compared with single springs, for one instruction set: v128, v256 or v512 on the command line. Built twice:
+ * once with SPRING_FLOAT, for the single-precision version.
  *
- * In double a spring is what spring_advance() makes of it. In float it is what the kernels without vectors make of it,
- * and that lies near what spring_advance() makes of it in double.
+ * In double precision, results are bit-identical to spring_advance(). In single precision, they are bit-identical to
+ * the kernels without vectors, which are close to spring_advance() in double precision.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The checks themselves: each must fail when it should, and say so. Nothing here relies on them: this program prints
- * its own TAP, and runs itself once for each scenario to see what a test program would print.
+ * Tests of the checks: each must fail when it should, with a message. This program does not rely on the checks. It
+ * prints its own TAP, and runs itself once per scenario to capture the output of a test program.
  */
 #define _POSIX_C_SOURCE 200809L /* popen() */
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The frame clock: every frame's time becomes steps, waits, or is counted as dropped. */
+/* The frame clock: the time of every frame is converted to steps, carried over, or counted as dropped. */
 #include <math.h>
 #include <springstep/clock.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The functions of src/simd/elementary.h, and powers that do not fit into a double, against multiple precision. On
-   numbers: that vectors have the same bits is tested with batches. */
+/* The functions of src/simd/elementary.h, and powers that do not fit into a double, compared with multiple precision.
+   Only for single numbers; tests of batches check that vectors are bit-identical. */
 #include <math.h>
 #include <stdio.h>
 

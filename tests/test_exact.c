@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact solution against multiple precision, to the bounds that spring.h states.
-       test_exact [POINTS]     so many where the formula changes, instead of 10^5 */
+/* The exact solution compared with multiple precision, to the bounds stated in spring.h.
+       test_exact [POINTS]     number of points where the formula changes, default 10^5 */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

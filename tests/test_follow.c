@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A spring that follows a target: it lands, it does not lag, its error against multiple precision is within the bound that
-   spring.h states; and the parameters that people know.
-       test_follow [SPRINGS]     so many that have to land, instead of 2000 */
+/* A spring that follows a target: it reaches the target exactly, does not lag, and has an error within the bound stated
+   in spring.h. Parameters from other conventions.
+       test_follow [SPRINGS]     number of springs that must reach the target, default 2000 */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

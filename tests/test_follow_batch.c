@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Batches that follow targets, with one instruction set: v128, v256, v512 or best on the command line. Built twice: once
- * with SPRING_FLOAT, for the single-precision version. In double a spring is what spring_follow() makes of it, in float what
- * the kernels without vectors make of it, and that lies near what spring_follow() makes of it in double.
- *     test_follow_batch VECTORS [SPRINGS]     so many that have to land, instead of 600
+ * Batches that follow targets, for one instruction set: v128, v256, v512 or best on the command line. Built twice: once
+ * with SPRING_FLOAT, for the single-precision version. In double precision, results are bit-identical to
+ * spring_follow(). In single precision, they are bit-identical to the kernels without vectors, which are close to
+ * spring_follow() in double precision.
+ *     test_follow_batch VECTORS [SPRINGS]     number of springs that must reach the target, default 600
  */
 #include <math.h>
 #include <stdio.h>

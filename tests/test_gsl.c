@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * GSL's rk4 as an external solver. One apply(h) of GSL 2.7 is two RK4 steps of h/2 (it doubles its step to estimate the
- * error and keeps the finer result).
+ * GSL's rk4 as an external solver. One apply(h) of GSL 2.7 is two RK4 steps of h/2, because it estimates its error by
+ * step doubling and keeps the finer result.
  */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>

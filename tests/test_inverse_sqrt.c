@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The inverse square root of the kernels of scenes: how accurate it is, and that every lane of every vector has the
-   bits it would have alone. */
+/* The inverse square root of the kernels of scenes: its accuracy, and bit-identical results in every lane of every
+   vector. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Each stepper against the same method in exact arithmetic: what differs is rounding, and its bound is counted. */
+/* Each step method compared with the same method in exact arithmetic: the difference is rounding error, with a bound
+   from counting operations. */
 #include <math.h>
 
 #include "check.h"

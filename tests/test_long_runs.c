@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The energy over very long runs of SRKN6: bounded, and without a drift beyond rounding. */
+/* The energy in very long runs of SRKN6 is bounded, without a drift beyond rounding error. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Lists of methods for tests to walk, in the order of the library's table: a new method is tested by being there. */
+/* Lists of methods for tests, in the order of the table of the library. Tests include new methods automatically. */
 #ifndef TEST_METHODS_H
 #define TEST_METHODS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What holds for every spring: symmetry, linearity, scaling, reversal. Most of it to the bit. */
+/* Properties of every spring: symmetry, linearity, scaling, reversal. Most hold bit for bit. */
 #include <math.h>
 
 #include "check.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Renumbering: what comes out is what went in under other numbers, in order; ropes and sheets get their rows back, other
- * meshes the numbering of Cuthill and McKee; a scene moves as it would have, to the bit.
+ * Renumbering: the result is the same mesh with other numbers, sorted. Ropes and sheets get their bands back, other
+ * meshes the numbering of Cuthill and McKee. The motion of a scene is bit-identical.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* RKN8 on one spring in a scene, whose mass is a power of two so that w and g are what the references work from:
-   rounding, order and error constant, energy, stable step. What is true of every method tests of scenes ask. */
+/* RKN8 on one spring in a scene: rounding error, order and error constant, energy, stable step. The mass is a power of
+   two, so that w and g are exactly those of the reference solutions. Tests of scenes check the properties of all
+   methods. */
 #include <springstep/batch.h>
 
 #include "spring_in_scene.h"

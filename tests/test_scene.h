@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the tests of scenes share: scenes in memory of their own, models with every feature, and a plain loop over
+/* Common parts of the tests of scenes: scenes in allocated memory, models with every feature, and a plain loop over
    links. */
 #ifndef TEST_SCENE_H
 #define TEST_SCENE_H

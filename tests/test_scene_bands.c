@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Bands of links, many and far apart; what one link does to the bits of others; motion and forces in one pass over
-   memory; records of unbanded links. */
+/* Many bands of links, with large offsets; the influence of one link on the bits of others; motion and forces in one
+   pass over memory; records of unbanded links. */
 #include "test_scene.h"
 
 /* The first n particles of two scenes, to the bit. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The rules of colliders: what is valid, the bits of all kernels and calls, rollback, touching and rest. */
+/* The rules of colliders: valid colliders, bit-identical kernels and calls, rollback, touching and rest. */
 #include "test_scene.h"
 
 static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Leapfrog with heavy link damping: the series, its order, its errors, stability, bits. max_speed, and softened links. */
+/* Leapfrog with heavy link damping: the series, its order and errors, stability, bits. max_speed and softened links. */
 #include <stdio.h>
 
 #include "test_scene.h"

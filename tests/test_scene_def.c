@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From definitions to scenes: what is refused and named, memory in bytes, ropes, sheets and blocks. */
+/* From definitions to scenes: invalid fields are rejected and named; size of the memory; ropes, sheets and blocks. */
 #include <stdint.h>
 
 #include "test_scene.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes where numbers are very large, or nothing is there: what lies next to the bands, pins, time, questions. */
+/* Scenes with very large numbers or without contents: the ends of bands, pins, time, queries. */
 #include "test_scene.h"
 
 enum { count = 16 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is changed in a scene while it moves: pins, masses, driven particles; and how links are found. */
+/* Changes of a running scene: pins, masses, driven particles. Finding links. */
 #include "test_scene.h"
 
 /* small, with bands, with unbanded links alone */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Forces of links: against a plain loop, in bands and edge lists, with every instruction set; tension, energies,
-   rest. */
+/* Forces of banded and unbanded links compared with a plain loop, for every instruction set; tension, energy, rest. */
 #include "test_scene.h"
 
 /* ------------------------------------------------------------------------------------------------ against a plain

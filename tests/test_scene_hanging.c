@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How far ropes and sheets stretch under their own weight: the formulas of spring_grid in scene.h against settled scenes. */
+/* The stretch of ropes and sheets under their own weight: the formulas of spring_grid in scene.h and settled scenes. */
 #include "test_scene.h"
 
 static const double mass = 0.013, gravity = 9.81, spacing = 0.11; /* [kg], [m/s^2], [m] */

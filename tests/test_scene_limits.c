@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The stable step: its formula, that it is stable, and not much too small. Corner cases. */
+/* The stable step: its formula; it is stable and not much too small. Corner cases. */
 #include <stdio.h>
 
 #include "test_scene.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The methods: against the steps of textbooks on a plain loop over links, against normal modes, their orders, what they
-   conserve. */
+/* The methods compared with textbook steps over a plain loop of links, and with normal modes; their orders and
+   conserved quantities. */
 #include "harness/iterates.h"
 #include "harness/reference.h"
 

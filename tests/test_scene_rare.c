@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What is rare in scenes: springs or dampers alone, what makes a band of links, what comes between two steps that share
-   a force, bad numbers at the end, a scene that is lost. */
+/* Rare cases of scenes: only springs or only dampers, the conditions for a band of links, calls between two steps that
+   share a force, invalid numbers at the end, a scene that overflows. */
 #include "test_scene.h"
 
 static void count_calls(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Small scenes, whose particles are quads: forces against a plain loop, and everything that can be asked of them or
-   done to them against the same scene with so many strangers that it is not small. */
+/* Small scenes, which store particles as quads: forces compared with a plain loop, and all queries and edits compared
+   with the same scene plus so many unconnected particles that it is not small. */
 #include "test_scene.h"
 
 enum { most_small_particles = 13, strangers = 14 };

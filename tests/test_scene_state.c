@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A scene from call to call: runs in several calls, time, callbacks, failures, snapshots, what is read and changed. */
+/* A scene across calls: runs in several calls, time, callbacks, failures, snapshots, reading and changing the state. */
 #include "test_scene.h"
 
 static const uint32_t sheet[] = {7, 5, 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Links that tear, many links set at once, and the pieces that links join. */
+/* Links that tear, setting many links at once, and connected components. */
 #include "test_scene.h"
 
 /* ------------------------------------------------------------------------------------------------------------ tearing */

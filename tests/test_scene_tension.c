@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Links that pull and never push: their forces, energy and tension, order across the kink, and the bound of the stable
-   step. */
+/* Tension-only links: forces, energy and tension, order across the kink, and the bound on the stable step. */
 #include "test_scene.h"
 
 /* About half of the links are slack. */

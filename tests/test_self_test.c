@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The self-test: it holds where the arithmetic is right, and names what is not. (tests/headers/contraction has a library
-   whose products and sums are fused.) */
+/* The self-test: it passes if the arithmetic is right, and otherwise names the fault. (tests/headers/contraction tests
+   a library with fused products and sums.) */
 #include <fenv.h>
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Rest: the time to get there against sampling the motion, the question whether it is there, and the two
-   constructors. */
+/* Rest: the settling time compared with sampled motion, the test for rest, and the two constructors. */
 #include <math.h>
 
 #include "check.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A feature that is zero gives the bits of the loop that does not know it. The methods are compiled in once more, since
- * spring_advance() always picks the shortest loop.
+ * A feature with the value 0 is bit-identical to a loop without the feature. The methods are compiled into this test,
+ * since spring_advance() always chooses the shortest loop.
  */
 #include "methods/methods.h"
 

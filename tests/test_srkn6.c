@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* SRKN6: the order conditions of its coefficients; on one spring in a scene its rounding, order, phase, energy and stable
-   step; its order in scenes whose forces are not linear; and that it is its own inverse. Tests of scenes walk the list of
-   methods for everything that holds for all of them. */
+/* SRKN6: the order conditions of its coefficients; rounding error, order, phase, energy and stable step on one spring
+   in a scene; its order with nonlinear forces; its time reversibility. Tests of scenes check the properties of all
+   methods. */
 #include <stdio.h>
 
 #include "methods/srkn6_coefficients.h"

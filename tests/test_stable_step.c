@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The stable step against its definition in multiple precision, and against real steps just inside and just outside. */
+/* The stable step compared with its definition in multiple precision, and with steps just below and above it. */
 #include <math.h>
 
 #include "check.h"

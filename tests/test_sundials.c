@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* SUNDIALS as an external solver: which of its integrators can be believed, and that its work is really counted. */
+/* SUNDIALS as an external solver: which of its integrators are correct, and that its work is counted. */
 #include <math.h>
 #include <stdlib.h>
 #include <sundials/sundials_config.h>

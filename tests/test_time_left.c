@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a tool says on a terminal of the time that it still takes. */
+/* The remaining time that a tool shows on a terminal. */
 #include <string.h>
 
 #include "check.h"

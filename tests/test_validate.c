@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What can be believed of spring-validate: it runs its whole catalogue, its bounds are not so wide that nothing could
- * miss them, and with a wrong library (wrong_advance.c) it fails. The paths of both programs are the arguments.
+ * Tests that spring-validate is reliable: it runs all its cases, its bounds are not so wide that they always hold, and
+ * it fails with a wrong library (wrong_advance.c). The arguments are the paths of both programs.
  */
 #define _POSIX_C_SOURCE 200809L /* popen(), setenv() */
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What spring-work stands on: work that is counted, one equation for all, and an exact solution that is as good as it
-   says. */
+/* The foundations of spring-work: counted work, one equation for all solvers, and an exact solution within its
+   uncertainty. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

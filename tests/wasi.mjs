@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs a program for WASI. With a list of functions: does a module export them, and import nothing?
+// Runs a program for WASI. With a list of functions: checks that a module exports them and imports nothing.
 //     node wasi.mjs MODULE [LIST]
 import { readFileSync } from "node:fs";
 import { WASI } from "node:wasi";

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring_advance() and spring_scene_advance() gone wrong, for a spring-validate that must notice: linked with
- * -Dspring_advance=wrong_advance and the like. The environment variable WRONG says in which way.
+ * Wrong versions of spring_advance() and spring_scene_advance(), which spring-validate must detect. Linked with
+ * -Dspring_advance=wrong_advance and similar. The environment variable WRONG selects the error.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tests of command-line tools, which are found in PATH; by hand:
+"""The tests of command-line tools, which must be in PATH. To run them by hand:
 
     PATH=$PWD/build/tools:$PATH /usr/bin/python3 -m pytest tests/cli
 """

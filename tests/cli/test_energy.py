@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-energy: the energies of the study, and what theory says of them."""
+"""spring-energy: the energies of the study, and their theory."""
 import math
 
 import pytest

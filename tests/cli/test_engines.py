@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-engines: a table of the library compared with physics engines. How fast they are is nobody's promise."""
+"""spring-engines: a table of the library compared with physics engines. Speeds are not tested."""
 import pytest
 from tools import ENGINES, is_failure, parse, run
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-validate, spring-stability, spring-rounding: what is checked, limits, rounding errors."""
+"""spring-validate, spring-stability, spring-rounding: checks, stability limits, rounding errors."""
 import math
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the tools write: to standard output, and to files that are complete or not there, whatever ends a run."""
+"""Output of the tools: standard output, and files that are either complete or absent however a run ends."""
 import os
 import pathlib
 import resource

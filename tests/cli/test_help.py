@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tools say of themselves: --help, pages of the manual, what bash completes, what a typing error meant."""
+"""Documentation of the tools: --help, man pages, bash completion, suggestions for typing errors."""
 import pathlib
 import re
 import shlex

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/bench/instructions: what it refuses, and its table of cycles where llvm-mca is installed."""
+"""tools/bench/instructions: errors, and its table of cycles if llvm-mca is installed."""
 import pathlib
 import shutil
 

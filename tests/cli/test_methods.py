@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The table of methods, and that every tool offers what it has, each method by its own name."""
+"""The table of methods. Every tool offers the methods of the table by their names."""
 import pytest
 from tools import (BENCH, ENERGY, MAP, ORDER, ROUNDING, RUN, SCENE, STABILITY, VALIDATE, WORK, choices, parse, run,
                    table)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-order: errors of the study, its fits, the steps that an error takes."""
+"""spring-order: errors of the study, fits, the number of steps for an error."""
 import math
 
 import pytest

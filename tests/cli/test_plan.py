@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-plan: an error and a duration in, methods and steps out."""
+"""spring-plan: methods and steps for an error and a duration."""
 import math
 
 import pytest

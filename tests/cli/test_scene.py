@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-scene: what the preset scenes do, what disturbances do to them, frames, explosions."""
+"""spring-scene: motion of the preset scenes, disturbances, frames, explosions."""
 import math
 import os
 import re

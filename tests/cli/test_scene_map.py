@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-scene-map: which methods keep which scenes with how many steps a frame."""
+"""spring-scene-map: accuracy of methods on scenes, by steps per frame."""
 import itertools
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-sweep: the same bytes for any number of parts, processes and interruptions, and what is in them."""
+"""spring-sweep: identical output for any number of parts, processes and interruptions, and its contents."""
 import cmath
 import contextlib
 import itertools

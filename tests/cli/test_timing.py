@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""spring-work and spring-bench: what they measure and how they judge it; how long it takes is nobody's promise."""
+"""spring-work and spring-bench: their measurements and verdicts. Times are not tested."""
 import functools
 import math
 import pathlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tools have in common: options, messages, exit statuses, the form of tables, progress."""
+"""Common features of the tools: options, messages, exit statuses, the form of tables, progress."""
 import os
 import re
 import select

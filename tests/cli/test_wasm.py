@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/bench/wasm/run: the library as WebAssembly reaches what plain JavaScript does; how fast is nobody's promise."""
+"""tools/bench/wasm/run: WebAssembly and plain JavaScript give the same motion. Speeds are not tested."""
 import pathlib
 
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the tests of command-line tools share: the tools by name, running them, reading their tables."""
+"""Common functions of the tests of command-line tools: their names, running them, reading their tables."""
 import functools
 import os
 import re

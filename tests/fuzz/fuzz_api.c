@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Any bytes as a call of the library: it must come back, and keep its promises. With libFuzzer's driver or with
- * replay.c.
+ * Arbitrary bytes as calls of the library, which must return and satisfy the documentation. With libFuzzer's driver or
+ * with replay.c.
  *
  * The bytes are read as doubles, so the fuzzer reaches NaN, denormals and every sign; an input is at most sizeof(input)
  * bytes.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Any bytes as a word of the command line: numbers are read strictly, and as strtod() reads them. The tools' common
- * part is included, to reach what it keeps to itself.
+ * Arbitrary bytes as a word of the command line. Numbers are read strictly, with the same values as strtod(). The
+ * common source of the tools is included, to access its static functions.
  */
 #include "../../tools/common/cli.c"
 #include "../../tools/common/cli_help.c"

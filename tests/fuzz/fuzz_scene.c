@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Any bytes as a small scene and what is done to it, in double or (FUZZ_FLOAT) in float: a definition, good or bad,
- * then steps, changes and questions. Two scenes of the same definition, in memory that held different things, live the
- * same life, one in calls of n steps, one in n calls; guards lie around their blocks.
+ * Arbitrary bytes as a small scene and operations on it, in double or (FUZZ_FLOAT) single precision: a valid or invalid
+ * definition, then steps, changes and queries. Two scenes with the same definition, in memory with different contents,
+ * must have the same results, one in calls of n steps, one in n calls. Guards surround their blocks.
  *
  * Every choice is a byte, and so are most numbers, in sixteenths; in wild inputs some are extreme, and some any eight
  * bytes.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A driver for fuzz targets where there is no libFuzzer: gives each file of the folders named to the target. */
+/* A driver for fuzz targets without libFuzzer: passes each file of the given folders to the target. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
 #include <stdio.h>

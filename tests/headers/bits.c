@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The bits of many springs after many steps, in hexadecimal (of batches a digest): the same from every compiler, flag
- * and processor.
+ * Prints the bits of many springs after many steps, in hexadecimal (a digest for batches). They are the same for every
+ * compiler, flag and processor.
  *
  * The library computes with + - * / and sqrt alone. The expected output is bits.txt; it changes only with a "Results"
  * line in CHANGELOG.md.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# bits.c, interface.c and the library's sources, compiled as in a build of one's own. Sourced, with $root set to the source root.
+# Compiles bits.c, interface.c and the library's sources as in a user's own build. Sourced; $root is the source root.
 # shellcheck disable=SC2154
 bits=$root/tests/headers/bits
 

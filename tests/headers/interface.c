@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What a program that is compiled once, and a binding of another language, rely on: sizes of public structures and offsets
-   of their fields, where addresses have 64 and 32 bits, and values. A line here changes: so does the soversion, unless
-   nothing of it has been released. Compiled for every target that tests know. */
+/* The binary interface for compiled programs and bindings: sizes of public structures, offsets of their fields, for
+   64-bit and 32-bit addresses, and values. If a line here changes, the soversion must change, unless the line has not
+   been released. Compiled for every target of the tests. */
 #include <stddef.h>
 
 #include <springstep/batch.h>

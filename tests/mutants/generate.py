@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The mutants that a generator makes of C: every operator, comparison, constant and statement of a file, in turn.
+"""Generates mutants of C files: changes every operator, comparison, constant and statement in turn.
 
-A mutant is named definition:change:ordinal, the definition being a function, a table, an enumeration or a macro, and
-the ordinal counting the same change within it: a name outlives edits elsewhere, other comments and another layout.
-Left alone are comments, strings, preprocessor lines but macros with parameters, declarations of pointers and sizes of
-arrays. A macro that is called between two definitions belongs to the second.
+A mutant is named definition:change:ordinal. The definition is a function, a table, an enumeration or a macro, and the
+ordinal counts the same change within it. So names do not change with edits elsewhere, comments or layout. Comments,
+strings, preprocessor lines (except macros with parameters), declarations of pointers and sizes of arrays are not
+changed. A macro that is called between two definitions belongs to the second.
 """
 
 import hashlib

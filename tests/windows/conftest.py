@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tests of examples with windows, under an X server of their own; by hand:
+"""The tests of examples with windows, under a separate X server. To run them by hand:
 
     SPRINGS=$PWD/build/examples/springs SPRINGSTEP_LIBRARY=$PWD/build/libspringstep.so.0.3 GAME=$PWD/examples/love \\
         PATH=$PWD/build/tools:$PATH /usr/bin/python3 -m pytest tests/windows

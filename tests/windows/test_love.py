@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""examples/love: a real pointer, and the library where the game looks for it."""
+"""examples/love: with a real pointer, and with the library in each place where the game searches for it."""
 import contextlib
 import os
 import shutil

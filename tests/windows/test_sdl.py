@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""examples/sdl: played from scripts in fixed frames, and once by a real pointer."""
+"""examples/sdl: run by scripts with fixed frames, and once with a real pointer."""
 import itertools
 import math
 import os
