@@ -53,6 +53,30 @@ static void arkstep_8(void)
     CHECK_BELOW(error_of_order_8(320), 4 * DBL_EPSILON * 320, "rounding");
 }
 
+#ifdef SPRING_SPRKSTEP
+static double error_of_sprk(uint64_t n)
+{
+    const double duration = 10;
+    const spring_params q = {p.mass, p.stiffness, 0, 0};
+    ode o = {.size = 2, .derivative = ode_spring_derivative, .data = &q, .scale = scale};
+    double y[] = {start.x, start.v};
+    spring_state s = start;
+    CHECK(ode_sprkstep_6(&o, y, duration / (double)n, n) == NULL, "SUNDIALS has the method");
+    CHECK(o.evaluations >= 8 * n - 1 && o.evaluations <= 8 * n + 1, "eight stages a step");
+    spring_step_exact(&s, &q, duration);
+    return hypot(s.x - y[0], s.v - y[1]);
+}
+#endif
+
+static void sprkstep(void)
+{
+#ifdef SPRING_SPRKSTEP
+    CHECK_CLOSE(log2(error_of_sprk(80) / error_of_sprk(160)), 6, 0.3, "order six");
+#else
+    skip("SUNDIALS " SUNDIALS_VERSION " has no SPRKStep; it was added in 6.6");
+#endif
+}
+
 static void erkstep(void)
 {
 #if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
@@ -98,6 +122,7 @@ int main(void)
     static const test tests[] = {
         {"ARKStep with the classical table agrees", arkstep},
         {"ARKStep with the table of order 8", arkstep_8},
+        {"SPRKStep of order 6", sprkstep},
         {"ERKStep with the classical table does not, before 6.7.0", erkstep},
         {"speed and version", slowness},
         {"BDF on a lightly damped spring", bdf_in_trouble},

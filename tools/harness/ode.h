@@ -63,6 +63,10 @@ const char *ode_arkstep_8(ode *o, double *y, double h, uint64_t n);
    steps. */
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance);
 
+/* ARKODE's symplectic partitioned Runge-Kutta method of order 6, with 8 stages, by Yoshida, for accelerations that depend
+   on positions only. Only in programs compiled with SPRING_SPRKSTEP, which requires SUNDIALS 6.6 or later. */
+const char *ode_sprkstep_6(ode *o, double *y, double h, uint64_t n);
+
 /* Boost.odeint, only in programs compiled with SPRING_ODEINT. n steps of h by Fehlberg's 7(8), 13 evaluations per step,
    or by McLachlan's symplectic method of order 4, 5 evaluations per step, for accelerations that depend on positions
    only. Bulirsch-Stoer uses odeint's own control of order and step; its local tolerance is relative to the largest

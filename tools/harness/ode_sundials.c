@@ -2,6 +2,9 @@
 /* SUNDIALS CVODE and ARKODE, 6.4 to 7.x; see ode.h. */
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
+#ifdef SPRING_SPRKSTEP
+#include <arkode/arkode_sprkstep.h>
+#endif
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
@@ -12,6 +15,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <math.h>
+#include <string.h>
 
 #include "harness/ode.h"
 #include "harness/plain_sum.h"
@@ -27,6 +31,12 @@
 #define ARKodeSetOrder       ARKStepSetOrder
 #define ARKodeSetStopTime    ARKStepSetStopTime
 #define ARKodeSetUserData    ARKStepSetUserData
+#elif defined(SPRING_SPRKSTEP)
+#define SPRKStepEvolve       ARKodeEvolve
+#define SPRKStepFree         ARKodeFree
+#define SPRKStepSetFixedStep ARKodeSetFixedStep
+#define SPRKStepSetOrder     ARKodeSetOrder
+#define SPRKStepSetUserData  ARKodeSetUserData
 #endif
 
 /* Errors are returned, not printed. Since 7.0 this is a setting of the context, before of each solver. */
@@ -224,6 +234,51 @@ const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tole
     close_session(&s);
     return message;
 }
+
+#ifdef SPRING_SPRKSTEP
+/* The state is (x, v). Both functions set the other half of dy to 0. */
+static int accelerations(sunrealtype t, N_Vector y, N_Vector dy, void *user)
+{
+    const ode *o = user;
+    derivative(t, y, dy, user);
+    memset(N_VGetArrayPointer(dy), 0, o->size / 2 * sizeof(sunrealtype));
+    return 0;
+}
+
+static int velocities(sunrealtype t, N_Vector y, N_Vector dy, void *user)
+{
+    const ode *o = user;
+    const size_t half = o->size / 2;
+    sunrealtype *const out = N_VGetArrayPointer(dy);
+    (void)t;
+    memcpy(out, N_VGetArrayPointer(y) + half, half * sizeof *out);
+    memset(out + half, 0, half * sizeof *out);
+    return 0;
+}
+
+const char *ode_sprkstep_6(ode *o, double *y, double h, uint64_t n)
+{
+    session s;
+    const char *message = open_session(&s, o, y, 1);
+    double t = 0;
+    if (message == NULL) {
+        s.memory = SPRKStepCreate(accelerations, velocities, 0, s.y, s.context);
+        if (s.memory == NULL || SPRKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
+            SPRKStepSetOrder(s.memory, 6) != ARK_SUCCESS || SPRKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
+            message = "SPRKStep: cannot start";
+    }
+    ode_start_clock(o);
+    for (uint64_t i = 0; i < n && message == NULL; i++)
+        if (SPRKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
+            message = "SPRKStep: the integration failed";
+    ode_stop_clock(o);
+    o->steps += n;
+    if (s.memory != NULL)
+        SPRKStepFree(&s.memory);
+    close_session(&s);
+    return message;
+}
+#endif
 
 #if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
 const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)

@@ -51,8 +51,9 @@ static const cli_program program = {
                "step. xpbd takes substeps of one iteration over all links, as game engines do. leapfrog-softened and\n"
                "xpbd run only scenes of distance springs. gsl-rk4 uses step doubling, which is counted.\n"
                "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are available if Boost was found at build\n"
-               "time. odeint-sb3a-m4 is symplectic, for problems without drag and damping. A run that explodes, or\n"
-               "whose error is more than three times the size of the motion, has no row.",
+               "time, arkode-sprk6 with SUNDIALS 6.6 or later. odeint-sb3a-m4 and arkode-sprk6 are symplectic, for\n"
+               "problems without drag and damping. A run that explodes, or whose error is more than three times\n"
+               "the size of the motion, has no row.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
     .meaning = "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"

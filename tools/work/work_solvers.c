@@ -19,6 +19,9 @@ static const work_solver external[] = {
     {.name = "arkode-rk4", .side = WORK_EXTERNAL, .fixed = ode_arkstep_rk4, .order = 4},
     {.name = "arkode-8", .side = WORK_EXTERNAL, .fixed = ode_arkstep_8, .order = 8},
     {.name = "arkode-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_arkstep_adaptive},
+#ifdef SPRING_SPRKSTEP
+    {.name = "arkode-sprk6", .side = WORK_EXTERNAL, .fixed = ode_sprkstep_6, .positions_only = true, .order = 6},
+#endif
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
 #ifdef SPRING_ODEINT
