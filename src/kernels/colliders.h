@@ -46,7 +46,7 @@ SPRING_INLINE real inverse_of(real a)
 
 /* The length of a vector whose square is given; *inverse: 1/length, or 0 for 0. The error is at most 3 ulp. This is faster
    than a square root and then a division. */
-SPRING_INLINE real length_of(real square, real *inverse)
+SPRING_INLINE real length_from(real square, real *inverse)
 {
     const mask all = not_mask((mask){0});
     *inverse = square;
@@ -58,7 +58,7 @@ SPRING_INLINE real length_of(real square, real *inverse)
 SPRING_INLINE void set_round(contact_point *p, real3 from_core, scalar radius)
 {
     real inverse;
-    const real distance = length_of(dot3(from_core, from_core), &inverse);
+    const real distance = length_from(dot3(from_core, from_core), &inverse);
     p->normal = select3(inverse > 0, times3(inverse, from_core), (real3){splat(0), splat(1), splat(0)});
     p->gap = distance - radius;
 }

@@ -54,7 +54,7 @@ typedef struct drifting {
 SPRING_INLINE real3 friction_loss(real3 tangential, real limit)
 {
     real inverse;
-    const real speed = length_of(dot3(tangential, tangential), &inverse);
+    const real speed = length_from(dot3(tangential, tangential), &inverse);
     return select3(speed > limit, times3(limit * inverse, tangential), tangential);
 }
 
@@ -117,8 +117,8 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
     const real3 sliding = tangential_to(n, minus3(p->w, *surface));
     const real3 at_start = tangential_to(n, minus3(plus_scaled3(p->w, splat(-p->kappa * p->h), p->accel), *surface));
     real inverse_speed, inverse_start_speed;
-    const real speed = length_of(dot3(sliding, sliding), &inverse_speed);
-    const real start_speed = length_of(dot3(at_start, at_start), &inverse_start_speed);
+    const real speed = length_from(dot3(sliding, sliding), &inverse_speed);
+    const real start_speed = length_from(dot3(at_start, at_start), &inverse_start_speed);
     const mask along_start = dot3(at_start, sliding) > (scalar)0.5 * start_speed * speed;
     const int passes = c->friction > 0 ? friction_passes : 0;
     real lambda = vec_not_negative(-inward) * inverse_duration;
@@ -313,7 +313,7 @@ SPRING_NOINLINE uint32_t stop_at_colliders(const scene_contacts *t, lane_bits to
         const real rate = dot3(u, normal), limit = c->friction * vec_abs(rate);
         const mask enters = touches[i] & (rate * t->h < 0);
         real inverse;
-        const mask slides = length_of(dot3(tangential, tangential), &inverse) > limit;
+        const mask slides = length_from(dot3(tangential, tangential), &inverse) > limit;
         const real3 slid = minus3(plus_scaled3(*v, -rate, normal), times3(limit * inverse, tangential));
         *v = select3(enters, select3(slides, slid, surface[i]), *v);
         pressed[i] = select_real(enters, -rate, splat(0));
