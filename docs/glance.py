@@ -70,7 +70,7 @@ def performance():
     xpbd = row_where(read('stiff-forces')[1], problem='stiff-cloth', evaluation='xpbd')
     smallest = min((row['links'] for row in engines), key=int)
     others = [(f'Bullet {versions["bullet"]}, one position iteration per step', 'bullet'),
-              (f'Chipmunk2D {versions["chipmunk"]}, damped springs', 'chipmunk')]
+              (f'Chipmunk2D {versions["chipmunk"]} of `tools/bench/optimised`, damped springs', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
     ratios.append(('XPBD with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
     processors = {read(name)[0]['processor'] for name in COMMANDS}
