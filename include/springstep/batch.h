@@ -9,7 +9,7 @@
  *     spring_batch b = {1000, x, v, omega2, &gamma, NULL, SPRING_SHARED_GAMMA};
  *     spring_batch_advance(&b, SPRING_LEAPFROG, 1.0 / 240, 4);
  *
- * These rules hold for every function in this file, in addition to those in spring.h:
+ * These rules hold for every function in this file, in addition to the rules in spring.h:
  *  - Determinism. In double precision, advancing spring i is bit-identical to advancing the single spring
  *    {1, omega2[i], gamma[i], accel[i]}, in every batch, at every index and with every instruction set. To use threads,
  *    a batch may therefore be split into ranges. In single precision the same arithmetic is done in float, and the
@@ -35,7 +35,7 @@ extern "C" {
 #define SPRING_SHARED_GAMMA  UINT32_C(2) /**< one gamma for all springs */
 #define SPRING_SHARED_ACCEL  UINT32_C(4) /**< one accel for all springs */
 
-/** A batch. Leave features that you do not use at zero. x and v must not overlap each other or another array. The other
+/** A batch. Set the fields of unused features to zero. x and v must not overlap each other or another array. The other
    arrays may be the same array. */
 typedef struct spring_batch {
     size_t count;         /**< number of springs */
@@ -105,7 +105,7 @@ SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_me
  * It is as fast as spring_batch_advance() if no spring fails. Springs are advanced in groups of some hundred. A group
  * in which a spring fails is advanced twice.
  *
- * @param[out] failed  [count] 1 if spring i failed by itself and kept its state, else 0; must not overlap another
+ * @param[out] failed  [count] 1 if spring i failed on its own and kept its state, else 0; must not overlap another
  *                     array. Not written if nothing changed because of an error of the whole batch.
  * @return as spring_batch_advance(); SPRING_EINVAL also if failed is NULL
  */
@@ -147,8 +147,8 @@ SPRING_API spring_status spring_batchf_advance_marked(const spring_batchf *b, sp
 SPRING_API spring_status spring_batch_follow(const spring_batch *b, const double *target, double dt, double x_tol,
                                              double v_tol, size_t *moving);
 
-/** The single-precision version. Springs land with the ulp of float, and FLT_MIN for DBL_MIN. Rest positions are
-   computed in float and tolerances are rounded to float; dt is not rounded. */
+/** The single-precision version. Its landing rule has the ulp of float, and FLT_MIN instead of DBL_MIN. Rest positions
+   are computed in float and tolerances are rounded to float; dt is not rounded. */
 SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const float *target, double dt, double x_tol,
                                               double v_tol, size_t *moving);
 

@@ -26,8 +26,8 @@ typedef struct spring_clock {
  *     for (; n > 0; n--) { previous = current; spring_step_leapfrog(&current, &p, dt); }
  *     draw(previous.x + alpha * (current.x - previous.x));
  *
- * A very long frame (a breakpoint, a page fault) would require more steps than the next frame can afford. Whole steps
- * beyond max_steps are dropped, and their time is added to clock->dropped.
+ * A very long frame (a breakpoint, a page fault) would require more steps than there is time for. Whole steps beyond
+ * max_steps are dropped, and their time is added to clock->dropped.
  *
  * @param[in,out] clock      zero-initialised at the start
  * @param[in]     frame_dt   duration of this frame >= 0 [s]

@@ -18,7 +18,7 @@
  *     const double dt = fmin(1.0 / 240, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG));
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
  *
- * These rules hold for every function in this file, in addition to those in spring.h:
+ * These rules hold for every function in this file, in addition to the rules in spring.h:
  *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
  *    scene without SPRING_SCENE_FORCE_IGNORES_VELOCITY needs more memory. docs/details.md lists the bytes of each
  *    feature, and docs/performance.md the time.
@@ -144,7 +144,7 @@ typedef struct spring_collider {
     double restitution; /**< 0 to 1: ratio of the normal speeds after and before an impact */
 } spring_collider;
 
-/** The definition of a scene. Leave features that you do not use at zero. Every array is copied. */
+/** The definition of a scene. Set the fields of unused features to zero. Every array is copied. */
 typedef struct spring_scene_def {
     uint32_t axes;                /**< 1, 2 or 3; 0 means 3 */
     uint32_t flags;               /**< SPRING_SCENE_... | ... */
@@ -158,7 +158,7 @@ typedef struct spring_scene_def {
     const uint8_t *pinned;        /**< [particles]; non-zero: keeps its velocity whatever forces act; NULL: none */
     const spring_link *link;      /**< [links]; sorted links are fastest, see docs/details.md */
     double gravity[3];            /**< [m/s^2]; elements beyond the axes are ignored */
-    double drag;                  /**< [N s/m] >= 0, on every particle */
+    double drag;                  /**< [N s/m] >= 0, for every particle */
     spring_scene_force_fn *force; /**< callback; NULL: none */
     void *user;                   /**< passed to the callback */
     double max_speed;             /**< [m/s] if a free particle is faster than this along an axis after a step, the call
@@ -518,7 +518,7 @@ SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, cons
 SPRING_API spring_status spring_scene_transform(spring_scene *s, const double matrix[12]);
 
 /** Copies the current values of a link, rounded to the precision of the scene. With two or three axes, the ends a and b
- * may be swapped compared with the definition.
+ * may be in the opposite order to the definition.
  *
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
  */
@@ -652,7 +652,7 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
  * @{ */
 #define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural springs: to the next particle along each axis */
 #define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear springs: the diagonals of the faces and body of each cell */
-#define SPRING_GRID_BEND       UINT32_C(4) /**< bend springs: to the second next particle along each axis */
+#define SPRING_GRID_BEND       UINT32_C(4) /**< bend springs: to the second neighbour along each axis */
 /** @} */
 
 /** The faces of a grid whose particles are pinned: the first or last face along x, y or z. In a sheet in the plane of x

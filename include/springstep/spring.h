@@ -44,7 +44,7 @@ typedef struct spring_state {
     double v; /**< [m/s] velocity, at the same time as x */
 } spring_state;
 
-/** The parameters of a spring. Leave features that you do not use at zero. Many springs may share the same parameters.
+/** The parameters of a spring. Set the fields of unused features to zero. Many springs may share the same parameters.
  *
  * If the load changes with time, set it before each step to its value at t + dt/2 for second order. Its value at t
  * gives first order. No method exceeds second order with a load that is sampled once per step. */
@@ -246,7 +246,7 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
  *                    9/8 ulp/min(1, slow dt), if the spring is placed on its target
  *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness,
- *                the error is that of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
+ *                the error is at most the bound of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
  * @par Source    src/spring/follow_formula.h derives the condition
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -328,7 +328,7 @@ SPRING_API spring_params spring_params_hertz(double hertz, double damping_ratio)
 SPRING_API spring_params spring_params_half_life(double half_life, double damping_ratio);
 
 /**
- * Makes parameters from a response and a damping fraction, as SwiftUI has them, for mass 1 kg.
+ * Makes parameters from a response and a damping fraction, as in SwiftUI, for mass 1 kg.
  *
  * @param[in] response          period of the undamped spring > 0 [s]; omega = 2 pi/response
  * @param[in] damping_fraction  damping ratio >= 0; 1 is critical
@@ -337,7 +337,7 @@ SPRING_API spring_params spring_params_half_life(double half_life, double dampin
 SPRING_API spring_params spring_params_response(double response, double damping_fraction);
 
 /**
- * Makes parameters from a duration and a bounce, as SwiftUI has them, for mass 1 kg.
+ * Makes parameters from a duration and a bounce, as in SwiftUI, for mass 1 kg.
  *
  * The damping ratio is 1 - bounce, and 1/(1 + bounce) for a negative bounce. A bounce of 0 is critical damping, 1 is no
  * damping. The spring is not at rest after `duration`; see spring_params_settling().
@@ -375,7 +375,7 @@ SPRING_API spring_params spring_params_settling(double time, double damping_rati
 SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
 
 /**
- * Returns the settling time, from which on the exact solution stays within x_tol of its rest position load/stiffness.
+ * Returns the settling time: after it, the exact solution stays within x_tol of its rest position load/stiffness.
  *
  * Without stiffness and load, the rest position is the position at which damping stops the particle.
  *

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /** @file
- * The version of springstep and the SPRING_API mark of public functions. The version is defined only here; meson.build,
- * CMakeLists.txt and packages read it.
+ * The version of springstep, and the macro SPRING_API, which marks public functions. The version is defined only here.
+ * meson.build, CMakeLists.txt and packages read it.
  */
 #ifndef SPRINGSTEP_VERSION_H
 #define SPRINGSTEP_VERSION_H
