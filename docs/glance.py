@@ -70,16 +70,16 @@ def performance():
     xpbd = row_where(read('stiff-forces')[1], problem='stiff-cloth', evaluation='xpbd')
     smallest = min((row['links'] for row in engines), key=int)
     others = [(f'Bullet {versions["bullet"]}, one position iteration per step', 'bullet'),
-              (f'Chipmunk2D {versions["chipmunk"]} of `tools/bench/optimised`, damped springs', 'chipmunk')]
+              (f'Chipmunk2D {versions["chipmunk"]}, damped springs (built by `tools/bench/optimised`)', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
-    ratios.append(('XPBD with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
+    ratios.append(('XPBD of `spring-work`, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
     processors = {read(name)[0]['processor'] for name in COMMANDS}
     if len(processors) != 1:
         raise SystemExit(f'the data are of several processors: {processors}')
     (processor,) = processors
     return '\n\n'.join([
         table(('scene', 'particles', 'links', 'steps per frame', 'time per frame (`spring-plan`)'), ['---'] * 5, *scenes),
-        table(('', 'time per link and step, in multiples of leapfrog (`spring-engines`, `spring-work`)'), ['---'] * 2, *ratios),
+        table(('', 'time per link and step, leapfrog = 1 (`spring-engines`, `spring-work`)'), ['---'] * 2, *ratios),
         f'Measured on one core of an {processor}.'.replace('(R)', ''),
     ])
 
