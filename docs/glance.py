@@ -79,7 +79,7 @@ def performance():
     (processor,) = processors
     return '\n\n'.join([
         table(('scene', 'particles', 'links', 'steps per frame', 'time per frame (`spring-plan`)'), ['---'] * 5, *scenes),
-        table(('', 'time per link and step, leapfrog = 1 (`spring-engines`, `spring-work`)'), ['---'] * 2, *ratios),
+        table(('', 'time per link and step, relative to leapfrog of this library'), ['---'] * 2, *ratios),
         f'Measured on one core of an {processor}.'.replace('(R)', ''),
     ])
 
