@@ -5,7 +5,7 @@ call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "all" "990 + key_height(
 call plots."need.gp" ARG3 "method witness error bound"
 array kinds[15] = ["iterate", "solution", "solution", "drive", "gsl-rk4", "arkode-rk4", "gsl-rk8pd", "cvode-adams", "cvode-bdf", \
     "definition", "modes", "reduced-mass", "digits", "formula", "dispersion"]
-array titles[15] = ["same method,\n107 digits", "solution,\nsteppers", "solution,\nexact", "solution,\ndriven", \
+array titles[15] = ["same method,\n115 digits", "solution,\nsteppers", "solution,\nexact", "solution,\ndriven", \
     "RK4 of GSL", "RK4 of\nARKODE", "GSL rk8pd", "CVODE\nAdams", "CVODE BDF", \
     "scene, second\nprogram", "scene,\nmodes", "scene,\nreduced mass", "scene,\ndigits", "scene,\nformula", "scene,\ndispersion"]
 rows = |kinds|
