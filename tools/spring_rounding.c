@@ -37,7 +37,7 @@ static const cli_option options[] = {
 static const cli_program program = {
     .name = "spring-rounding",
     .summary = "Measure how the rounding errors of an undamped spring grow with the number of steps.",
-    .details = "The computed state is compared with the same method in 107-digit arithmetic, so the difference is\n"
+    .details = "The computed state is compared with the same method in 115-digit arithmetic, so the difference is\n"
                "rounding error only. 1e9 steps take about half a minute.\n\n"
                "A warning is printed if the step is not below the stable step.",
     .columns = "method sum start steps dt_s state_error energy_error coefficient_error",

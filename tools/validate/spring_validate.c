@@ -36,7 +36,7 @@ static cli_option options[] = {
 static const cli_program program = {
     .name = "spring-validate",
     .summary = "Check every method against independent references on a catalogue of corner cases.",
-    .details = "References for springs: iterate is the same method in 107-digit arithmetic. solution is the exact\n"
+    .details = "References for springs: iterate is the same method in 115-digit arithmetic. solution is the exact\n"
                "solution in 115 digits. drive is the motion under the continuous drive from which the loads are\n"
                "sampled. The independent solvers are gsl-rk4, arkode-rk4, gsl-rk8pd, cvode-adams and cvode-bdf.\n\n"
                "References for scenes: definition is the same method in a second program. modes and reduced-mass are\n"
