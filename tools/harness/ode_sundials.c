@@ -15,6 +15,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "harness/ode.h"
@@ -173,12 +174,27 @@ static ARKodeButcherTable classical_table(void)
     return ARKodeButcherTable_Create(4, 4, 0, c, A, b, NULL);
 }
 
-/* Takes n steps of exactly h, one at a time, without ARKODE's error control. Frees the table. */
+/* ARKodeEvolve(), or its older name in a module of ARKODE. */
+typedef int evolve_function(void *memory, sunrealtype end, N_Vector y, sunrealtype *t, int task);
+
+/* Takes n steps of exactly h, one at a time, without ARKODE's error control. Returns false if one fails. */
+static bool take_steps(session *s, ode *o, evolve_function *evolve, double h, uint64_t n)
+{
+    sunrealtype t = 0;
+    bool taken = true;
+    ode_start_clock(o);
+    for (uint64_t i = 0; i < n && taken; i++)
+        taken = evolve(s->memory, h * (double)n, s->y, &t, ARK_ONE_STEP) >= 0;
+    ode_stop_clock(o);
+    o->steps += n;
+    return taken;
+}
+
+/* Frees the table. */
 static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int order, ARKodeButcherTable table)
 {
     session s;
     const char *message = open_session(&s, o, y, 1);
-    double t = 0;
     if (message == NULL) {
         s.memory = create_arkstep(&s);
         if (s.memory == NULL || table == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
@@ -186,12 +202,8 @@ static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int or
             ARKodeSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ARKStep: cannot start";
     }
-    ode_start_clock(o);
-    for (uint64_t i = 0; i < n && message == NULL; i++)
-        if (ARKodeEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
-            message = "ARKStep: the integration failed";
-    ode_stop_clock(o);
-    o->steps += n;
+    if (message == NULL && !take_steps(&s, o, ARKodeEvolve, h, n))
+        message = "ARKStep: the integration failed";
     if (s.memory != NULL)
         ARKodeFree(&s.memory);
     ARKodeButcherTable_Free(table);
@@ -260,19 +272,14 @@ const char *ode_sprkstep_6(ode *o, double *y, double h, uint64_t n)
 {
     session s;
     const char *message = open_session(&s, o, y, 1);
-    double t = 0;
     if (message == NULL) {
         s.memory = SPRKStepCreate(accelerations, velocities, 0, s.y, s.context);
         if (s.memory == NULL || SPRKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
             SPRKStepSetOrder(s.memory, 6) != ARK_SUCCESS || SPRKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "SPRKStep: cannot start";
     }
-    ode_start_clock(o);
-    for (uint64_t i = 0; i < n && message == NULL; i++)
-        if (SPRKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
-            message = "SPRKStep: the integration failed";
-    ode_stop_clock(o);
-    o->steps += n;
+    if (message == NULL && !take_steps(&s, o, SPRKStepEvolve, h, n))
+        message = "SPRKStep: the integration failed";
     if (s.memory != NULL)
         SPRKStepFree(&s.memory);
     close_session(&s);
@@ -286,17 +293,14 @@ const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
     session s;
     const char *message = open_session(&s, o, y, 1);
     const ARKodeButcherTable table = classical_table();
-    double t = 0;
     if (message == NULL) {
         s.memory = ERKStepCreate(derivative, 0, s.y, s.context);
         if (s.memory == NULL || ERKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
             ERKStepSetTable(s.memory, table) != ARK_SUCCESS || ERKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
             message = "ERKStep: cannot start";
     }
-    for (uint64_t i = 0; i < n && message == NULL; i++)
-        if (ERKStepEvolve(s.memory, h * (double)n, s.y, &t, ARK_ONE_STEP) < 0)
-            message = "ERKStep: the integration failed";
-    o->steps += n;
+    if (message == NULL && !take_steps(&s, o, ERKStepEvolve, h, n))
+        message = "ERKStep: the integration failed";
     if (s.memory != NULL)
         ERKStepFree(&s.memory);
     ARKodeButcherTable_Free(table);
