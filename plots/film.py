@@ -117,7 +117,7 @@ class View:
         self.scale = scale
 
     def depth(self, point):
-        """How near a point is to the viewer [m]."""
+        """Return the coordinate of a point along the line of sight [m]; it is larger for nearer points."""
         return sum(a * p for a, p in zip(self._towards, point))
 
     def __call__(self, point):

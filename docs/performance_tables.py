@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """The tables of performance in README.md and docs/games.md, from measurements in docs/data.
 
-usage: glance.py --measure BUILD   measure with the programs of a build folder, and fill the tables
-       glance.py --check           fail if the tables are not those of the data
+usage: performance_tables.py --measure BUILD   measure with the programs of a build folder, and fill the tables
+       performance_tables.py --check           fail if the tables are not those of the data
 """
 
 import pathlib
@@ -102,13 +102,13 @@ def main():
         measure(build[0])
     for page, tables in PAGES.items():
         text = page.read_text()
-        filled, places = re.subn(r'(<!-- glance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
+        filled, places = re.subn(r'(<!-- performance -->\n\n).*?(\n\n<!-- end -->)', lambda m: m[1] + tables() + m[2], text, flags=re.S)
         if places != 1:
             raise SystemExit(f'{page} has no place for the tables')
         if build:
             page.write_text(filled)
         elif filled != text:
-            raise SystemExit(f'the tables of {page} are not those of docs/data: docs/glance.py --measure fills them')
+            raise SystemExit(f'the tables of {page} are not those of docs/data: docs/performance_tables.py --measure fills them')
 
 
 main()
