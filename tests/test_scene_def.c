@@ -6,7 +6,7 @@
 
 static const uint32_t sheet[] = {6, 5, 1};
 
-/* ------------------------------------------------------------------------------------------------ what is refused */
+/* ------------------------------------------------------------------------------------------------ invalid definitions */
 
 static model good;
 
@@ -590,8 +590,8 @@ static void grids_at_the_limits(void)
 int main(void)
 {
     static const test tests[] = {
-        {"what is refused, and by what name", refused},
-        {"what is accepted", accepted},
+        {"invalid definitions, and the fields that are named", refused},
+        {"valid definitions", accepted},
         {"memory too small or misaligned", bad_memory},
         {"bytes of a particle", bytes_of_a_particle},
         {"methods store what they use", methods_store_what_they_use},

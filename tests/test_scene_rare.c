@@ -591,7 +591,7 @@ int main(void)
         {"a gap", gap},
         {"a callback between steps", callback_between_steps},
         {"a bad number at the end", bad_number_at_the_end},
-        {"nothing is computed from what is lost", callback_is_left_alone},
+        {"nothing is computed from lost values", callback_is_left_alone},
         {"finite numbers for callbacks", finite_for_callbacks},
         {"lost", lost},
         {"found", found},

@@ -326,7 +326,7 @@ static void bad_components(void)
 int main(void)
 {
     static const test tests[] = {
-        {"what is torn", tearing},  {"at the limit", at_the_limit},     {"the kept force", kept_force},
+        {"torn links", tearing},    {"at the limit", at_the_limit},     {"the stored force", kept_force},
         {"bad limits", bad_tears},  {"many links at once", many_links}, {"bad links", bad_links},
         {"components", components}, {"bad components", bad_components},
     };

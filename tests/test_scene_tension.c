@@ -380,7 +380,7 @@ int main(void)
         {"a thrown rope flies freely", thrown_rope},
         {"the stable step holds at any compression", bound_at_any_compression},
         {"a damped net comes to rest", damped_net_settles},
-        {"what is refused", refused},
+        {"invalid definitions", refused},
         {"calls, copies, failures", calls},
     };
     return RUN_TESTS("scene-tension", tests);

@@ -290,7 +290,7 @@ holds("a cloth on a sphere, and which particles touch it", function()
   end)
 end)
 
--- --- what is refused
+-- --- invalid input
 
 holds("a scene in float, and a wrong mass in it", function()
   local scene = cloth("spring_scenef")
