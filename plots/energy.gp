@@ -11,7 +11,7 @@ ahead = ARG4
 stats file(energies, 1) using (column("duration_s")/column("steps")) nooutput
 dt = STATS_mean
 longest = 0
-stats ahead using (longest = column("duration_s") > longest ? column("duration_s") : longest) nooutput
+stats file(energies, 1) using (longest = column("duration_s") > longest ? column("duration_s") : longest) nooutput
 
 E0 = 0.5  # [J]
 top = 100 # [J]: what is more has left the picture

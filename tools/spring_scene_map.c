@@ -20,6 +20,7 @@ static const double frame_time = 1.0 / 60; /* [s] */
 
 static int only_scene = -1, only_method = -1;
 static bool quick, timed;
+static const char *map_file;
 
 static const cli_option options[] = {
     {"scene", CLI_CHOICE, .choice = &only_scene, .choices = preset_names, .value = "S"},
@@ -29,6 +30,7 @@ static const cli_option options[] = {
      .help = "instead, measure how many particles can be simulated per millisecond\n"
              "Each method takes the fewest steps per frame from which on all runs are fine and below the stable\n"
              "step."},
+    {"map", CLI_FILE, .file = &map_file, .value = "FILE", .help = "with --time: also write the table of the runs"},
     {.name = NULL},
 };
 
@@ -49,7 +51,7 @@ static const cli_program program = {
                "shortest of five times. A method that is not fine with 64 steps per frame has no row.",
     .shown = {"substeps", "energy_error"},
     .examples = {"--scene chain --quick", "--scene rope --method leapfrog -o rope.tsv",
-                 "--scene chain --method rk4 --time --quick"},
+                 "--scene chain --method rk4 --time --quick --map map.tsv"},
     .options = options,
 };
 
@@ -226,7 +228,11 @@ static void time_method(cli_table *table, preset_kind kind, spring_method m, uin
     }
 }
 
-static void work_on(cli_table *table, preset_kind kind)
+static const char map_columns[] = "scene method particles links substeps dt_s stable_step_s energy_error verdict";
+static const char time_columns[] = "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms";
+
+/* Either table can be NULL. */
+static void work_on(cli_table *map, cli_table *times, preset_kind kind)
 {
     const preset_settings settings = preset_defaults(kind);
     subject s;
@@ -236,9 +242,9 @@ static void work_on(cli_table *table, preset_kind kind)
         const spring_method m = spring_method_at(i);
         if (!spring_method_describe(m)->scenes || (only_method >= 0 && (int)m != only_method))
             continue;
-        const uint64_t fewest = map_method(timed ? NULL : table, &s, kind, m);
-        if (timed && fewest > 0)
-            time_method(table, kind, m, fewest);
+        const uint64_t fewest = map_method(map, &s, kind, m);
+        if (times != NULL && fewest > 0)
+            time_method(times, kind, m, fewest);
     }
     end(&s);
 }
@@ -246,14 +252,19 @@ static void work_on(cli_table *table, preset_kind kind)
 int main(int argc, char **argv)
 {
     cli_parse(&program, argc, argv);
-    cli_table *table = cli_open_output();
+    if (map_file != NULL && !timed)
+        cli_fail(CLI_USAGE, "--map: \"%s\" has no effect without --time", map_file);
+    cli_table *output = cli_open_output(), *map = timed ? NULL : output, *times = timed ? output : NULL;
     if (timed)
-        timing_stamp(table);
-    cli_columns(table, timed ? "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms"
-                             : "scene method particles links substeps dt_s stable_step_s energy_error verdict");
+        timing_stamp(times);
+    cli_columns(output, timed ? time_columns : map_columns);
+    if (map_file != NULL) {
+        map = cli_open_file("map", map_file);
+        cli_columns(map, map_columns);
+    }
     for (int kind = 0; kind < preset_kinds; kind++) {
         if (only_scene < 0 || kind == only_scene)
-            work_on(table, (preset_kind)kind);
+            work_on(map, times, (preset_kind)kind);
         cli_progress((kind + 1.0) / preset_kinds);
     }
     cli_finish();

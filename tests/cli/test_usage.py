@@ -169,6 +169,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         *[(f'{PLAN} --presets --{name} 3', [f'--{name}', '"3"', 'not for --presets'])
           for name in ('size', 'mass', 'damping', 'damping-ratio', 'drag')],
         (f'{PLAN} --error 0.1 --duration 1 --hertz 1 --quick', ['--quick', 'without --presets']),
+        (f'{MAP} --map runs.tsv', ['--map', '"runs.tsv"', 'without --time']),
         (f'{RUN} --method rk4 --dt 1 --steps 9 --columns 3', ['--columns', 'without --envelope']),
         (f'{RUN} --method rk4 --dt 1 --steps 9 --from 3', ['--from', 'without --every']),
         (f'{VALIDATE} --list --case fast-root', ['--case', 'no effect with --list']),

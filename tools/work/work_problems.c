@@ -210,11 +210,11 @@ const work_problem work_problems[] = {
      .reference_steps = 2048},
     {"stiff-and-soft", WORK_SCENE, .longest = 0.01, .harness = "stiff-and-soft-1", .derivative = move_stiff_and_soft,
      .reference_steps = 1024},
-    {"cloth", WORK_SCENE, .longest = 0.06, .own = &cloth, .reference_steps = 1024},
-    {"water", WORK_SCENE, .longest = 0.06, .own = &water, .reference_steps = 2048},
-    {"long-cloth", WORK_SCENE, .longest = 0.08, .own = &long_cloth, .reference_steps = 4096},
+    {"cloth", WORK_SCENE, .longest = 0.02, .own = &cloth, .reference_steps = 1024},
+    {"water", WORK_SCENE, .longest = 0.02, .own = &water, .reference_steps = 2048},
+    {"long-cloth", WORK_SCENE, .longest = 0.05, .own = &long_cloth, .reference_steps = 4096},
     {"stiff-cloth", WORK_SCENE, .longest = 0.06, .own = &stiff_cloth, .reference_steps = 4096},
-    {"stiff-rope", WORK_SCENE, .longest = 0.01, .own = &stiff_rope, .reference_steps = 4096},
+    {"stiff-rope", WORK_SCENE, .longest = 0.005, .own = &stiff_rope, .reference_steps = 4096},
     {"damped-cloth", WORK_SCENE, .longest = 0.06, .own = &damped_cloth, .reference_steps = 8192},
 };
 const size_t work_problem_count = sizeof work_problems / sizeof work_problems[0];
