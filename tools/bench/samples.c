@@ -36,7 +36,7 @@ static figure summarise(double *samples, size_t count)
 
 bench_times bench_measure(const bench_row *r, bool quick)
 {
-    const double sample_ns = quick ? 2.5e5 : 2e6, row_ns = quick ? 1e7 : 2.5e8;
+    const double sample_ns = quick ? 2.5e5 : 2e6, row_ns = quick ? 1e7 : 1.25e8;
     const size_t few = 3, least = quick ? few : 11, most = quick ? 7 : most_samples;
     bool is_used[timed] = {true, [bench_baseline] = r->baseline != NULL};
     for (int k = 0; k < bench_most_limits; k++)

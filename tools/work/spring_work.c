@@ -4,9 +4,9 @@
  * Boost.odeint on the same problems.
  *
  * Method    A run is repeated in a loop that is long enough to time (a fifth of a millisecond), and the loop five
- *           times, or twice if a run takes longer than a hundredth of a second; the shortest time counts. Solvers are
- *           called as their manuals recommend and produce no output while they are timed. All external solvers
- *           evaluate the same right-hand side. The setup of solvers and scenes is not timed.
+ *           times; the shortest time counts. A run of more than 10 ms is repeated once, and a run of more than 50 ms is
+ *           not repeated. Solvers are called as their manuals recommend and produce no output while they are timed. All
+ *           external solvers evaluate the same right-hand side. The setup of solvers and scenes is not timed.
  * Error     |(x, v/omega) - exact| at the end, relative to the size of the motion; see work_problems.c.
  */
 #include <math.h>
@@ -57,8 +57,8 @@ static const cli_program program = {
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
     .meaning = "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
-               "time_s is the shortest of five loops, without setup. error is |(x, v/omega) - exact| relative to the\n"
-               "size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps or\n"
+               "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative to\n"
+               "the size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps or\n"
                "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
                "from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the last\n"
                "number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
@@ -102,8 +102,8 @@ static void remember(const work_solver *s, uint64_t steps, double time, double e
    processor time, whose clock is too slow for short runs. */
 static double time_of(work *w, const work_solver *s, work_effort e, double first, double *y)
 {
-    const double long_enough = 2e-4, long_run = 0.01, interrupted = 1e-3; /* [s] */
-    const int loops = first > long_run ? 1 : 5;                           /* in addition to the first run */
+    const double long_enough = 2e-4, long_run = 0.01, longer_run = 0.05, interrupted = 1e-3; /* [s] */
+    const int loops = first > longer_run ? 0 : first > long_run ? 1 : 5; /* in addition to the first run */
     double best = first > long_run ? first : INFINITY;
     uint64_t runs = 1;
     w->clock = first > interrupted ? timing_busy : timing_now;
@@ -164,8 +164,8 @@ static bool leads(const work_solver *s)
    tolerance. */
 static bool goes_on(const work *w, const work_solver *s, double spent)
 {
-    const double more = 4;
-    return spent <= longest(w) || (spent <= more * longest(w) && (s->adaptive != NULL || leads(s)));
+    const double more = leads(s) ? 4 : s->adaptive != NULL ? 2 : 1;
+    return spent <= more * longest(w);
 }
 
 static void sweep_steps(cli_table *table, work *w, const work_solver *s)

@@ -200,7 +200,7 @@ const work_problem work_problems[] = {
     {"ideal-1", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(1), .finest = 1e-5, .periods = 1},
     {"ideal-10", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(10), .finest = 5e-5, .periods = 10},
     {"ideal-100", SPRING, .p = {1.3, 2.7, 0, 0}, .duration = PERIODS(100), .finest = 2e-4},
-    {"ideal-10000", WORK_SPRING, PERIODS(10000), 0.08, .p = {1.3, 2.7, 0, 0}, .start = {0.8, -0.9}, .finest = 2e-3},
+    {"ideal-10000", WORK_SPRING, PERIODS(10000), 0.06, .p = {1.3, 2.7, 0, 0}, .start = {0.8, -0.9}, .finest = 2e-3},
     {"damped", SPRING, .p = {1.3, 2.7, 0.4, 0}, .duration = PERIODS(5), .finest = 2e-5},
     {"loaded", SPRING, .p = {1.3, 2.7, 0.1, 0.9}, .duration = PERIODS(10), .finest = 5e-5},
     {"stiff", SPRING, .p = {1.3, 2.7, 370, 0}, .duration = 100, .finest = 1e-4},
