@@ -57,11 +57,11 @@ static const cli_program program = {
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
     .meaning = "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
-               "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative to\n"
-               "the size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps or\n"
-               "tolerances), seed (the number of steps of the original study), equal (the smallest number of steps\n"
-               "from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the last\n"
-               "number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
+               "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative\n"
+               "to the size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps\n"
+               "or tolerances), seed (the number of steps of the original study), equal (the smallest number of\n"
+               "steps from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the\n"
+               "last number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
                "fixed steps. energy_error is relative to the initial energy, or for a scene to the final kinetic\n"
                "energy (nan if a callback adds forces). uncertainty is the uncertainty of the exact final state of a\n"
                "scene. An error of up to five times this value is an upper bound, and is not resolved. stretch is\n"
@@ -170,7 +170,8 @@ static bool goes_on(const work *w, const work_solver *s, double spent)
 
 static void sweep_steps(cli_table *table, work *w, const work_solver *s)
 {
-    const double finest = quick ? fmax(w->finest, w->duration / 2e6) : w->finest;
+    const bool study = w->problem->kind == WORK_STUDY; /* the report needs its finest step */
+    const double finest = quick && !study ? fmax(w->finest, w->duration / 2e6) : w->finest;
     const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* infinite for a scene */
     const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED;             /* from one step per frame */
     double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
