@@ -693,4 +693,4 @@ def test_list():
     for row in rows:
         least = row['name'] + '=' + row['least']
         assert len(row['meaning']) > 4 and list(table(SWEEP, '--scene', 'rope', '--over', least, *(
-            () if row['name'] == 'duration' else ('duration=0.05',)), '--method', 'rk4')[0])[0] == row['column']
+            () if row['name'] == 'duration' else ('duration=0.002',)), '--method', 'rk4')[0])[0] == row['column']

@@ -63,15 +63,16 @@ static void check_pins(const preset *scene)
     spring_links_components(particles, scene->def.links, scene->link, part);
     for (size_t i = 0; i < particles; i++)
         held[part[i]] = held[part[i]] || scene->pinned[i];
-    for (size_t i = 0; i < particles; i++)
-        if (!held[part[i]])
-            cli_fail(
-                CLI_USAGE,
-                "--sag: the vertex at \"%g %g %g\" is connected to no pin; all parts of a mesh should be connected "
-                "to its highest vertices, which are pinned",
-                scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
+    size_t i = 0;
+    while (i < particles && held[part[i]])
+        i++;
     free(part);
     free(held);
+    if (i < particles)
+        cli_fail(CLI_USAGE,
+                 "--sag: the vertex at \"%g %g %g\" is connected to no pin; all parts of a mesh should be connected "
+                 "to its highest vertices, which are pinned",
+                 scene->position[3 * i], scene->position[3 * i + 1], scene->position[3 * i + 2]);
 }
 
 /* [m] Diagonal of the bounding box of all linked particles. */
