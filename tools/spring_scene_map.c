@@ -34,12 +34,15 @@ static const cli_option options[] = {
     {.name = NULL},
 };
 
+static const char map_columns[] = "scene method particles links substeps dt_s stable_step_s energy_error verdict";
+static const char time_columns[] = "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms";
+
 static const cli_program program = {
     .name = "spring-scene-map",
     .summary = "Simulate each preset with each method and number of steps per frame, and judge the energy.",
     .details = "All scenes are simulated, or only the scene of --scene, with all methods, or only the method of\n"
                "--method. The scenes are the defaults of spring-scene, for four seconds.",
-    .columns = "scene method particles links substeps dt_s stable_step_s energy_error verdict",
+    .columns = map_columns,
     .meaning = "substeps is the number of steps per frame of 1/60 s. stable_step_s is the stable step that the\n"
                "library returns. energy_error is the largest difference between the energy at a frame and the energy\n"
                "of a run in very short steps, relative to the largest kinetic energy of that run. verdict is fine if\n"
@@ -227,9 +230,6 @@ static void time_method(cli_table *table, preset_kind kind, spring_method m, uin
         end(&s);
     }
 }
-
-static const char map_columns[] = "scene method particles links substeps dt_s stable_step_s energy_error verdict";
-static const char time_columns[] = "scene method substeps dt_s stable_step_s particles links frame_ms particles_per_ms";
 
 /* Either table can be NULL. */
 static void work_on(cli_table *map, cli_table *times, preset_kind kind)
