@@ -256,7 +256,7 @@ SPRING_INLINE bool for_each_particle(const scene_particles *particles, const sce
         p.first = i;
         real inverse_mass = s.mass_stride == 0 ? vec_load(s.inverse_mass) : load_axis(&p, s.inverse_mass, 0);
         if (SPRING_UNLIKELY(i + lanes > count))
-            inverse_mass = select_real(vec_load(lane_number) < splat((scalar)(count - i)), inverse_mass, splat(0));
+            inverse_mass = select_real(first_lanes(count - i), inverse_mass, splat(0));
         set_mass(&p, &s, &m, inverse_mass);
         wrong |= update(&s, &m, &p, &q, variant);
         if (SPRING_UNLIKELY(q.count >= (size_t)lanes)) {

@@ -33,12 +33,17 @@ SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
 #endif
 
 /* Quads have 32 bytes in double and 16 in float. */
-#if SPRING_VECTOR == 16
-#define SMALL_TABLE SPRING_SCENE_TABLE
-#elif defined(SPRING_FLOAT)
+#if SPRING_VECTOR == 16 || (SPRING_VECTOR == 32 && !defined(SPRING_FLOAT))
+#include "one_axis.h"
+#define SMALL_TABLE    SPRING_SCENE_TABLE
+#define IS_SMALL_TABLE 1
+#else
+#ifdef SPRING_FLOAT
 #define SMALL_TABLE spring_scene_v128
 #else
 #define SMALL_TABLE spring_scene_v256
+#endif
+#define IS_SMALL_TABLE 0
 #endif
 
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
@@ -60,6 +65,9 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .stretched = any_stretched,
     .contact_normal = find_contact_normal,
     .kick_damped_drift = move_kick_damped_drift,
+#if IS_SMALL_TABLE
+    .one_axis = {[SPRING_RK4] = one_axis_rk4, [SPRING_RKN8] = one_axis_rkn8, [SPRING_SRKN6] = one_axis_srkn6},
+#endif
 };
 #endif
 

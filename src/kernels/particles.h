@@ -23,7 +23,12 @@ typedef struct coordinates {
     real held;                /* [N] held force */
 } coordinates;
 
-static const scalar lane_number[padding] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+/* The first `count` lanes, at most all. */
+SPRING_INLINE mask first_lanes(size_t count)
+{
+    static const int8_t bytes[2 * padding] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+    return vec_load_mask(bytes + padding - count);
+}
 
 /* By force, held force and gravity. No force accelerates a pinned particle, not even an infinite one. */
 SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c)
@@ -75,8 +80,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
         for (size_t i = from; i < to; i += lanes) {
             real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
             if (SPRING_UNLIKELY(i + lanes > p.count)) /* padding lanes of the last vector keep their finite values */
-                inverse_mass =
-                    select_real(vec_load(lane_number) < splat((scalar)(p.count - i)), inverse_mass, splat(0));
+                inverse_mass = select_real(first_lanes(p.count - i), inverse_mass, splat(0));
             coordinates c = {
                 .at = a * p.stride + i,
                 .mass = i * p.mass_stride,
@@ -263,24 +267,31 @@ SPRING_INLINE mask update_nystrom_stage(const scene_motion *m, const coordinates
     return not_finite(x);
 }
 
-static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+/* With the number of the stage as a constant. */
+SPRING_INLINE bool update_each_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to,
+                                             bool holds)
 {
     switch (m->nystrom->number) {
     case 1:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 1, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 1, holds);
     case 2:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 2, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 2, holds);
     case 3:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 3, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 3, holds);
     case 4:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 4, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 4, holds);
     case 5:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 5, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 5, holds);
     case 6:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 6, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, 6, holds);
     default:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages, true);
+        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages, holds);
     }
+}
+
+static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return update_each_nystrom_stage(p, m, from, to, true);
 }
 
 SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *c, unsigned variant)

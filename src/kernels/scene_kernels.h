@@ -167,9 +167,14 @@ typedef struct scene_motion {
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
+/* Takes a step of a method. */
+typedef struct scene_step scene_step;       /* scene/pass.h */
+typedef struct scene_outcome scene_outcome; /* scene/steppers.h */
+typedef scene_outcome step_function(scene_step *);
+
 /* Unbanded links are computed on quads, so vectors of 64 bytes are hardly faster than 32 (1 % on an AMD EPYC). */
 typedef struct unbanded_kernels {
-    unbanded_kernel *forces;        /* adds the forces of unbanded links */
+    unbanded_kernel *forces;        /* the forces of unbanded links, added to those of bands if the scene has any */
     unbanded_kernel *record_forces; /* the same for many unbanded links, on two or three axes */
     unbanded_kernel *quad_forces;   /* the forces of the links of a small scene */
 } unbanded_kernels;
@@ -199,6 +204,7 @@ typedef struct scene_kernels {
     stretch_kernel *stretched;            /* see above */
     normal_kernel *contact_normal;        /* see above */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
+    step_function *one_axis[SPRING_METHOD_COUNT]; /* see one_axis.h; in tables for small scenes. NULL: none */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* named by the bits of a SIMD vector */

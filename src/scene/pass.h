@@ -21,11 +21,11 @@ struct scene_step {
     const scene_kernels *kernels;
     spring_scene *scene;
     const scene_links *links;
-    scene_forces forces; /* .force is set by each evaluation */
+    scene_forces forces; /* .force: at the end of the step, or of its stages */
     scene_particles particles;
     uint32_t from, to;
     bool first, last;    /* of a call */
-    const scalar *force; /* [N] at the start */
+    scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
     scalar h;            /* [s] dt in the precision of the scene */
     double t0, dt, done; /* the step starts at the time t0 + done dt */
     known_force known;   /* the forces at the start */
@@ -77,21 +77,29 @@ static inline scalar *damping_storage(const scene_step *s, unsigned i)
     return scene_axis(s->scene, ARRAY_DAMPING_TERMS, 0) + i * s->scene->layout.quantity;
 }
 
-/* A motion over the whole step, from the state at its start to the state at its end. */
-static inline scene_motion whole_step(const scene_step *s)
+/* Prepares a step from the state in buffer `from` to the state in buffer `to`. */
+static inline void prepare_step(scene_step *s, uint32_t from, uint32_t to)
 {
-    return (scene_motion){
+    s->from = from;
+    s->to = to;
+    s->forces.force = force_at(s, to);
+    s->whole = (scene_motion){
         .kick = s->h,
         .drift = s->h,
-        .force = s->force,
-        .x0 = x_at(s, s->from),
-        .v0 = v_at(s, s->from),
-        .x = x_at(s, s->to),
-        .v = v_at(s, s->to),
-        .stage_v = v_at(s, s->from),
+        .x0 = x_at(s, from),
+        .v0 = v_at(s, from),
+        .x = x_at(s, to),
+        .v = v_at(s, to),
+        .stage_v = v_at(s, from),
         .max_speed = s->scene->max_speed,
         .contacts = s->contacts.count > 0 ? &s->contacts : NULL,
     };
+}
+
+/* The time at the end of a step is bit-identical to the time at the start of the next. */
+static inline double time_at(const scene_step *s, double fraction)
+{
+    return s->t0 + (s->done + fraction) * s->dt;
 }
 
 /* Places the colliders for a drift between two fractions of the step. */
@@ -100,7 +108,7 @@ static inline void place_colliders(scene_step *s, double from, double to)
     scene_contacts *const c = &s->contacts;
     if (c->count == 0)
         return;
-    spring_scene_place_colliders(s->scene, s->t0 + (s->done + from) * s->dt, s->t0 + (s->done + to) * s->dt);
+    spring_scene_place_colliders(s->scene, time_at(s, from), time_at(s, to));
     c->h = s->h * (scalar)(to - from);
     c->adds = from > 0;
     c->x = x_at(s, s->to);
@@ -209,10 +217,12 @@ SPRING_NOINLINE void call_back_small(spring_scene *s, const scalar *x, const sca
             sum[quad_size * i + a] = force[a][i];
 }
 
-static inline void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
+/* axes may be a constant. */
+SPRING_INLINE void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum,
+                             uint32_t axes)
 {
     const size_t stride = s->layout.stride;
-    const bool second = s->layout.axes > 1, third = s->layout.axes > 2;
+    const bool second = axes > 1, third = axes > 2;
     const scalar *const position[3] = {x, second ? x + stride : NULL, third ? x + 2 * stride : NULL};
     const scalar *const velocity[3] = {v, second ? v + stride : NULL, third ? v + 2 * stride : NULL};
     scalar *const force[3] = {sum, second ? sum + stride : NULL, third ? sum + 2 * stride : NULL};
@@ -223,16 +233,15 @@ static inline void call_back(const spring_scene *s, const scalar *x, const scala
 static inline void evaluate_links(const scene_kernels *kernels, const spring_scene *s, const scene_links *links,
                                   const scalar *x, const scalar *v, scene_forces *out)
 {
-    const scene_layout *l = &s->layout;
-    if (l->small)
-        kernels->unbanded->quad_forces(links, x, v, out);
-    else if (l->bands > 0)
-        kernels->band_forces(links, x, v, out, 0, l->particles);
-    else if (out->records == NULL)
-        for (uint32_t a = 0; a < l->axes; a++)
-            memset(out->force + a * l->stride, 0, l->particles * sizeof *out->force);
-    if (!l->small && l->unbanded > 0)
-        (out->records != NULL ? kernels->unbanded->record_forces : kernels->unbanded->forces)(links, x, v, out);
+    const unbanded_kernels *const unbanded = kernels->unbanded;
+    if (s->layout.small) {
+        unbanded->quad_forces(links, x, v, out);
+        return;
+    }
+    if (links->bands > 0)
+        kernels->band_forces(links, x, v, out, 0, links->particles);
+    if (links->bands == 0 || links->unbanded.count > 0)
+        (out->records != NULL ? unbanded->record_forces : unbanded->forces)(links, x, v, out);
 }
 
 /* The same, with the forces of the callback at time t. */
@@ -243,26 +252,26 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
     if (s->force != NULL && s->layout.small)
         call_back_small(s, x, v, t, out->force);
     else if (s->force != NULL)
-        call_back(s, x, v, t, out->force);
+        call_back(s, x, v, t, out->force, s->layout.axes);
 }
 
-/* Evaluates the forces at x and v, at a fraction of the step, and stores them in force_at(s, s->to), the force array of
-   the end of the step. The time at the end of a step is bit-identical to the time at the start of the next. */
+/* Evaluates the forces at x and v, at a fraction of the step, and stores them in s->forces. */
+typedef void evaluation(scene_step *s, const scalar *x, const scalar *v, double fraction);
+
 static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
-    s->forces.force = force_at(s, s->to);
-    scene_evaluate(s->kernels, s->scene, s->links, x, v, s->t0 + (s->done + fraction) * s->dt, &s->forces);
+    scene_evaluate(s->kernels, s->scene, s->links, x, v, time_at(s, fraction), &s->forces);
 }
 
-/* Sets s->force: the forces at the start of the step, at velocities v. They are evaluated unless they are known. */
-static inline void find_start_force(scene_step *s, const scalar *v)
+/* Sets s->whole.force: the forces at the start of the step. They are evaluated unless they are known. */
+SPRING_INLINE void find_start_force(scene_step *s, evaluation *evaluate_forces)
 {
-    s->force = force_at(s, s->from);
+    s->whole.force = force_at(s, s->from);
     if (s->damping.terms > 0 ? s->known == ELASTIC_FORCE
                              : s->known == FORCE || (s->known == PREDICTED_FORCE && s->predicts))
         return;
-    evaluate(s, x_at(s, s->from), v, 0);
-    s->force = force_at(s, s->to); /* predicted forces stay in the other array, for a rollback */
+    evaluate_forces(s, s->whole.x0, s->whole.v0, 0);
+    s->whole.force = s->forces.force; /* predicted forces stay in the other array, for a rollback */
 }
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
@@ -303,7 +312,6 @@ static inline bool move_evaluate_move(scene_step *s, particle_kernel *first_kern
     }
     const size_t ahead = (l->band[l->bands - 1].offset + chunk - 1) / chunk * chunk;
     band_kernel *const forces = s->kernels->band_forces;
-    s->forces.force = force_at(s, s->to);
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
         if (i < l->particles &&
             !first_kernel(&s->particles, first, i, i + chunk < l->particles ? i + chunk : l->particles))

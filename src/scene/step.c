@@ -65,21 +65,21 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
 
 /* Takes n steps. A run is a sequence of calls with the same dt; `before` is the number of its steps before this call.
    Returns the forces that are known at the end. *finite: whether the results of every step are finite. */
-static known_force take_scene_steps(scene_step *step, const scene_stepper *stepper, uint64_t before, uint64_t n,
-                                    bool *finite)
+static known_force take_scene_steps(scene_step *step, step_function *take, uint64_t before, uint64_t n, bool *finite)
 {
     step->known = step->scene->known;
     for (uint64_t i = 0; i < n; i++) {
         step->done = (double)(before + i);
         step->first = i == 0;
         step->last = i + 1 == n;
+        if (i == 1)
+            prepare_step(step, step->to, step->to);
         place_colliders(step, 0, 1);
-        const scene_outcome outcome = stepper->step(step);
+        const scene_outcome outcome = take(step);
         *finite = outcome.finite;
         if (!outcome.finite)
             return NO_FORCE;
         step->known = outcome.known;
-        step->from = step->to;
     }
     return step->known;
 }
@@ -93,6 +93,14 @@ static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper,
     if (dt <= stepper->explicit_limit(bounds))
         return (chebyshev_series){.terms = 0};
     return chebyshev_for(dt, bounds->link_damping);
+}
+
+/* The function for the steps of a method; the results are the same. */
+static step_function *step_function_of(const scene_kernels *kernels, const scene_step *s, spring_method m)
+{
+    step_function *const one_axis = kernels->small->one_axis[m];
+    const bool few = s->particles.axes == 1 && s->links->bands == 0 && s->contacts.count == 0;
+    return few && s->particles.held_stride == 0 && one_axis != NULL ? one_axis : spring_scene_steppers[m].step;
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
@@ -120,8 +128,6 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .links = &links,
                        .forces = scene_prepare_forces(s, NULL),
                        .particles = scene_prepare_particles(s),
-                       .from = s->buffer,
-                       .to = rollback ? 1 - s->buffer : s->buffer,
                        .h = (scalar)dt,
                        .t0 = t0,
                        .dt = dt,
@@ -131,8 +137,9 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                                     .collider = scene_read(s, ARRAY_PLACED),
                                     .axes = s->layout.axes,
                                     .quads = s->layout.small}};
+    prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
-    const known_force known = take_scene_steps(&step, &spring_scene_steppers[m], before, n, &finite);
+    const known_force known = take_scene_steps(&step, step_function_of(kernels, &step, m), before, n, &finite);
     if (!finite) {
         if (!rollback)
             invalidate(s);

@@ -5,16 +5,14 @@
 
 #include "block.h"
 
-typedef struct scene_step scene_step; /* pass.h */
-
 /* A step ends at the first number that is not finite, so that a callback sees finite numbers only. */
-typedef struct scene_outcome {
+struct scene_outcome {
     bool finite;
     known_force known; /* at the end of the step */
-} scene_outcome;
+};
 
 typedef struct scene_stepper {
-    scene_outcome (*step)(scene_step *s); /* NULL: the method is not for scenes */
+    step_function *step; /* NULL: the method is not for scenes */
     double (*stable_step)(const scene_bounds *b);
     bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities. Beyond
                       explicit_limit, links are damped by a Chebyshev series (chebyshev.h) */

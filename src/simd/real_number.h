@@ -44,6 +44,11 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     return *p != 0;
 }
 
+SPRING_INLINE real vec_load_lanes(const scalar *p)
+{
+    return *p;
+}
+
 typedef uint32_t lane_bits;
 
 SPRING_INLINE lane_bits load_bits(const uint32_t *p)

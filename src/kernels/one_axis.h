@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The steps of RK4, RKN8 and SRKN6 with their kernels inlined. In scenes of few particles, calls and preparation of
+ * loops take longer than the arithmetic. The results are those of steppers.c.
+ *
+ * Scenes    with one axis, or small (quads are treated as numbers on one axis); without bands, colliders and held forces
+ */
+#ifndef SPRINGSTEP_ONE_AXIS_H
+#define SPRINGSTEP_ONE_AXIS_H
+
+#include "../scene/runge_kutta.h"
+#include "particles.h"
+#include "unbanded.h"
+
+/* Stores forces again, as vectors, after links or a callback have stored them one by one; see vec_load_lanes(). */
+SPRING_INLINE void join_forces(scalar *force, size_t count)
+{
+    for (size_t i = 0; i < count; i += lanes)
+        vec_store(force + i, vec_load_lanes(force + i));
+}
+
+SPRING_INLINE void one_axis_evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
+{
+    spring_scene *const scene = s->scene;
+    if (scene->layout.small)
+        compute_quad_forces(s->links, x, v, &s->forces);
+    else
+        compute_one_axis_forces(s->links, x, v, &s->forces);
+    if (scene->force != NULL && scene->layout.small)
+        call_back_small(scene, x, v, time_at(s, fraction), s->forces.force);
+    else if (scene->force != NULL)
+        call_back(scene, x, v, time_at(s, fraction), s->forces.force, 1);
+    if (scene->force != NULL || !scene->layout.small)
+        join_forces(s->forces.force, s->particles.count);
+}
+
+SPRING_INLINE scene_particles one_axis_particles(const scene_step *s)
+{
+    scene_particles p = s->particles;
+    p.axes = 1; /* known to the compiler */
+    return p;
+}
+
+/* Advances all particles. update and variant are constants. */
+SPRING_INLINE bool update_all(const scene_step *s, const scene_motion *m, particle_update *update, unsigned variant)
+{
+    const scene_particles p = one_axis_particles(s);
+    return for_each_vector(&p, m, 0, p.count, update, variant, false);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- RK4 */
+
+SPRING_INLINE bool one_axis_rk4_first_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
+{
+    if (!update_all(s, m, update_stage, FIRST_SUM))
+        return false;
+    one_axis_evaluate(s, m->x, v, fraction);
+    return true;
+}
+
+SPRING_INLINE bool one_axis_rk4_next_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
+{
+    if (!update_all(s, m, update_stage, NEXT_SUM))
+        return false;
+    one_axis_evaluate(s, m->x, v, fraction);
+    return true;
+}
+
+SPRING_INLINE bool one_axis_rk4_last_stage(const scene_step *s, const scene_motion *m)
+{
+    return update_all(s, m, update_last_stage, 0);
+}
+
+static scene_outcome one_axis_rk4(scene_step *s)
+{
+    return take_rk4_step(s, one_axis_evaluate, one_axis_rk4_first_stage, one_axis_rk4_next_stage,
+                         one_axis_rk4_last_stage);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ RKN8 */
+
+SPRING_INLINE bool one_axis_rkn8_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
+{
+    const scene_particles p = one_axis_particles(s);
+    if (!update_each_nystrom_stage(&p, m, 0, p.count, false))
+        return false;
+    one_axis_evaluate(s, m->x, v, fraction);
+    return true;
+}
+
+SPRING_INLINE bool one_axis_rkn8_end(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
+{
+    if (!update_all(s, m, update_nystrom_end, 0))
+        return false;
+    one_axis_evaluate(s, m->x, v, fraction);
+    return true;
+}
+
+static scene_outcome one_axis_rkn8(scene_step *s)
+{
+    return take_rkn8_step(s, one_axis_rkn8_stage, one_axis_rkn8_end);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- SRKN6 */
+
+SPRING_INLINE bool one_axis_srkn6_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
+{
+    const unsigned ends = m->ends_step ? ENDS_STEP : 0;
+    if (!(m->span != NULL ? update_all(s, m, update_kick_damped_drift, ends)
+                          : update_all(s, m, update_kick_drift, ends)))
+        return false;
+    one_axis_evaluate(s, m->x, v, fraction);
+    return true;
+}
+
+static scene_outcome one_axis_srkn6(scene_step *s)
+{
+    return take_srkn6_step(s, one_axis_srkn6_stage);
+}
+
+#endif
