@@ -19,19 +19,32 @@ SPRING_INLINE void join_forces(scalar *force, size_t count)
         vec_store(force + i, vec_load_lanes(force + i));
 }
 
+SPRING_INLINE void one_axis_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    clear_forces(s, out, 1);
+    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
+        all_unbanded(s, x, v, out, 1, true, false);
+    else
+        all_unbanded(s, x, v, out, 1, false, false);
+}
+
 SPRING_INLINE void one_axis_evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     spring_scene *const scene = s->scene;
-    if (scene->layout.small)
-        compute_quad_forces(s->links, x, v, &s->forces);
-    else
-        compute_one_axis_forces(s->links, x, v, &s->forces);
-    if (scene->force != NULL && scene->layout.small)
-        call_back_small(scene, x, v, time_at(s, fraction), s->forces.force);
-    else if (scene->force != NULL)
-        call_back(scene, x, v, time_at(s, fraction), s->forces.force, 1);
-    if (scene->force != NULL || !scene->layout.small)
-        join_forces(s->forces.force, s->particles.count);
+    scalar *const force = s->forces.force;
+    const size_t count = s->particles.count;
+    if (!scene->layout.small) {
+        one_axis_forces(s->links, x, v, &s->forces);
+        if (scene->force != NULL)
+            call_back(scene, x, v, time_at(s, fraction), force, 1);
+        join_forces(force, count);
+        return;
+    }
+    compute_quad_forces(s->links, x, v, &s->forces);
+    if (scene->force != NULL) {
+        call_back_small(scene, x, v, time_at(s, fraction), force);
+        join_forces(force, count);
+    }
 }
 
 SPRING_INLINE scene_particles one_axis_particles(const scene_step *s)

@@ -245,11 +245,12 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         forces_of_records(s, out, 2, damped);
 }
 
-/* function(..., axes, damped, false) with both as constants, for two or three axes. */
-#define SPRING_BY_AXES(axes, damped, function, ...)                                                          \
-    ((axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true, false) : function(__VA_ARGS__, 2, false, false) \
-     : (damped) ? function(__VA_ARGS__, 3, true, false)                                                      \
-                 : function(__VA_ARGS__, 3, false, false))
+/* function(..., axes, damped, false) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                              \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true, false) : function(__VA_ARGS__, 1, false, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true, false) : function(__VA_ARGS__, 2, false, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
+                   : function(__VA_ARGS__, 3, false, false))
 
 /* The same for tension-only links. Few are computed here, so `damped` is not a constant. */
 SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
@@ -267,25 +268,9 @@ SPRING_INLINE void clear_forces(const scene_links *s, scene_forces *out, uint32_
             vec_store(out->force + a * s->stride + i, splat(0));
 }
 
-static void compute_one_axis_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
-{
-    if (s->bands == 0)
-        clear_forces(s, out, 1);
-    if (s->terms == DAMPING_TERM)
-        all_unbanded_damping(s, v, out, 1);
-    else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        all_unbanded(s, x, v, out, 1, true, false);
-    else
-        all_unbanded(s, x, v, out, 1, false, false);
-}
-
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
-    if (s->axes == 1) {
-        compute_one_axis_forces(s, x, v, out);
-        return;
-    }
     if (s->bands == 0)
         clear_forces(s, out, s->axes);
     if (s->terms == DAMPING_TERM)
