@@ -254,14 +254,16 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     if (map_file != NULL && !timed)
         cli_fail(CLI_USAGE, "--map: \"%s\" has no effect without --time", map_file);
-    cli_table *output = cli_open_output(), *map = timed ? NULL : output, *times = timed ? output : NULL;
-    if (timed)
+    cli_table *map = map_file != NULL ? cli_open_file("map", map_file) : NULL, *output = cli_open_output();
+    cli_table *times = timed ? output : NULL;
+    if (timed) {
         timing_stamp(times);
-    cli_columns(output, timed ? time_columns : map_columns);
-    if (map_file != NULL) {
-        map = cli_open_file("map", map_file);
-        cli_columns(map, map_columns);
+        cli_columns(times, time_columns);
+    } else {
+        map = output;
     }
+    if (map != NULL)
+        cli_columns(map, map_columns);
     for (int kind = 0; kind < preset_kinds; kind++) {
         if (only_scene < 0 || kind == only_scene)
             work_on(map, times, (preset_kind)kind);
