@@ -37,12 +37,11 @@ SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
 #include "one_axis.h"
 #define SMALL_TABLE    SPRING_SCENE_TABLE
 #define IS_SMALL_TABLE 1
+#elif defined(SPRING_FLOAT)
+#define SMALL_TABLE    spring_scene_v128
+#define IS_SMALL_TABLE 0
 #else
-#ifdef SPRING_FLOAT
-#define SMALL_TABLE spring_scene_v128
-#else
-#define SMALL_TABLE spring_scene_v256
-#endif
+#define SMALL_TABLE    spring_scene_v256
 #define IS_SMALL_TABLE 0
 #endif
 

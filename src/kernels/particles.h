@@ -23,7 +23,7 @@ typedef struct coordinates {
     real held;                /* [N] held force */
 } coordinates;
 
-/* The first `count` lanes, at most all. */
+/* The first `count` lanes, 1 <= count <= padding. */
 SPRING_INLINE mask first_lanes(size_t count)
 {
     static const int8_t bytes[2 * padding] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};

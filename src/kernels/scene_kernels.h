@@ -167,10 +167,9 @@ typedef struct scene_motion {
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
-/* Takes a step of a method. */
-typedef struct scene_step scene_step;       /* scene/pass.h */
-typedef struct scene_outcome scene_outcome; /* scene/steppers.h */
-typedef scene_outcome step_function(scene_step *);
+typedef struct scene_step scene_step;              /* scene/pass.h */
+typedef struct scene_outcome scene_outcome;        /* scene/steppers.h */
+typedef scene_outcome step_function(scene_step *); /* takes a step of a method */
 
 /* Unbanded links are computed on quads, so vectors of 64 bytes are hardly faster than 32 (1 % on an AMD EPYC). */
 typedef struct unbanded_kernels {

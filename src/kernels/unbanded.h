@@ -261,18 +261,12 @@ SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scala
         all_unbanded(s, x, v, out, 2, s->terms == STIFFNESS_AND_DAMPING_TERM, true);
 }
 
-SPRING_INLINE void clear_forces(const scene_links *s, scene_forces *out, uint32_t axes)
-{
-    for (uint32_t a = 0; a < axes; a++)
-        for (size_t i = 0; i < s->particles; i += lanes)
-            vec_store(out->force + a * s->stride + i, splat(0));
-}
-
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
     if (s->bands == 0)
-        clear_forces(s, out, s->axes);
+        for (uint32_t a = 0; a < s->axes; a++)
+            memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
     if (s->terms == DAMPING_TERM)
         all_unbanded_damping(s, v, out, s->axes);
     else if (s->tension_only)

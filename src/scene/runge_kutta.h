@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The steps of RK4, RKN8 and SRKN6. Their arguments are the functions that advance all particles: steppers.c passes
- * functions for every scene, and kernels/one_axis.h passes functions that are inlined.
+ * The steps of RK4, RKN8 and SRKN6. The functions that advance all particles and evaluate forces are arguments:
+ * steppers.c passes functions for every scene, and kernels/one_axis.h passes functions that are inlined.
  */
 #ifndef SPRINGSTEP_RUNGE_KUTTA_H
 #define SPRINGSTEP_RUNGE_KUTTA_H

@@ -95,12 +95,16 @@ static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper,
     return chebyshev_for(dt, bounds->link_damping);
 }
 
-/* The function for the steps of a method; the results are the same. */
+/* Largest number of particles for which steps with inlined kernels are faster. */
+enum { most_inlined = 16 };
+
+/* The function for the steps of a method. With inlined kernels or without, the results are bit-identical. */
 static step_function *step_function_of(const scene_kernels *kernels, const scene_step *s, spring_method m)
 {
     step_function *const one_axis = kernels->small->one_axis[m];
-    const bool few = s->particles.axes == 1 && s->links->bands == 0 && s->contacts.count == 0;
-    return few && s->particles.held_stride == 0 && one_axis != NULL ? one_axis : spring_scene_steppers[m].step;
+    const bool few = s->links->particles <= most_inlined && s->particles.axes == 1;
+    const bool plain = s->links->bands == 0 && s->contacts.count == 0 && s->particles.held_stride == 0;
+    return few && plain && one_axis != NULL ? one_axis : spring_scene_steppers[m].step;
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
