@@ -7,11 +7,11 @@
 #define SPRINGSTEP_VERSION_H
 
 /** The version of these headers. spring_version() returns the version of the linked library. */
-#define SPRING_VERSION "0.3.0"
+#define SPRING_VERSION "0.4.0"
 
 /** The binary interface of the shared library. It changes when programs compiled for the last release would no longer
    run. */
-#define SPRING_SOVERSION "0.3"
+#define SPRING_SOVERSION "0.4"
 
 /** @def SPRING_API
  * Marks a public function, which a shared library exports. */
