@@ -505,7 +505,7 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
     if (frames != NULL)
         prepare_frames(frame_count);
-    v.saved = aligned_alloc(SPRING_SCENE_ALIGN, v.bytes);
+    v.saved = malloc(v.bytes);
     v.xyz = malloc(3 * r->def.particles * sizeof *v.xyz);
     if (v.saved == NULL || v.xyz == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu particles", r->def.particles);

@@ -99,7 +99,7 @@ int main(void)
     def.particles = particles, def.position = x[0], def.mass_all = mass, def.pinned = pinned;
     def.links = links, def.link = link, def.gravity[1] = -9.81, def.colliders = 2, def.particle_radius = skin;
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     spring_scene *cape;
     must(spring_scene_init(memory, bytes, &def, &cape)); /* NULL memory gives SPRING_EINVAL */
     for (int i = 0; i <= 300; i++) {

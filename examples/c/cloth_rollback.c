@@ -77,7 +77,7 @@ int main(void)
                                   .link = link,
                                   .gravity = {0, 9.81, 0}}; /* the sheet hangs along +y */
     must(spring_scene_bytes(&def, &bytes));
-    unsigned char *memory = aligned_alloc(SPRING_SCENE_ALIGN, (LATE + 2) * bytes), *snapshots = memory + 2 * bytes;
+    unsigned char *memory = malloc((LATE + 2) * bytes), *snapshots = memory + 2 * bytes;
     spring_scene *in_time, *cloth;
     if (memory == NULL)
         return 1;

@@ -51,7 +51,7 @@ int main(void)
                                   .gravity = {0, -9.81, 0},
                                   .drag = 0.005};
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     spring_scene *curtain;
     if (memory == NULL)
         return 1;

@@ -57,7 +57,7 @@ int main(void)
                                   .colliders = 2,
                                   .particle_radius = skin};
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     spring_scene *cloth;
     if (memory == NULL)
         return 1;

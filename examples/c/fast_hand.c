@@ -70,7 +70,7 @@ static outcome drag(double speed, double step, double damping)
                                   .link = link,
                                   .gravity = {0, 9.81, 0}}; /* the sheet hangs along +y */
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     spring_scene *cloth;
     if (memory == NULL)
         exit(1);

@@ -86,7 +86,7 @@ int main(void)
                                   .drag = 0.05};
     size_t bytes;
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     must(spring_scene_init(memory, bytes, &def, &rope)); /* NULL memory gives SPRING_EINVAL */
     for (int a = 0; a < 3; a++)
         body[a] = x[LINKS][a];

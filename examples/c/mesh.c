@@ -85,7 +85,7 @@ static bool fly(const char *name, double (*x)[3], size_t vertices, size_t links)
     spring_scene *flag;
     if (spring_scene_bytes(&def, &bytes) != SPRING_OK)
         return false;
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     if (memory == NULL || spring_scene_init(memory, bytes, &def, &flag) != SPRING_OK ||
         !(1.0 / 960 < spring_scene_stable_step(flag, SPRING_LEAPFROG)))
         return false;

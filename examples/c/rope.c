@@ -78,7 +78,7 @@ int main(void)
                                   .gravity = {0, -9.81}};
     size_t bytes;
     must(spring_scene_bytes(&def, &bytes), "definition");
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     if (memory == NULL)
         return 1;
     spring_scene *rope;

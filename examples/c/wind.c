@@ -91,7 +91,7 @@ static void fly(const char *name, const double air[3])
                                   .link = link,
                                   .gravity = {0, -9.81, 0}};
     must(spring_scene_bytes(&def, &bytes));
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     spring_scene *flag;
     if (memory == NULL)
         exit(1);

@@ -222,7 +222,7 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
     size_t bytes;
     if (spring_scene_bytes(&def, &bytes) != SPRING_OK)
         return false;
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     if (memory == NULL)
         return false;
     const bool made = spring_scene_init(memory, bytes, &def, &w->scene) == SPRING_OK;

@@ -13,10 +13,11 @@
  *     size_t bytes;
  *     spring_scene *scene;
  *     spring_scene_bytes(&def, &bytes);
- *     void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);          // Windows: _aligned_malloc(bytes, ...)
+ *     void *memory = malloc(bytes);
  *     spring_scene_init(memory, bytes, &def, &scene);
  *     const double dt = fmin(1.0 / 240, 0.5 * spring_scene_stable_step(scene, SPRING_LEAPFROG));
  *     spring_scene_advance(scene, SPRING_LEAPFROG, dt, 4);
+ *     free(memory);
  *
  * These rules hold for every function in this file, in addition to the rules in spring.h:
  *  - A feature that the definition does not enable costs no time. It costs no memory either, with one exception: a
@@ -52,7 +53,7 @@ extern "C" {
 /** @defgroup scene_def The definition
  * @{ */
 
-#define SPRING_SCENE_ALIGN 64 /**< alignment of the memory of a scene [bytes] */
+#define SPRING_SCENE_ALIGN 64 /**< recommended alignment of the memory of a scene [bytes]; 8 is the least */
 
 /** A spring between two particles.
  *
@@ -201,7 +202,8 @@ SPRING_API spring_status spring_scene_bytes(const spring_scene_def *def, size_t 
  * The memory belongs to the caller and must stay valid as long as the scene is used. There is no function to destroy a
  * scene: release its memory.
  *
- * @param[out] memory  aligned to SPRING_SCENE_ALIGN
+ * @param[out] memory  aligned to 8 bytes, as memory from malloc() is. The arrays of the scene are aligned to
+ *                     SPRING_SCENE_ALIGN inside the memory
  * @param[in]  bytes   size of the memory, at least the result of spring_scene_bytes()
  * @param[out] scene   the scene; NULL after an error
  * @return SPRING_OK; SPRING_ENOMEM; SPRING_EALIGN; otherwise as spring_scene_check()

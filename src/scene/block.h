@@ -84,13 +84,14 @@ typedef struct scene_bounds {
     double least_drag;    /* [1/s]   drag divided by the largest mass */
 } scene_bounds;
 
-/* The forces that are stored for the state. */
-typedef enum known_force {
+/* The forces that a step keeps for the next step, in the force array of the buffer that holds the state. Only steps
+   write the array and set this value; scene_drop_forces() clears it when something changes on which forces depend. */
+typedef enum cached_force {
     NO_FORCE,
-    FORCE,           /* at its positions and velocities */
+    FORCE,           /* at the positions and velocities of the state */
     PREDICTED_FORCE, /* at its positions and at velocities that leapfrog predicted; part of the state */
     ELASTIC_FORCE    /* at its positions, without link damping */
-} known_force;
+} cached_force;
 
 struct spring_scene {
     scene_layout layout;
@@ -103,9 +104,9 @@ struct spring_scene {
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
-    uint32_t buffer;   /* 0 or 1: holds the state */
-    known_force known; /* in the force array of that buffer */
-    bool lost;         /* an advance without rollback failed */
+    uint32_t buffer; /* 0 or 1: holds the state */
+    cached_force force_cache;
+    bool lost; /* an advance without rollback failed */
     bool bounds_known;
     uint32_t colliders;     /* at most layout.colliders */
     double colliders_set;   /* [s] time of their poses */
@@ -183,6 +184,18 @@ static inline scene_array forces_in(uint32_t buffer)
 static inline scene_array touched_in(uint32_t buffer)
 {
     return buffer == 0 ? ARRAY_TOUCHED_0 : ARRAY_TOUCHED_1;
+}
+
+static inline void scene_drop_forces(spring_scene *s)
+{
+    s->force_cache = NO_FORCE;
+}
+
+/* An array for forces outside of a step, which is not the array of cached forces at predicted velocities or without
+   damping. A scene that caches such forces has two arrays. */
+static inline scalar *scene_spare_forces(spring_scene *s)
+{
+    return scene_axis(s, forces_in(1 - s->buffer), 0);
 }
 
 /* Clears the touched bits of these particles. */

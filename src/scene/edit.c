@@ -138,7 +138,7 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
     if (!proposal_valid(s, p))
         return SPRING_EINVAL;
     if (proposal_moves(s, p)) {
-        s->known = NO_FORCE;
+        scene_drop_forces(s);
         s->bounds_known = false;
     }
     scalar *const freed = scene_memory(s, ARRAY_FREE_MASS);
@@ -188,6 +188,6 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
         *v = velocity[a];
     }
     if (!same && scene_forces_use_velocity(s))
-        s->known = NO_FORCE;
+        scene_drop_forces(s);
     return SPRING_OK;
 }

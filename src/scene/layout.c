@@ -207,13 +207,22 @@ static void place_arrays(const spring_scene_def *def, scene_layout *l)
 {
     array_row row[ARRAY_COUNT];
     list_arrays(def, l, row);
-    l->bytes = aligned(sizeof(spring_scene));
+    l->bytes = aligned(sizeof(spring_scene)) + SPRING_SCENE_ALIGN; /* room for align_arrays() */
     for (int a = 0; a < ARRAY_COUNT; a++) {
-        l->offset[a] = row[a].present ? (size_t)l->bytes : SIZE_MAX;
+        l->offset[a] = row[a].present ? (size_t)l->bytes - SPRING_SCENE_ALIGN : SIZE_MAX;
         l->bytes += row[a].present ? aligned((uint64_t)row[a].count * row[a].element) : 0;
     }
     if (!row[ARRAY_FORCE_1].present)
         l->offset[ARRAY_FORCE_1] = l->offset[ARRAY_FORCE_0];
+}
+
+/* Moves the arrays so that they are aligned in this memory. A copy of the block has them at the same offsets, so there
+   they are aligned to 8 bytes at least, which all loads and stores accept. */
+static void align_arrays(scene_layout *l, const void *memory)
+{
+    const size_t beyond = (uintptr_t)memory % SPRING_SCENE_ALIGN, shift = beyond > 0 ? SPRING_SCENE_ALIGN - beyond : 0;
+    for (int a = 0; a < ARRAY_COUNT; a++)
+        l->offset[a] += l->offset[a] != SIZE_MAX ? shift : 0;
 }
 
 /* Maximum number of particles, and of links, of a small scene. So few do not fill SIMD vectors of particles. */
@@ -340,6 +349,9 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
     }
 }
 
+enum { least_alignment = 8 }; /* [bytes] of malloc() on all systems, also with 32 bits */
+_Static_assert(_Alignof(spring_scene) <= least_alignment, "memory from malloc() can hold a scene");
+
 spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_def *def, spring_scene **result)
 {
     if (result == NULL)
@@ -351,10 +363,11 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         return status;
     if (memory == NULL)
         return SPRING_EINVAL;
-    if ((uintptr_t)memory % SPRING_SCENE_ALIGN != 0)
+    if ((uintptr_t)memory % least_alignment != 0)
         return SPRING_EALIGN;
     if (bytes < layout.bytes)
         return SPRING_ENOMEM;
+    align_arrays(&layout, memory);
     memset(memory, 0, (size_t)layout.bytes);
     spring_scene *s = memory;
     *s = (spring_scene){

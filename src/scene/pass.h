@@ -28,7 +28,7 @@ struct scene_step {
     scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
     scalar h;            /* [s] dt in the precision of the scene */
     double t0, dt, done; /* the step starts at the time t0 + done dt */
-    known_force known;   /* the forces at the start */
+    cached_force cached; /* the forces at the start */
     bool predicts;       /* see scene_stepper */
     chebyshev_series damping;
     scene_contacts contacts;
@@ -263,12 +263,12 @@ static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, dou
     scene_evaluate(s->kernels, s->scene, s->links, x, v, time_at(s, fraction), &s->forces);
 }
 
-/* Sets s->whole.force: the forces at the start of the step. They are evaluated unless they are known. */
+/* Sets s->whole.force: the forces at the start of the step. They are evaluated unless they are cached. */
 SPRING_INLINE void find_start_force(scene_step *s, evaluation *evaluate_forces)
 {
     s->whole.force = force_at(s, s->from);
-    if (s->damping.terms > 0 ? s->known == ELASTIC_FORCE
-                             : s->known == FORCE || (s->known == PREDICTED_FORCE && s->predicts))
+    if (s->damping.terms > 0 ? s->cached == ELASTIC_FORCE
+                             : s->cached == FORCE || (s->cached == PREDICTED_FORCE && s->predicts))
         return;
     evaluate_forces(s, s->whole.x0, s->whole.v0, 0);
     s->whole.force = s->forces.force; /* predicted forces stay in the other array, for a rollback */

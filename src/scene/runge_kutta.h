@@ -94,7 +94,7 @@ SPRING_INLINE scene_outcome take_rkn8_step(scene_step *s, stage_function *nystro
     n.weight_x = rkn8_b;
     n.weight_v = rkn8_b_v;
     n.loss = dragged ? mass_factor(s, RKN8_LOSS) : NULL;
-    return (scene_outcome){.finite = nystrom_end(s, &end, end.v, 1), .known = FORCE};
+    return (scene_outcome){.finite = nystrom_end(s, &end, end.v, 1), .cached = FORCE};
 }
 
 /* Indices of the factors that SRKN6 stores for each mass, with drag, for each of its different drifts; see
@@ -144,7 +144,7 @@ SPRING_INLINE scene_outcome take_srkn6_step(scene_step *s, stage_function *kick_
         m.v0 = m.v;
         m.force = last_kick.force;
     }
-    return (scene_outcome){.finite = !s->last || move(s, s->kernels->implicit_kick, &last_kick), .known = FORCE};
+    return (scene_outcome){.finite = !s->last || move(s, s->kernels->implicit_kick, &last_kick), .cached = FORCE};
 }
 
 #endif

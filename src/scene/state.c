@@ -128,7 +128,7 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
     if (q == SPRING_POSITION)
         scene_clear_touched(s, first, count);
     if (q != SPRING_FORCE) /* held forces are no part of the stored force */
-        s->known = NO_FORCE;
+        scene_drop_forces(s);
     return SPRING_OK;
 }
 
@@ -149,6 +149,6 @@ spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *for
         return SPRING_EINVAL;
     s->force = force;
     s->user = user;
-    s->known = NO_FORCE;
+    scene_drop_forces(s);
     return SPRING_OK;
 }

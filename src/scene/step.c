@@ -64,10 +64,10 @@ static spring_status check_advance(const spring_scene *s, spring_method m, doubl
 }
 
 /* Takes n steps. A run is a sequence of calls with the same dt; `before` is the number of its steps before this call.
-   Returns the forces that are known at the end. *finite: whether the results of every step are finite. */
-static known_force take_scene_steps(scene_step *step, step_function *take, uint64_t before, uint64_t n, bool *finite)
+   Returns the forces that are cached at the end. *finite: whether the results of every step are finite. */
+static cached_force take_scene_steps(scene_step *step, step_function *take, uint64_t before, uint64_t n, bool *finite)
 {
-    step->known = step->scene->known;
+    step->cached = step->scene->force_cache;
     for (uint64_t i = 0; i < n; i++) {
         step->done = (double)(before + i);
         step->first = i == 0;
@@ -79,9 +79,9 @@ static known_force take_scene_steps(scene_step *step, step_function *take, uint6
         *finite = outcome.finite;
         if (!outcome.finite)
             return NO_FORCE;
-        step->known = outcome.known;
+        step->cached = outcome.cached;
     }
-    return step->known;
+    return step->cached;
 }
 
 /* The series that damps links once a step, if dt is beyond the limit of explicit damping. A negative dt is not. */
@@ -143,15 +143,15 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                                     .quads = s->layout.small}};
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
-    const known_force known = take_scene_steps(&step, step_function_of(kernels, &step, m), before, n, &finite);
+    const cached_force cached = take_scene_steps(&step, step_function_of(kernels, &step, m), before, n, &finite);
     if (!finite) {
         if (!rollback)
             invalidate(s);
-        if (s->known != PREDICTED_FORCE) /* the stored forces may be overwritten, or not finite themselves */
-            s->known = NO_FORCE;
+        if (s->force_cache != PREDICTED_FORCE) /* the cached forces may be overwritten, or not finite themselves */
+            scene_drop_forces(s);
         return s->max_speed < SCALAR_MAX ? SPRING_EUNSTABLE : SPRING_ENONFINITE;
     }
-    s->known = known;
+    s->force_cache = cached;
     s->buffer = step.to;
     s->t0 = t0;
     s->dt = dt;
@@ -166,20 +166,18 @@ spring_status spring_scene_advance(spring_scene *s, spring_method m, double dt, 
 
 /* ---------------------------------------------------------------------------------------------------------- at rest */
 
-/* The forces at the state. The forces of a callback are not stored, since its *user may change before the next step. */
+/* The forces at the state. The cache stays as it is, so that a later step does not depend on this query. */
 static const scalar *forces_of_state(spring_scene *s)
 {
-    scalar *const force = scene_axis(s, forces_in(s->known == PREDICTED_FORCE ? 1 - s->buffer : s->buffer), 0);
-    if (s->known == FORCE)
-        return force;
+    if (s->force_cache == FORCE)
+        return scene_axis(s, forces_in(s->buffer), 0);
+    scalar *const force = scene_spare_forces(s);
     scene_band band[most_bands];
     const scene_links links = scene_prepare_links(s, band);
     scene_forces forces = scene_prepare_forces(s, force);
     const scene_kernels *kernels = best_scene_kernels();
     scene_evaluate(s->layout.small ? kernels->small : kernels, s, &links, scene_state(s, SPRING_POSITION, 0),
                    scene_state(s, SPRING_VELOCITY, 0), time_of(s), &forces);
-    if (s->known == NO_FORCE && s->force == NULL)
-        s->known = FORCE;
     return force;
 }
 

@@ -81,7 +81,7 @@ static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1,
                                      keeps && !s->last ? NULL : implicit_kick, &last_kick),
-        .known = keeps ? ELASTIC_FORCE : NO_FORCE,
+        .cached = keeps ? ELASTIC_FORCE : NO_FORCE,
     };
 }
 
@@ -108,9 +108,9 @@ static scene_outcome scene_leapfrog(scene_step *s)
     const scalar *const v = predicts ? kick_drift.predicted : kick_drift.v;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1, implicit_kick, &last_kick),
-        .known = !keeps     ? NO_FORCE
-                 : predicts ? PREDICTED_FORCE
-                            : FORCE,
+        .cached = !keeps     ? NO_FORCE
+                  : predicts ? PREDICTED_FORCE
+                             : FORCE,
     };
 }
 

@@ -8,7 +8,7 @@
 /* A step ends at the first number that is not finite, so that a callback sees finite numbers only. */
 struct scene_outcome {
     bool finite;
-    known_force known; /* at the end of the step */
+    cached_force cached; /* at the end of the step */
 };
 
 typedef struct scene_stepper {

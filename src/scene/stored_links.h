@@ -64,7 +64,7 @@ static inline void scene_write_link(spring_scene *s, size_t index, const spring_
         occupied[at.slot] = (scalar)link->stiffness > 0 || (scalar)link->damping > 0 ? -1 : 0;
 }
 
-/* The same for a scene in use. Its forces, and its bounds if they change, are then no longer known. */
+/* The same for a scene in use: drops its forces, and its bounds if they change. */
 static inline void scene_replace_link(spring_scene *s, size_t index, const spring_link *link)
 {
     const stored_link old = scene_link(s, index);
@@ -73,7 +73,7 @@ static inline void scene_replace_link(spring_scene *s, size_t index, const sprin
     if ((scalar)link->stiffness != old.stiffness || (scalar)link->damping != old.damping)
         s->bounds_known = false;
     scene_write_link(s, index, link);
-    s->known = NO_FORCE;
+    scene_drop_forces(s);
 }
 
 /* ---------------------------------------------------------------------------------------------------- other values */

@@ -42,7 +42,7 @@ spring_status spring_scene_transform(spring_scene *s, const double matrix[12])
         return SPRING_ENONFINITE;
     transform_quantity(s, SPRING_POSITION, matrix, 1, true);
     transform_quantity(s, SPRING_VELOCITY, matrix, 0, true);
-    s->known = NO_FORCE;
+    scene_drop_forces(s);
     scene_clear_touched(s, 0, s->layout.particles);
     return SPRING_OK;
 }

@@ -77,8 +77,7 @@ static uint64_t digest_of_springs(uint64_t digest, spring_method m)
 static uint64_t digest_of_scene(uint64_t digest, spring_method m)
 {
     const spring_link link = {.a = 0, .b = 1, .rest = 1.25, .stiffness = test_stiffness};
-    unsigned char room[(1 << 14) + SPRING_SCENE_ALIGN]; /* some compilers ignore large _Alignas on the stack */
-    unsigned char *memory = room + (SPRING_SCENE_ALIGN - (uintptr_t)room % SPRING_SCENE_ALIGN);
+    uint64_t memory[1 << 11]; /* aligned to 8 bytes */
     double position[] = {test_x, test_v, 1 - test_x, 1 + test_v};
     const spring_scene_def def = {.axes = 2,
                                   .methods = 1u << m,
@@ -90,7 +89,7 @@ static uint64_t digest_of_scene(uint64_t digest, spring_method m)
                                   .gravity = {0, -9.81},
                                   .drag = 0.6};
     spring_scene *s;
-    if (spring_scene_init(memory, 1 << 14, &def, &s) == SPRING_OK &&
+    if (spring_scene_init(memory, sizeof memory, &def, &s) == SPRING_OK &&
         spring_scene_advance(s, m, test_dt, test_steps) == SPRING_OK)
         spring_scene_get(s, SPRING_POSITION, position, 0, 0, def.particles);
     for (int i = 0; i < 4; i++)

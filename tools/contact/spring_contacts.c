@@ -328,7 +328,7 @@ static double energy_in_box(double restitution, double damping, double fraction,
         wall[i].at[i / 2] = i % 2 == 0 ? -0.2 : 0.6;
     }
     spring_scene *s = NULL;
-    void *memory = spring_scene_bytes(&def, &bytes) == SPRING_OK ? aligned_alloc(SPRING_SCENE_ALIGN, bytes) : NULL;
+    void *memory = spring_scene_bytes(&def, &bytes) == SPRING_OK ? malloc(bytes) : NULL;
     if (memory == NULL || spring_scene_init(memory, bytes, &def, &s) != SPRING_OK ||
         spring_scene_set_colliders(s, wall, 6) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a soft body");

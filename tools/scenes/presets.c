@@ -196,7 +196,7 @@ spring_status preset_start(const preset *r, uint32_t methods, uint32_t flags, sp
     spring_status status = spring_scene_bytes(&def, bytes);
     if (status != SPRING_OK)
         return status;
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
+    void *memory = malloc(*bytes);
     if (memory == NULL)
         return SPRING_ENOMEM;
     status = spring_scene_init(memory, *bytes, &def, scene);

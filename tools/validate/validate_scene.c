@@ -65,7 +65,7 @@ static void run(const scene_problem *p, spring_method m, double dt, uint64_t n, 
         y[i] = NAN;
     if (spring_scene_bytes(def, &bytes) != SPRING_OK)
         return;
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     double *state = malloc(2 * numbers * sizeof *state);
     if (memory == NULL || state == NULL)
         cli_fail(CLI_FAILED, "out of memory");
@@ -424,7 +424,7 @@ static followed follow(const trial *t, const sheet_mode *s, const reference_turn
     followed f = {NAN, NAN, NAN};
     if (spring_scene_bytes(def, &bytes) != SPRING_OK)
         return f;
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
+    void *memory = malloc(bytes);
     double *room = malloc(2 * def->axes * def->particles * sizeof *room);
     if (memory == NULL || room == NULL)
         cli_fail(CLI_FAILED, "out of memory");

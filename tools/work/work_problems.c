@@ -266,7 +266,7 @@ spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes)
     spring_scene *scene = NULL;
     if (spring_scene_bytes(def, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "an invalid scene");
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, *bytes);
+    void *memory = malloc(*bytes);
     if (memory == NULL || spring_scene_init(memory, *bytes, def, &scene) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu links", def->links);
     return scene;
