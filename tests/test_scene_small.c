@@ -38,7 +38,7 @@ static void against_a_plain_loop(void)
                 for (unsigned features = 0; features < SHUFFLED; features++) {
                     build_small(&m, n, links, axes, features | (links % 2 ? DAMPED : 0));
                     spring_scene *s = scene_of(&m.def);
-                    CHECK(s->layout.small == (n <= 12 && m.def.links <= 12), "twelve particles and links");
+                    CHECK(s->layout.quads == (n <= 12 && m.def.links <= 12), "twelve particles and links");
                     free(s);
                     for (int k = 0; k < kernel_count; k++)
                         if (kernels_of(k) != NULL)
@@ -114,7 +114,7 @@ static pair pair_of(model *m, const scene_kernels *kernels, int blowing)
     use_all_methods(&larger.def);
     p.s = scene_of(&def);
     p.other = scene_of(&larger.def);
-    CHECK(p.s->layout.small && !p.other->layout.small && p.other->layout.unbanded == def.links, "quads, and not");
+    CHECK(p.s->layout.quads && !p.other->layout.quads && p.other->layout.unbanded == def.links, "quads, and not");
     return p;
 }
 

@@ -124,10 +124,10 @@ SPRING_INLINE mask touching(const uint32_t *bits)
 SPRING_INLINE mask near_colliders(const scene_contacts *t, const particle_vector *p, real3 x0, real3 d)
 {
     const real square = dot3(d, d);
-    mask near = not_mask(square <= SCALAR_MAX); /* if the square overflows, any collider may be near */
+    mask nearby = not_mask(square <= SCALAR_MAX); /* if the square overflows, any collider may be near */
     for (unsigned i = 0; i < t->count; i++)
-        near |= may_touch(&t->collider[i], x0, d, square);
-    return near & p->free;
+        nearby |= may_touch(&t->collider[i], x0, d, square);
+    return nearby & p->free;
 }
 
 enum { QUEUED_X0, QUEUED_V0, QUEUED_THIRD, QUEUED_FOURTH, queued_quantities, queue_size = 2 * lanes };

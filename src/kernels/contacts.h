@@ -73,8 +73,8 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
-/* Steps 1 and 2 with collider i, in the lanes `near`. Returns the lanes with a contact, which the outputs describe. */
-SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask near, contact_point *at,
+/* Steps 1 and 2 with collider i in the lanes `nearby`. Returns the lanes with a contact, which the outputs describe. */
+SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask nearby, contact_point *at,
                                real *gap, real *fraction, mask *pushed)
 {
     if ((p->known >> i & 1) != 0)
@@ -82,7 +82,7 @@ SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifti
     else
         find_contact(c, STEP_START, splat(0), &p->x0, at);
     const real slop = contact_slop(c, p->x0);
-    mask hit = near;
+    mask hit = nearby;
     *pushed = hit & (at->gap < -slop);
     *gap = select_real(at->gap < slop, splat(0), at->gap); /* a rounding error divided by h would be a velocity */
     *fraction = splat(0);
@@ -187,15 +187,15 @@ SPRING_INLINE void record_contact(drifting *p, unsigned i, mask hit, mask outsid
     p->outside = (p->outside & ~bits_where(hit, UINT32_MAX)) | bits_where(outside, bit);
 }
 
-/* Steps 1 to 4 with collider i, in the lanes `near` that may_touch() finds. Other lanes must not change: a gap that is
+/* Steps 1 to 4 with collider i in the lanes `nearby` that may_touch() finds. Other lanes must not change: a gap that is
    a rounding error counts as 0 here, so results would depend on which particles share the vector. */
-SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, mask near)
+SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, mask nearby)
 {
     contact_point at;
     real gap, fraction;
     mask pushed;
-    const mask hit = find_impact(c, i, p, near, &at, &gap, &fraction, &pushed);
-    const mask missed = collider_turns(c) ? (mask){0} : near & not_mask(hit); /* the gap along the path is convex */
+    const mask hit = find_impact(c, i, p, nearby, &at, &gap, &fraction, &pushed);
+    const mask missed = collider_turns(c) ? (mask){0} : nearby & not_mask(hit); /* the gap along the path is convex */
     if (!any(hit)) {
         record_contact(p, i, hit, missed);
         return;
@@ -260,17 +260,17 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 {
     p->touched = p->outside = bits_where((mask){0}, 0);
     for (unsigned i = 0; i < t->count; i++) {
-        const mask near = p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
-        if (any(near))
-            collide(&t->collider[i], i, p, near);
+        const mask nearby = p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        if (any(nearby))
+            collide(&t->collider[i], i, p, nearby);
     }
     for (unsigned i = 0; i + 1 < t->count; i++) {
         const mask deflected = p->free & has_bits(p->touched, UINT32_MAX << i << 1); /* by a later collider */
         if (!any(deflected))
             break;
-        const mask near = deflected & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
-        if (any(near))
-            collide(&t->collider[i], i, p, near);
+        const mask nearby = deflected & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        if (any(nearby))
+            collide(&t->collider[i], i, p, nearby);
     }
     mask moved = p->free;
     for (int pass = 0; pass < corner_passes && any(moved); pass++) {
@@ -281,9 +281,9 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
             const mask open = before & not_mask(has_bits(p->outside, UINT32_C(1) << i));
             if (!any(open))
                 continue;
-            const mask near = open & may_touch(c, p->x0, p->d, dot3(p->d, p->d));
-            if (any(near))
-                moved |= leave_collider(c, i, p, near);
+            const mask nearby = open & may_touch(c, p->x0, p->d, dot3(p->d, p->d));
+            if (any(nearby))
+                moved |= leave_collider(c, i, p, nearby);
         }
     }
 }

@@ -35,18 +35,18 @@ SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
 /* Quads have 32 bytes in double and 16 in float. */
 #if SPRING_VECTOR == 16 || (SPRING_VECTOR == 32 && !defined(SPRING_FLOAT))
 #include "one_axis.h"
-#define SMALL_TABLE    SPRING_SCENE_TABLE
-#define IS_SMALL_TABLE 1
+#define QUAD_TABLE    SPRING_SCENE_TABLE
+#define IS_QUAD_TABLE 1
 #elif defined(SPRING_FLOAT)
-#define SMALL_TABLE    spring_scene_v128
-#define IS_SMALL_TABLE 0
+#define QUAD_TABLE    spring_scene_v128
+#define IS_QUAD_TABLE 0
 #else
-#define SMALL_TABLE    spring_scene_v256
-#define IS_SMALL_TABLE 0
+#define QUAD_TABLE    spring_scene_v256
+#define IS_QUAD_TABLE 0
 #endif
 
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
-    .small = &SMALL_TABLE,
+    .for_quads = &QUAD_TABLE,
     .band_forces = compute_band_forces,
     .band_directions = compute_band_directions,
     .unbanded = &SPRING_UNBANDED_TABLE,
@@ -64,7 +64,7 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .stretched = any_stretched,
     .contact_normal = find_contact_normal,
     .kick_damped_drift = move_kick_damped_drift,
-#if IS_SMALL_TABLE
+#if IS_QUAD_TABLE
     .one_axis = {[SPRING_RK4] = one_axis_rk4, [SPRING_RKN8] = one_axis_rkn8, [SPRING_SRKN6] = one_axis_srkn6},
 #endif
 };

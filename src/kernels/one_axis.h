@@ -35,7 +35,7 @@ SPRING_INLINE void one_axis_evaluate(scene_step *s, const scalar *x, const scala
     spring_scene *const scene = s->scene;
     scalar *const force = s->forces.force;
     const size_t count = s->particles.count;
-    if (!scene->layout.small) {
+    if (!scene->layout.quads) {
         one_axis_forces(s->links, x, v, &s->forces);
         if (scene->force != NULL)
             call_back(scene, x, v, time_at(s, fraction), force, 1);

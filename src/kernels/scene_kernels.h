@@ -180,9 +180,9 @@ typedef struct unbanded_kernels {
 
 /* a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct scene_kernels {
-    const struct scene_kernels *small; /* the kernels for small scenes, with vectors of at most a quad, since a load
-                                          that spans two recent stores stalls */
-    band_kernel *band_forces;          /* the forces of all bands */
+    /* the kernels for small scenes, with vectors of at most a quad, since a load that spans two recent stores stalls */
+    const struct scene_kernels *for_quads;
+    band_kernel *band_forces; /* the forces of all bands */
     direction_kernel *band_directions;
     const unbanded_kernels *unbanded;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced

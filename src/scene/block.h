@@ -60,7 +60,7 @@ typedef struct band_layout {
 typedef struct scene_layout {
     uint32_t axes, flags, methods, colliders;
     size_t particles, links;
-    bool small;             /* quantities are arrays of quads, and no link lies in a band */
+    bool quads;             /* quantities are arrays of quads, and no link lies in a band */
     size_t stride;          /* elements from one axis of a quantity to the next */
     size_t particle_stride; /* elements from one particle to the next */
     size_t quantity;        /* elements of a quantity */

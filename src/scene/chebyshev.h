@@ -82,7 +82,7 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
     const scene_layout *l = &s->scene->layout;
     scene_forces forces = s->forces;
     forces.force = damping_storage(s, 0);
-    if (l->small || l->unbanded > 0) {
+    if (l->quads || l->unbanded > 0) {
         evaluate_links(s->kernels, s->scene, links, x, v, &forces);
         return move(s, kernel, m);
     }

@@ -156,7 +156,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
-    const bool records = l->axes > 1 && !l->small && l->unbanded >= l->particles;
+    const bool records = l->axes > 1 && !l->quads && l->unbanded >= l->particles;
     const bool collides = l->colliders > 0;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
@@ -187,7 +187,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_BAND_DIRECTIONS] = {number, l->axes * l->band_slots, series && l->bands > 0},
         [ARRAY_LINK_DIRECTIONS] = {number, quad_size * l->unbanded, series && l->unbanded > 0},
         [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
-        [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->small},
+        [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->quads},
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
@@ -243,8 +243,8 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
         .unbanded = def->links,
     };
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
-    l->small = l->axes > 1 && def->particles <= most_small && def->links <= most_small;
-    if (l->small) {
+    l->quads = l->axes > 1 && def->particles <= most_small && def->links <= most_small;
+    if (l->quads) {
         l->particle_stride = quad_size;
         l->stride = 1;
         l->quantity = quad_size * (l->particles + quad_size) + 2 * padding;

@@ -127,8 +127,8 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
     const scene_layout *l = &s->layout;
     const bool each = scene_has(s, ARRAY_INVERSE_MASS), holds = scene_has(s, ARRAY_HELD);
     return (scene_particles){
-        .count = l->small ? quad_size * l->particles : l->particles,
-        .axes = l->small ? 1 : l->axes,
+        .count = l->quads ? quad_size * l->particles : l->particles,
+        .axes = l->quads ? 1 : l->axes,
         .stride = l->stride,
         .inverse_mass = each ? scene_read(s, ARRAY_INVERSE_MASS) : s->inverse_mass_vector,
         .mass_stride = each,
@@ -234,7 +234,7 @@ static inline void evaluate_links(const scene_kernels *kernels, const spring_sce
                                   const scalar *x, const scalar *v, scene_forces *out)
 {
     const unbanded_kernels *const unbanded = kernels->unbanded;
-    if (s->layout.small) {
+    if (s->layout.quads) {
         unbanded->quad_forces(links, x, v, out);
         return;
     }
@@ -249,7 +249,7 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
                                   const scalar *x, const scalar *v, double t, scene_forces *out)
 {
     evaluate_links(kernels, s, links, x, v, out);
-    if (s->force != NULL && s->layout.small)
+    if (s->force != NULL && s->layout.quads)
         call_back_small(s, x, v, t, out->force);
     else if (s->force != NULL)
         call_back(s, x, v, t, out->force, s->layout.axes);
@@ -304,7 +304,7 @@ static inline bool move_evaluate_move(scene_step *s, particle_kernel *first_kern
                                       const scene_motion *second)
 {
     const scene_layout *l = &s->scene->layout;
-    if (l->small || l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
+    if (l->quads || l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
         if (!move(s, first_kernel, first))
             return false;
         evaluate(s, first->x, v, fraction);

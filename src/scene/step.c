@@ -41,7 +41,7 @@ static bool finite_scene(const spring_scene *s)
 static void invalidate(spring_scene *s)
 {
     const size_t stride = s->layout.particle_stride;
-    for (uint32_t a = 0; a < (s->layout.small ? quad_size : s->layout.axes); a++) {
+    for (uint32_t a = 0; a < (s->layout.quads ? quad_size : s->layout.axes); a++) {
         const bool axis = a < s->layout.axes; /* spring_scene_set() never sets the other numbers of a quad */
         scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
@@ -101,7 +101,7 @@ enum { most_inlined = 16 };
 /* The function for the steps of a method. With inlined kernels or without, the results are bit-identical. */
 static step_function *step_function_of(const scene_kernels *kernels, const scene_step *s, spring_method m)
 {
-    step_function *const one_axis = kernels->small->one_axis[m];
+    step_function *const one_axis = kernels->for_quads->one_axis[m];
     const bool few = s->links->particles <= most_inlined && s->particles.axes == 1;
     const bool plain = s->links->bands == 0 && s->contacts.count == 0 && s->particles.held_stride == 0;
     return few && plain && one_axis != NULL ? one_axis : spring_scene_steppers[m].step;
@@ -127,7 +127,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const chebyshev_series damping = series_of(s, &spring_scene_steppers[m], dt);
     if (damping.terms > 0)
         links.terms = STIFFNESS_TERM;
-    scene_step step = {.kernels = s->layout.small ? kernels->small : kernels,
+    scene_step step = {.kernels = s->layout.quads ? kernels->for_quads : kernels,
                        .scene = s,
                        .links = &links,
                        .forces = scene_prepare_forces(s, NULL),
@@ -140,7 +140,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .contacts = {.count = s->colliders,
                                     .collider = scene_read(s, ARRAY_PLACED),
                                     .axes = s->layout.axes,
-                                    .quads = s->layout.small}};
+                                    .quads = s->layout.quads}};
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
     const cached_force cached = take_scene_steps(&step, step_function_of(kernels, &step, m), before, n, &finite);
@@ -176,7 +176,7 @@ static const scalar *forces_of_state(spring_scene *s)
     const scene_links links = scene_prepare_links(s, band);
     scene_forces forces = scene_prepare_forces(s, force);
     const scene_kernels *kernels = best_scene_kernels();
-    scene_evaluate(s->layout.small ? kernels->small : kernels, s, &links, scene_state(s, SPRING_POSITION, 0),
+    scene_evaluate(s->layout.quads ? kernels->for_quads : kernels, s, &links, scene_state(s, SPRING_POSITION, 0),
                    scene_state(s, SPRING_VELOCITY, 0), time_of(s), &forces);
     return force;
 }

@@ -83,7 +83,7 @@ static inline void scene_store_gravity(spring_scene *s, const double *gravity)
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         s->gravity[a] = gravity[a];
         for (size_t i = 0; i < padding; i++)
-            if (!s->layout.small)
+            if (!s->layout.quads)
                 s->gravity_vectors[a][i] = (scalar)gravity[a];
             else if (i % quad_size == a)
                 s->gravity_vectors[0][i] = (scalar)gravity[a];

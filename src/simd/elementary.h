@@ -111,8 +111,8 @@ SPRING_INLINE sine_cosine sine_cosine_of(real angle)
     const real quarter = known * two_over_pi + to_integer, q = quarter - to_integer;
     const real r = (known - q * half_pi_high) - q * half_pi_low, z = r * r;
     const real sine = r + r * z * polynomial(z, odd, 8);
-    const real near = 1 - z / 2; /* its rounding error is added below */
-    const real cosine = near + (((1 - near) - z / 2) + z * z * polynomial(z, even, 8));
+    const real leading = 1 - z / 2; /* its rounding error is added below */
+    const real cosine = leading + (((1 - leading) - z / 2) + z * z * polynomial(z, even, 8));
     const real_bits turn = to_bits(quarter);
     const mask odd_turn = (turn & 1) != 0;
     const real_bits minus_sine = (turn & 2) << 62, minus_cosine = ((turn + 1) & 2) << 62;

@@ -50,8 +50,8 @@ SPRING_INLINE real half_ulp(real a)
 SPRING_INLINE real vec_hypot(real a, real b)
 {
     const mask larger = a > b;
-    const real large = select_real(larger, a, b), small = select_real(larger, b, a);
-    const real ratio = small / select_real(large > 0, large, splat(1));
+    const real large = select_real(larger, a, b), lesser = select_real(larger, b, a);
+    const real ratio = lesser / select_real(large > 0, large, splat(1));
     return large * vec_sqrt(1 + ratio * ratio);
 }
 
@@ -63,11 +63,11 @@ SPRING_INLINE mask follow_lands(real x, real rest, real y, real u, const follow_
     const scalar reach = 2.25; /* [d] 9/4, see above */
     const real x_size = vec_abs(x), rest_size = vec_abs(rest), distance = vec_abs(y);
     const real room = half_ulp(select_real(x_size > rest_size, x_size, rest_size)) * (reach * ulps) + least;
-    const mask near = (c->share > 0) & (distance * c->share <= room);
-    if (!any(near))
-        return near;
-    const real speed = vec_abs(u) / vec_sqrt(select_real(near, c->omega2, splat(1)));
-    return near & (vec_hypot(distance, speed) * c->share <= room);
+    const mask candidates = (c->share > 0) & (distance * c->share <= room);
+    if (!any(candidates))
+        return candidates;
+    const real speed = vec_abs(u) / vec_sqrt(select_real(candidates, c->omega2, splat(1)));
+    return candidates & (vec_hypot(distance, speed) * c->share <= room);
 }
 
 #endif

@@ -38,8 +38,8 @@ static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an ove
 /* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow. (hypot() has other last bits in each C library.) */
 static inline double spring_hypot(double a, double b)
 {
-    const double large = fmax(a, b), small = fmin(a, b);
-    const double ratio = large > 0 && large < INFINITY ? small / large : 0;
+    const double large = fmax(a, b), lesser = fmin(a, b);
+    const double ratio = large > 0 && large < INFINITY ? lesser / large : 0;
     return large * spring_sqrt(1 + ratio * ratio);
 }
 

@@ -17,10 +17,10 @@ typedef struct spring_split {
 SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
 {
     real scale = splat(1), back = splat(1);
-    const mask large = (b > 0x1p400) | (w > 0x1p800), small = (b < 0x1p-400) & (w < 0x1p-800);
-    if (SPRING_UNLIKELY(any(large | small))) { /* squares or their rounding errors might overflow or underflow */
-        scale = select_real(large, splat(0x1p-700), select_real(small, splat(0x1p600), scale));
-        back = select_real(large, splat(0x1p700), select_real(small, splat(0x1p-600), back));
+    const mask large = (b > 0x1p400) | (w > 0x1p800), tiny = (b < 0x1p-400) & (w < 0x1p-800);
+    if (SPRING_UNLIKELY(any(large | tiny))) { /* squares or their rounding errors might overflow or underflow */
+        scale = select_real(large, splat(0x1p-700), select_real(tiny, splat(0x1p600), scale));
+        back = select_real(large, splat(0x1p700), select_real(tiny, splat(0x1p-600), back));
     }
     const real c = b * scale, square = c * c;
     const real D = (((w * scale) * scale - square) - square_error(c, square)) + (rest * scale) * scale;
