@@ -83,7 +83,7 @@ static spring_collider any_collider(uint32_t axes)
     return c;
 }
 
-/* Damping of links: none, light, or so heavy that leapfrog applies it as a series. */
+/* Damping of links: light, or so heavy that leapfrog applies it as a series. */
 static void damp(model *m)
 {
     const double strength = one_in(3) ? random_log(1, 1e4) : random_log(0.01, 1);
@@ -139,13 +139,27 @@ static void query(spring_scene *s, const model *m)
     switch (below(10)) {
     case 0:
     case 1:
-    case 2: spring_scene_at_rest(s, random_log(1e-3, 10), random_log(1e-3, 1e3)); break;
-    case 3: spring_scene_stable_step(s, (spring_method)below(SPRING_METHOD_COUNT)); break;
-    case 4: spring_scene_energy(s); break;
-    case 5: spring_scene_tension(s, below(m->def.links + 2)); break;
-    case 6: spring_scene_get(s, (spring_quantity)below(4), out, 0, 0, m->def.particles); break;
-    case 7: spring_scene_getf(s, (spring_quantity)below(4), outf, 0, 0, m->def.particles); break;
-    case 8: spring_scene_touching(s, touching, 0, m->def.particles); break;
+    case 2:
+        spring_scene_at_rest(s, random_log(1e-3, 10), random_log(1e-3, 1e3));
+        break;
+    case 3:
+        spring_scene_stable_step(s, (spring_method)below(SPRING_METHOD_COUNT));
+        break;
+    case 4:
+        spring_scene_energy(s);
+        break;
+    case 5:
+        spring_scene_tension(s, below(m->def.links + 2));
+        break;
+    case 6:
+        spring_scene_get(s, (spring_quantity)below(4), out, 0, 0, m->def.particles);
+        break;
+    case 7:
+        spring_scene_getf(s, (spring_quantity)below(4), outf, 0, 0, m->def.particles);
+        break;
+    case 8:
+        spring_scene_touching(s, touching, 0, m->def.particles);
+        break;
     default:
         spring_scene_find_link(s, (uint32_t)below(m->def.particles), (uint32_t)below(m->def.particles));
         spring_scene_get_link(s, below(m->def.links + 1), &link);
@@ -163,8 +177,9 @@ static void do_nothing(spring_scene *s, const model *m)
 }
 
 /* Calls that fail. */
-static void fail(spring_scene *s, const model *m)
+static void fail(const block *b, const model *m)
 {
+    spring_scene *const s = b->s;
     static const double nothing[12] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     const spring_collider wrong = {.shape = SPRING_SPHERE, .radius = -1};
     const spring_link link = {0, 0, 1, 1, 1};
@@ -189,13 +204,10 @@ static void fail(spring_scene *s, const model *m)
         CHECK(status[i] != SPRING_OK, "the call is invalid");
     if ((m->def.flags & SPRING_SCENE_NO_UNDO) != 0)
         return;
-    const double far = (double)SCALAR_MAX / 1e3; /* [s] in such a time every moving scene overflows, at once or in time */
-    const block before = {NULL, 0, s};
-    size_t bytes;
-    spring_scene_bytes(&m->def, &bytes);
-    block kept = copy_of(&(block){before.room, bytes, s});
-    if (spring_scene_advance(s, any_method(m), far, 1 + below(3)) == SPRING_OK)
-        memcpy(s, kept.s, bytes); /* a scene without motion does not fail */
+    const double overflows = (double)SCALAR_MAX / 1e3; /* [s] */
+    const block kept = copy_of(b);
+    if (spring_scene_advance(s, any_method(m), overflows, 1 + below(3)) == SPRING_OK)
+        memcpy(s, kept.s, b->bytes); /* a scene that does not move cannot overflow */
     free(kept.room);
 }
 
@@ -218,10 +230,17 @@ static void disturb(block *b, const model *m)
 {
     for (size_t i = below(most_moves); i-- > 0;)
         switch (below(8)) {
-        case 0: fail(b->s, m); break;
-        case 1: do_nothing(b->s, m); break;
-        case 2: move_memory(b, m); break;
-        default: query(b->s, m);
+        case 0:
+            fail(b, m);
+            break;
+        case 1:
+            do_nothing(b->s, m);
+            break;
+        case 2:
+            move_memory(b, m);
+            break;
+        default:
+            query(b->s, m);
         }
 }
 
@@ -240,13 +259,26 @@ static void change(spring_scene *const s[2], const model *m)
     link.stiffness *= 0.7;
     for (int j = 0; j < 2; j++)
         switch (which) {
-        case 0: spring_scene_set(s[j], SPRING_VELOCITY, v, 0, i, 1); break;
-        case 1: spring_scene_set(s[j], SPRING_FORCE, v, 0, i, 1); break;
-        case 2: spring_scene_drive(s[j], i, v, 0.3); break;
-        case 3: spring_scene_set_pinned(s[j], i, 1, &pinned); break;
-        case 4: spring_scene_set_link(s[j], k, &link); break;
-        case 5: spring_scene_set_force(s[j], m->def.force, NULL); break;
-        default: spring_scene_set_colliders(s[j], c, 2);
+        case 0:
+            spring_scene_set(s[j], SPRING_VELOCITY, v, 0, i, 1);
+            break;
+        case 1:
+            spring_scene_set(s[j], SPRING_FORCE, v, 0, i, 1);
+            break;
+        case 2:
+            spring_scene_drive(s[j], i, v, 0.3);
+            break;
+        case 3:
+            spring_scene_set_pinned(s[j], i, 1, &pinned);
+            break;
+        case 4:
+            spring_scene_set_link(s[j], k, &link);
+            break;
+        case 5:
+            spring_scene_set_force(s[j], m->def.force, NULL);
+            break;
+        default:
+            spring_scene_set_colliders(s[j], c, 2);
         }
 }
 
@@ -275,7 +307,8 @@ static bool same_run(const model *m)
     CHECK(spring_scene_bytes(&m->def, &bytes) == SPRING_OK, "a valid definition");
     block plain = any_memory(bytes), queried = any_memory(bytes);
     spring_scene *result;
-    CHECK(spring_scene_init(plain.s, bytes, &m->def, &result) == SPRING_OK && result == plain.s, "at any multiple of 8");
+    CHECK(spring_scene_init(plain.s, bytes, &m->def, &result) == SPRING_OK && result == plain.s,
+          "at any multiple of 8");
     CHECK(spring_scene_init(queried.s, bytes, &m->def, &result) == SPRING_OK && result == queried.s, "likewise");
     const scene_kernels *const kernels = any_kernels();
     spring_method method = any_method(m);

@@ -246,25 +246,28 @@ static void define(definition *d)
 
 /* --------------------------------------------------------------------------------------------------------- a scene */
 
-/* A block between guards. */
+/* A block between guards, at any multiple of 8 bytes, which depends on the length of the input. */
 typedef struct place {
-    uint8_t *all, fill;
+    uint8_t *all, *block, fill;
     size_t bytes;
     scene *s;
 } place;
 
 static place place_for(size_t bytes, uint8_t fill)
 {
-    place p = {aligned_alloc(SPRING_SCENE_ALIGN, bytes + 2 * guard), fill, bytes, NULL};
+    const size_t least = 8, shift = least * (((size_t)(end - next) + fill) % (SPRING_SCENE_ALIGN / least));
+    place p = {aligned_alloc(SPRING_SCENE_ALIGN, bytes + 3 * guard), NULL, fill, bytes, NULL};
     must(p.all != NULL, "memory");
-    memset(p.all, fill, bytes + 2 * guard);
+    memset(p.all, fill, bytes + 3 * guard);
+    p.block = p.all + guard + shift;
     return p;
 }
 
 static void check_guards(const place *p)
 {
     for (size_t i = 0; i < guard; i++)
-        must(p->all[i] == p->fill && p->all[guard + p->bytes + i] == p->fill, "nothing outside the block changes");
+        must((p->block - guard)[i] == p->fill && p->block[p->bytes + i] == p->fill,
+             "nothing outside the block changes");
 }
 
 typedef struct state {
@@ -313,7 +316,7 @@ static bool finite(const state *y)
     return true;
 }
 
-/* Both scenes, and what is known of them. */
+/* Both scenes, and what is known of them. Only the first is queried, and only its calls fail or do nothing. */
 typedef struct life {
     definition *d;
     place one, other;
@@ -360,7 +363,7 @@ static void advance(life *l)
     if (status == SPRING_OK)
         for (uint64_t i = 0; i < n; i++)
             must(spring_scene_advance(l->other.s, m, dt, 1) == SPRING_OK, "n steps are n calls");
-    else
+    else if (l->broken)
         copy_over(l);
 }
 
@@ -723,8 +726,7 @@ static void ask(const life *l)
     }
     must(isnan(spring_scene_tension(l->one.s, l->d->def.links)), "there are no more links");
     const double v_tol = size(), a_tol = size();
-    must(spring_scene_at_rest(l->one.s, v_tol, a_tol) == spring_scene_at_rest(l->other.s, v_tol, a_tol),
-         "the same answer");
+    (void)spring_scene_at_rest(l->one.s, v_tol, a_tol);
 }
 
 /* A few steps of both, on a copy of the old one. A callback may look at the time, which is another. */
@@ -757,7 +759,7 @@ static void remake(life *l)
     if (l->broken || l->colliders > 0 || spring_scene_check(&l->d->def, NULL, NULL) != SPRING_OK)
         return;
     place p = place_for(l->one.bytes, 0xc3);
-    must(spring_scene_init(p.all + guard, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
+    must(spring_scene_init(p.block, p.bytes, &l->d->def, &p.s) == SPRING_OK, "as large as before");
     must(spring_scene_set(p.s, SPRING_POSITION, y.x, 3, 0, l->d->def.particles) == SPRING_OK &&
              spring_scene_set(p.s, SPRING_VELOCITY, y.v, 3, 0, l->d->def.particles) == SPRING_OK,
          "a state that was got can be set");
@@ -860,13 +862,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
         return 0;
     life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
     l.axes = d.def.axes == 0 ? 3 : d.def.axes;
-    must(spring_scene_init(l.one.all + guard, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL,
-         "too small");
-    must(spring_scene_init(l.one.all + guard - 8, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
+    must(spring_scene_init(l.one.block, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL, "too small");
+    must(spring_scene_init(l.one.block - 4, bytes, &d.def, &l.one.s) == SPRING_EALIGN && l.one.s == NULL,
          "not aligned");
     check_guards(&l.one);
-    must(spring_scene_init(l.one.all + guard, bytes, &d.def, &l.one.s) == SPRING_OK &&
-             spring_scene_init(l.other.all + guard, bytes, &d.def, &l.other.s) == SPRING_OK,
+    must(spring_scene_init(l.one.block, bytes, &d.def, &l.one.s) == SPRING_OK &&
+             spring_scene_init(l.other.block, bytes, &d.def, &l.other.s) == SPRING_OK,
          "init() agrees with check()");
     must_agree(&l);
     live(&l);
