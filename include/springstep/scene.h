@@ -133,7 +133,8 @@ typedef struct spring_collider {
     spring_shape shape;    /**< shape of the body */
     double at[3];          /**< [m] plane: a point on it; sphere, box: the centre; capsule: one end of the segment */
     double to[3];          /**< [m] capsule: the other end of the segment */
-    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes */
+    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes.
+                                An error of up to 1e-3, as of rotations in single precision, is removed */
     double half[3];        /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
     double radius;         /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];    /**< [m/s] velocity of `at` */
@@ -419,9 +420,10 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * Replaces all colliders of a scene.
  *
  * The colliders are given at their pose at the current time of the scene. They then move at their velocities until they
- * are set again. In a game, set them once per frame, with the velocities that bring them to their next pose. A particle
- * that is inside a collider is moved to its surface in the next step, without a change of velocity. Pinned particles
- * pass through colliders.
+ * are set again. In a game, set them once per frame, with the velocities that bring them to their next pose. After an
+ * error, the colliders of the last call keep moving. Axes of a plane or a box that are not orthonormal to rounding are
+ * replaced by the nearest orthonormal axes. A particle that is inside a collider is moved to its surface in the next
+ * step, without a change of velocity. Pinned particles pass through colliders.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed.
@@ -443,11 +445,23 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * @return SPRING_OK.
  *         SPRING_EINVAL: NULL; an unknown shape; a number that is not finite in the precision of the scene (also after
  *         particle_radius is added to a radius, or to axis[0] . at of a plane); a negative radius, half size or
- *         friction; a restitution outside 0 ... 1; axes that are not orthonormal to 1e-6.
+ *         friction; a restitution outside 0 ... 1; axes whose dot products differ from those of orthonormal axes by more
+ *         than 1e-3. spring_scene_check_colliders() names the collider and the field.
  *         SPRING_ERANGE: count is too large.
  *         SPRING_EDISABLED: `colliders` of the definition is 0
  */
 SPRING_API spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count);
+
+/**
+ * Checks colliders as spring_scene_set_colliders() does, and changes nothing.
+ *
+ * @param[out] field  name of the first invalid field of spring_collider, such as "axis", or "scene", "c" or "count" for
+ *                    the arguments; NULL if all are valid. May be NULL
+ * @param[out] index  index of the invalid collider; otherwise 0. May be NULL
+ * @return as spring_scene_set_colliders()
+ */
+SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, const spring_collider *c, uint32_t count,
+                                                      const char **field, size_t *index);
 
 /** Copies, for particles first ... first + count - 1, a mask of the colliders that the particle touched in the last
  * step.
@@ -642,6 +656,8 @@ SPRING_API spring_status spring_scenef_tear(spring_scenef *s, double stretch, co
                                             size_t room, size_t *count);
 SPRING_API spring_status spring_scenef_transform(spring_scenef *s, const double matrix[12]);
 SPRING_API spring_status spring_scenef_set_colliders(spring_scenef *s, const spring_collider *c, uint32_t count);
+SPRING_API spring_status spring_scenef_check_colliders(const spring_scenef *s, const spring_collider *c, uint32_t count,
+                                                       const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t *mask, size_t first, size_t count);
 /** @} */
 

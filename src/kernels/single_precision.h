@@ -25,6 +25,7 @@
 #define spring_scene_at_rest         spring_scenef_at_rest
 #define spring_scene_bytes           spring_scenef_bytes
 #define spring_scene_check           spring_scenef_check
+#define spring_scene_check_colliders spring_scenef_check_colliders
 #define spring_scene_def             spring_scenef_def
 #define spring_scene_drive           spring_scenef_drive
 #define spring_scene_energy          spring_scenef_energy

@@ -27,42 +27,74 @@ static double dot_of(const double a[3], const double b[3], uint32_t axes)
     return sum;
 }
 
-/* Whether the first `count` axes are unit vectors, orthogonal to each other. */
-static bool orthonormal(const spring_collider *c, uint32_t count, uint32_t axes)
+/* The number of axes that a shape uses. */
+static uint32_t axes_of_shape(const spring_collider *c, uint32_t axes)
 {
-    const double tolerance = 1e-6;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t j = 0; j <= i; j++)
-            if (!(fabs(dot_of(c->axis[i], c->axis[j], axes) - (i == j)) <= tolerance))
-                return false;
-    return true;
+    return c->shape == SPRING_PLANE ? 1 : c->shape == SPRING_BOX ? axes : 0;
 }
 
-static bool shape_valid(const spring_collider *c, double thickness, uint32_t axes)
+/* The largest difference between a dot product of two of these axes and that of unit vectors at right angles. NaN if
+   one is NaN. */
+static double orthonormality_error(const spring_collider *c, uint32_t count, uint32_t axes)
 {
-    switch (c->shape) {
-    case SPRING_PLANE:
-        return orthonormal(c, 1, axes) && spring_finite((scalar)(dot_of(c->axis[0], c->at, axes) + thickness));
-    case SPRING_SPHERE:
-        return c->radius >= 0 && fits_not_negative(c->radius + thickness);
-    case SPRING_CAPSULE:
-        return c->radius >= 0 && fits_not_negative(c->radius + thickness) && fits3(c->to, axes) &&
-               fits3(c->velocity_to, axes);
-    case SPRING_BOX:
-        for (uint32_t a = 0; a < axes; a++)
-            if (!fits_not_negative(c->half[a]))
-                return false;
-        return c->radius >= 0 && fits_not_negative(c->radius + thickness) && orthonormal(c, axes, axes);
-    default:
-        return false;
+    double largest = 0;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j = 0; j <= i; j++) {
+            const double error = fabs(dot_of(c->axis[i], c->axis[j], axes) - (i == j));
+            if (!(error <= largest))
+                largest = error;
+        }
+    return largest;
+}
+
+/* Replaces axes by the nearest orthonormal ones: Newton-Schulz iteration of the polar decomposition,
+   a_i <- (3 a_i - sum over j of (a_i . a_j) a_j)/2, which squares the error. Axes without an error beyond rounding do
+   not change. Source: Higham, Functions of Matrices (2008), section 8.3. */
+static void orthonormalise(spring_collider *c, uint32_t count, uint32_t axes)
+{
+    const double rounding = 4 * DBL_EPSILON;
+    enum { rounds = 4 }; /* from 1e-3: 8e-7, 5e-13, rounding */
+    for (int round = 0; round < rounds && orthonormality_error(c, count, axes) > rounding; round++) {
+        const spring_collider old = *c;
+        for (uint32_t i = 0; i < count; i++)
+            for (uint32_t a = 0; a < axes; a++) {
+                double sum = 0;
+                for (uint32_t j = 0; j < count; j++)
+                    sum += dot_of(old.axis[i], old.axis[j], axes) * old.axis[j][a];
+                c->axis[i][a] = (3 * old.axis[i][a] - sum) / 2;
+            }
     }
 }
 
-static bool collider_valid(const spring_collider *c, double thickness, uint32_t axes)
+/* The name of the first field that is not valid; NULL: none. */
+static const char *invalid_field(const spring_collider *c, double thickness, uint32_t axes)
 {
-    const bool spin_fits = axes == 2 ? spring_finite((scalar)c->spin[2]) : fits3(c->spin, axes);
-    return shape_valid(c, thickness, axes) && fits3(c->at, axes) && fits3(c->velocity, axes) && spin_fits &&
-           fits_not_negative(c->friction) && c->restitution >= 0 && c->restitution <= 1;
+    const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
+    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
+    if (!plane && !capsule && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
+        return "shape";
+    if (!fits3(c->at, axes))
+        return "at";
+    if (capsule && !fits3(c->to, axes))
+        return "to";
+    if (!(orthonormality_error(c, axes_of_shape(c, axes), axes) <= tolerance))
+        return "axis";
+    if (plane && !spring_finite((scalar)(dot_of(c->axis[0], c->at, axes) + thickness)))
+        return "at";
+    for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
+        if (!fits_not_negative(c->half[a]))
+            return "half";
+    if (!plane && !(c->radius >= 0 && fits_not_negative(c->radius + thickness)))
+        return "radius";
+    if (!fits3(c->velocity, axes))
+        return "velocity";
+    if (capsule && !fits3(c->velocity_to, axes))
+        return "velocity_to";
+    if (axes == 2 ? !spring_finite((scalar)c->spin[2]) : !fits3(c->spin, axes))
+        return "spin";
+    if (!fits_not_negative(c->friction))
+        return "friction";
+    return c->restitution >= 0 && c->restitution <= 1 ? NULL : "restitution";
 }
 
 /* ------------------------------------------------------------------------------------------------------------ poses */
@@ -157,19 +189,40 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
 
 /* ------------------------------------------------------------------------------------------------- public functions */
 
+spring_status spring_scene_check_colliders(const spring_scene *s, const spring_collider *c, uint32_t count,
+                                           const char **field, size_t *index)
+{
+    const char *name = NULL;
+    spring_status status = SPRING_EINVAL;
+    uint32_t i = 0;
+    if (s == NULL)
+        name = "scene";
+    else if (c == NULL && count > 0)
+        name = "c";
+    else if (count > s->layout.colliders || s->layout.colliders == 0) {
+        name = "count";
+        status = s->layout.colliders == 0 ? SPRING_EDISABLED : SPRING_ERANGE;
+    }
+    while (name == NULL && i < count)
+        if ((name = invalid_field(&c[i], s->particle_radius, s->layout.axes)) == NULL)
+            i++;
+    if (field != NULL)
+        *field = name;
+    if (index != NULL)
+        *index = name != NULL ? i : 0;
+    return name != NULL ? status : SPRING_OK;
+}
+
 spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider *c, uint32_t count)
 {
-    if (s == NULL || (c == NULL && count > 0))
-        return SPRING_EINVAL;
-    if (s->layout.colliders == 0)
-        return SPRING_EDISABLED;
-    if (count > s->layout.colliders)
-        return SPRING_ERANGE;
-    for (uint32_t i = 0; i < count; i++)
-        if (!collider_valid(&c[i], s->particle_radius, s->layout.axes))
-            return SPRING_EINVAL;
-    if (count > 0)
-        memcpy(scene_memory(s, ARRAY_COLLIDERS), c, count * sizeof *c);
+    const spring_status status = spring_scene_check_colliders(s, c, count, NULL, NULL);
+    if (status != SPRING_OK)
+        return status;
+    spring_collider *const set = scene_memory(s, ARRAY_COLLIDERS);
+    for (uint32_t i = 0; i < count; i++) {
+        set[i] = c[i];
+        orthonormalise(&set[i], axes_of_shape(&c[i], s->layout.axes), s->layout.axes);
+    }
     s->colliders = count;
     s->colliders_set = spring_scene_time(s);
     for (uint32_t buffer = 0; buffer < 2; buffer++) { /* without colliders no step writes them */

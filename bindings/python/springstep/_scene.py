@@ -154,10 +154,6 @@ def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float 
 
 
 _SHAPES = {"plane": lib.SPRING_PLANE, "sphere": lib.SPRING_SPHERE, "capsule": lib.SPRING_CAPSULE, "box": lib.SPRING_BOX}
-_USED = {shape: ("at", "velocity", "spin", "friction", "restitution", *more) for shape, more in {
-    "plane": ("axis",), "sphere": ("radius",), "capsule": ("radius", "to", "velocity_to"), "box": ("radius", "half", "axis"),
-}.items()}
-_NOT_NEGATIVE = ("half", "radius", "friction", "restitution")
 
 
 @dataclass
@@ -212,13 +208,6 @@ def box(at: Sequence[float], half: Sequence[float], *, axis: Sequence[Sequence[f
     """A box, from its centre and half of its size along each of its unit axes [m]; a radius is added and rounds its edges."""
     return Collider("box", at, axis=axis, half=half, radius=radius, velocity=velocity, spin=spin, friction=friction,
                     restitution=restitution)
-
-
-def _orthonormal(collider: Collider, axes: int) -> bool:
-    """Whether the axes are orthonormal to 1e-6, as the C library requires."""
-    count = 1 if collider.shape == "plane" else axes
-    rows = np.array([axis[:axes] for axis in collider.axis[:count]], np.float64)
-    return bool((abs(rows @ rows.T - np.eye(count)) <= 1e-6).all())
 
 
 class Snapshot:
@@ -580,7 +569,7 @@ class Scene:
             self._fill_collider(array[place], collider, place)
         if status := self._ask("set_colliders", array, len(given)):
             if status == lib.SPRING_EINVAL:
-                self._refuse_colliders(given)
+                self._refuse_colliders(array, given)
             fail(status, "colliders", len(given))
 
     def _fill_collider(self, c: Any, collider: Collider, place: int) -> None:
@@ -608,29 +597,15 @@ class Scene:
             invalid(field, values, place, reason=f"not {self._axes} numbers")
         return [*map(float, values), 0.0][:3]
 
-    def _refuse_colliders(self, given: list[Collider]) -> NoReturn:
+    def _refuse_colliders(self, array: Any, given: list[Collider]) -> NoReturn:
         """The exception for colliders of which C refuses one."""
-        for place, collider in enumerate(given):
-            for field in _USED[collider.shape]:
-                values = getattr(collider, field)
-                if field == "axis":
-                    if not _orthonormal(collider, self._axes):
-                        invalid("colliders.axis", values, place, reason="not unit vectors at right angles")
-                    continue
-                used = self._used(field, values)
-                if not np.isfinite(used).all() or (field in _NOT_NEGATIVE and (used < 0).any()):
-                    invalid(f"colliders.{field}", values, place)
-                if field == "restitution" and values > 1:
-                    invalid(f"colliders.{field}", values, place, reason="not 0 to 1")
-        fail(lib.SPRING_EINVAL, "colliders")
-
-    def _used(self, field: str, values: ArrayLike) -> np.ndarray:
-        """The numbers that C looks at, in the precision of the scene."""
-        array = np.atleast_1d(np.asarray(values, np.float64))
-        if field == "spin" and self._axes == 2:
-            array = array[-1:]
-        with np.errstate(over="ignore"):
-            return array[:self._axes].astype(self._dtype)
+        field, index = ffi.new("const char **"), ffi.new("size_t *")
+        status = self._ask("check_colliders", array, len(given), field, index)
+        name = ffi.string(field[0]).decode()
+        if name == "count":
+            fail(status, "colliders")
+        reason = {"axis": "not unit vectors at right angles", "restitution": "not 0 to 1"}.get(name)
+        invalid(f"colliders.{name}", getattr(given[index[0]], name), index[0], reason)
 
     def touching(self, first: int = 0, count: int | None = None) -> np.ndarray:
         """Which colliders particles first ... first + count - 1 touched in the last step: bit i stands for collider i."""
