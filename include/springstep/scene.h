@@ -25,8 +25,11 @@
  *    feature, and docs/performance.md the time.
  *  - All or nothing. After any status except SPRING_OK the scene is unchanged, except with SPRING_SCENE_NO_UNDO.
  *  - Snapshots. A scene begins at the first byte of its memory and holds no pointer to itself. To take or restore a
- *    snapshot, copy its bytes with memcpy(). The copy is a working scene at any address with the same alignment, in the
- *    same build of the library. The pointers to the callback and its user data are copied unchanged.
+ *    snapshot, copy its bytes with memcpy(). The copy is a working scene at any address that is aligned to 8 bytes, in
+ *    the same build of the library, with bit-identical results. Its arrays are aligned to SPRING_SCENE_ALIGN only if
+ *    the addresses of both scenes have the same remainder by SPRING_SCENE_ALIGN. Otherwise its steps take longer, with
+ *    AVX-512 up to 1.4 times as long (spring-bench --kernel leapfrog_jelly_16_copied). The pointers to the callback and
+ *    its user data are copied unchanged.
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the

@@ -101,8 +101,14 @@ static void build(built *b, const scene_feature *f, scene_shape shape, bool is_s
     b->single = is_single;
     check(is_single ? spring_scenef_bytes(&twin, &b->bytes) : spring_scene_bytes(&def, &b->bytes));
     free(b->memory);
-    b->memory = scene_allocate(b->bytes);
+    const size_t shift = f->copied ? SPRING_SCENE_ALIGN / 2 + 8 : 0;
+    b->memory = scene_allocate(b->bytes + shift);
     init(b, &def);
+    if (f->copied) {
+        void *const copy = memmove((char *)b->memory + shift, b->memory, b->bytes);
+        b->scene = b->single ? NULL : copy;
+        b->scenef = b->single ? copy : NULL;
+    }
     b->stable_step = stable_step(b, f->method);
     dt = 0.5 * stable_step(b, SPRING_LEAPFROG);
 }

@@ -13,6 +13,7 @@ typedef struct scene_feature {
     double drag, damping;
     spring_scene_force_fn *force;
     bool masses;
+    bool copied; /* the scene is a copy whose arrays are not aligned to a cache line */
 } scene_feature;
 
 /* The comparison of a row. */

@@ -11,6 +11,7 @@
 #include "parts.h"
 
 static const scene_feature plainly = {.method = SPRING_LEAPFROG};
+static const scene_feature copied = {.method = SPRING_LEAPFROG, .copied = true};
 
 /* ------------------------------------------------------------------------------------------------------------ goals */
 
@@ -138,6 +139,7 @@ static void add_shapes(void)
             .shape = SHEET, .side = sides[i], .order = RENUMBERED, .feature = plainly, .against = SHUFFLED_LIST});
     for (uint32_t side = 10; side <= 40; side *= 2)
         add_both((scene_subject){.shape = JELLY, .side = side, .feature = plainly});
+    add("_copied", &(scene_subject){.shape = JELLY, .side = 10, .feature = copied, .steps = 16, .against = LEAPFROG});
     for (int i = 1; i < side_count; i++) {
         add_both((scene_subject){.shape = WATER, .side = sides[i], .feature = plainly});
         add_both((scene_subject){
@@ -172,6 +174,7 @@ static void add_features(uint32_t side)
         {"_callback_still", {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
+        {"_copied", {.method = SPRING_LEAPFROG, .copied = true}},
     };
     scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
