@@ -153,7 +153,7 @@ EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
     s->particles = def.particles;
     s->links = def.links;
     spring_scene_bytes(&def, &s->bytes);
-    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, s->bytes);
+    void *memory = malloc(s->bytes);
     s->positions = calloc(3 * s->particles, sizeof *s->positions);
     if (memory != NULL && s->positions != NULL && spring_scene_init(memory, s->bytes, &def, &s->scene) == SPRING_OK) {
         if (base != NULL)
@@ -200,7 +200,7 @@ EXPORT(scene_moved) const float *scene_moved(shown *s)
 static bool begin_frames(shown *s)
 {
     const size_t numbers = s->particles * s->axes;
-    s->saved = aligned_alloc(SPRING_SCENE_ALIGN, s->bytes);
+    s->saved = malloc(s->bytes);
     s->before = calloc(numbers, sizeof *s->before);
     s->now = calloc(numbers, sizeof *s->now);
     if (s->saved != NULL && s->before != NULL && s->now != NULL) {

@@ -329,10 +329,8 @@ class Scene:
         return lib.springstep_force if self._prefix == "spring_scene" else lib.springstep_forcef
 
     def _take(self, size: int) -> None:
-        """Allocate aligned memory. The scene starts at its first byte."""
-        room = np.empty(size + lib.SPRING_SCENE_ALIGN, np.uint8)
-        skip = -room.ctypes.data % lib.SPRING_SCENE_ALIGN
-        self._memory = room[skip:skip + size]
+        """Allocate the memory of the scene."""
+        self._memory = np.empty(size, np.uint8)
         self._lent = ffi.from_buffer(self._memory)
         self._pointer = ffi.cast(f"{self._prefix} *", self._lent)
 
