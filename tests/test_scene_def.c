@@ -140,8 +140,8 @@ static void bad_memory(void)
     memset(room, 0x5a, bytes + SPRING_SCENE_ALIGN);
     CHECK(spring_scene_init(room, bytes - 1, &good.def, &s) == SPRING_ENOMEM && s == NULL, "a byte too small");
     CHECK(spring_scene_init(room, 0, &good.def, &s) == SPRING_ENOMEM && s == NULL, "nothing");
-    CHECK(spring_scene_init(room + 8, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
-    CHECK(spring_scene_init(room + 32, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
+    for (size_t beyond = 1; beyond < 8; beyond++)
+        CHECK(spring_scene_init(room + beyond, bytes, &good.def, &s) == SPRING_EALIGN && s == NULL, "misaligned");
     CHECK(spring_scene_init(NULL, bytes, &good.def, &s) == SPRING_EINVAL && s == NULL, "no memory");
     CHECK(spring_scene_init(room, bytes, NULL, &s) == SPRING_EINVAL && s == NULL, "no definition");
     CHECK(spring_scene_init(room, bytes, &good.def, NULL) == SPRING_EINVAL, "nowhere to say");
@@ -151,11 +151,17 @@ static void bad_memory(void)
     for (size_t i = 0; i < bytes + SPRING_SCENE_ALIGN; i++)
         touched += room[i] != 0x5a;
     CHECK(touched == 0, "nothing half-initialised");
-    CHECK(spring_scene_init(room, bytes, &good.def, &s) == SPRING_OK, "just enough");
-    spring_scene_advance(s, SPRING_RK4, 0.01, 3);
-    spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 3);
-    for (size_t i = 0; i < SPRING_SCENE_ALIGN; i++)
-        CHECK(room[bytes + i] == 0x5a, "nothing behind the end");
+    for (size_t beyond = 0; beyond < SPRING_SCENE_ALIGN; beyond += 8) {
+        memset(room, 0x5a, bytes + SPRING_SCENE_ALIGN);
+        CHECK(spring_scene_init(room + beyond, bytes, &good.def, &s) == SPRING_OK, "just enough");
+        for (int a = 0; a < ARRAY_COUNT; a++)
+            CHECK(!scene_has(s, (scene_array)a) || (uintptr_t)scene_read(s, (scene_array)a) % SPRING_SCENE_ALIGN == 0,
+                  "each array is aligned");
+        spring_scene_advance(s, SPRING_RK4, 0.01, 3);
+        spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 3);
+        for (size_t i = 0; i < SPRING_SCENE_ALIGN; i++)
+            CHECK(room[i < beyond ? i : bytes + i] == 0x5a, "nothing outside of the block");
+    }
     free(room);
 }
 
