@@ -30,13 +30,13 @@ typedef struct spring_clock {
  * max_steps are dropped, and their time is added to clock->dropped.
  *
  * @param[in,out] clock      zero-initialised at the start
- * @param[in]     frame_dt   duration of this frame >= 0 [s]
+ * @param[in]     frame_dt   duration of this frame [s]; a negative duration counts as 0
  * @param[in]     dt         time step > 0 [s]; the same at every call
  * @param[in]     max_steps  largest number of steps to return
  * @param[out]    alpha      in [0, 1): the remaining fraction of a step, for interpolation between the last two states;
- *                           may be NULL
- * @return number of steps to take now. Invalid input (NULL clock, non-finite or negative times, dt <= 0): 0 steps,
- *         *alpha = 0 and an unchanged clock
+ *                           may be NULL. NaN after invalid input.
+ * @return number of steps to take now. Invalid input (NULL clock, a time that is not finite, dt <= 0, negative pending
+ *         time): 0 steps, *alpha = NaN and an unchanged clock. With valid input, *alpha is never NaN.
  * @par Accuracy  each frame rounds pending + frame_dt once; the carried-over time is the exact remainder of this sum
  *                divided by dt
  * @par Threads   re-entrant; allocates nothing and keeps no state except the clock

@@ -16,11 +16,12 @@
 uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint64_t max_steps, double *alpha)
 {
     if (alpha != NULL)
-        *alpha = 0;
-    if (clock == NULL || !(clock->pending >= 0) || !(frame_dt >= 0) || !(dt > 0) || !spring_finite(dt) ||
-        !spring_finite(clock->pending + frame_dt))
+        *alpha = NAN;
+    const double frame = frame_dt < 0 ? 0 : frame_dt;
+    if (clock == NULL || !(clock->pending >= 0) || !spring_finite(frame_dt) || !(dt > 0) || !spring_finite(dt) ||
+        !spring_finite(clock->pending + frame))
         return 0;
-    const double total = clock->pending + frame_dt;
+    const double total = clock->pending + frame;
     const double remainder = fmod(total, dt);
     const double whole = rint((total - remainder) / dt);
     const uint64_t steps = whole < (double)max_steps ? (uint64_t)whole : max_steps;

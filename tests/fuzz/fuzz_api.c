@@ -104,13 +104,13 @@ static void check_clock(const input *in)
     spring_clock clock = in->clock;
     double alpha = NAN;
     const uint64_t steps = spring_clock_tick(&clock, in->x_tol, in->dt, in->max_steps, &alpha);
-    must(alpha >= 0 && alpha < 1, "alpha is a fraction of a step");
     must(steps <= in->max_steps, "no more steps than allowed");
-    if (in->clock.pending >= 0 && in->x_tol >= 0 && isfinite(in->clock.pending + in->x_tol) && in->dt > 0 &&
-        isfinite(in->dt))
-        must(clock.pending < in->dt, "less than a step waits");
+    if (in->clock.pending >= 0 && isfinite(in->x_tol) && isfinite(in->clock.pending + fmax(in->x_tol, 0)) &&
+        in->dt > 0 && isfinite(in->dt))
+        must(clock.pending < in->dt && alpha >= 0 && alpha < 1, "less than a step waits");
     else
-        must(steps == 0 && memcmp(&clock, &in->clock, sizeof clock) == 0, "bad input leaves the clock as it was");
+        must(steps == 0 && isnan(alpha) && memcmp(&clock, &in->clock, sizeof clock) == 0,
+             "bad input leaves the clock as it was, and alpha is NaN");
 }
 
 enum { most_springs = 200, arrays = 5 };
