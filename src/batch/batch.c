@@ -35,7 +35,7 @@ static bool leaves_state_alone(const spring_batch *b, const scalar *parameter, u
 /* An invalid shared parameter fails the call before any state changes. Other parameters concern one spring only. */
 static bool shared_valid(const spring_batch *b, const scalar *parameter, uint32_t bit, scalar least)
 {
-    return parameter == NULL || !is_shared(b, bit) || (spring_finite(*parameter) && *parameter >= least);
+    return parameter == NULL || !is_shared(b, bit) || (scalar_finite(*parameter) && *parameter >= least);
 }
 
 static bool batch_valid(const spring_batch *b)
@@ -49,7 +49,7 @@ static bool batch_valid(const spring_batch *b)
            leaves_state_alone(b, b->gamma, SPRING_SHARED_GAMMA) &&
            leaves_state_alone(b, b->accel, SPRING_SHARED_ACCEL) &&
            shared_valid(b, b->omega2, SPRING_SHARED_OMEGA2, 0) && shared_valid(b, b->gamma, SPRING_SHARED_GAMMA, 0) &&
-           shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -INFINITY);
+           shared_valid(b, b->accel, SPRING_SHARED_ACCEL, -(scalar)INFINITY);
 }
 
 static scalar element(const scalar *p, size_t i, bool shared)
@@ -71,8 +71,8 @@ static spring_params spring_at(const spring_batch *b, size_t i)
 static bool spring_valid(const spring_batch *b, const scalar *target, size_t i)
 {
     const spring_params p = spring_at(b, i);
-    return spring_finite(b->x[i]) && spring_finite(b->v[i]) && spring_params_valid(&p) &&
-           (target == NULL || spring_finite(target[i]));
+    return scalar_finite(b->x[i]) && scalar_finite(b->v[i]) && spring_params_valid(&p) &&
+           (target == NULL || scalar_finite(target[i]));
 }
 
 /* Why some springs kept their state: their state or parameters are not valid, or the result would not be finite. */
@@ -156,7 +156,7 @@ static bool advance_all(const batch_kernels *kernels, const spring_batch *b, bat
 static spring_status check_batch(const spring_batch *b, spring_method m, double step)
 {
     const spring_method_info *info = spring_method_describe(m);
-    if (b == NULL || !batch_valid(b) || info == NULL || !spring_finite((scalar)step))
+    if (b == NULL || !batch_valid(b) || info == NULL || !scalar_finite((scalar)step))
         return SPRING_EINVAL;
     return info->springs ? SPRING_OK : SPRING_EUNSUPPORTED;
 }
@@ -220,7 +220,7 @@ spring_status spring_batch_follow_with(const batch_kernels *kernels, const sprin
         return SPRING_EINVAL;
     size_t count = 0;
     spring_status status = SPRING_OK;
-    const double largest = sizeof(scalar) == sizeof(float) ? FLT_MAX : DBL_MAX; /* no infinite distance is tolerated */
+    const double largest = (double)SCALAR_MAX; /* no infinite distance is tolerated */
     const exact_landing landing = {
         .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = &count};
     if (b->count > 0 && dt == 0)
@@ -293,19 +293,19 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
 double spring_batch_stable_step(const spring_batch *b, spring_method m)
 {
     if (b == NULL || !batch_valid(b) || spring_method_name(m) == NULL)
-        return NAN;
+        return (double)NAN;
     const bool all_shared = is_shared(b, SPRING_SHARED_OMEGA2) &&
                             (b->gamma == NULL || is_shared(b, SPRING_SHARED_GAMMA)) &&
                             (b->accel == NULL || is_shared(b, SPRING_SHARED_ACCEL));
     const size_t count = all_shared && b->count > 0 ? 1 : b->count;
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (size_t i = 0; i < count; i++) {
         const spring_params p = spring_at(b, i);
         const double limit = spring_stable_step(&p, m);
         if (!(limit >= least))
             least = limit;
         if (limit != limit)
-            return NAN;
+            return (double)NAN;
     }
     return (double)(scalar)least;
 }

@@ -40,7 +40,7 @@ SPRING_INLINE void exact_store(void *array, size_t i, real a, bool single)
 SPRING_INLINE real exact_rate(exact_array p, size_t i, bool single)
 {
     const real rate = exact_load(p.first, i * p.stride, single);
-    return select_real(rate >= 0, rate + (rate - rate), splat(NAN));
+    return select_real(rate >= 0, rate + (rate - rate), splat((scalar)NAN));
 }
 
 /* Stores the springs of a vector whose new state is finite. Always returns false: at least one spring is not stored. */
@@ -64,7 +64,7 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 {
     const exact_run b = *run; /* a local copy, so that stores cannot alias its fields */
     const bool damped = b.gamma.first != NULL, loaded = b.accel.first != NULL;
-    const double beyond = b.single ? 0x1.ffffffp127 : INFINITY; /* numbers from here on are stored as infinite */
+    const double beyond = b.single ? 0x1.ffffffp127 : (double)INFINITY; /* numbers from here on become infinite */
     bool all = true;
     for (size_t i = 0; i < b.count; i += lanes) {
         const real w = exact_rate(b.omega2, i, b.single), g = damped ? exact_rate(b.gamma, i, b.single) : splat(0);

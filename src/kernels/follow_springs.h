@@ -55,7 +55,7 @@ SPRING_INLINE follow_limit follow_limit_of(const exact_landing *b, scalar share)
     const scalar eps = single ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
     const scalar normal = single ? (scalar)FLT_MIN : (scalar)DBL_MIN, x_tol = (scalar)b->x_tol;
     if (share > 0 && share < 32 * eps)
-        return (follow_limit){splat(0), splat(INFINITY)};
+        return (follow_limit){splat(0), splat((scalar)INFINITY)};
     const scalar per_share = share > 0 ? 4 / share : 4;
     return (follow_limit){splat(per_share * eps), splat(per_share * normal + 2 * x_tol)};
 }
@@ -101,7 +101,7 @@ SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
     size_t moving = 0;
     bool all = true;
     for (size_t i = 0; i < b.count; i += group) {
-        real x[vectors], v[vectors], least_distance = splat(INFINITY), minus_largest = splat(0);
+        real x[vectors], v[vectors], least_distance = splat((scalar)INFINITY), minus_largest = splat(0);
         SPRING_UNROLL
         for (size_t k = 0; k < vectors; k++) {
             const followed s = follow_vector(&b, i + k * lanes, &c, loaded);

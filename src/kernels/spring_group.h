@@ -37,7 +37,7 @@ SPRING_NOINLINE bool store_valid(const batch_run *b, size_t i, const real *x, co
     memcpy(v1, v, many * sizeof *v);
     bool all = true;
     for (size_t j = 0; j < many * lanes; j++) {
-        if (spring_finite(x1[j]) && spring_finite(v1[j]) && !negative(b->omega2, i + j) && !negative(b->gamma, i + j)) {
+        if (scalar_finite(x1[j]) && scalar_finite(v1[j]) && !negative(b->omega2, i + j) && !negative(b->gamma, i + j)) {
             b->x[i + j] = x1[j];
             b->v[i + j] = v1[j];
         } else {

@@ -10,13 +10,13 @@
 
 #include <springstep/scene.h>
 
-typedef struct direction {
+typedef struct grid_direction {
     int step[3];
     uint32_t family;
-} direction;
+} grid_direction;
 
 /* One of each pair of opposite directions, so that the other end has the larger index. */
-static const direction directions[] = {
+static const grid_direction directions[] = {
     {{1, 0, 0}, SPRING_GRID_STRUCTURAL}, {{0, 1, 0}, SPRING_GRID_STRUCTURAL}, {{0, 0, 1}, SPRING_GRID_STRUCTURAL},
     {{-1, 1, 0}, SPRING_GRID_SHEAR},     {{1, 1, 0}, SPRING_GRID_SHEAR},      {{-1, 0, 1}, SPRING_GRID_SHEAR},
     {{1, 0, 1}, SPRING_GRID_SHEAR},      {{0, -1, 1}, SPRING_GRID_SHEAR},     {{0, 1, 1}, SPRING_GRID_SHEAR},
@@ -42,7 +42,7 @@ static double stretch_of(const spring_grid *g)
     return g->stretch == 0 ? 1 : g->stretch;
 }
 
-static bool has_family(const spring_grid *g, const direction *d)
+static bool has_family(const spring_grid *g, const grid_direction *d)
 {
     return ((g->families == 0 ? SPRING_GRID_STRUCTURAL : g->families) & d->family) != 0;
 }
@@ -68,7 +68,7 @@ static bool valid(const spring_grid *g)
 }
 
 /* The number of links in one direction. */
-static uint64_t links_along(const spring_grid *g, const direction *d)
+static uint64_t links_along(const spring_grid *g, const grid_direction *d)
 {
     uint64_t links = 1;
     for (int a = 0; a < 3; a++) {
@@ -107,7 +107,7 @@ static bool on_pinned_face(const spring_grid *g, const uint32_t at[3])
 }
 
 /* The index of the particle at the other end, or `index` if there is none. */
-static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t index, const direction *d)
+static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t index, const grid_direction *d)
 {
     uint32_t other = index, stride = 1;
     for (int a = 0; a < 3; a++) {
@@ -120,7 +120,7 @@ static uint32_t neighbour(const spring_grid *g, const uint32_t at[3], uint32_t i
     return other;
 }
 
-static spring_link make_link(const spring_grid *g, uint32_t a, uint32_t b, const direction *d)
+static spring_link make_link(const spring_grid *g, uint32_t a, uint32_t b, const grid_direction *d)
 {
     const int *s = d->step;
     const double length = g->height ? 0 : g->spacing * spring_sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);

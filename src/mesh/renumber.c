@@ -146,7 +146,7 @@ static size_t count_offsets(graph *g)
 static void find_order(graph *g, uint32_t *order)
 {
     const double longer = 1.25; /* than the shortest link: between the edge of a square and its diagonal */
-    double shortest = INFINITY;
+    double shortest = (double)INFINITY;
     for (size_t i = 0; i < g->links; i++)
         shortest = g->link[i].rest < shortest ? g->link[i].rest : shortest;
     list_neighbours(g, longer * shortest);
@@ -155,7 +155,7 @@ static void find_order(graph *g, uint32_t *order)
     const uint64_t offsets = count_offsets(g);
     if (offsets * offsets <= g->particles)
         return;
-    list_neighbours(g, INFINITY);
+    list_neighbours(g, (double)INFINITY);
     number_by_levels(g);
     if (count_offsets(g) < offsets)
         memcpy(order, g->queue, g->particles * sizeof *order);

@@ -48,7 +48,7 @@ static double euler_stable_step(const spring_roots *r)
         return 2 / spring_fast_root(r);
     if (r->omega2 > 0)
         return 2 * r->b / r->omega2;
-    return INFINITY;
+    return (double)INFINITY;
 }
 
 static step_terms euler_terms(step_rates r)

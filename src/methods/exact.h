@@ -9,7 +9,7 @@
 static double exact_stable_step(const spring_roots *r)
 {
     (void)r;
-    return INFINITY;
+    return (double)INFINITY;
 }
 
 static const method_row exact_method = {

@@ -102,7 +102,7 @@ static double rk4_stable_step(const spring_roots *r)
         return rk4_real_limit / spring_fast_root(r);
     if (r->omega2 > 0)
         return rk4_ray_limit(r->b / r->omega, r->split / r->omega) / r->omega;
-    return INFINITY;
+    return (double)INFINITY;
 }
 
 static step_terms rk4_terms(step_rates r)

@@ -47,8 +47,8 @@ static inline spring_matrix matrix_of(step_rates r) /* Z */
 /* Z^k/k! from Z^(k-1)/(k-1)!. */
 static inline spring_matrix next_power(spring_matrix power, spring_matrix Z, int k)
 {
-    const spring_matrix none = {0};
-    return matrix_sum(none, 1.0 / k, matrix_product(power, Z));
+    const spring_matrix zero = {0};
+    return matrix_sum(zero, 1.0 / k, matrix_product(power, Z));
 }
 
 /* The terms of a method whose step is the exponential series up to its order, such as Runge-Kutta methods of up to four

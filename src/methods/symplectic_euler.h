@@ -49,7 +49,7 @@ void spring_step_symplectic_euler(spring_state *s, const spring_params *p, doubl
 /* (g + sqrt(g^2 + 4 w))/w = 2 (b + sqrt(b^2 + omega^2))/omega^2 */
 static double symplectic_euler_stable_step(const spring_roots *r)
 {
-    return r->omega > 0 ? 2 / r->omega * ((r->b + spring_hypot(r->b, r->omega)) / r->omega) : INFINITY;
+    return r->omega > 0 ? 2 / r->omega * ((r->b + spring_hypot(r->b, r->omega)) / r->omega) : (double)INFINITY;
 }
 
 static step_terms symplectic_euler_terms(step_rates r)

@@ -9,14 +9,14 @@
 static bool fits3(const double v[3], uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
-        if (!spring_finite((scalar)v[a]))
+        if (!scalar_finite((scalar)v[a]))
             return false;
     return true;
 }
 
 static bool fits_not_negative(double value)
 {
-    return value >= 0 && spring_finite((scalar)value);
+    return value >= 0 && scalar_finite((scalar)value);
 }
 
 static double dot_of(const double a[3], const double b[3], uint32_t axes)
@@ -79,7 +79,7 @@ static const char *invalid_field(const spring_collider *c, double thickness, uin
         return "to";
     if (!(orthonormality_error(c, axes_of_shape(c, axes), axes) <= tolerance))
         return "axis";
-    if (plane && !spring_finite((scalar)(dot_of(c->axis[0], c->at, axes) + thickness)))
+    if (plane && !scalar_finite((scalar)(dot_of(c->axis[0], c->at, axes) + thickness)))
         return "at";
     for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
         if (!fits_not_negative(c->half[a]))
@@ -90,7 +90,7 @@ static const char *invalid_field(const spring_collider *c, double thickness, uin
         return "velocity";
     if (capsule && !fits3(c->velocity_to, axes))
         return "velocity_to";
-    if (axes == 2 ? !spring_finite((scalar)c->spin[2]) : !fits3(c->spin, axes))
+    if (axes == 2 ? !scalar_finite((scalar)c->spin[2]) : !fits3(c->spin, axes))
         return "spin";
     if (!fits_not_negative(c->friction))
         return "friction";

@@ -178,7 +178,7 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
     for (uint32_t a = 0; a < s->layout.axes && target != NULL; a++) {
         const double distance = target[a] - (double)scene_state(s, SPRING_POSITION, a)[stride * particle];
         velocity[a] = (scalar)(distance / duration);
-        if (!(duration > 0) || !spring_finite(duration) || !spring_finite(distance) || !spring_finite(velocity[a]))
+        if (!(duration > 0) || !spring_finite(duration) || !spring_finite(distance) || !scalar_finite(velocity[a]))
             return SPRING_EINVAL;
     }
     bool same = true;

@@ -150,9 +150,9 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
     for (uint32_t i = 0; i < l->bands; i++) {
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
-            .offset = b->offset,
-            .start = b->first / tile * tile,
-            .end = b->end,
+            .offset = (ptrdiff_t)b->offset,
+            .start = (ptrdiff_t)(b->first / tile * tile),
+            .end = (ptrdiff_t)b->end,
             .occupied = occupied + b->slots,
             .coefficient_stride = !b->equal,
             .stiffness = stiffness + b->coefficients,

@@ -38,8 +38,8 @@ static int mass_exponent(const spring_scene *s, size_t i, bool by_mass)
 /* The exponent of the largest term of all sums; 0 if there is none. */
 static int largest_exponent(const spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
-    const int none = INT_MIN / 2;
-    int largest = none;
+    const int lowest = INT_MIN / 2;
+    int largest = lowest;
     for (size_t i = 0; i < s->layout.particles && own > 0; i++) {
         const int exponent = exponent_of(own) + mass_exponent(s, i, by_mass);
         largest = exponent > largest ? exponent : largest;
@@ -53,7 +53,7 @@ static int largest_exponent(const spring_scene *s, link_coefficient which, doubl
         const int exponent = exponent_of(value) + (a > b ? a : b);
         largest = exponent > largest ? exponent : largest;
     }
-    return largest > none ? largest : 0;
+    return largest > lowest ? largest : 0;
 }
 
 /* The largest sum over the links of a free particle: twice the coefficient of each link, or once if its other end is
@@ -85,11 +85,11 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
 
 static double least_inverse_mass(const spring_scene *s) /* of the free particles; 0: there are none */
 {
-    double least = INFINITY;
+    double least = (double)INFINITY;
     for (size_t i = 0; i < s->layout.particles; i++)
         if (inverse_mass_at(s, i) > 0)
             least = fmin(least, inverse_mass_at(s, i));
-    return least < INFINITY ? least : 0;
+    return least < (double)INFINITY ? least : 0;
 }
 
 static scene_bounds bounds_of(spring_scene *s)
@@ -116,6 +116,6 @@ const scene_bounds *spring_scene_find_bounds(spring_scene *s)
 double spring_scene_stable_step(spring_scene *s, spring_method m)
 {
     if (s == NULL || spring_method_describe(m) == NULL || spring_scene_steppers[m].stable_step == NULL)
-        return NAN;
+        return (double)NAN;
     return spring_scene_steppers[m].stable_step(spring_scene_find_bounds(s));
 }

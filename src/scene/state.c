@@ -27,7 +27,7 @@ static link_extent length_and_rate(const spring_scene *s, const stored_link *lin
 spring_scene_energies spring_scene_energy(const spring_scene *s)
 {
     if (s == NULL)
-        return (spring_scene_energies){NAN, NAN, NAN};
+        return (spring_scene_energies){(double)NAN, (double)NAN, (double)NAN};
     spring_scene_energies e = {0, 0, 0};
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
@@ -52,7 +52,7 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
 double spring_scene_tension(const spring_scene *s, size_t index)
 {
     if (s == NULL || index >= s->layout.links)
-        return NAN;
+        return (double)NAN;
     const stored_link link = scene_link(s, index);
     if (!(link.stiffness > 0) && !(link.damping > 0))
         return 0; /* also if the square of the length overflows */
@@ -118,7 +118,7 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
         return status;
     for (size_t i = 0; i < count; i++)
         for (uint32_t a = 0; a < s->layout.axes; a++)
-            if (!spring_finite((scalar)in[i * stride + a]))
+            if (!scalar_finite((scalar)in[i * stride + a]))
                 return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         scalar *to = scene_set_state(s, q, a) + s->layout.particle_stride * first;
@@ -137,7 +137,7 @@ spring_status spring_scene_set_gravity(spring_scene *s, const double gravity[3])
     if (s == NULL || gravity == NULL)
         return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->layout.axes; a++)
-        if (!spring_finite((scalar)gravity[a]))
+        if (!scalar_finite((scalar)gravity[a]))
             return SPRING_EINVAL;
     scene_store_gravity(s, gravity);
     return SPRING_OK;

@@ -21,7 +21,7 @@ static double time_of(const spring_scene *s)
 
 double spring_scene_time(const spring_scene *s)
 {
-    return s != NULL ? time_of(s) : NAN;
+    return s != NULL ? time_of(s) : (double)NAN;
 }
 
 static bool finite_scene(const spring_scene *s)
@@ -30,7 +30,7 @@ static bool finite_scene(const spring_scene *s)
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
-            if (!spring_finite(x[stride * i]) || !spring_finite(v[stride * i]))
+            if (!scalar_finite(x[stride * i]) || !scalar_finite(v[stride * i]))
                 return false;
     }
     return true;
@@ -54,7 +54,7 @@ static void invalidate(spring_scene *s)
 /* Returns why a call cannot advance the scene, or SPRING_OK. */
 static spring_status check_advance(const spring_scene *s, spring_method m, double dt)
 {
-    if (s == NULL || spring_method_describe(m) == NULL || !spring_finite((scalar)dt))
+    if (s == NULL || spring_method_describe(m) == NULL || !scalar_finite((scalar)dt))
         return SPRING_EINVAL;
     if ((s->layout.methods & 1u << m) == 0)
         return spring_scene_steppers[m].step == NULL ? SPRING_EUNSUPPORTED : SPRING_EDISABLED;

@@ -36,7 +36,7 @@ static double scene_symplectic_euler_limit(const scene_bounds *b)
 {
     const double excess = b->link_damping - b->least_drag;
     const double root = spring_hypot(fabs(excess), 2 * spring_sqrt(b->stiffness));
-    if (excess > 0 || root == 0 || root == INFINITY) /* infinite: no stable step is known */
+    if (excess > 0 || root == 0 || root == (double)INFINITY) /* infinite: no stable step is known */
         return 4 / (excess + root);
     return (root - excess) / b->stiffness;
 }

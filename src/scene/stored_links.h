@@ -102,7 +102,7 @@ static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inve
 
 static inline bool scene_fits(double value) /* finite in the precision of the scene */
 {
-    return spring_finite((scalar)value);
+    return scalar_finite((scalar)value);
 }
 
 static inline bool scene_not_negative(double value)

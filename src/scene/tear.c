@@ -12,7 +12,7 @@
 static double least_limit(const double *limit, size_t links)
 {
     enum { some = 4 };
-    double least[some] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    double least[some] = {(double)INFINITY, (double)INFINITY, (double)INFINITY, (double)INFINITY};
     bool valid = true;
     for (size_t i = 0; i < links / some * some; i += some) {
         SPRING_UNROLL
@@ -25,7 +25,7 @@ static double least_limit(const double *limit, size_t links)
         valid &= limit[i] >= 0;
         least[0] = fmin(limit[i], least[0]);
     }
-    return valid ? fmin(fmin(least[0], least[1]), fmin(least[2], least[3])) : NAN;
+    return valid ? fmin(fmin(least[0], least[1]), fmin(least[2], least[3])) : (double)NAN;
 }
 
 /* With one axis the length has the sign of the link. */
@@ -68,7 +68,7 @@ static bool any_unbanded_longer(const spring_scene *s, double stretch)
 static bool any_longer(const scene_kernels *kernels, const spring_scene *s, double stretch)
 {
     const double largest = 1e9; /* beyond it, (stretch rest)^2 could overflow in the kernel */
-    if (stretch == INFINITY)
+    if (stretch == (double)INFINITY)
         return false;
     if (stretch > largest || any_unbanded_longer(s, stretch))
         return true;

@@ -21,7 +21,7 @@ static bool transform_quantity(spring_scene *s, spring_quantity q, const double 
             old[a] = (double)scene_state(s, q, a)[s->layout.particle_stride * i];
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const scalar moved = transformed(s, matrix, a, old, part);
-            finite = finite && spring_finite(moved);
+            finite = finite && scalar_finite(moved);
             if (store)
                 scene_set_state(s, q, a)[s->layout.particle_stride * i] = moved;
         }

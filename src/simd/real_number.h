@@ -109,7 +109,7 @@ SPRING_INLINE real from_bits(real_bits b)
 
 SPRING_INLINE real vec_load_float(const float *p)
 {
-    return *p;
+    return (real)*p;
 }
 
 SPRING_INLINE void vec_store_float(float *p, real r)

@@ -3,6 +3,8 @@
 #ifndef SPRINGSTEP_SCALAR_H
 #define SPRINGSTEP_SCALAR_H
 
+#include "arithmetic.h"
+
 #include <float.h>
 #include <stdint.h>
 
@@ -16,6 +18,11 @@ typedef int64_t scalar_bits;
 
 /* The largest finite number. */
 #define SCALAR_MAX (sizeof(scalar) == sizeof(float) ? (scalar)FLT_MAX : (scalar)DBL_MAX)
+
+static inline bool scalar_finite(scalar a)
+{
+    return a - a == 0;
+}
 
 enum { quad_size = 4 }; /* numbers of a quad, see quad.h */
 

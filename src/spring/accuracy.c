@@ -166,10 +166,10 @@ static phase_rotation phase_rotation_of(step_run step)
     const double exact = spring_sqrt(square), steps = spring_sqrt(square + more);
     if (!(exact * steps > 0))
         return (phase_rotation){0};
-    const spring_matrix none = {0};
+    const spring_matrix zero = {0};
     const double change = -more / (exact * steps * (exact + steps));
-    return (phase_rotation){true, matrix_sum(none, 1 / exact, F),
-                            matrix_sum(matrix_sum(none, 1 / steps, D), change, F)};
+    return (phase_rotation){true, matrix_sum(zero, 1 / exact, F),
+                            matrix_sum(matrix_sum(zero, 1 / steps, D), change, F)};
 }
 
 /* The largest |c cos t + s sin t| over t. */
@@ -215,12 +215,11 @@ static void error_peak_add(error_peak *p, double t, double value)
     p->value[0] = value;
 }
 
-enum {
-    MOST_SAMPLES = 1024,
-    RESOLVED_PERIODS = 20, /* by at least 51 samples each: a parabola through three has an error of 1e-5 */
-    FIRST_PERIODS = 10,    /* of more: the largest error of a decay from the start is at a phase, not in its envelope */
-    MOST_DOUBLINGS = 53    /* of the number of steps: 2^53 take a year */
-};
+/* resolved_periods: sampled at least 51 times each; a parabola through three samples has an error of 1e-5. first_periods:
+   of longer runs; the largest error of a decay from the start is at a phase, not in its envelope. */
+static const double most_samples = 1024, resolved_periods = 20, first_periods = 10;
+
+enum { MOST_DOUBLINGS = 53 }; /* of the number of steps: 2^53 take a year */
 
 /* level[j]: 2^j steps, up to n. Returns the number of levels. */
 static int doublings_of(step_run level[MOST_DOUBLINGS + 1], step_run step, double n)
@@ -262,7 +261,7 @@ static double most_at_strides(const step_run *level, int levels, step_run now, d
     if (left > 0)
         now = runs_joined(now, step_run_of(level, levels, left));
     const double last = envelope_at(now, phase);
-    return spring_finite(last) ? fmax(p.most, last) : INFINITY;
+    return spring_finite(last) ? fmax(p.most, last) : (double)INFINITY;
 }
 
 /* The samples at 1, 5/4, 3/2, 7/4 times 1, 2, 4, ... steps, and the interval around the largest of them. */
@@ -330,15 +329,15 @@ double spring_error_of(const accuracy *of, double steps, double n)
     const double most = ldexp(1, MOST_DOUBLINGS);
     const step_rates r = rates_of_step(of, steps);
     if (!spring_finite(rates_size(r)) || steps > most * (1 + DBL_EPSILON))
-        return INFINITY;
+        return (double)INFINITY;
     const step_run step = run_of_one_step(of, r);
     if (!spring_finite(matrix_norm(step.error)))
-        return INFINITY;
+        return (double)INFINITY;
     n = fmin(n, most); /* larger doubles do not count single steps */
     step_run level[MOST_DOUBLINGS + 1];
     const step_run start = {0};
     const phase_rotation no_phase = {0};
-    if (n <= MOST_SAMPLES)
+    if (n <= most_samples)
         return most_at_strides(&step, 1, start, 0, n, 1, &no_phase);
     const int levels = doublings_of(level, step, n);
     /* For slow springs, r.a^2 is not w h^2, but they do not decay either. Overdamped springs have no single rate. */
@@ -346,10 +345,10 @@ double spring_error_of(const accuracy *of, double steps, double n)
     if (!(square > 0))
         return most_at_powers(level, levels, 0, n, &no_phase);
     const double period = 6.283185307179586 / spring_sqrt(square), count = steps_that_count(step, r.G, n);
-    if (count <= fmax(MOST_SAMPLES, period * RESOLVED_PERIODS))
-        return most_at_strides(level, levels, start, 0, count, ceil(count / MOST_SAMPLES), &no_phase);
-    const double early = fmin(period * FIRST_PERIODS, count);
-    const double stride = ceil(early / (MOST_SAMPLES * FIRST_PERIODS / RESOLVED_PERIODS));
+    if (count <= fmax(most_samples, period * resolved_periods))
+        return most_at_strides(level, levels, start, 0, count, ceil(count / most_samples), &no_phase);
+    const double early = fmin(period * first_periods, count);
+    const double stride = ceil(early / (most_samples * first_periods / resolved_periods));
     const phase_rotation phase = phase_rotation_of(step);
     return fmax(most_at_strides(level, levels, start, 0, floor(early), stride, &no_phase),
                 most_at_powers(level, levels, early, n, &phase));
@@ -377,7 +376,7 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
     const double most = floor(fmin(tolerance / DBL_EPSILON * (tolerance / DBL_EPSILON), ldexp(1, MOST_DOUBLINGS)));
     const double asymptotic = ceil(2 * rates_size(of->whole)); /* the power law holds from this number of steps on */
     const double resolution = 0x1p-13;                         /* of n */
-    double n = fmin(ceil(steps_guess(of, tolerance, asymptotic)), most), good = INFINITY, bad = 0;
+    double n = fmin(ceil(steps_guess(of, tolerance, asymptotic)), most), good = (double)INFINITY, bad = 0;
     for (int tries = 0;; tries++) {
         const double error = spring_error_of(of, n, n);
         if (error <= tolerance)
@@ -385,12 +384,12 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
         else
             bad = n;
         if (bad >= most)
-            return INFINITY;
+            return (double)INFINITY;
         const double finest = fmax(1, floor(n * resolution));
         if (good - bad <= finest)
             return good;
         const double law = ceil(n * order_root(error / tolerance, of->order));
-        if (good == INFINITY)
+        if (good == (double)INFINITY)
             n = fmin(2 * n, most);
         else if (bad == 0) /* slowly where the power law does not hold, so that no maximum is skipped */
             n = floor(fmin(fmax(law, asymptotic), n / 1.05));

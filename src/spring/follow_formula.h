@@ -63,11 +63,11 @@ SPRING_INLINE mask follow_lands(real x, real rest, real y, real u, const follow_
     const scalar reach = 2.25; /* [d] 9/4, see above */
     const real x_size = vec_abs(x), rest_size = vec_abs(rest), distance = vec_abs(y);
     const real room = half_ulp(select_real(x_size > rest_size, x_size, rest_size)) * (reach * ulps) + least;
-    const mask candidates = (c->share > 0) & (distance * c->share <= room);
-    if (!any(candidates))
-        return candidates;
-    const real speed = vec_abs(u) / vec_sqrt(select_real(candidates, c->omega2, splat(1)));
-    return candidates & (vec_hypot(distance, speed) * c->share <= room);
+    const mask nearby = (c->share > 0) & (distance * c->share <= room);
+    if (!any(nearby))
+        return nearby;
+    const real speed = vec_abs(u) / vec_sqrt(select_real(nearby, c->omega2, splat(1)));
+    return nearby & (vec_hypot(distance, speed) * c->share <= room);
 }
 
 #endif

@@ -39,7 +39,7 @@ static inline double spring_fast_root(const spring_roots *r) /* [1/s], of an ove
 static inline double spring_hypot(double a, double b)
 {
     const double large = fmax(a, b), lesser = fmin(a, b);
-    const double ratio = large > 0 && large < INFINITY ? lesser / large : 0;
+    const double ratio = large > 0 && large < (double)INFINITY ? lesser / large : 0;
     return large * spring_sqrt(1 + ratio * ratio);
 }
 

@@ -84,7 +84,7 @@ static double settling_oscillating(const motion *m)
     const double first = m->start.v != 0 ? first_time(m, has_turned, 0, spacing) : 0;
     if (is_within(m, first))
         return is_within(m, 0) ? 0 : first_time(m, is_within, 0, first);
-    return m->roots.b == 0 ? INFINITY : after_last_swing(m, first, spacing);
+    return m->roots.b == 0 ? (double)INFINITY : after_last_swing(m, first, spacing);
 }
 
 /* If a spring never turns, has_turned() holds once its velocity underflows; then the spring is at rest. */
@@ -99,7 +99,7 @@ static double settling_creeping(const motion *m)
 double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol)
 {
     if (s == NULL || !spring_finite(s->x) || !spring_finite(s->v) || !spring_params_valid(p) || !(x_tol >= 0))
-        return NAN;
+        return (double)NAN;
     motion m = {
         .start = {s->x, s->v},
         .params = {p->mass, p->stiffness, p->damping, 0},
@@ -109,8 +109,8 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
     if (m.roots.omega2 > 0)
         m.start.x -= p->load / p->stiffness;
     if (!spring_finite(m.start.x) || (m.roots.omega2 == 0 && p->load != 0))
-        return INFINITY;
+        return (double)INFINITY;
     if (m.tol == 0) /* a moving spring does not stay at distance 0 */
-        return m.start.v == 0 && is_within(&m, 0) ? 0 : INFINITY;
+        return m.start.v == 0 && is_within(&m, 0) ? 0 : (double)INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }

@@ -86,7 +86,7 @@ double spring_stable_step(const spring_params *p, spring_method m)
 {
     const method_row *method = find_method(m);
     if (method == NULL || method->stable_step == NULL || !spring_params_valid(p))
-        return NAN;
+        return (double)NAN;
     const spring_roots r = spring_roots_of(p);
     return method->stable_step(&r);
 }
@@ -113,7 +113,7 @@ double spring_accurate_step(const spring_params *p, spring_method m, double dura
     const method_row *method = find_method(m);
     if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) ||
         !positive(tolerance))
-        return NAN;
+        return (double)NAN;
     if (method->terms == NULL)
         return duration;
     const accuracy of = accuracy_of(p, method, duration);
@@ -124,7 +124,7 @@ double spring_step_error(const spring_params *p, spring_method m, double duratio
 {
     const method_row *method = find_method(m);
     if (method == NULL || !method->info.springs || !spring_params_valid(p) || !positive(duration) || !positive(dt))
-        return NAN;
+        return (double)NAN;
     if (method->terms == NULL)
         return 0;
     const accuracy of = accuracy_of(p, method, duration);
