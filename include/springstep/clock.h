@@ -13,10 +13,14 @@
 extern "C" {
 #endif
 
-/** Accumulates frame time that is not yet simulated. Zero-initialise. */
+/** Accumulates frame time that is not yet simulated. Zero-initialise.
+ *
+ * After the steps of a frame, the simulation is `pending` behind real time. A moving target, such as the hand that holds
+ * a rope, must be reached n dt + pending after the start of the n steps, not n dt after it. docs/games.md has the loop. */
 typedef struct spring_clock {
     double pending; /**< [s] time carried over to the next frame; always less than one step */
     double dropped; /**< [s] total time dropped because frames required more than max_steps steps */
+    double skipped; /**< [s] time that the last tick dropped, usually 0 */
 } spring_clock;
 
 /**
@@ -27,7 +31,7 @@ typedef struct spring_clock {
  *     draw(previous.x + alpha * (current.x - previous.x));
  *
  * A very long frame (a breakpoint, a page fault) would require more steps than there is time for. Whole steps beyond
- * max_steps are dropped, and their time is added to clock->dropped.
+ * max_steps are dropped. Their time is stored in clock->skipped and added to clock->dropped.
  *
  * @param[in,out] clock      zero-initialised at the start
  * @param[in]     frame_dt   duration of this frame [s]; a negative duration counts as 0

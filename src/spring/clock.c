@@ -25,8 +25,8 @@ uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint
     const double remainder = fmod(total, dt);
     const double whole = rint((total - remainder) / dt);
     const uint64_t steps = whole < (double)max_steps ? (uint64_t)whole : max_steps;
-    if (whole > (double)steps)
-        clock->dropped += (total - remainder) - (double)steps * dt;
+    clock->skipped = whole > (double)steps ? (total - remainder) - (double)steps * dt : 0;
+    clock->dropped += clock->skipped;
     clock->pending = remainder;
     if (alpha != NULL)
         *alpha = remainder / dt;
