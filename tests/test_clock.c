@@ -29,9 +29,13 @@ static void dropped_time(void)
     double alpha = -1;
     CHECK(spring_clock_tick(&clock, 2.0625, 0.125, 8, &alpha) == 8, "sixteen steps and a half, eight allowed");
     CHECK_BITS(clock.dropped, 1, "eight steps dropped");
+    CHECK_BITS(clock.skipped, 1, "in this frame");
     CHECK_BITS(alpha, 0.5, "the fraction is kept");
     CHECK(spring_clock_tick(&clock, 0.25, 0.125, 0, &alpha) == 0, "no steps allowed");
     CHECK_BITS(clock.dropped, 1.25, "dropped time adds up");
+    CHECK_BITS(clock.skipped, 0.25, "in this frame");
+    CHECK(spring_clock_tick(&clock, 0.125, 0.125, 8, &alpha) == 1, "a short frame");
+    CHECK_BITS(clock.skipped, 0, "drops nothing");
     CHECK(spring_clock_tick(&clock, 0x1p64 - clock.pending, 1, UINT64_MAX, &alpha) == UINT64_MAX, "2^64 steps");
     CHECK(spring_clock_tick(&clock, 1e300, 1e-300, UINT64_MAX, &alpha) == UINT64_MAX, "more than 2^64 steps");
     CHECK(isfinite(clock.dropped) && clock.pending < 1e-300, "a long frame and a short step stay finite");
@@ -42,7 +46,7 @@ static void nothing_is_lost(void)
 {
     spring_clock clock = {0};
     const double dt = 1.0 / 240;
-    double frames = 0, lost = 0; /* Kahan's sum */
+    double frames = 0, lost = 0, skipped = 0; /* Kahan's sum */
     uint64_t steps = 0;
     const int count = 1000000;
     for (int i = 0; i < count; i++) {
@@ -51,6 +55,8 @@ static void nothing_is_lost(void)
         steps += spring_clock_tick(&clock, frame, dt, 12, &alpha);
         CHECK(alpha >= 0 && alpha < 1, "a fraction of a step");
         CHECK(clock.pending >= 0 && clock.pending < dt, "less than a step is pending");
+        skipped += clock.skipped;
+        CHECK_BITS(clock.dropped, skipped, "the total of what each frame dropped");
         const double term = frame - lost, sum = frames + term;
         lost = (sum - frames) - term;
         frames = sum;
@@ -124,7 +130,7 @@ static void negative_frames(void)
 
 static void bad_input(void)
 {
-    const spring_clock start = {0.01, 0.5};
+    const spring_clock start = {0.01, 0.5, 0.25};
     refuse(start, NAN, 0.1, "frame not a number");
     refuse(start, INFINITY, 0.1, "frame infinite");
     refuse(start, -INFINITY, 0.1, "frame infinite");
@@ -132,8 +138,8 @@ static void bad_input(void)
     refuse(start, 0.1, 0, "step 0");
     refuse(start, 0.1, -0.1, "step negative");
     refuse(start, 0.1, INFINITY, "step infinite");
-    refuse((spring_clock){1.7e308, 0}, 1.7e308, 0.1, "the sum overflows");
-    refuse((spring_clock){-1, 0}, 0.1, 0.1, "a clock that was never started");
+    refuse((spring_clock){.pending = 1.7e308}, 1.7e308, 0.1, "the sum overflows");
+    refuse((spring_clock){.pending = -1}, 0.1, 0.1, "a clock that was never started");
     double alpha = -1;
     CHECK(spring_clock_tick(NULL, 0.1, 0.1, 10, &alpha) == 0, "no clock");
     CHECK(isnan(alpha), "bad input is told from a frame without a step");

@@ -3,8 +3,8 @@
 --
 --     LUA_PATH='build/?.lua;;' love examples/love
 --
--- The first particle is pinned and follows the pointer at a limited speed. Steps are fixed, and drawing interpolates
--- between the last two states. Lengths are in metres; y points down, as on the screen.
+-- The first particle is pinned and follows the pointer at a limited speed. Steps are fixed. Positions are drawn at the
+-- time of the frame, `clock.pending` after the last step. Lengths are in metres; y points down, as on the screen.
 local ffi = require "ffi"
 local spring = require "springstep"
 
@@ -14,14 +14,15 @@ local spacing, stiffness, damping, mass, ball = 0.03, 3000, 0.2, 0.02, 0.25 -- [
 local pixels = 260 -- per metre
 local wave = spacing * math.sqrt(stiffness / mass) -- [m/s] wave speed, at which the rope can follow
 
-local scene, clock, hand, previous, current, whole, step_cost
+local scene, clock, hand, position, velocity, whole, step_cost
 
 local must = spring.must
 
 local function start(x, y)
   local grid = ffi.new("spring_grid", {count = {N, 1, 1}, axes = 2, spacing = spacing, stiffness = stiffness,
                                        damping = damping, pinned = spring.SPRING_GRID_FIRST_X})
-  local position, pinned = ffi.new("double[?]", 2 * N), ffi.new("uint8_t[?]", N)
+  position, velocity = ffi.new("double[?]", 2 * N), ffi.new("double[?]", 2 * N)
+  local pinned = ffi.new("uint8_t[?]", N)
   local link, masses = ffi.new("spring_link[?]", N - 1), ffi.new("double[?]", N, mass)
   must(spring.spring_grid_fill(grid, position, pinned, link), "grid")
   for i = 0, N - 1 do -- the grid is along x; turn it down from the pointer, slightly to the side
@@ -36,49 +37,43 @@ local function start(x, y)
   scene = spring.scene(def)
   assert(dt < 0.5 * spring.spring_scene_stable_step(scene, spring.SPRING_LEAPFROG), "this step is too long")
 
-  clock, hand, whole, step_cost = ffi.new("spring_clock"), ffi.new("double[2]", x, y), {}, 0
-  previous, current = ffi.new("double[?]", 2 * N), ffi.new("double[?]", 2 * N)
-  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, previous, 0, 0, N), "get")
-  ffi.copy(current, previous, ffi.sizeof(previous))
+  clock, hand, whole, step_cost = ffi.new("spring_clock"), ffi.new("double[2]"), {}, 0
   for i = 1, N - 1 do
     whole[i] = true -- the link between particles i - 1 and i
   end
 end
 
--- The hand follows the pointer at no more than half the wave speed of the rope; see docs/dragging.md.
-local function reach(x, y, duration)
-  local dx, dy, most = x - hand[0], y - hand[1], 0.5 * wave * duration
+-- The pin moves towards the pointer at no more than half the wave speed of the rope; see docs/dragging.md. The pointer is
+-- where it is in this frame, `time` after the time of the scene.
+local function reach(x, y, time)
+  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, hand, 0, 0, 1), "get")
+  local dx, dy, most = x - hand[0], y - hand[1], 0.5 * wave * time
   local part = math.min(1, most / math.max(math.sqrt(dx * dx + dy * dy), 1e-9))
   hand[0], hand[1] = hand[0] + part * dx, hand[1] + part * dy
+  must(spring.spring_scene_drive(scene, 0, hand, time), "drive")
 end
-
-local alpha = ffi.new("double[1]")
 
 function love.load()
   start(love.graphics.getWidth() / 2 / pixels, 0.3)
 end
 
 function love.update(frame)
-  local n = tonumber(spring.spring_clock_tick(clock, frame, dt, 6 * STEPS, alpha))
+  local n = tonumber(spring.spring_clock_tick(clock, frame, dt, 6 * STEPS, nil))
   if n == 0 then
     return
   end
   local x, y = love.mouse.getPosition()
   local before = love.timer.getTime()
-  reach(x / pixels, y / pixels, n * dt)
-  must(spring.spring_scene_drive(scene, 0, hand, n * dt), "drive") -- arrives after these n steps
-  must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, n - 1), "advance")
-  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, previous, 0, 0, N), "get")
-  must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, 1), "advance")
-  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, current, 0, 0, N), "get")
+  reach(x / pixels, y / pixels, n * dt + clock.pending)
+  must(spring.spring_scene_advance(scene, spring.SPRING_LEAPFROG, dt, n), "advance")
   local cost = (love.timer.getTime() - before) / n
   step_cost = step_cost + (step_cost > 0 and 0.05 or 1) * (cost - step_cost)
 end
 
 -- The position of a particle on the screen [pixels].
 local function at(i)
-  local x = previous[2 * i] + alpha[0] * (current[2 * i] - previous[2 * i])
-  local y = previous[2 * i + 1] + alpha[0] * (current[2 * i + 1] - previous[2 * i + 1])
+  local x = position[2 * i] + clock.pending * velocity[2 * i]
+  local y = position[2 * i + 1] + clock.pending * velocity[2 * i + 1]
   return x * pixels, y * pixels
 end
 
@@ -134,6 +129,8 @@ end
 
 function love.draw()
   love.graphics.clear(0.13, 0.15, 0.20)
+  must(spring.spring_scene_get(scene, spring.SPRING_POSITION, position, 0, 0, N), "get")
+  must(spring.spring_scene_get(scene, spring.SPRING_VELOCITY, velocity, 0, 0, N), "get")
   draw_rope()
   local x, y = at(N - 1)
   draw_ball(x, y, 26)

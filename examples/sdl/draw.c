@@ -458,12 +458,23 @@ static void paint_ball(painter *p, const camera *c, vec3 at, double radius, vec3
         }
 }
 
+/* The body at the time for which the particles are drawn. */
+static spring_collider drawn_body(const world *w)
+{
+    spring_collider b = w->body[0];
+    for (int axis = 0; axis < 3; axis++) {
+        b.at[axis] -= w->late * b.velocity[axis];
+        b.to[axis] -= w->late * b.velocity_to[axis];
+    }
+    return b;
+}
+
 /* A sphere, or an upright capsule: two balls and the side of a cylinder between them. */
 static void paint_body(painter *p, const camera *c, const world *w)
 {
     enum { STRIPS = 24 };
     static const vec3 blue = {0.30, 0.42, 0.62};
-    const spring_collider *b = &w->body[0];
+    const spring_collider moved = drawn_body(w), *b = &moved;
     paint_ball(p, c, (vec3){b->at[0], b->at[1], b->at[2]}, b->radius, blue);
     if (b->shape != SPRING_CAPSULE)
         return;

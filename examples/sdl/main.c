@@ -270,7 +270,7 @@ static void advance(app *a, double seconds)
     const uint64_t n = spring_clock_tick(&a->clock, seconds, step(a), 6 * a->steps, &alpha);
     const Uint64 before = SDL_GetPerformanceCounter();
     pull(a);
-    a->trouble = world_advance(&a->world, method(a), step(a), n);
+    a->trouble = world_advance(&a->world, method(a), step(a), n, a->clock.pending);
     if (a->trouble != SPRING_OK)
         return;
     if (n > 0) {

@@ -320,28 +320,28 @@ void world_close(world *w)
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
 
-/* The dragged particle follows the mouse at no more than half the wave speed. A faster drag stretches the adjacent
-   links and requires shorter steps (docs/dragging.md). */
-static void reach(world *w, double duration)
+/* The dragged particle moves towards the mouse at no more than half the wave speed. A faster drag stretches the adjacent
+   links and requires shorter steps (docs/dragging.md). The mouse is where it is in this frame, `time` after the time of
+   the scene; the steps last for `duration`. */
+static void reach(world *w, double time, double duration)
 {
     const vec3 d = {w->goal.x - w->hand.x, w->goal.y - w->hand.y, w->goal.z - w->hand.z};
-    const double far = sqrt(d.x * d.x + d.y * d.y + d.z * d.z), most = 0.5 * w->wave * duration;
-    const double part = far > most ? most / far : 1;
+    const double far = sqrt(d.x * d.x + d.y * d.y + d.z * d.z), most = 0.5 * w->wave * time;
+    const double part = (far > most ? most / far : 1) * duration / time;
+    double own[3];
     w->hand = (vec3){w->hand.x + part * d.x, w->hand.y + part * d.y, w->hand.z + part * d.z};
+    to_axes(w, w->hand, own);
+    must(spring_scene_drive(w->scene, w->grabbed, own, duration), "drive");
 }
 
-spring_status world_advance(world *w, spring_method method, double dt, uint64_t n)
+spring_status world_advance(world *w, spring_method method, double dt, uint64_t n, double pending)
 {
     if (n == 0)
         return SPRING_OK;
     if (w->kind == WORLD_CAPE)
         move_body(w, (double)n * dt);
-    if (w->grabbed != WORLD_NOTHING) { /* arrives after these n steps; link damping sees its velocity */
-        double own[3];
-        reach(w, (double)n * dt);
-        to_axes(w, w->hand, own);
-        must(spring_scene_drive(w->scene, w->grabbed, own, (double)n * dt), "drive");
-    }
+    if (w->grabbed != WORLD_NOTHING)
+        reach(w, (double)n * dt + pending, (double)n * dt);
     spring_status status = spring_scene_advance(w->scene, method, dt, n - 1);
     if (status != SPRING_OK)
         return status;
@@ -355,16 +355,17 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
     w->spare = w->previous;
     w->previous = before;
     get_positions(w, w->current);
-    if (w->kind == WORLD_CAPE) /* for drawing */
-        for (int axis = 0; axis < 2; axis++) {
-            w->body[0].at[axis] += (double)n * dt * w->body[0].velocity[axis];
-            w->body[0].to[axis] += (double)n * dt * w->body[0].velocity[axis];
-        }
+    for (int axis = 0; axis < 3; axis++) { /* for drawing */
+        w->body[0].at[axis] += (double)n * dt * w->body[0].velocity[axis];
+        w->body[0].to[axis] += (double)n * dt * w->body[0].velocity_to[axis];
+    }
+    w->step = dt;
     return SPRING_OK;
 }
 
-void world_between(const world *w, double alpha, vec3 *out)
+void world_between(world *w, double alpha, vec3 *out)
 {
+    w->late = (1 - alpha) * w->step;
     for (size_t i = 0; i < w->particles; i++) {
         const vec3 *a = &w->previous[i], *b = &w->current[i];
         out[i] = (vec3){a->x + alpha * (b->x - a->x), a->y + alpha * (b->y - a->y), a->z + alpha * (b->z - a->z)};

@@ -48,9 +48,10 @@ typedef struct world {
     vec3 *current;        /* [particles] after it; drawing interpolates between both */
     vec3 *spare;          /* [particles] */
     spring_collider body[WORLD_BODIES];
-    double away;      /* [m] total distance by which the body was teleported back */
-    uint32_t grabbed; /* particle, or WORLD_NOTHING */
-    vec3 hand, goal;  /* position of the drag, and its target at the mouse */
+    double step, late; /* [s] the last step; how long before its end the world is drawn */
+    double away;       /* [m] total distance by which the body was teleported back */
+    uint32_t grabbed;  /* particle, or WORLD_NOTHING */
+    vec3 hand, goal;   /* position of the drag, and its target at the mouse */
 } world;
 
 /** Creates a world. Returns false if out of memory, or if the definition is rejected; the world is then empty. */
@@ -59,16 +60,18 @@ bool world_open(world *w, world_kind kind);
 /** Frees a world; an empty world is allowed. */
 void world_close(world *w);
 
-/** Takes n steps of dt [s], and moves the drag. After a failure, the states for drawing are unchanged.
+/** Takes n steps of dt [s], after which the time of the frame is `pending` [s] ahead of the scene, and moves the drag. After
+    a failure, the states for drawing are unchanged.
 
     Returns the status of spring_scene_advance(), or SPRING_ENONFINITE if the energy is implausibly large. */
-spring_status world_advance(world *w, spring_method method, double dt, uint64_t n);
+spring_status world_advance(world *w, spring_method method, double dt, uint64_t n, double pending);
 
 /** Returns true if there are colliders. Euler and methods that require smooth forces do not support contacts. */
 bool world_has_bodies(const world *w);
 
-/** Writes positions [particles], interpolated by alpha between the states before and after the last step. */
-void world_between(const world *w, double alpha, vec3 *out);
+/** Writes positions [particles], interpolated by alpha between the states before and after the last step. The bodies are
+    drawn at the same time. */
+void world_between(world *w, double alpha, vec3 *out);
 
 /** Kinetic, elastic and potential energy [J]. */
 double world_energy(const world *w);

@@ -137,9 +137,10 @@ AT(spring_grid, stiffness, 48, 48);
 AT(spring_grid, damping, 56, 56);
 AT(spring_grid, pinned, 64, 64);
 
-SIZE(spring_clock, 16, 16);
+SIZE(spring_clock, 24, 24);
 AT(spring_clock, pending, 0, 0);
 AT(spring_clock, dropped, 8, 8);
+AT(spring_clock, skipped, 16, 16);
 
 /* An int, as most languages take an enumeration for. */
 SIZE(spring_method, 4, 4);

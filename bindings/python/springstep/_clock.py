@@ -42,6 +42,11 @@ class Clock:
         """[s] total time dropped because frames required more than max_steps steps"""
         return self._clock.dropped
 
+    @property
+    def skipped(self) -> float:
+        """[s] time that the last tick dropped, usually 0"""
+        return self._clock.skipped
+
     def snapshot(self) -> tuple[float, float]:
         """pending and dropped, for restore()."""
         return self.pending, self.dropped
@@ -49,6 +54,7 @@ class Clock:
     def restore(self, snapshot: tuple[float, float]) -> None:
         """Return to a snapshot."""
         self._clock.pending, self._clock.dropped = snapshot
+        self._clock.skipped = 0
 
     def __reduce__(self) -> tuple:
         """Copies are independent clocks."""

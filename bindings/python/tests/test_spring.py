@@ -124,9 +124,9 @@ def test_a_clock():
     clock = Clock(1 / 128, 4)
     assert clock.tick(2.5 / 128) == (2, 0.5) and clock.pending == 0.5 / 128
     before = clock.snapshot()
-    assert clock.tick(10 / 128) == (4, 0.5) and clock.dropped == 6 / 128
+    assert clock.tick(10 / 128) == (4, 0.5) and clock.dropped == 6 / 128 == clock.skipped
     clock.restore(before)
-    assert (clock.pending, clock.dropped) == (0.5 / 128, 0)
+    assert (clock.pending, clock.dropped, clock.skipped) == (0.5 / 128, 0, 0)
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
