@@ -579,8 +579,9 @@ SPRING_API spring_status spring_scene_set_mass(spring_scene *s, size_t first, si
  * velocity is changed.
  *
  * @param[in] target    [axes] [m] position to reach; NULL: the particle stops
- * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(); ignored if target
- *                      is NULL
+ * @param[in] duration  > 0 [s], usually the duration n dt of the next call of spring_scene_advance(). If the target is
+ *                      where a hand is now, and steps come from spring_clock_tick(): n dt + clock->pending, see
+ *                      docs/games.md. Ignored if target is NULL
  * @return SPRING_OK; SPRING_EINVAL: the scene is NULL, the particle is not pinned, the duration is not positive and
  *         finite, or the distance or velocity is not finite; SPRING_ERANGE: the particle does not exist
  */

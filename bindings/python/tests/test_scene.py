@@ -821,6 +821,31 @@ def test_bad_colliders_are_named(field, value, shape, more):
     assert fnv(scene) == after
 
 
+def test_the_loop_in_the_documents():
+    """What docs/python.md shows; a rope in equilibrium stays behind a hand of constant velocity at every frame rate."""
+    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
+    names = {}
+    exec(re.search(r"## Frames\n.*?```python\n(.*?)```", page, re.S)[1], names)
+    assert names["drawn"][0] == pytest.approx([0, 0.5, 0], abs=1e-12)
+    n, mass, stiffness, gravity, speed = 20, 0.05, 2000, 9.81, 10
+    y = -np.cumsum(np.r_[0, 0.1 + mass * gravity * np.arange(n - 1, 0, -1) / stiffness])
+    still, pinned = np.zeros(n), np.arange(n) == 0
+    links = [(i, i + 1, 0.1, stiffness, 0) for i in range(n - 1)]
+    for frame_time, pause in ((1 / 60, 0), (1 / 144, 0), (1 / 75, 5), (1 / 2000, 60)):
+        scene = springstep.Scene(np.c_[still, y, still], links, velocity=np.c_[still + speed, still, still], pinned=pinned,
+                                 mass=mass, gravity=[0, -gravity, 0], max_speed=100)
+        clock, t = springstep.Clock(1 / 960, 64), 0
+        for frame in range(round(1 / frame_time)):
+            duration = frame_time + (pause if frame == 30 else 0)
+            t += duration
+            names["advance_frame"](scene, clock, duration, np.array([speed * t, 0, 0]))
+            drawn = scene.position() + clock.pending * scene.velocity()
+            assert abs(drawn - np.c_[still + speed * t, y, still]).max() < 1e-10  # [m] rounding at up to 610 m
+    with pytest.raises(springstep.UnstableError):  # the hand jumps, and the scene with it
+        names["advance_frame"](scene, clock, 0.01, np.array([speed * t + 5, 0, 0]))
+    names["advance_frame"](scene, clock, 0.01, np.array([speed * t + 5, 0, 0]))
+
+
 def test_the_colliders_in_the_documents():
     page = (Path(__file__).parents[3] / "docs/python.md").read_text()
     names = {}
