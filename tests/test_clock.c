@@ -119,7 +119,7 @@ static void refuse(spring_clock start, double frame_dt, double dt, const char *w
 static void negative_frames(void)
 {
     for (int i = 0; i < 1000; i++) {
-        spring_clock backwards = {i % 2 ? random_uniform(0, 0.125) : 0, 0.5}, no_time = backwards;
+        spring_clock backwards = {i % 2 ? random_uniform(0, 0.125) : 0, 0.5, 0}, no_time = backwards;
         double alpha = -1, want = -1;
         CHECK(spring_clock_tick(&backwards, -random_log(1e-9, 1e300), 0.125, 10, &alpha) == 0, "no step");
         CHECK(spring_clock_tick(&no_time, 0, 0.125, 10, &want) == 0, "no step");
