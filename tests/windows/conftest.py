@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The tests of examples with windows, under a separate X server. To run them by hand:
 
-    SPRINGS=$PWD/build/examples/springs SPRINGSTEP_LIBRARY=$PWD/build/libspringstep.so.0.3 GAME=$PWD/examples/love \\
+    SPRINGS=$PWD/build/examples/springs SPRINGSTEP_LIBRARY=$PWD/build/libspringstep.so.0.4 GAME=$PWD/examples/love \\
         PATH=$PWD/build/tools:$PATH /usr/bin/python3 -m pytest tests/windows
 """
 import os
