@@ -59,7 +59,10 @@ const perLink = ["rest", "stiffness", "damping"];
 
 /** How many links there are: of { ends, rest, stiffness, damping } or of a list of { a, b, rest, stiffness, damping }. */
 function countOf(links) {
-    if (Array.isArray(links)) return links.length;
+    if (Array.isArray(links)) {
+        for (const link of links) checkKnown(link, ["a", "b", ...perLink]);
+        return links.length;
+    }
     check(typeof links === "object" && links !== null, "links", "an object or an array", links, TypeError);
     checkKnown(links, ["ends", ...perLink]);
     checkArray("links.ends", links.ends);
@@ -146,6 +149,15 @@ const fields = [
     ["restitution", 1, 0],
 ];
 const shapes = ["plane", "sphere", "capsule", "box"];
+// Fields that only some shapes have, and those that these shapes require.
+const own = {
+    normal: ["plane"],
+    radius: ["sphere", "capsule", "box"],
+    to: ["capsule"],
+    velocityTo: ["capsule"],
+};
+Object.assign(own, { half: ["box"], axes: ["box"] });
+const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
 const colliderBytes = 8 * 31;
 
 /** Colliders in the layout of spring_collider. */
@@ -157,6 +169,11 @@ export function lendColliders(take, colliders) {
         checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
+        for (const field of Object.keys(own))
+            if (collider[field] !== undefined && !own[field].includes(collider.shape))
+                throw new TypeError(`${name}: the option ${field} does not go with ${collider.shape}`);
+        for (const field of required[collider.shape])
+            if (collider[field] === undefined) throw new TypeError(`${name}.${field} is required`);
         const numbers = [];
         for (const [field, count, usual] of fields) {
             const value = collider[field] ?? usual ?? collider.velocity ?? [0, 0, 0];

@@ -33,7 +33,7 @@ const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 
 
 /** The undamped angular frequency and the damping ratio of a way other than stiffness and damping. */
 function omegaAndRatio(way, first, name, second) {
-    (way === "hertz" ? checkNotNegative : checkPositive)(way, first);
+    checkPositive(way, first);
     if (way === "hertz") {
         checkNotNegative(name, second);
         return [twoPi * first, second];
@@ -50,13 +50,21 @@ function omegaAndRatio(way, first, name, second) {
     return [twoPi / first, second];
 }
 
+// Default tolerances, relative to the size of a motion.
+const relativeDelta = 1e-4;
+const relativeSpeed = 1e-3; // [1/s]
+
 /** The propagator and the tolerances of options. `others` are the names of further options. */
 export function settings(options, others) {
-    const { restDelta = 0.001, restSpeed = 0.01, ...rest } = options;
-    checkNotNegative("restDelta", restDelta);
-    checkNotNegative("restSpeed", restSpeed);
+    const { restDelta, restSpeed, ...rest } = options;
+    if (restDelta !== undefined) checkNotNegative("restDelta", restDelta);
+    if (restSpeed !== undefined) checkNotNegative("restSpeed", restSpeed);
     const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
-    const way = given.find((name) => Object.hasOwn(ways, name));
+    let way = given.find((name) => Object.hasOwn(ways, name));
+    if (!way && typeof options === "object" && given.every((name) => name === "bounce")) {
+        way = "duration";
+        rest.duration = 0.5;
+    }
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
     const second = ways[way];
     for (const name of given)
@@ -68,12 +76,25 @@ export function settings(options, others) {
         const [omega, ratio] = omegaAndRatio(way, rest[way], second, rest[second] ?? byDefault);
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
-        check(omega === 0 || stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);
+        check(stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);
     }
     checkNotNegative("stiffness", stiffness);
     checkNotNegative("damping", damping);
     checkPositive("mass", mass);
     checkFinite("stiffness / mass", stiffness / mass);
     checkFinite("damping / mass", damping / mass);
-    return { propagator: new Propagator(stiffness, damping, mass), restDelta, restSpeed };
+    const propagator = new Propagator(stiffness, damping, mass);
+    const { omega2, b } = propagator;
+    const rate = omega2 > 0 ? Math.sqrt(omega2) : 2 * b;
+    const reach = rate > 0 ? 1 / rate : 0; // [s] times a speed: the distance that a value may still move
+    return {
+        propagator,
+        reach,
+        relative: restDelta === undefined || restSpeed === undefined,
+        /** The size of a motion that begins with a distance from the target and a velocity. */
+        sizeOf: (distance, velocity) => (omega2 > 0 ? Math.abs(distance) : 0) + Math.abs(velocity) * reach,
+        /** Tolerances of rest after a motion of this size. */
+        deltaOf: (size) => restDelta ?? relativeDelta * size,
+        speedOf: (size) => restSpeed ?? relativeSpeed * size,
+    };
 }

@@ -58,31 +58,61 @@ export type Force = (
     velocity: readonly Float64Array[] | undefined,
 ) => void;
 
-/** A convex body. Particles stay outside it. */
-export interface Collider {
-    shape: "plane" | "sphere" | "capsule" | "box";
-    /** [m] a point of the plane; the centre; or one end of a capsule */
+/** What every collider has. */
+export interface Body {
+    /** [m] a point of the plane; the centre; or one end of a capsule; default [0, 0, 0] */
     at?: ArrayLike<number>;
-    /** [m] the other end of a capsule */
-    to?: ArrayLike<number>;
-    /** of a plane, out of the body; of any length; default [0, 1, 0] */
-    normal?: ArrayLike<number>;
-    /** of a box: 9 numbers, its unit axes; default: those of the scene */
-    axes?: ArrayLike<number>;
-    /** [m] of a box: half of its size along each axis, without the radius */
-    half?: ArrayLike<number>;
-    /** [m] of a sphere or capsule; also rounds a box */
-    radius?: number;
     /** [m/s] */
     velocity?: ArrayLike<number>;
-    /** [m/s] of the other end of a capsule; default: as `velocity` */
-    velocityTo?: ArrayLike<number>;
     /** [rad/s] of its surface: enters friction only. With two axes spin[2] */
     spin?: ArrayLike<number>;
     /** Coulomb coefficient >= 0 */
     friction?: number;
     /** 0 to 1 */
     restitution?: number;
+}
+
+/** A convex body. Particles stay outside it. */
+export type Collider =
+    | (Body & {
+          shape: "plane";
+          /** out of the body; of any length; default [0, 1, 0] */
+          normal?: ArrayLike<number>;
+      })
+    | (Body & {
+          shape: "sphere";
+          /** [m] */
+          radius: number;
+      })
+    | (Body & {
+          shape: "capsule";
+          /** [m] */
+          radius: number;
+          /** [m] the other end */
+          to: ArrayLike<number>;
+          /** [m/s] of the other end; default: as `velocity` */
+          velocityTo?: ArrayLike<number>;
+      })
+    | (Body & {
+          shape: "box";
+          /** [m] half of its size along each axis, without the radius */
+          half: ArrayLike<number>;
+          /** 9 numbers, its unit axes; default: those of the scene */
+          axes?: ArrayLike<number>;
+          /** [m] rounds the edges; default 0 */
+          radius?: number;
+      });
+
+export interface FrameOptions {
+    /** Time of further steps is dropped; default: as many as there are in 0.25 s. */
+    mostSteps?: number;
+    /**
+     * Moves pins and colliders. It is called once before the steps of a frame, and not if no step is due. `time` [s] is from
+     * the time of the scene to the end of the frame: drive(i, target, time) with the present target. `dropped` [s] has been
+     * dropped before that, by this frame or by frames that failed: transform() moves the scene by its motion in this time.
+     * If move() throws, the frame fails.
+     */
+    move?: ((time: number, dropped: number) => void) | null;
 }
 
 export interface SceneDefinition {
@@ -196,10 +226,11 @@ export declare class Scene {
     advance(method: Method, dt: number, steps?: number): void;
 
     /**
-     * Takes the steps of dt that are due after `elapsed` more seconds and returns their number. `positions` are interpolated
-     * between the last two steps. If more than `mostSteps` are due, by default those of 0.25 s, the rest of the time is dropped.
+     * Takes the steps of dt that are due after `elapsed` more seconds and returns their number. A negative time counts as 0.
+     * `positions` are interpolated between the last two steps. The last argument may be `mostSteps` alone. If a step fails, the
+     * scene is as before the frame, and the time of the frame is dropped.
      */
-    frame(method: Method, dt: number, elapsed: number, mostSteps?: number): number;
+    frame(method: Method, dt: number, elapsed: number, options?: FrameOptions | number): number;
 
     /** A lower bound of the stability limit [s] */
     stableStep(method?: Method): number;

@@ -3,6 +3,7 @@
 import {
     checkArray,
     checkCount,
+    checkKnown,
     define,
     lend,
     lendColliders,
@@ -21,7 +22,6 @@ export { hasSimd } from "./simd.js";
 
 const quantities = ["position", "velocity", "force"];
 const notFinite = 2;
-const noMemory = 3;
 const disabled = 7;
 const outOfRange = 5;
 const unsupported = 6;
@@ -36,6 +36,7 @@ export class Scene {
     #force;
     #usesVelocity;
     #busy = false;
+    #moving = false; // during a frame
     #error; // of the callback
     #views = { buffer: null }; // for the callback, by pointer
     #heldForces;
@@ -55,12 +56,13 @@ export class Scene {
             for (const [name, value] of Object.entries(fixed))
                 Object.defineProperty(this, name, { value, enumerable: true });
         });
+        if (new.target === Scene) Object.seal(this); // `scene.gravity = [0, 0, 0]` throws
         lost.register(this, this.#pointer, this);
         this.#show(library().scene_show(this.#pointer));
     }
 
     free() {
-        if (this.#busy) throw new TypeError("a callback must not call its own scene");
+        if (this.#busy || this.#moving) throw new TypeError("a callback must not call its own scene");
         if (this.#pointer === 0) return;
         lost.unregister(this);
         library().scene_free(this.#pointer);
@@ -81,24 +83,48 @@ export class Scene {
         this.#show(library().scene_moved(this.#pointer));
     }
 
-    frame(method, dt, elapsed, mostSteps = Math.max(1, Math.floor(0.25 / dt))) {
+    frame(method, dt, elapsed, options = {}) {
         const number = methodNumber(method);
         check(isNumber(dt) && dt > 0, "dt", "a finite number > 0", dt);
-        check(isNumber(elapsed) && elapsed >= 0, "elapsed", "a finite number >= 0", elapsed);
+        checkFinite("elapsed", elapsed);
+        if (typeof options === "number") options = { mostSteps: options };
+        checkKnown(options, ["mostSteps", "move"]);
+        const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
         check(
             Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32,
             "mostSteps",
             "an integer >= 1 and < 2^32",
             mostSteps,
         );
+        check(move === null || typeof move === "function", "move", "a function or null", move, TypeError);
+        if (this.#moving) throw new TypeError("move must not call frame() of its own scene");
+        const seconds = Math.max(elapsed, 0); // the time of a frame may be earlier than that of the event that starts it
         return borrowed((take) => {
-            const taken = take(4);
-            const status = this.#call("scene_frame", this.#pointer, number, dt, elapsed, mostSteps, taken);
-            if (status === noMemory) throw new NoMemory(library().scene_bytes(this.#pointer));
-            this.#checked(status, method, dt);
-            this.#show(library().scene_positions(this.#pointer));
-            return memory.uint32(taken, 1)[0];
+            const pointer = take(16);
+            const steps = this.#call("scene_begin_frame", this.#pointer, seconds, dt, mostSteps, pointer);
+            if (steps < 0) throw new NoMemory(library().scene_bytes(this.#pointer));
+            const [time, dropped] = memory.float64(pointer, 2);
+            if (steps > 0)
+                this.#take(number, dt, steps, seconds, move && (() => move(time, dropped)), method);
+            this.#show(library().scene_end_frame(this.#pointer));
+            return steps;
         });
+    }
+
+    /** The steps of a frame, or none of them. */
+    #take(number, dt, steps, seconds, move, method) {
+        const force = this.#force;
+        this.#moving = true;
+        try {
+            move?.();
+            this.#checked(this.#call("scene_take_frame", this.#pointer, number, dt, steps), method, dt);
+        } catch (error) {
+            library().scene_undo_frame(this.#pointer, seconds);
+            this.#force = force;
+            throw error;
+        } finally {
+            this.#moving = false;
+        }
     }
 
     stableStep(method = "leapfrog") {
@@ -185,7 +211,9 @@ export class Scene {
         const size = this.#call("scene_bytes", this.#pointer);
         const snapshot = Object.freeze({ time: this.time });
         const bytes = memory.uint8(this.#scene, size).slice();
-        snapshots.set(snapshot, { scene: this, bytes, force: this.#force });
+        const [clock, before] = this.#frames().map((array) => array.slice());
+        const positions = this.positions.slice();
+        snapshots.set(snapshot, { scene: this, bytes, force: this.#force, clock, before, positions });
         return snapshot;
     }
 
@@ -194,7 +222,20 @@ export class Scene {
         check(kept?.scene === this, "snapshot", "a snapshot of this scene", snapshot, TypeError);
         memory.uint8(this.#scene, this.#call("scene_bytes", this.#pointer)).set(kept.bytes);
         this.#force = kept.force;
-        this.#show(library().scene_moved(this.#pointer));
+        library().scene_moved(this.#pointer);
+        const [clock, before] = this.#frames();
+        clock.set(kept.clock);
+        before.set(kept.before);
+        this.positions.set(kept.positions);
+    }
+
+    /** The clock of frames, and the state before the last step, which is empty before the first frame. */
+    #frames() {
+        const before = library().scene_before(this.#pointer);
+        return [
+            memory.float64(library().scene_clock(this.#pointer), 2),
+            memory.float64(before, before ? this.axes * this.particles : 0),
+        ];
     }
 
     // --- pins, masses, links ----------------------------------------------------------------------------------------

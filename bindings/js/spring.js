@@ -9,10 +9,12 @@ export class Spring {
     #velocity = 0;
     #target;
     #settled = true;
+    #resting = false; // during onRest()
+    #size = 0; // of the motion since the target or the velocity was set
     clamp;
     onRest;
 
-    constructor(value = 0, options = { duration: 0.5 }) {
+    constructor(value = 0, options = {}) {
         checkFinite("value", value);
         this.#settings = settings(options, ["clamp", "onRest"]);
         this.clamp = options.clamp ?? false;
@@ -26,6 +28,12 @@ export class Spring {
         );
         this.onRest = onRest;
         this.#value = this.#target = value;
+        if (new.target === Spring) Object.seal(this); // `spring.stiffness = 300` throws
+    }
+
+    #moves() {
+        this.#settled = false;
+        this.#size = this.#settings.sizeOf(this.#target - this.#value, this.#velocity);
     }
 
     get value() {
@@ -39,7 +47,7 @@ export class Spring {
     set velocity(velocity) {
         checkFinite("velocity", velocity);
         this.#velocity = velocity;
-        this.#settled &&= velocity === 0;
+        if (velocity !== 0 || !this.#settled) this.#moves();
     }
 
     get target() {
@@ -48,8 +56,10 @@ export class Spring {
 
     set target(target) {
         checkFinite("target", target);
-        this.#settled &&= target === this.#target;
+        // The same target again: in a motion its size stays, and onRest() is not called again for what it sets itself.
+        if (target === this.#target && (!this.#settled || this.#resting)) return;
         this.#target = target;
+        this.#moves();
     }
 
     get settled() {
@@ -66,10 +76,12 @@ export class Spring {
     step(dt) {
         checkFinite("dt", dt);
         if (this.#settled || dt === 0) return this.#value;
-        const { propagator: p, restDelta, restSpeed } = this.#settings;
+        if (this.#value === this.#target && this.#velocity === 0) return this.#rest(this.#value);
+        const { propagator: p, reach, deltaOf, speedOf } = this.#settings;
         p.prepare(dt);
         const target = this.#target;
-        const to = p.omega2 === 0 ? 0 : target; // without stiffness a target has no effect
+        const attracts = p.omega2 > 0;
+        const to = attracts ? target : 0; // without stiffness a target has no effect
         const y0 = this.#value - to;
         const v0 = this.#velocity;
         const y = p.half * (p.F * y0 + p.H * v0);
@@ -77,13 +89,24 @@ export class Spring {
         const x = to + y;
         if (!isNumber(0 * x + 0 * v)) throw new RangeError("value or velocity overflows");
         // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
-        const passed = y0 > 0 ? y <= 0 : y0 < 0 && y >= 0;
-        const stops = this.clamp && dt > 0 && p.omega2 > 0 && (passed || p.angle >= Math.PI);
-        const near = Math.abs(x - target) <= restDelta && Math.abs(v) <= restSpeed;
-        this.#settled = stops || near || lands(x, to, y, v, p.share, p.omega2);
-        this.#value = this.#settled ? target : x;
-        this.#velocity = this.#settled ? 0 : v;
-        if (this.#settled) this.onRest?.(this);
+        const passed = y0 > 0 ? y <= 0 : y0 === 0 || y >= 0;
+        const stops = this.clamp && dt > 0 && attracts && (passed || p.angle >= Math.PI);
+        const left = attracts ? Math.abs(x - target) : Math.abs(v) * reach;
+        const near = left <= deltaOf(this.#size) && Math.abs(v) <= speedOf(this.#size);
+        if (stops || near || lands(x, to, y, v, p.share, p.omega2)) return this.#rest(attracts ? target : x);
+        this.#velocity = v;
+        return (this.#value = x);
+    }
+
+    #rest(value) {
+        this.#value = value;
+        this.#velocity = 0;
+        this.#settled = this.#resting = true;
+        try {
+            this.onRest?.(this);
+        } finally {
+            this.#resting = false;
+        }
         return this.#value;
     }
 }

@@ -8,22 +8,48 @@ const { abs } = Math;
 
 export class Springs {
     #settings;
+    #targets; // of the last step
+    #sizes; // of the motions to these targets
 
-    constructor(count, options = { duration: 0.5 }) {
+    constructor(count, options = {}) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
         this.#settings = settings(options, []);
         this.target = new Float64Array(count);
         this.value = new Float64Array(count);
         this.velocity = new Float64Array(count);
+        this.#targets = new Float64Array(count);
+        this.#sizes = new Float64Array(count);
+        if (new.target === Springs) Object.seal(this);
+    }
+
+    /** A motion begins at a new target, and at a value on its target. Returns the largest tolerance of a distance. */
+    #measure() {
+        const { target, value, velocity } = this;
+        const { relative, sizeOf, deltaOf } = this.#settings;
+        if (!relative) return deltaOf(0);
+        const targets = this.#targets;
+        const sizes = this.#sizes;
+        let largest = 0;
+        for (let i = 0; i < value.length; i++) {
+            const goal = target[i];
+            if (goal !== targets[i] || (goal === value[i] && velocity[i] !== 0)) {
+                targets[i] = goal;
+                sizes[i] = sizeOf(goal - value[i], velocity[i]);
+            }
+            if (sizes[i] > largest) largest = sizes[i];
+        }
+        return deltaOf(largest);
     }
 
     step(dt) {
         checkFinite("dt", dt);
         const { target, value, velocity } = this;
         const count = value.length;
-        const { propagator: p, restDelta, restSpeed } = this.#settings;
-        const settled = (x, v, goal) => abs(x - goal) <= restDelta && abs(v) <= restSpeed;
-        if (dt === 0) return value.filter((x, i) => !settled(x, velocity[i], target[i])).length;
+        const { propagator: p, deltaOf, speedOf } = this.#settings;
+        const mostDelta = this.#measure();
+        const sizes = this.#sizes;
+        const settled = (i, x, v, goal) => abs(x - goal) <= deltaOf(sizes[i]) && abs(v) <= speedOf(sizes[i]);
+        if (dt === 0) return value.filter((x, i) => !settled(i, x, velocity[i], target[i])).length;
         p.prepare(dt);
         const { half, F, G, H, wH, share, omega2 } = p;
         const attracts = omega2 > 0;
@@ -31,7 +57,7 @@ export class Springs {
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
         // is so small that a spring may land from far away, there is no limit.
         const slope = (4 * epsilon) / (share || 1);
-        const least = attracts && slope <= 1 / 8 ? (slope / epsilon) * leastNormal + 2 * restDelta : Infinity;
+        const least = attracts && slope <= 1 / 8 ? (slope / epsilon) * leastNormal + 2 * mostDelta : Infinity;
         let resting = 0;
         let failed = -1;
         for (let i = 0; i < count; i++) {
@@ -47,7 +73,7 @@ export class Springs {
                     if (failed < 0) failed = i;
                     continue;
                 }
-                if (settled(x, v, goal) || lands(x, to, y, v, share, omega2)) {
+                if (settled(i, x, v, goal) || lands(x, to, y, v, share, omega2)) {
                     value[i] = goal;
                     velocity[i] = 0;
                     resting++;

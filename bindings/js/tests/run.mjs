@@ -2,7 +2,10 @@
 // The package for JavaScript: bits, landing, errors, callbacks. Prints TAP.
 //     run.mjs JS_STATES VERSION.H [SPRINGS]     so many springs are compared with C, instead of 100000
 import assert from "node:assert";
-import { readFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { Spring, Springs } from "../index.js";
 import { compareSets, compareSingle } from "./compare.mjs";
 import { logarithmic, slowRate, uniform, usual } from "./random.mjs";
@@ -60,6 +63,105 @@ await test("a set of springs settles within its tolerances", () => {
     assert.deepStrictEqual([...s.velocity], [0, 0, 0]);
 });
 
+/** Imports a program of README as users would. */
+async function imported(program) {
+    const folder = mkdtempSync(join(tmpdir(), "springstep-"));
+    mkdirSync(join(folder, "node_modules"));
+    symlinkSync(fileURLToPath(new URL("..", import.meta.url)), join(folder, "node_modules/springstep"));
+    writeFileSync(join(folder, "program.mjs"), program);
+    await import(pathToFileURL(join(folder, "program.mjs")));
+    rmSync(folder, { recursive: true });
+}
+
+await test("the loop of README: started by a click, again after rest, first frames before the click", async () => {
+    let time = 0; // [ms]
+    let callback = null;
+    const { performance } = globalThis;
+    Object.defineProperty(globalThis, "performance", { value: { now: () => time }, configurable: true });
+    globalThis.element = { style: {} };
+    globalThis.requestAnimationFrame = (frame) => (callback = frame);
+    await imported(/```js\n([^]*?)```/.exec(local("README.md"))[1]);
+    const { style } = globalThis.element;
+    let earlier = 0;
+    for (let click = 0; click < 40; click++) {
+        time += uniform(0, 30000);
+        const [from, to] = click % 2 ? [100, 0] : [0, 100];
+        const reference = new Spring(from, { duration: 0.5, bounce: 0.2 });
+        reference.target = to;
+        globalThis.element.onclick();
+        let before = time;
+        time += uniform(-16, 16);
+        earlier += time < before;
+        let frames = 0;
+        for (; callback; frames++) {
+            const frame = callback;
+            callback = null;
+            frame(time);
+            reference.step(Math.max(0, time - before) / 1000);
+            assert.strictEqual(style.translate, `${reference.value}px`, `click ${click}, frame ${frames}`);
+            before = time;
+            time += 1000 / 60;
+        }
+        assert(reference.settled && frames > 30, `the loop stopped after ${frames} frames`);
+        const again = reference.step(1 / 60); // no further frame is due
+        assert.strictEqual(again, to);
+    }
+    assert(earlier > 10, `${earlier} first frames are earlier than the click`);
+    Object.defineProperty(globalThis, "performance", { value: performance, configurable: true });
+});
+
+await test("a motion of any size settles after the same frames, without a jump", () => {
+    const frames = new Set();
+    for (let i = 0; i < 200; i++) {
+        const size = (i % 2 ? 1 : -1) * 2 ** Math.round(uniform(-40, 40));
+        const one = new Spring(0, { duration: 0.4, bounce: 0.3 });
+        const many = new Springs(1, { duration: 0.4, bounce: 0.3 });
+        one.target = many.target[0] = size;
+        let n = 0;
+        let last = 0;
+        for (; !one.settled && n < 1000; n++) {
+            last = one.value;
+            one.target = size; // the same target in every frame
+            const moving = many.step(1 / 60);
+            one.step(1 / 60);
+            assert.strictEqual(many.value[0], one.value);
+            assert.strictEqual(moving, one.settled ? 0 : 1);
+        }
+        assert(Math.abs(size - last) <= 5e-4 * Math.abs(size), `a last step of ${(size - last) / size}`);
+        frames.add(n);
+    }
+    assert(frames.size === 1 && [...frames][0] < 120, `${[...frames]} frames`);
+    const flicked = new Spring(3, { hertz: 2, dampingRatio: 0.5 });
+    flicked.velocity = 1e-3;
+    let most = 0;
+    for (let n = 0; !flicked.settled; n++) most = Math.max(most, flicked.step(1 / 60) - 3, n > 300 ? NaN : 0);
+    assert(most > 3e-5 && flicked.value === 3, `a velocity moves the value by ${most}`);
+});
+
+await test("without stiffness a value settles where damping stops it", () => {
+    for (const [velocity, damping] of [
+        [1000, 4],
+        [-1e-3, 0.5],
+    ]) {
+        let rested = 0;
+        const s = new Spring(7, { stiffness: 0, damping, onRest: () => rested++ });
+        s.velocity = velocity;
+        for (let t = 0; t < 60 && !s.settled; t += 1 / 60) s.step(1 / 60);
+        assert(s.settled && s.velocity === 0 && rested === 1);
+        const way = velocity / damping;
+        assert(Math.abs(s.value - 7 - way) <= 1.001e-4 * Math.abs(way), `${s.value - 7}, not ${way}`);
+    }
+});
+
+await test("a property that a spring does not have cannot be set", () => {
+    for (const spring of [new Spring(0), new Springs(1)])
+        assert.throws(() => (spring.stiffness = 300), TypeError);
+    class Mine extends Spring {
+        name = "mine";
+    }
+    assert.strictEqual(new Mine(3).name, "mine");
+});
+
 await test("a new target keeps value and velocity", () => {
     const s = new Spring(0, { response: 0.5, dampingFraction: 0.75 });
     s.target = 100;
@@ -87,7 +189,8 @@ await test("parameters are those of C", () => {
     assert.strictEqual(after({ halfLife: 0.05, dampingRatio: 0.5 }), of(Math.LN2 / 0.05 / 0.5, 0.5));
     const rate = 1 / (2 + Math.sqrt(1) * Math.sqrt(3));
     assert.strictEqual(after({ halfLife: 0.05, dampingRatio: 2 }), of(Math.LN2 / 0.05 / rate, 2));
-    assert.strictEqual(after({ duration: 0.5 }), after(undefined), "the default");
+    for (const options of [undefined, {}, { clamp: true }, { restDelta: 1e-9 }, { bounce: 0 }])
+        assert.strictEqual(after({ duration: 0.5 }), after(options), "the default");
     assert.strictEqual(after({ stiffness: 40, damping: 3 }), after({ stiffness: 80, damping: 6, mass: 2 }));
 });
 
@@ -101,16 +204,18 @@ await test("onRest is called once each time a spring settles", () => {
     assert.deepStrictEqual(rested, [], "it was at rest");
     s.target = 5;
     run();
-    s.target = 5;
-    run();
     assert.deepStrictEqual(rested, [5]);
+    s.target = 5;
+    assert(!s.settled, "until the next step");
+    run();
+    assert.deepStrictEqual(rested, [5, 5], "a new target that equals the value");
     s.target = 6;
     s.jump(9);
     run();
-    assert.deepStrictEqual([rested, s.value, s.target, s.velocity, s.settled], [[5], 9, 9, 0, true]);
+    assert.deepStrictEqual([rested, s.value, s.target, s.velocity, s.settled], [[5, 5], 9, 9, 0, true]);
     s.velocity = 3;
     run();
-    assert.deepStrictEqual(rested, [5, 9]);
+    assert.deepStrictEqual(rested, [5, 5, 9]);
     s.onRest = (spring) => (spring.target = 1);
     s.target = 0;
     run();
@@ -126,6 +231,13 @@ await test("clamp stops at the target, in long steps too", () => {
             assert(s.value <= 10, `${s.value} after ${t} s`);
         }
         assert.deepStrictEqual([s.value, s.velocity, s.settled], [10, 0, true], `dt ${dt}`);
+    }
+    const flicked = new Spring(4, { hertz: 1, dampingRatio: 0.1, clamp: true });
+    for (const velocity of [-20, 20]) {
+        flicked.velocity = velocity;
+        for (let i = 0; i < 60; i++)
+            assert.strictEqual(flicked.step(1 / 60), 4, "a value on its target stays");
+        assert(flicked.settled && flicked.velocity === 0);
     }
     const back = new Spring(0, { hertz: 1, dampingRatio: 0.1, clamp: true });
     back.target = 10;
@@ -167,7 +279,8 @@ await test("errors name field and value", () => {
     );
     refused(spring({ duration: -1 }), RangeError, "duration must be a finite number > 0, got -1");
     refused(spring({ duration: 1, bounce: -1 }), RangeError, "bounce must be a number > -1 and <= 1, got -1");
-    refused(spring({ hertz: Infinity }), RangeError, "hertz must be a finite number >= 0, got Infinity");
+    refused(spring({ hertz: Infinity }), RangeError, "hertz must be a finite number > 0, got Infinity");
+    refused(spring({ hertz: 0 }), RangeError, "hertz must be a finite number > 0, got 0");
     refused(spring({ hertz: 1e200 }), RangeError, "stiffness must be a finite number >= 0, got Infinity");
     refused(spring({ hertz: 1e-160 }), RangeError, /^stiffness must be no denormal number, got /);
     refused(
@@ -175,7 +288,8 @@ await test("errors name field and value", () => {
         RangeError,
         "dampingRatio must be a finite number > 0, got 0",
     );
-    refused(spring({}), TypeError, "options must have one of stiffness, response, duration, hertz, halfLife");
+    const oneOf = "options must have one of stiffness, response, duration, hertz, halfLife";
+    refused(spring({ damping: 3 }), TypeError, oneOf);
     refused(spring({ hertz: 1, bounce: 0 }), TypeError, "the option bounce does not go with hertz");
     refused(spring({ hertz: 1, duration: 1 }), TypeError, "the option duration does not go with hertz");
     refused(spring(null), TypeError, /null/);

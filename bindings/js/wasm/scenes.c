@@ -29,11 +29,13 @@ _Static_assert(sizeof(spring_collider) == 8 * 31 && offsetof(spring_collider, ax
 typedef struct shown {
     spring_scene *scene;
     size_t bytes;
-    void *saved; /* [bytes] during a frame; NULL before the first */
+    void *saved; /* [bytes] the scene before a frame; NULL before the first */
     uint32_t axes;
     uint32_t component; /* of an element of `positions` that receives the first axis */
     size_t particles, links;
-    spring_clock clock;
+    spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
+    spring_clock next;  /* after the frame that has begun */
+    double alpha;       /* of that frame */
     double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
     float *positions;     /* [3*particles] */
 } shown;
@@ -167,11 +169,6 @@ EXPORT(scene_new) shown *scene_new(uint32_t component, const float *base)
     return NULL;
 }
 
-EXPORT(scene_positions) const float *scene_positions(const shown *s)
-{
-    return s->positions;
-}
-
 EXPORT(scene_of) spring_scene *scene_of(const shown *s)
 {
     return s->scene;
@@ -215,10 +212,26 @@ static bool begin_frames(shown *s)
     return false;
 }
 
-static spring_status take_frame(shown *s, spring_method m, double dt, uint64_t n)
+/* Begins a frame of `elapsed` seconds and returns the steps that are due, at most `most`; -1: no memory. times[0]: from the
+   time of the scene to the end of the frame, times[1]: before that, dropped. */
+EXPORT(scene_begin_frame)
+double scene_begin_frame(shown *s, double elapsed, double dt, double most, double times[2])
 {
-    memcpy(s->saved, s->scene, s->bytes);
-    spring_status status = spring_scene_advance(s->scene, m, dt, n - 1);
+    if (s->before == NULL && !begin_frames(s))
+        return -1;
+    s->next = s->clock;
+    const double n = (double)spring_clock_tick(&s->next, elapsed, dt, (uint64_t)most, &s->alpha);
+    times[0] = n * dt + s->next.pending;
+    times[1] = s->next.dropped;
+    if (n > 0)
+        memcpy(s->saved, s->scene, s->bytes);
+    return n;
+}
+
+/* Takes the steps of a frame, n > 0. */
+EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method m, double dt, double n)
+{
+    spring_status status = spring_scene_advance(s->scene, m, dt, (uint64_t)n - 1);
     if (status == SPRING_OK) {
         spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
         status = spring_scene_advance(s->scene, m, dt, 1);
@@ -227,32 +240,39 @@ static spring_status take_frame(shown *s, spring_method m, double dt, uint64_t n
         double *const before = s->before;
         s->before = s->now;
         s->now = before;
-    } else {
-        memcpy(s->scene, s->saved, s->bytes);
+        spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+        s->next.dropped = 0;
     }
-    spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
     return status;
 }
 
-/* Takes the steps that are due after `elapsed` seconds, at most `most`, and shows the positions at the time of the clock,
-   between the last two states. *steps is their number. After an error, the scene and the clock are as before. */
-EXPORT(scene_frame)
-spring_status scene_frame(shown *s, spring_method m, double dt, double elapsed, double most, uint32_t *steps)
+/* Ends a frame whose steps have been taken. Positions are between the last two states. */
+EXPORT(scene_end_frame) const float *scene_end_frame(shown *s)
 {
-    if (s->before == NULL && !begin_frames(s))
-        return SPRING_ENOMEM;
-    double alpha;
-    spring_clock clock = s->clock;
-    const uint64_t n = spring_clock_tick(&clock, elapsed, dt, (uint64_t)most, &alpha);
-    const spring_status status = n > 0 ? take_frame(s, m, dt, n) : SPRING_OK;
-    if (status != SPRING_OK)
-        return status;
-    s->clock = clock;
-    *steps = (uint32_t)n;
+    s->clock = s->next;
     for (size_t i = 0, k = 0; i < s->particles; i++)
         for (uint32_t a = 0; a < s->axes; a++, k++)
-            s->positions[3 * i + s->component + a] = (float)(s->before[k] + alpha * (s->now[k] - s->before[k]));
-    return SPRING_OK;
+            s->positions[3 * i + s->component + a] = (float)(s->before[k] + s->alpha * (s->now[k] - s->before[k]));
+    return s->positions;
+}
+
+/* After a failure: the scene is as before the frame, whose time is dropped. */
+EXPORT(scene_undo_frame) void scene_undo_frame(shown *s, double elapsed)
+{
+    memcpy(s->scene, s->saved, s->bytes);
+    spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
+    s->clock.dropped += elapsed;
+}
+
+/* What frames depend on besides the scene: the clock, and the state before the last step, NULL before the first frame. */
+EXPORT(scene_clock) spring_clock *scene_clock(shown *s)
+{
+    return &s->clock;
+}
+
+EXPORT(scene_before) double *scene_before(const shown *s)
+{
+    return s->before;
 }
 
 /* The present links of a scene. */

@@ -46,11 +46,11 @@ export class Sphere {
         return !this.held && this.at[1] >= back;
     }
 
-    /** Advances the sphere. Returns its collider at the start of this time. */
-    advance(duration) {
+    /** Advances the sphere, which follows a pointer that is `late` seconds ahead. Returns its collider at the start. */
+    advance(duration, late) {
         const { at, target, radius } = this;
         const [dx, dz] = [target[0] - at[0], target[1] - at[2]];
-        const part = Math.min(1, (fastest * duration) / (Math.hypot(dx, dz) || 1));
+        const part = Math.min(duration / (duration + late), (fastest * duration) / (Math.hypot(dx, dz) || 1));
         const way = [part * dx, Math.min(speed * duration, back - at[1]), part * dz];
         this.at = at.map((each, axis) => each + way[axis]);
         const velocity = way.map((each) => each / duration);

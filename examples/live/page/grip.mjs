@@ -28,13 +28,14 @@ export class Hand {
         this.particle = null;
     }
 
-    pull(duration) {
+    /** Moves the particle so that it would reach the target after `time` [s], if it is fast enough. */
+    pull(time) {
         if (this.particle === null) return;
         const { scene } = this.lab;
         const position = scene.get("position", this.particle, 1);
         const way = this.shown.map((axis, a) => this.target[axis] - position[a]);
-        const part = Math.min(1, (this.fastest * duration) / Math.hypot(...way));
+        const part = Math.min(1, (this.fastest * time) / Math.hypot(...way));
         const to = way.map((each, a) => position[a] + part * each);
-        scene.drive(this.particle, part < 1 ? to : this.shown.map((axis) => this.target[axis]), duration);
+        scene.drive(this.particle, part < 1 ? to : this.shown.map((axis) => this.target[axis]), time);
     }
 }

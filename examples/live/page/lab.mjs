@@ -105,13 +105,14 @@ export class Lab {
         return false;
     }
 
-    /** Takes up to n steps of 1/(60 stepsPerFrame) s, until the scene explodes; returns the number taken. */
-    advance(method, stepsPerFrame, n) {
+    /** Takes up to n steps of 1/(60 stepsPerFrame) s, until the scene explodes; returns the number taken. The pointer is
+        where it is `late` seconds after these steps. */
+    advance(method, stepsPerFrame, n, late = 0) {
         if (n === 0) return 0;
         const dt = 1 / (frameRate * stepsPerFrame);
         const duration = n * dt;
-        this.hand.pull(duration);
-        if (this.sphere) this.scene.setColliders([this.sphere.advance(duration)]);
+        this.hand.pull(duration + late);
+        if (this.sphere) this.scene.setColliders([this.sphere.advance(duration, late)]);
         this.letItRain(this.time + duration);
         this.ball?.advance(duration);
         const all = this.take(method, dt, n);

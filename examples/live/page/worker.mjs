@@ -70,9 +70,9 @@ function make(settings) {
     show("frame", { asked: true });
 }
 
-function advance(pane, n) {
+function advance(pane, n, late) {
     const start = performance.now();
-    const taken = pane.lab.advance(pane.method, steps, n);
+    const taken = pane.lab.advance(pane.method, steps, n, late);
     pane.busy += performance.now() - start;
     pane.taken += taken;
     const far = pane.lab.farthest;
@@ -85,12 +85,12 @@ function advance(pane, n) {
     return taken;
 }
 
-function advanceAll(n, evenExploded) {
-    for (const pane of panes) if (evenExploded || !pane.exploded) advance(pane, n);
+function advanceAll(n, evenExploded, late = 0) {
+    for (const pane of panes) if (evenExploded || !pane.exploded) advance(pane, n, late);
     if (!reference || panes.every((pane) => pane.exploded)) return;
     const time = Math.max(...panes.map((pane) => (pane.exploded ? 0 : pane.lab.time)));
     const due = Math.round((time - reference.lab.time) * 60 * referenceSteps());
-    if (due > 0) reference.lab.advance(reference.method, referenceSteps(), due);
+    if (due > 0) reference.lab.advance(reference.method, referenceSteps(), due, late);
 }
 
 function tear() {
@@ -129,7 +129,7 @@ function show(kind, more) {
 
 function tick(elapsed) {
     const due = panes.map((pane) => pane.lab.due(Math.min(elapsed, longestTick), steps, 10 * steps));
-    advanceAll(due[0], false);
+    advanceAll(due[0], false, panes[0]?.lab.pending);
     tear();
     show("frame");
 }
