@@ -50,15 +50,18 @@ function omegaAndRatio(way, first, name, second) {
     return [twoPi / first, second];
 }
 
-// Default tolerances, relative to the size of a motion.
-const relativeDelta = 1e-4;
-const relativeSpeed = 1e-3; // [1/s]
+/** The size of a motion that begins at a distance from the target with a velocity. */
+export const sizeOf = (p, distance, velocity) =>
+    Math.abs(p.omega2 && distance) + Math.abs(velocity) * p.reach;
 
-/** The propagator and the tolerances of options. `others` are the names of further options. */
+/**
+ * Of options: the propagator p, the explicit tolerances, and near(left, speed, size), which is whether a value is at rest at a
+ * distance and a speed, in a motion of a size. `others` are the names of further options.
+ */
 export function settings(options, others) {
     const { restDelta, restSpeed, ...rest } = options;
-    if (restDelta !== undefined) checkNotNegative("restDelta", restDelta);
-    if (restSpeed !== undefined) checkNotNegative("restSpeed", restSpeed);
+    checkNotNegative("restDelta", restDelta ?? 0);
+    checkNotNegative("restSpeed", restSpeed ?? 0);
     const given = Object.keys(rest).filter((name) => rest[name] !== undefined && !others.includes(name));
     let way = given.find((name) => Object.hasOwn(ways, name));
     if (!way && typeof options === "object" && given.every((name) => name === "bounce")) {
@@ -83,18 +86,8 @@ export function settings(options, others) {
     checkPositive("mass", mass);
     checkFinite("stiffness / mass", stiffness / mass);
     checkFinite("damping / mass", damping / mass);
-    const propagator = new Propagator(stiffness, damping, mass);
-    const { omega2, b } = propagator;
-    const rate = omega2 > 0 ? Math.sqrt(omega2) : 2 * b;
-    const reach = rate > 0 ? 1 / rate : 0; // [s] times a speed: the distance that a value may still move
-    return {
-        propagator,
-        reach,
-        relative: restDelta === undefined || restSpeed === undefined,
-        /** The size of a motion that begins with a distance from the target and a velocity. */
-        sizeOf: (distance, velocity) => (omega2 > 0 ? Math.abs(distance) : 0) + Math.abs(velocity) * reach,
-        /** Tolerances of rest after a motion of this size. */
-        deltaOf: (size) => restDelta ?? relativeDelta * size,
-        speedOf: (size) => restSpeed ?? relativeSpeed * size,
-    };
+    const p = new Propagator(stiffness, damping, mass);
+    const near = (left, speed, size) =>
+        left <= (restDelta ?? size / 1e4) && Math.abs(speed) <= (restSpeed ?? size / 1e3);
+    return { p, restDelta, restSpeed, near };
 }

@@ -55,6 +55,8 @@ export class Propagator {
         this.split = sqrt(abs(D)) * powerOfTwo(k);
         this.overdamped = D < 0;
         this.dt = NaN;
+        // [s] times a speed: the distance that a value may still move, or without stiffness, that it moves
+        this.reach = 1 / (sqrt(w) || g || Infinity);
     }
 
     /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - wH x) about the target. */

@@ -119,7 +119,7 @@ export class Scene {
             move?.();
             this.#checked(this.#call("scene_take_frame", this.#pointer, number, dt, steps), method, dt);
         } catch (error) {
-            library().scene_undo_frame(this.#pointer, seconds);
+            this.#show(library().scene_undo_frame(this.#pointer, seconds));
             this.#force = force;
             throw error;
         } finally {

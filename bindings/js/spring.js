@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One value that follows a target: spring_follow() with a load and a target velocity of 0.
-import { check, checkFinite, isNumber, settings } from "./options.js";
+import { check, checkFinite, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
 
 export class Spring {
@@ -33,7 +33,7 @@ export class Spring {
 
     #moves() {
         this.#settled = false;
-        this.#size = this.#settings.sizeOf(this.#target - this.#value, this.#velocity);
+        this.#size = sizeOf(this.#settings.p, this.#target - this.#value, this.#velocity);
     }
 
     get value() {
@@ -77,7 +77,7 @@ export class Spring {
         checkFinite("dt", dt);
         if (this.#settled || dt === 0) return this.#value;
         if (this.#value === this.#target && this.#velocity === 0) return this.#rest(this.#value);
-        const { propagator: p, reach, deltaOf, speedOf } = this.#settings;
+        const { p, near } = this.#settings;
         p.prepare(dt);
         const target = this.#target;
         const attracts = p.omega2 > 0;
@@ -91,9 +91,9 @@ export class Spring {
         // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
         const passed = y0 > 0 ? y <= 0 : y0 === 0 || y >= 0;
         const stops = this.clamp && dt > 0 && attracts && (passed || p.angle >= Math.PI);
-        const left = attracts ? Math.abs(x - target) : Math.abs(v) * reach;
-        const near = left <= deltaOf(this.#size) && Math.abs(v) <= speedOf(this.#size);
-        if (stops || near || lands(x, to, y, v, p.share, p.omega2)) return this.#rest(attracts ? target : x);
+        const left = Math.abs(attracts ? x - target : v * p.reach);
+        if (stops || near(left, v, this.#size) || lands(x, to, y, v, p.share, p.omega2))
+            return this.#rest(attracts ? target : x);
         this.#velocity = v;
         return (this.#value = x);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
-import { check, checkFinite, isNumber, settings } from "./options.js";
+import { check, checkFinite, isNumber, settings, sizeOf } from "./options.js";
 import { epsilon, leastNormal } from "./elementary.js";
 import { lands } from "./propagator.js";
 
@@ -25,8 +25,8 @@ export class Springs {
     /** A motion begins at a new target, and at a value on its target. Returns the largest tolerance of a distance. */
     #measure() {
         const { target, value, velocity } = this;
-        const { relative, sizeOf, deltaOf } = this.#settings;
-        if (!relative) return deltaOf(0);
+        const { p, restDelta, restSpeed } = this.#settings;
+        if (restDelta >= 0 && restSpeed >= 0) return restDelta;
         const targets = this.#targets;
         const sizes = this.#sizes;
         let largest = 0;
@@ -34,22 +34,21 @@ export class Springs {
             const goal = target[i];
             if (goal !== targets[i] || (goal === value[i] && velocity[i] !== 0)) {
                 targets[i] = goal;
-                sizes[i] = sizeOf(goal - value[i], velocity[i]);
+                sizes[i] = sizeOf(p, goal - value[i], velocity[i]);
             }
             if (sizes[i] > largest) largest = sizes[i];
         }
-        return deltaOf(largest);
+        return restDelta ?? largest / 1e4;
     }
 
     step(dt) {
         checkFinite("dt", dt);
         const { target, value, velocity } = this;
         const count = value.length;
-        const { propagator: p, deltaOf, speedOf } = this.#settings;
+        const { p, near } = this.#settings;
         const mostDelta = this.#measure();
         const sizes = this.#sizes;
-        const settled = (i, x, v, goal) => abs(x - goal) <= deltaOf(sizes[i]) && abs(v) <= speedOf(sizes[i]);
-        if (dt === 0) return value.filter((x, i) => !settled(i, x, velocity[i], target[i])).length;
+        if (dt === 0) return value.filter((x, i) => !near(abs(x - target[i]), velocity[i], sizes[i])).length;
         p.prepare(dt);
         const { half, F, G, H, wH, share, omega2 } = p;
         const attracts = omega2 > 0;
@@ -73,7 +72,7 @@ export class Springs {
                     if (failed < 0) failed = i;
                     continue;
                 }
-                if (settled(i, x, v, goal) || lands(x, to, y, v, share, omega2)) {
+                if (near(abs(x - goal), v, sizes[i]) || lands(x, to, y, v, share, omega2)) {
                     value[i] = goal;
                     velocity[i] = 0;
                     resting++;

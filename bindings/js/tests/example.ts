@@ -17,9 +17,51 @@ const ways: SpringOptions[] = [
     { halfLife: 0.05, dampingRatio: 0.7 },
 ];
 for (const way of ways) new Spring(0, way).jump(1);
+new Spring(0, { clamp: true });
+new Springs(1, { bounce: 0.1 });
 
 // @ts-expect-error: a number is required
 const wrong = () => new Spring(0, { hertz: 2, dampingRatio: "none" });
+// Each of these throws.
+const refused: (() => unknown)[] = [
+    // @ts-expect-error: two forms
+    () => new Spring(0, { duration: 1, stiffness: 1 }),
+    // @ts-expect-error: the second parameter of another form
+    () => new Spring(0, { duration: 1, dampingRatio: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { hertz: 1, dampingFraction: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { hertz: 1, bounce: 0 }),
+    // @ts-expect-error
+    () => new Spring(0, { response: 1, bounce: 0 }),
+    // @ts-expect-error
+    () => new Spring(0, { response: 1, duration: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { halfLife: 1, damping: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { duration: 1, mass: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { stiffness: 1, damping: 1, bounce: 0 }),
+    // @ts-expect-error: half of a form
+    () => new Spring(0, { stiffness: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { dampingRatio: 1 }),
+    // @ts-expect-error
+    () => new Spring(0, { mass: 1 }),
+    // @ts-expect-error: only for single springs
+    () => new Springs(1, { ...options, clamp: true }),
+    // @ts-expect-error: no such property
+    () => (new Spring(0).stiffness = 300),
+];
+const accepted = refused.filter((run) => {
+    try {
+        run();
+    } catch {
+        return false;
+    }
+    return true;
+});
+
 // @ts-expect-error: the target of a set is filled, not replaced
 const assign = (s: Springs) => (s.target = new Float64Array(2));
 
@@ -28,4 +70,4 @@ many.target.set([1, -1]);
 let moving: number = many.step(1 / 60);
 for (let i = 0; i < 200; i++) moving = many.step(1 / 60);
 
-console.log(rested.join(), spring.settled && assign.length + wrong.length === 1, moving);
+console.log(rested.join(), spring.settled && assign.length + wrong.length + accepted.length === 1, moving);

@@ -3,7 +3,9 @@
 //     node scenes.mjs SPRING-SCENE [scalar]
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
+import { readFileSync } from "node:fs";
 import { hashOf, preset, presetNames, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
+import { chance, logarithmic, uniform } from "./random.mjs";
 import { done, note, test } from "./tap.mjs";
 
 const [program, scalar] = process.argv.slice(2);
@@ -172,6 +174,19 @@ await test("advance(n) is n times advance(1); frames take the same steps and int
     for (const scene of [a, b, c]) scene.free();
 });
 
+await test("negative frame times count as 0, long ones are limited", () => {
+    const [a, b] = [rope(), rope()];
+    for (let i = 0; i < 50; i++) {
+        const elapsed = logarithmic(1e-4, 1e3);
+        assert.equal(a.frame("leapfrog", 1e-3, elapsed, 40), b.frame("leapfrog", 1e-3, elapsed, 40));
+        assert.equal(a.frame("leapfrog", 1e-3, chance(0.5) ? -elapsed : -0), 0);
+        assert.deepEqual(a.positions, b.positions);
+    }
+    assert.equal(a.frame("leapfrog", 1e-3, Number.MAX_VALUE), 250);
+    a.free();
+    b.free();
+});
+
 await test("a frame that fails changes nothing", () => {
     const scene = rope({ maxSpeed: 1 });
     for (let i = 0; i < 5; i++) scene.frame("leapfrog", 1e-3, 0.01);
@@ -182,6 +197,135 @@ await test("a frame that fails changes nothing", () => {
     });
     assert.equal(hashOf(scene), hash);
     assert.equal(scene.frame("leapfrog", 1e-3, 0.001), 1);
+    scene.free();
+});
+
+await test("a frame calls move() once before its steps, and undoes what it did if the frame fails", () => {
+    const scene = rope({ editable: true });
+    const seen = [];
+    const move = (...times) => seen.push(times);
+    for (const elapsed of [0.0005, 0.0006, 0.5, 0.0101])
+        scene.frame("leapfrog", 1e-3, elapsed, { mostSteps: 20, move });
+    const wanted = [
+        [0.0011, 0],
+        [0.0201, 0.48],
+        [0.0102, 0],
+    ];
+    assert.equal(seen.length, 3, "not without steps");
+    seen.flat().forEach((time, i) => assert.ok(Math.abs(time - wanted.flat()[i]) < 1e-12, `${time}`));
+    const before = [hashOf(scene), ...scene.get("velocity"), ...scene.positions];
+    const fails = () => {
+        scene.pin(4);
+        scene.transform([1, 0, 0, 9, 0, 1, 0, 0, 0, 0, 1, 0]);
+        scene.force = () => {};
+        assert.throws(() => scene.free(), TypeError);
+        scene.frame("leapfrog", 1e-3, 0.01);
+    };
+    assert.throws(() => scene.frame("leapfrog", 1e-3, 0.25, { move: fails }), /must not call frame/);
+    assert.equal(scene.force, null);
+    assert.deepEqual([hashOf(scene), ...scene.get("velocity"), ...scene.positions], before);
+    scene.frame("leapfrog", 1e-3, 0.01, { move });
+    assert.ok(Math.abs(seen[3][1] - 0.25) < 1e-12, "the time of a frame that failed is dropped");
+    scene.free();
+});
+
+/** The first program of README with a declaration. */
+async function programOfReadme(declaration, name) {
+    const text = readFileSync(new URL("../README.md", import.meta.url), "utf8");
+    const block = text.split("```").find((each) => each.startsWith(`js\n${declaration}`));
+    return (
+        await import(`data:text/javascript,${encodeURIComponent(`${block.slice(3)}export { ${name} };`)}`)
+    )[name];
+}
+const withHand = await programOfReadme("function frame(rope,", "frame");
+const speed = 10; // [m/s] of the hand
+
+/** A rope of 20 particles that hangs in equilibrium from a hand, and moves with it. */
+function hanging(more = {}) {
+    const [count, spacing, stiffness, mass] = [20, 0.1, 400, 0.05];
+    const links = Array.from({ length: count - 1 }, (_, i) => ({
+        a: i,
+        b: i + 1,
+        rest: spacing - (mass * 9.81 * (count - 1 - i)) / stiffness,
+        stiffness,
+    }));
+    const position = Array.from({ length: 3 * count }, (_, i) =>
+        i % 3 === 1 ? (-spacing * (i - 1)) / 3 : 0,
+    );
+    const velocity = Array.from(position, (_, i) => (i % 3 === 0 ? speed : 0));
+    const pinned = [1, ...Array(count - 1).fill(0)];
+    return new Scene({ position, velocity, links, mass, pinned, gravity: [0, -9.81, 0], ...more });
+}
+
+function longest(scene) {
+    const x = scene.get("position");
+    let most = 0;
+    for (let i = 3; i < x.length; i += 3)
+        most = Math.max(most, Math.hypot(x[i] - x[i - 3], x[i + 1] - x[i - 2], x[i + 2] - x[i - 1]) / 0.1);
+    return most;
+}
+
+await test("the program of README: the free end keeps its place below a hand that moves at 10 m/s", () => {
+    for (const noise of [0, 0.5e-3])
+        for (const rate of [60, 75, 120, 144, 165, 240, 1500]) {
+            const scene = hanging();
+            let time = 0;
+            let scenes = 0; // largest deviations [m]: of the scene, and of what is drawn
+            let drawn = 0;
+            for (let i = 0; i < 3 * rate; i++) {
+                const elapsed = 1 / rate + uniform(-noise, noise);
+                time += Math.max(0, elapsed);
+                withHand(scene, elapsed, [speed * time, 0, 0]);
+                const [pin, , , end] = [...scene.get("position", 0, 1), ...scene.get("position", 19, 1)];
+                scenes = Math.max(scenes, Math.abs(end - pin));
+                const shown = speed * (time - 1 / 960); // one step behind
+                if (scene.time > 0) drawn = Math.max(drawn, Math.abs(scene.positions[57] - shown));
+            }
+            note(
+                `${rate} fps, +-${1000 * noise} ms: the free end moves by ${(1000 * scenes).toExponential(1)} mm, drawn ${(1000 * drawn).toExponential(1)} mm`,
+            );
+            assert.ok(scenes < 1e-5 && drawn < 1e-5);
+            scene.free();
+        }
+});
+
+await test("the program of README: a long frame does not stretch the rope, and none fails with maxSpeed", () => {
+    const stretched = (hitch) => {
+        const scene = hanging({ maxSpeed: 3 * speed });
+        let time = 0;
+        let most = 0;
+        for (let i = 0; i < 600; i++) {
+            time += i === 200 ? hitch : 1 / 144;
+            withHand(scene, i === 200 ? hitch : 1 / 144, [speed * time, 0, 0]);
+            most = Math.max(most, longest(scene));
+        }
+        scene.free();
+        return most;
+    };
+    const usual = stretched(1 / 144);
+    for (const hitch of [0.25, 5, 60]) {
+        const more = stretched(hitch) / usual - 1;
+        note(`a frame of ${hitch} s: the longest link is ${(100 * more).toExponential(1)} % longer`);
+        assert.ok(more <= 0.1, `${more}`);
+    }
+});
+
+await test("the program of README: frames go on after failures", () => {
+    const scene = hanging({ maxSpeed: 3 * speed });
+    const frames = [];
+    for (let i = 0; i < 300; i++) {
+        // something pushes the rope for 20 frames, so that it is too fast
+        scene.force = i >= 100 && i < 120 ? (t, position, [fx]) => fx.fill(1e4) : null;
+        try {
+            withHand(scene, 1 / 144, [(speed * (i + 1)) / 144, 0, 0]);
+            frames.push(longest(scene));
+        } catch (error) {
+            assert.equal(error.code, "SPRING_EUNSTABLE");
+        }
+    }
+    assert.equal(frames.length, 280, "only frames in which something pushes fail");
+    const more = Math.max(...frames) - 1;
+    assert.ok(more < 1e-9, `stretched by ${more}`);
     scene.free();
 });
 
@@ -329,11 +473,19 @@ await test("contacts: shapes, motion, friction, which touch", () => {
             "colliders[0].restitution must be a number from 0 to 1, got 2",
         ],
         [
-            { shape: "box", axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
+            { shape: "box", half: [1, 1], axes: [1, 0, 0, 1, 0, 0, 0, 0, 1] },
             "RangeError",
             /^colliders must be valid: the axes of a box/,
         ],
         [{ shape: "box", colour: 1 }, "TypeError", "the option colour is unknown"],
+        [{ shape: "sphere" }, "TypeError", "colliders[0].radius is required"],
+        [{ shape: "capsule", radius: 1 }, "TypeError", "colliders[0].to is required"],
+        [{ shape: "box", radius: 1 }, "TypeError", "colliders[0].half is required"],
+        [
+            { shape: "sphere", radius: 1, half: [1, 1] },
+            "TypeError",
+            "colliders[0]: the option half does not go with sphere",
+        ],
     ])
         assert.throws(() => flat.setColliders([collider]), { name, message });
     const sphere = { shape: "sphere", radius: 1 };
@@ -390,6 +542,28 @@ await test("a callback: forces by position and velocity; what it throws; it cann
     scene.force = null;
     scene.advance("leapfrog", 1e-3);
     scene.free();
+});
+
+await test("snapshots include the clock of frames", () => {
+    for (let run = 0; run < 40; run++) {
+        const scene = rope();
+        const frames = Array.from({ length: 12 }, () => uniform(-0.002, 0.02));
+        const play = (list) =>
+            list.map((elapsed) => [
+                scene.frame("leapfrog", 1e-3, elapsed),
+                hashOf(scene),
+                ...scene.positions,
+            ]);
+        play(frames.slice(0, run % 6));
+        const saved = scene.snapshot();
+        const shown = scene.positions.slice();
+        const first = play(frames.slice(6));
+        if (run % 2) scene.transform([2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]);
+        scene.restore(saved);
+        assert.deepEqual(scene.positions, shown);
+        assert.deepEqual(play(frames.slice(6)), first);
+        scene.free();
+    }
 });
 
 await test("snapshots: back to them, with the callback; none of another scene", () => {
@@ -505,7 +679,20 @@ await test("errors name field and value, and change nothing", () => {
         [() => one.advance("leapfrog", 0.1, -1), "RangeError", "steps must be an integer >= 0, got -1"],
         [() => one.advance("rk4", 0.1), "TypeError", "the scene is defined without the method rk4"],
         [() => one.frame("leapfrog", 0, 1), "RangeError", "dt must be a finite number > 0, got 0"],
-        [() => one.frame("leapfrog", 1, -1), "RangeError", "elapsed must be a finite number >= 0, got -1"],
+        [() => one.frame("leapfrog", 1, NaN), "RangeError", "elapsed must be a finite number, got NaN"],
+        [
+            () => one.frame("leapfrog", 1, 1, 0),
+            "RangeError",
+            "mostSteps must be an integer >= 1 and < 2^32, got 0",
+        ],
+        [() => one.frame("leapfrog", 1, 1, { most: 3 }), "TypeError", "the option most is unknown"],
+        [
+            () => one.frame("leapfrog", 1, 1, { move: 3 }),
+            "TypeError",
+            "move must be a function or null, got 3",
+        ],
+        [() => one.setLink(0, { stifness: 3 }), "TypeError", "the option stifness is unknown"],
+        [() => (one.gravity = [0, 0]), "TypeError", /^Cannot add property gravity/],
         [() => one.set("position", [1, NaN]), "RangeError", "position[1] must be a finite number, got NaN"],
         [() => one.set("position", [1, 2], 2), "RangeError", "first + count must be at most 2, got 3"],
         [() => one.set("speed", [1, 2]), "TypeError", /^quantity must be one of/],

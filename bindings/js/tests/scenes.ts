@@ -38,6 +38,10 @@ let torn: number;
     const start = cloth.snapshot();
     cloth.advance("leapfrog", 1 / 600, 10);
     cloth.frame("rk4", 1 / 1200, 1 / 60, 30);
+    cloth.frame("rk4", 1 / 1200, -1, {
+        mostSteps: 30,
+        move: (time, dropped) => cloth.drive(0, null, time + dropped),
+    });
     cloth.set("force", new Float64Array(3 * cloth.particles));
     cloth.pin(80);
     cloth.drive(80, [0.8, 0.8, 1], 0.5);
@@ -51,6 +55,10 @@ let torn: number;
     cloth.restore(start);
     time = cloth.time + (z === 5 && total !== 0 && cloth.tension(0) === 0 ? 0 : 1);
 }
+// @ts-expect-error: a sphere has a radius
+const shapeless = (s: Scene) => s.setColliders([{ shape: "sphere" }]);
+// @ts-expect-error: of a plane
+const turned = (s: Scene) => s.setColliders([{ shape: "sphere", radius: 1, normal: [0, 1, 0] }]);
 // @ts-expect-error: no such method
 const wrong = (s: Scene) => s.advance("verlet", 1);
 // @ts-expect-error: positions are refilled, not replaced
@@ -59,5 +67,11 @@ const assign = (s: Scene) => (s.positions = new Float64Array(3));
 console.log(
     time,
     torn > 0,
-    components(2, []).count + (methods()[0]?.order ?? 0) + wrong.length + assign.length,
+    components(2, []).count +
+        (methods()[0]?.order ?? 0) +
+        wrong.length +
+        assign.length +
+        shapeless.length +
+        turned.length -
+        2,
 );

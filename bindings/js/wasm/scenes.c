@@ -35,7 +35,8 @@ typedef struct shown {
     size_t particles, links;
     spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
     spring_clock next;  /* after the frame that has begun */
-    double alpha;       /* of that frame */
+    double alpha, next_alpha;
+    bool in_frame; /* whether a frame has begun that takes steps */
     double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
     float *positions;     /* [3*particles] */
 } shown;
@@ -184,10 +185,11 @@ EXPORT(scene_advance) spring_status scene_advance(shown *s, spring_method m, dou
     return spring_scene_advance(s->scene, m, dt, (uint64_t)n);
 }
 
-/* Positions have changed otherwise than by steps: frames do not interpolate across that. */
+/* Positions have changed otherwise than by steps: frames do not interpolate across that. A frame that has begun replaces both
+   states, or none if it fails. */
 EXPORT(scene_moved) const float *scene_moved(shown *s)
 {
-    if (s->before != NULL) {
+    if (s->before != NULL && !s->in_frame) {
         spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
         memcpy(s->before, s->now, s->particles * s->axes * sizeof *s->now);
     }
@@ -220,10 +222,11 @@ double scene_begin_frame(shown *s, double elapsed, double dt, double most, doubl
     if (s->before == NULL && !begin_frames(s))
         return -1;
     s->next = s->clock;
-    const double n = (double)spring_clock_tick(&s->next, elapsed, dt, (uint64_t)most, &s->alpha);
+    const double n = (double)spring_clock_tick(&s->next, elapsed, dt, (uint64_t)most, &s->next_alpha);
     times[0] = n * dt + s->next.pending;
     times[1] = s->next.dropped;
-    if (n > 0)
+    s->in_frame = n > 0;
+    if (s->in_frame)
         memcpy(s->saved, s->scene, s->bytes);
     return n;
 }
@@ -246,22 +249,31 @@ EXPORT(scene_take_frame) spring_status scene_take_frame(shown *s, spring_method 
     return status;
 }
 
-/* Ends a frame whose steps have been taken. Positions are between the last two states. */
-EXPORT(scene_end_frame) const float *scene_end_frame(shown *s)
+/* Positions between the last two states. */
+static const float *show_between(shown *s)
 {
-    s->clock = s->next;
+    s->in_frame = false;
     for (size_t i = 0, k = 0; i < s->particles; i++)
         for (uint32_t a = 0; a < s->axes; a++, k++)
             s->positions[3 * i + s->component + a] = (float)(s->before[k] + s->alpha * (s->now[k] - s->before[k]));
     return s->positions;
 }
 
+/* Ends a frame whose steps have been taken. */
+EXPORT(scene_end_frame) const float *scene_end_frame(shown *s)
+{
+    s->clock = s->next;
+    s->alpha = s->next_alpha;
+    return show_between(s);
+}
+
 /* After a failure: the scene is as before the frame, whose time is dropped. */
-EXPORT(scene_undo_frame) void scene_undo_frame(shown *s, double elapsed)
+EXPORT(scene_undo_frame) const float *scene_undo_frame(shown *s, double elapsed)
 {
     memcpy(s->scene, s->saved, s->bytes);
     spring_scene_get(s->scene, SPRING_POSITION, s->now, 0, 0, s->particles);
     s->clock.dropped += elapsed;
+    return show_between(s);
 }
 
 /* What frames depend on besides the scene: the clock, and the state before the last step, NULL before the first frame. */
