@@ -23,10 +23,11 @@ LINK = np.dtype({
     "itemsize": ffi.sizeof("spring_link"),
 })
 
-#: force(t, position, velocity, force) adds forces [N] to the arrays of `force`. There is one array for each axis: of
-#: `position` [m] and `velocity` [m/s] at the time t [s], not to be written to. They are valid during the call only: they
-#: show memory of the scene, whose content changes later. With force_ignores_velocity the velocities are zeros.
-Force = Callable[[float, tuple[np.ndarray, ...], tuple[np.ndarray, ...], tuple[np.ndarray, ...]], None]
+#: force(t, position, velocity, force) writes forces [N] to the array force[axis, particle], which starts at 0 and is added
+#: to the forces of links. It returns None. position[axis, particle] [m] and velocity[axis, particle] [m/s] at the time t [s]
+#: are read-only, and valid during the call only: they are views of the memory of the scene, which changes later. With
+#: force_ignores_velocity the velocities are zeros.
+Force = Callable[[float, np.ndarray, np.ndarray, np.ndarray], None]
 
 _PREFIXES = {np.dtype(np.float64): "spring_scene", np.dtype(np.float32): "spring_scenef"}
 _FAMILIES = ("structural", "shear", "bend")
@@ -53,7 +54,7 @@ class _Called:
     """A force, and what C is given to find it."""
 
     def __init__(self, function: Force, scene: Scene):
-        self.function, self.axes, self.particles = function, scene.axes, len(scene)
+        self.function, self.shape = function, (scene.axes, len(scene))
         self.unseen = scene._unseen_velocity
         self.memory = scene._memory.view(scene.dtype)
         self.constant = self.memory.view()
@@ -62,19 +63,24 @@ class _Called:
         self.error: BaseException | None = None
         self.handle = ffi.new_handle(self)
 
-    def arrays(self, memory: np.ndarray, pointers: Any) -> tuple[np.ndarray, ...]:
-        """The arrays of all axes. C points into the memory of the scene, and parts of an array keep its memory alive."""
-        offsets = [pointers[axis] - self.start for axis in range(self.axes)]
-        return tuple([memory[offset:offset + self.particles] for offset in offsets])
+    def array(self, memory: np.ndarray, pointers: Any) -> np.ndarray:
+        """[axis, particle]. C points into the memory of the scene, at equal distances, and a view keeps this memory alive."""
+        size = memory.itemsize
+        stride = pointers[1] - pointers[0] if self.shape[0] > 1 else 0
+        return np.ndarray(self.shape, memory.dtype, memory, (pointers[0] - self.start) * size, (stride * size, size))
 
     def call(self, t: float, position: Any, velocity: Any, force: Any) -> None:
-        velocities = self.arrays(self.constant, velocity) if self.unseen is None else self.unseen
-        self.function(t, self.arrays(self.constant, position), velocities, self.arrays(self.memory, force))
+        velocities = self.array(self.constant, velocity) if self.unseen is None else self.unseen
+        added = np.zeros(self.shape, self.memory.dtype)
+        returned = self.function(t, self.array(self.constant, position), velocities, added)
+        if returned is not None:
+            raise TypeError(f"force: returned a {type(returned).__name__}, not None; write to the array force[axis, particle]")
+        total = self.array(self.memory, force)
+        total += added
 
     def stop(self, force: Any) -> None:
         """Set all forces to NaN, so that the C function fails."""
-        for array in self.arrays(self.memory, force):
-            array[:] = np.nan
+        self.array(self.memory, force)[:] = np.nan
 
 
 def _callback(user: Any, t: float, particles: int, position: Any, velocity: Any, force: Any) -> None:
@@ -232,7 +238,7 @@ class Scene:
     pinned: for each particle, True: it feels no force and keeps its velocity; None: none is
     gravity: [m/s^2], a number for each axis; None: none
     drag: [N s/m] >= 0, on every particle
-    force: adds forces, see Force
+    force: a function that adds forces, see Force
     force_ignores_velocity: force uses no velocities, and is shown zeros: leapfrog is twice as fast
     methods: names of those that will be used; None: all except those that store stages or drag factors
     editable: links, pins and masses may change
@@ -268,11 +274,10 @@ class Scene:
         self._links = len(joined)
         methods = names_of("methods", methods or ())
         self._called: _Called | None = None
-        self._unseen_velocity: tuple[np.ndarray, ...] | None = None
+        self._unseen_velocity: np.ndarray | None = None
         if force_ignores_velocity:
-            zeros = np.zeros(self._particles, self._dtype)
-            zeros.flags.writeable = False
-            self._unseen_velocity = (zeros,) * self._axes
+            self._unseen_velocity = np.zeros((self._axes, self._particles), self._dtype)
+            self._unseen_velocity.flags.writeable = False
         self._pinned = np.zeros(self._particles, bool)
         self._undo = undo
         self._guard = Guard("the scene is being advanced, or was called from its own force")

@@ -282,9 +282,11 @@ def test_a_force_in_python(dtype):
 
     def pull(t, position, velocity, force):
         seen.append((t, position[0][5], velocity[1][5]))
-        assert position[0].dtype == dtype and not position[0].flags.writeable
-        force[1][:] += 0.13 * -9.81
-        force[2][:] += 0.13 * 0.4
+        assert position.shape == velocity.shape == force.shape == (3, 6) and not force.any()
+        assert position.dtype == velocity.dtype == force.dtype == dtype
+        assert not position.flags.writeable and not velocity.flags.writeable
+        force[1] += 0.13 * -9.81
+        force[2] += 0.13 * 0.4
 
     scenes[1].set_force(pull)
     for scene in scenes:
@@ -295,6 +297,55 @@ def test_a_force_in_python(dtype):
     calls = len(seen)
     scenes[1].advance(1e-3)
     assert len(seen) == calls
+
+
+@FLOATS
+@pytest.mark.parametrize("axes", [1, 2, 3])
+def test_a_force_is_added_to_the_forces_of_links_however_it_is_written(axes, dtype):
+    random = np.random.default_rng(5)
+    for particles in (2, 6, 40):
+        g = grid([particles], 0.3, 170.0, axes=axes, pinned=["first_x"])
+        scenes = [Scene(g.position, g.links, pinned=g.pinned, mass=0.13, dtype=dtype, held_forces=True) for _ in range(4)]
+        pull = random.normal(0, 3, (axes, particles)).astype(dtype)
+
+        def assigned(t, position, velocity, force):
+            force[:] = 7
+            force[0] = 0
+            force[0] += pull[0]
+            for axis in range(1, axes):
+                force[axis][:] = pull[axis]
+
+        def added(t, position, velocity, force):
+            for particle in range(particles):
+                force[:, particle] += pull[:, particle]
+
+        scenes[1].set_force(assigned)
+        scenes[2].set_force(added)
+        scenes[3].set_held_force(pull.T)
+        for scene in scenes:
+            scene.advance(1e-3, 200)
+        assert (scenes[1].position() == scenes[2].position()).all() and (scenes[1].velocity() == scenes[2].velocity()).all()
+        bound = 1000 * float(np.finfo(dtype).eps)  # rounding of 200 steps
+        assert scenes[1].position() == pytest.approx(scenes[3].position(), abs=bound, rel=bound)
+        assert abs(scenes[1].position() - scenes[0].position()).max() > 1e-3
+
+
+@pytest.mark.parametrize("returned", [np.ones((3, 6)), 0, False, "force"])
+def test_a_force_returns_none(returned):
+    scene = rope(force=lambda *_: returned)
+    before = scene.position()
+    with pytest.raises(TypeError, match=f"^force: returned a {type(returned).__name__}, not None; write to the array force"):
+        scene.advance(1e-3)
+    assert (scene.position() == before).all() and scene.time == 0
+
+
+def test_the_force_in_the_documents():
+    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
+    names = {}
+    exec(re.search(r"## Forces in Python\n.*?```python\n(.*?)```", page, re.S)[1], names)
+    scene, air = names["scene"], names["AIR"]
+    wind = scene.velocity().mean(axis=0)
+    assert 0.5 * air[0] < wind[0] < air[0] and abs(wind[1]) < 1e-12 and scene.time == pytest.approx(0.5)
 
 
 @FLOATS
@@ -325,7 +376,7 @@ def test_an_exception_at_any_evaluation_undoes_the_call(method, pinned):
         evaluations += 1
         if evaluations == fails_at:
             raise KeyError("mine")
-        force[1][:] += 0.3 * position[0]
+        force[1] += 0.3 * position[0]
 
     g = grid([6], 0.3, 170.0)
     scene = Scene(g.position, g.links, velocity=np.full((6, 3), 0.1), mass=0.13, pinned=np.isin(range(6), pinned), force=pull,
@@ -428,7 +479,7 @@ def test_an_interrupt_at_any_line_of_a_callback_undoes_the_call():
 
 def test_an_array_kept_by_a_force_outlives_its_scene():
     kept = []
-    scene = rope(force=lambda t, position, velocity, force: kept.extend([*position, *velocity, *force]))
+    scene = rope(force=lambda t, position, velocity, force: kept.extend([*position, *velocity]))
     scene.advance(1e-3)
     values, gone = [array.copy() for array in kept], [weakref.ref(scene), weakref.ref(kept[0].base)]
     del scene
@@ -463,7 +514,7 @@ def test_a_snapshot_has_its_force():
     def up(t, position, velocity, force):
         if broken:
             raise KeyError("mine")
-        force[1][:] += 5
+        force[1] += 5
 
     scene = rope(force=up, methods=["leapfrog", "rk4"])
     before = scene.snapshot()
