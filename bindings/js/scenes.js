@@ -355,7 +355,12 @@ export class Scene {
             const status = this.#call("spring_scene_set_colliders", this.#scene, pointer, list.length);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
             check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
-            check(status === 0, "colliders", "valid: the axes of a box are orthonormal", list, RangeError);
+            if (status === 0) return;
+            const index = take(4);
+            this.#call("spring_scene_check_colliders", this.#scene, pointer, list.length, 0, index);
+            const i = memory.uint32(index, 1)[0]; // all else has been checked
+            const [axes, what] = [list[i].axes, "orthonormal to 1e-3"];
+            check(false, `colliders[${i}].axes`, what, axes ? Array.from(axes).join() : axes, RangeError);
         });
     }
 
