@@ -18,6 +18,8 @@ const { abs, max, min, sqrt } = Math;
 const tiny = epsilon / 8; // does not change 1
 const nextUlp = epsilon / 2 + (epsilon / 2) * epsilon; // u + 2 u^2 with u = 2^-53
 
+const leastFraction = 2 ** -16; // limits the distance of a landing, so that a short step is a small one
+
 /** n - q d, where q is n/d rounded. */
 function remainderOf(n, d, q) {
     const product = q * d;
@@ -99,20 +101,20 @@ export class Propagator {
         this.G = other * G;
         this.H = other * H;
         this.wH = omega2 * (other * H);
-        const share = rate * dt;
-        this.share = omega2 > 0 && share > 0 ? min(share, 1) : 0;
+        const decay = rate * dt;
+        this.fraction = omega2 > 0 && decay > 0 ? min(max(decay, leastFraction), 1) : 0;
         this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances
     }
 }
 
 /** Whether rounding would keep the spring from coming closer to its target: the rule of follow_formula.h. */
-export function lands(x, target, y, u, share, omega2) {
+export function lands(x, target, y, u, fraction, omega2) {
     const distance = abs(y);
     const half = max(abs(x), abs(target)) / 2;
     const room = (half + half * nextUlp - half) * 2.25 + leastNormal; // 2.25 half ulps
-    if (!(share > 0 && distance * share <= room)) return false;
+    if (!(fraction > 0 && distance * fraction <= room)) return false;
     const speed = abs(u) / sqrt(omega2);
     const large = max(distance, speed);
     const ratio = min(distance, speed) / (large || 1);
-    return large * sqrt(1 + ratio * ratio) * share <= room;
+    return large * sqrt(1 + ratio * ratio) * fraction <= room;
 }

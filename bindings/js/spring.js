@@ -92,7 +92,7 @@ export class Spring {
         const passed = y0 > 0 ? y <= 0 : y0 === 0 || y >= 0;
         const stops = this.clamp && dt > 0 && attracts && (passed || p.angle >= Math.PI);
         const left = Math.abs(attracts ? x - target : v * p.reach);
-        if (stops || near(left, v, this.#size) || lands(x, to, y, v, p.share, p.omega2))
+        if (stops || near(left, v, this.#size) || lands(x, to, y, v, p.fraction, p.omega2))
             return this.#rest(attracts ? target : x);
         this.#velocity = v;
         return (this.#value = x);

@@ -50,13 +50,12 @@ export class Springs {
         const sizes = this.#sizes;
         if (dt === 0) return value.filter((x, i) => !near(abs(x - target[i]), velocity[i], sizes[i])).length;
         p.prepare(dt);
-        const { half, F, G, H, wH, share, omega2 } = p;
+        const { half, F, G, H, wH, fraction, omega2 } = p;
         const attracts = omega2 > 0;
         const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
-        // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels. Where share
-        // is so small that a spring may land from far away, there is no limit.
-        const slope = (4 * epsilon) / (share || 1);
-        const least = attracts && slope <= 1 / 8 ? (slope / epsilon) * leastNormal + 2 * mostDelta : Infinity;
+        // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels.
+        const slope = (4 * epsilon) / (fraction || 1);
+        const least = attracts ? (slope / epsilon) * leastNormal + 2 * mostDelta : Infinity;
         let resting = 0;
         let failed = -1;
         for (let i = 0; i < count; i++) {
@@ -72,7 +71,7 @@ export class Springs {
                     if (failed < 0) failed = i;
                     continue;
                 }
-                if (near(abs(x - goal), v, sizes[i]) || lands(x, to, y, v, share, omega2)) {
+                if (near(abs(x - goal), v, sizes[i]) || lands(x, to, y, v, fraction, omega2)) {
                     value[i] = goal;
                     velocity[i] = 0;
                     resting++;

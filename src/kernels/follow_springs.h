@@ -43,21 +43,18 @@ SPRING_INLINE real follow_rest(real target, real a, real w)
 }
 
 /* If no |y| of a group is below slope * (the largest |x|) + least, no spring of the group lands or settles. This
-   follows from |rest| <= |x| + |y| and d <= eps/2 |rest|, with a factor of 2 or more to spare. If share is so small
-   that a spring may land from farther away than |x|, `least` is infinite. */
+   follows from |rest| <= |x| + |y| and d <= eps/2 |rest|, with a factor of 2 or more to spare. */
 typedef struct follow_limit {
     real slope, least;
 } follow_limit;
 
-SPRING_INLINE follow_limit follow_limit_of(const exact_landing *b, scalar share)
+SPRING_INLINE follow_limit follow_limit_of(const exact_landing *b, scalar fraction)
 {
     const bool single = sizeof(scalar) == sizeof(float);
     const scalar eps = single ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
     const scalar normal = single ? (scalar)FLT_MIN : (scalar)DBL_MIN, x_tol = (scalar)b->x_tol;
-    if (share > 0 && share < 32 * eps)
-        return (follow_limit){splat(0), splat((scalar)INFINITY)};
-    const scalar per_share = share > 0 ? 4 / share : 4;
-    return (follow_limit){splat(per_share * eps), splat(per_share * normal + 2 * x_tol)};
+    const scalar distance = fraction > 0 ? 4 / fraction : 4; /* [eps |x|] */
+    return (follow_limit){splat(distance * eps), splat(distance * normal + 2 * x_tol)};
 }
 
 /* A vector of springs with stiffness after a step, before it is stored. */
@@ -92,10 +89,12 @@ SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coeff
 SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
 {
     const batch_run b = *run; /* a local copy, so that stores cannot alias its fields */
-    follow_coefficients c = follow_prepare(exact_prepare(b.propagator), splat(b.omega2.first[0]), splat((scalar)b.t));
-    scalar share[lanes];
-    vec_store(share, c.share);
-    const follow_limit limit = follow_limit_of(&b.landing, share[0]);
+    const bool single = sizeof(scalar) == sizeof(float);
+    follow_coefficients c =
+        follow_prepare(exact_prepare(b.propagator), splat(b.omega2.first[0]), splat((scalar)b.t), single);
+    scalar fraction[lanes];
+    vec_store(fraction, c.fraction);
+    const follow_limit limit = follow_limit_of(&b.landing, fraction[0]);
     if (unit)
         c.exact.half = splat(1);
     size_t moving = 0;
@@ -147,7 +146,7 @@ SPRING_INLINE void follow_each(const exact_run *b, size_t i, real *x, real *v, r
     const real shift = rounded(a / w, b->single),
                rest = rounded(select_real(a != 0, target + shift, target), b->single);
     const real to = select_real(is_free, target - target, rest);
-    const follow_coefficients c = follow_prepare(*exact, w, splat(b->t));
+    const follow_coefficients c = follow_prepare(*exact, w, splat(b->t), b->single);
     real y = *x - to;
     exact_step(&y, v, select_real(is_free, a, splat(0)), exact, loaded);
     *x = to + y;

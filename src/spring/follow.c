@@ -23,7 +23,7 @@ spring_status spring_follow(spring_state *s, const spring_params *p, double targ
     const double moved = target_velocity != 0 ? target_velocity * dt : 0;
     const double to = is_free ? moved : rest, from = is_free ? 0 : rest - moved;
     const spring_propagator propagator = spring_propagator_of(&r, dt, pushed);
-    const follow_coefficients c = follow_prepare(exact_prepare(&propagator), r.omega2, dt);
+    const follow_coefficients c = follow_prepare(exact_prepare(&propagator), r.omega2, dt, false);
     double y = x0 - from, u = v0 - target_velocity;
     exact_step(&y, &u, rates.accel, &c.exact, pushed);
     double x = to + y, v = target_velocity != 0 ? target_velocity + u : u; /* -0 stays -0, as in batches */

@@ -94,11 +94,11 @@ export function compareSingle(program, count) {
 /** mass, stiffness, damping, dt, two tolerances, values, velocities, targets */
 function setRecord(record) {
     const p = usual();
-    const near = chance(0.3) ? 1e-12 : chance(0.3) ? 0.01 : 1000;
+    const near = chance(0.3) ? logarithmic(1e-13, 1e-6) : chance(0.3) ? 0.01 : 1000;
     const tolerance = chance(0.5) ? 0 : 0.001;
     if (chance(0.05)) p.stiffness = 0;
     if (chance(0.05)) p.damping = 0;
-    else if (chance(0.05)) p.damping *= logarithmic(1e-20, 1e-13); // lands from far away
+    else if (chance(0.05)) p.damping *= logarithmic(1e-20, 1e-13); // decays slowly
     record.set([
         p.mass,
         p.stiffness,

@@ -40,7 +40,7 @@ await test("every spring lands exactly on its target", () => {
     for (let i = 0; i < Math.min(count / 50, 20000); i++) {
         const { stiffness, damping, mass, omega, zeta } = usual();
         const slow = slowRate(omega, zeta);
-        const dt = 1 / logarithmic(30, 240);
+        const dt = [1 / 60, 1 / 240, 1 / logarithmic(30, 240)][i % 3];
         const target = uniform(-1000, 1000);
         const s = new Spring(uniform(-1000, 1000), { stiffness, damping, mass, restDelta: 0, restSpeed: 0 });
         s.velocity = uniform(-100, 100) * omega;
@@ -51,6 +51,22 @@ await test("every spring lands exactly on its target", () => {
         longest = Math.max(longest, frames * dt * slow);
     }
     note(`the longest landing took ${longest.toFixed(1)} decay times`);
+});
+
+await test("a step as short as a rounding error does not move a value to its target", () => {
+    const options = { duration: 5, restDelta: 0, restSpeed: 0 };
+    const s = new Spring(0, options);
+    const set = new Springs(1, options);
+    s.target = set.target[0] = 1000;
+    let t = 0;
+    for (let i = 0; i < 10; i++, t += 0.1) {
+        s.step(0.1);
+        set.step(0.1);
+    }
+    const { value } = s;
+    note(`a step of ${(1 - t).toPrecision(2)} s from ${value} to ${s.step(1 - t)}`);
+    assert.strictEqual(set.step(1 - t), 1);
+    assert(Math.abs(s.value - value) < 1e-12 && set.value[0] === s.value);
 });
 
 await test("a set of springs settles within its tolerances", () => {
