@@ -120,17 +120,16 @@ static void check_batch(place *p, unsigned features, size_t count, double dt, do
 {
     static outcome want[most];
     size_t moves = 0, moving = 12345;
-    bool invalid = false, fails = false;
+    bool fails = false;
     for (size_t i = 0; i < count; i++) {
         want[i] = alone(p, features, i, dt, x_tol, v_tol);
         moves += want[i].moving;
-        invalid |= want[i].status == SPRING_EINVAL;
         fails |= want[i].status != SPRING_OK;
     }
     const spring_batch b = batch_of(p, features, count);
     const scalar after_x = p->x[count < most ? count : 0], after_v = p->v[count < most ? count : 0];
     const spring_status got = spring_batch_follow_with(kernels, &b, p->target, dt, x_tol, v_tol, &moving);
-    CHECK(got == (invalid ? SPRING_EINVAL : fails ? SPRING_ENONFINITE : SPRING_OK), "the status of the worst spring");
+    CHECK(got == (fails ? SPRING_EPARTIAL : SPRING_OK), "all other springs advance");
     CHECK(moving == moves, "springs that move or fail are counted");
     size_t differ = 0;
     for (size_t i = 0; i < count; i++)

@@ -56,6 +56,18 @@ end)
 local layout = read("tests/headers/interface.c")
 local here = ffi.abi("64bit") and 1 or 2
 
+holds("a status becomes an error: some springs of a batch fail, and all others advance", function()
+  local x, v, w = ffi.new("double[2]", 1, 0 / 0), ffi.new("double[2]"), ffi.new("double[2]", 40, 40)
+  local batch = ffi.new("spring_batch", {count = 2, x = x, v = v, omega2 = w})
+  local failed = ffi.new("uint8_t[2]")
+  refused("advance: some springs of the batch failed", function()
+    spring.must(spring.spring_batch_advance_marked(batch, spring.SPRING_LEAPFROG, 1 / 240, 1, failed), "advance")
+  end)
+  same(failed[0], tonumber(spring.SPRING_OK), "spring 0")
+  same(failed[1], tonumber(spring.SPRING_EINVAL), "spring 1")
+  assert(x[0] < 1)
+end)
+
 holds("structures have the compiler's sizes", function()
   local seen = 0
   for name, wide, narrow in layout:gmatch("\nSIZE%((%g+), (%d+), (%d+)%)") do

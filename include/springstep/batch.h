@@ -87,9 +87,9 @@ typedef struct spring_batchf {
  *         bit in shared; dt or a shared parameter is not finite, or a shared parameter is negative where it must not
  *         be.
  *         SPRING_EUNSUPPORTED, nothing changed: a method for scenes only.
- *         SPRING_EINVAL, all other springs advanced: a spring's own state or parameters are invalid.
- *         SPRING_ENONFINITE, all other springs advanced: a spring would have become non-finite. A group of neighbours
- *         that have all overflowed is abandoned within SPRING_CHECK_INTERVAL steps.
+ *         SPRING_EPARTIAL, all other springs advanced: a spring's own state or parameters are invalid, or it would
+ *         have become non-finite; spring_batch_advance_marked() tells which and why. A group of neighbours that have
+ *         all overflowed is abandoned within SPRING_CHECK_INTERVAL steps.
  * @par Threads   re-entrant; allocates nothing and keeps no state; disjoint ranges of a batch may be advanced
  *                concurrently
  */
@@ -100,13 +100,14 @@ SPRING_API spring_status spring_batch_advance(const spring_batch *b, spring_meth
 SPRING_API spring_status spring_batchf_advance(const spring_batchf *b, spring_method m, double dt, uint64_t n);
 
 /**
- * Advances a batch like spring_batch_advance(), and marks the springs that kept their state because they failed.
+ * Advances a batch like spring_batch_advance(), and returns the status of each spring.
  *
  * It is as fast as spring_batch_advance() if no spring fails. Springs are advanced in groups of some hundred. A group
  * in which a spring fails is advanced twice.
  *
- * @param[out] failed  [count] 1 if spring i failed on its own and kept its state, else 0; must not overlap another
- *                     array. Not written if nothing changed because of an error of the whole batch.
+ * @param[out] failed  [count] status of spring i: SPRING_OK, which is 0, if it advanced; SPRING_EINVAL if its state or
+ *                     parameters are invalid, and SPRING_ENONFINITE if it would have become non-finite. It must not
+ *                     overlap another array. Not written if nothing changed because of an error of the whole batch.
  * @return as spring_batch_advance(); SPRING_EINVAL also if failed is NULL
  */
 SPRING_API spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,

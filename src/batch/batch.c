@@ -75,15 +75,6 @@ static bool spring_valid(const spring_batch *b, const scalar *target, size_t i)
            (target == NULL || scalar_finite(target[i]));
 }
 
-/* Why some springs kept their state: their state or parameters are not valid, or the result would not be finite. */
-static spring_status reason(const spring_batch *b, const scalar *target)
-{
-    for (size_t i = 0; i < b->count; i++)
-        if (!spring_valid(b, target, i))
-            return SPRING_EINVAL;
-    return SPRING_ENONFINITE;
-}
-
 static const batch_kernels *best_batch_kernels(void)
 {
     return SPRING_BEST_KERNELS(&spring_batch_v128, &spring_batch_v256, &spring_batch_v512);
@@ -188,7 +179,7 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
         propagator = propagator_of(b, run.t, b->accel != NULL);
         run.propagator = &propagator;
     }
-    return advance_all(kernels, b, run) ? SPRING_OK : reason(b, NULL);
+    return advance_all(kernels, b, run) ? SPRING_OK : SPRING_EPARTIAL;
 }
 
 spring_status spring_batch_advance(const spring_batch *b, spring_method m, double dt, uint64_t n)
@@ -232,7 +223,7 @@ spring_status spring_batch_follow_with(const batch_kernels *kernels, const sprin
             propagator = propagator_of(b, dt, false);
             run.propagator = &propagator;
         }
-        status = advance_all(kernels, b, run) ? SPRING_OK : reason(b, target);
+        status = advance_all(kernels, b, run) ? SPRING_OK : SPRING_EPARTIAL;
     }
     if (moving != NULL)
         *moving = count;
@@ -268,26 +259,26 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
                                           uint8_t *failed)
 {
     enum { part = 4 * largest_group };
-    spring_status worst = failed != NULL ? check_batch(b, m, dt) : SPRING_EINVAL;
-    if (worst != SPRING_OK)
-        return worst;
+    spring_status status = failed != NULL ? check_batch(b, m, dt) : SPRING_EINVAL;
+    if (status != SPRING_OK)
+        return status;
     for (size_t first = 0; first < b->count; first += part) {
         const size_t count = b->count - first < part ? b->count - first : part;
         const spring_batch some = part_of(b, first, count, b->x + first, b->v + first);
         scalar x[part], v[part]; /* copies, advanced one by one to find the springs that fail */
         memcpy(x, some.x, count * sizeof *x);
         memcpy(v, some.v, count * sizeof *v);
-        memset(failed + first, 0, count);
-        const spring_status status = spring_batch_advance(&some, m, dt, n);
-        if (status == SPRING_OK)
+        memset(failed + first, SPRING_OK, count);
+        if (spring_batch_advance(&some, m, dt, n) == SPRING_OK)
             continue;
+        status = SPRING_EPARTIAL;
         for (size_t i = 0; i < count; i++) {
             const spring_batch one = part_of(b, first + i, 1, x + i, v + i);
-            failed[first + i] = spring_batch_advance(&one, m, dt, n) != SPRING_OK;
+            if (spring_batch_advance(&one, m, dt, n) != SPRING_OK)
+                failed[first + i] = spring_valid(&one, NULL, 0) ? SPRING_ENONFINITE : SPRING_EINVAL;
         }
-        worst = worst == SPRING_EINVAL ? worst : status;
     }
-    return worst;
+    return status;
 }
 
 double spring_batch_stable_step(const spring_batch *b, spring_method m)

@@ -194,6 +194,8 @@ const char *spring_status_string(spring_status s)
         return "results are not bit-identical to the expected ones";
     case SPRING_EUNSTABLE:
         return "a particle is faster than max_speed";
+    case SPRING_EPARTIAL:
+        return "some springs of the batch failed, and all others advanced";
     }
     return "unknown status";
 }

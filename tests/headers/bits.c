@@ -72,15 +72,19 @@ static void print_batches(const char *name, spring_method m, bool damped, bool l
     }
     const spring_batch b = {count, x, v, w, damped ? g : NULL, loaded ? a : NULL, shared};
     const spring_batchf bf = {count, xf, vf, wf, damped ? gf : NULL, loaded ? af : NULL, shared};
-    const spring_status status = spring_batch_advance(&b, m, 0.0123, 1000),
-                        statusf = spring_batchf_advance(&bf, m, 0.0123, 1000);
+    static uint8_t failed[count], failedf[count];
+    spring_batch_advance_marked(&b, m, 0.0123, 1000, failed);
+    spring_batchf_advance_marked(&bf, m, 0.0123, 1000, failedf);
+    uint8_t status = SPRING_OK, statusf = SPRING_OK; /* of the last spring that failed */
     uint64_t hash = no_digest, hashf = no_digest;
     for (int i = 0; i < count; i++) {
         hash = digest(digest(hash, &x[i], 1), &v[i], 1);
         hashf = digestf(digestf(hashf, xf[i]), vf[i]);
+        status = failed[i] ? failed[i] : status;
+        statusf = failedf[i] ? failedf[i] : statusf;
     }
     printf("batch-%s %s %016" PRIx64 " %s, float %016" PRIx64 " %s\n", name, spring_method_name(m), hash,
-           spring_status_string(status), hashf, spring_status_string(statusf));
+           spring_status_string((spring_status)status), hashf, spring_status_string((spring_status)statusf));
 }
 
 enum { particles = 7 * 5, most_links = 6 * particles };

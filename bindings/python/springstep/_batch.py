@@ -119,13 +119,12 @@ class Batch:
         """Raise the exception for a status, with the indices of the springs that have kept their state."""
         first = int(failed[0]) if len(failed) else None
         try:
-            if status == lib.SPRING_EINVAL:
-                finite("dt", dt)
-                for index in failed if len(failed) else [None]:
-                    self._first_invalid(None if index is None else int(index), target)
+            finite("dt", dt)
+            for index in failed if len(failed) else [None]:
+                self._first_invalid(None if index is None else int(index), target)
             if first is None:
                 fail(status)
-            fail(status, "x", float(self._x[first]), first)
+            fail(lib.SPRING_ENONFINITE, "x", float(self._x[first]), first)
         except SpringError as error:
             error.failed = failed
             raise
@@ -133,13 +132,12 @@ class Batch:
     def _follow(self, target: np.ndarray, dt: float, x_tol: float, v_tol: float) -> tuple[int, int, np.ndarray | None]:
         """The status, the number of springs that move and, after an error, the indices of springs that have kept their
         state: those that are where they were, and fail again alone."""
-        unknown = len(self) + 1
-        moving = ffi.new("size_t *", unknown)
+        moving = ffi.new("size_t *")
         x, v = self._x.copy(), self._v.copy()
         status = self._follows(self._batch, self._as_lent("target", target), dt, x_tol, v_tol, moving)
         if status == lib.SPRING_OK:
             return status, moving[0], None
-        if moving[0] == unknown:  # an error of the whole batch
+        if status != lib.SPRING_EPARTIAL:
             return status, 0, np.empty(0, np.intp)
         bits = f"u{x.itemsize}"
         kept = (x.view(bits) == self._x.view(bits)) & (v.view(bits) == self._v.view(bits))

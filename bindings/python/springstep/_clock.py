@@ -2,6 +2,8 @@
 """Fixed time steps from frames of variable duration."""
 from __future__ import annotations
 
+import math
+
 from springstep._common import finite, invalid, step_count
 from springstep._native import ffi, lib
 
@@ -30,6 +32,8 @@ class Clock:
         if finite("frame_dt", frame_dt) < 0:
             invalid("frame_dt", frame_dt)
         steps = lib.spring_clock_tick(self._clock, frame_dt, self.dt, self.max_steps, self._alpha)
+        if math.isnan(self._alpha[0]):
+            invalid("dt, pending", (self.dt, self.pending))
         return steps, self._alpha[0]
 
     @property

@@ -111,7 +111,11 @@ def test_springs_that_fail_are_named_and_all_others_advance():
     batch.omega2[500] = 1e9
     with pytest.raises(springstep.NonFiniteError, match=r"^x\[500\]") as caught:
         batch.advance(1.0, 100)
-    assert caught.value.failed.tolist() == [500]
+    assert caught.value.failed.tolist() == [500] and caught.value.status == lib.SPRING_ENONFINITE
+    batch.x[900] = np.nan
+    with pytest.raises(springstep.InvalidError, match=r"^x\[900\] = nan: ") as caught:
+        batch.advance(1.0, 100)
+    assert caught.value.failed.tolist() == [500, 900] and caught.value.status == lib.SPRING_EINVAL
 
 
 def test_following_has_the_bits_of_single_springs():
@@ -164,7 +168,7 @@ def test_springs_that_cannot_follow_are_named_and_all_others_advance():
     target[900], batch.gamma[300] = 1, 1e9
     with pytest.raises(springstep.NonFiniteError, match=r"^x\[300\]") as caught:
         batch.follow(target, -0.1)
-    assert caught.value.failed.tolist() == [300]
+    assert caught.value.failed.tolist() == [300] and caught.value.status == lib.SPRING_ENONFINITE
 
 
 @pytest.mark.parametrize("target", [[1.0] * COUNT, np.ones(COUNT, np.float32), np.ones(3), np.ones(2 * COUNT)[::2]])

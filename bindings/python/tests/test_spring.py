@@ -127,6 +127,9 @@ def test_a_clock():
     assert clock.tick(10 / 128) == (4, 0.5) and clock.dropped == 6 / 128 == clock.skipped
     clock.restore(before)
     assert (clock.pending, clock.dropped, clock.skipped) == (0.5 / 128, 0, 0)
+    clock.dt = 0
+    with pytest.raises(springstep.InvalidError, match="^dt, pending = "):
+        clock.tick(1 / 128)
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
