@@ -16,7 +16,7 @@
 uint64_t spring_clock_tick(spring_clock *clock, double frame_dt, double dt, uint64_t max_steps, double *alpha)
 {
     if (alpha != NULL)
-        *alpha = NAN;
+        *alpha = (double)NAN;
     const double frame = frame_dt < 0 ? 0 : frame_dt;
     if (clock == NULL || !(clock->pending >= 0) || !spring_finite(frame_dt) || !(dt > 0) || !spring_finite(dt) ||
         !spring_finite(clock->pending + frame))
