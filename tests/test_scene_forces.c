@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Forces of banded and unbanded links compared with a plain loop, for every instruction set; tension, energy, rest. */
+#include <stdio.h>
+
 #include "test_scene.h"
 
 /* ------------------------------------------------------------------------------------------------ against a plain
@@ -263,6 +265,74 @@ static void at_rest_with_drag(void)
     free(s);
 }
 
+/* ------------------------------------------------------------------------- a force perpendicular to the velocity */
+
+enum { gyro_mass_permille = 1300 };
+
+/* mass rate |v|, perpendicular to the velocity; *user: the rate [1/s] */
+static void magnetic(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                     scalar *const force[3])
+{
+    const scalar factor = (scalar)(*(const double *)user * gyro_mass_permille / 1000);
+    (void)t, (void)x;
+    for (size_t i = 0; i < particles; i++) {
+        force[0][i] += factor * v[1][i];
+        force[1][i] -= factor * v[0][i];
+    }
+}
+
+/* The logarithm of the energy gained per step of 1 s by a particle in this force, on a spring of the angular frequency
+   omega and of rest length 0, if omega > 0. The first half of the steps are not counted. */
+static double gain_per_step(spring_method m, double rate, double omega, uint64_t n)
+{
+    const double x[] = {0, 0, 1, 0.2}, v[] = {0, 0, 0.1, -0.3}, mass = gyro_mass_permille / 1000.0;
+    const uint8_t pinned[] = {1, 0};
+    const spring_link link = {0, 1, 0, mass * omega * omega, 0};
+    const spring_scene_def def = {.axes = 2,
+                                  .methods = 1u << m,
+                                  .particles = 2,
+                                  .links = omega > 0,
+                                  .position = x,
+                                  .velocity = v,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = &link,
+                                  .force = magnetic,
+                                  .user = &rate};
+    spring_scene *s = scene_of(&def);
+    double energy[2];
+    for (int half = 0; half < 2; half++) {
+        CHECK(spring_scene_advance(s, m, 1, n / 2) == SPRING_OK, "no overflow");
+        const spring_scene_energies e = spring_scene_energy(s);
+        energy[half] = e.kinetic + e.elastic;
+    }
+    free(s);
+    return log(energy[1] / energy[0]) / (double)(n / 2);
+}
+
+/* The laws of scene.h, at spring_scene_advance(). */
+static void perpendicular_force(void)
+{
+    for (double z = 0.1; z < 0.9; z *= 2) {
+        const double rounding = 20 * EPS, z2 = z * z;
+        CHECK_CLOSE(gain_per_step(SPRING_LEAPFROG, z, 0, 200), log1p(z2 * z2 / 4), rounding, "|1 + iz - z^2/2|^2");
+        CHECK_CLOSE(gain_per_step(SPRING_RK4, z, 0, 200), log1p(z2 * z2 * z2 * (z2 / 576 - 1.0 / 72)), rounding,
+                    "RK4 of v' = iz v");
+        CHECK_CLOSE(gain_per_step(SPRING_SYMPLECTIC_EULER, z, 0, 200), log1p(z2), rounding, "|1 + iz|^2");
+    }
+    for (double omega = 0.5; omega < 2; omega *= 1.5) {
+        const double rate = 0.01, law = rate * pow(omega, 3) / 8 / sqrt(1 - omega * omega / 4);
+        const double gain = gain_per_step(SPRING_LEAPFROG, rate, omega, (uint64_t)(20 / law));
+        printf("# a spring of %.3f rad per step in a weak magnetic field gains %.3g of its energy per step\n", omega,
+               gain);
+        CHECK_CLOSE(gain, law, 0.06 * law, "first order in the rate; the next term is rate/omega, or less");
+    }
+    for (int i = 0; i < 200; i++) {
+        const double rate = random_log(0.01, 1), omega = random_log(0.05, 1.5);
+        CHECK(gain_per_step(SPRING_RK4, rate, omega, 2000) < 1e-5, "RK4 loses energy; but for the phase of the motion");
+    }
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -276,6 +346,7 @@ int main(void)
         {"tension and energies", tension_and_energies},
         {"at rest", at_rest},
         {"at rest with drag", at_rest_with_drag},
+        {"a force perpendicular to the velocity", perpendicular_force},
     };
     return RUN_TESTS("scene_forces", tests);
 }
