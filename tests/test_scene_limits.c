@@ -616,6 +616,83 @@ static void spinning(void)
     CHECK(largest_change(0.9) > 2, "and nearer to it as well");
 }
 
+/* ------------------------------------------------------------------------------------------- large motion */
+
+typedef struct large_motion {
+    const char *name;
+    spring_grid grid;
+    uint32_t flags;
+    double drag_per_mass, fraction; /* [1/s], of the stable step */
+    bool gains;
+} large_motion;
+
+/* Released in a horizontal position. Returns the largest gain of energy in a minute, relative to the largest kinetic
+   energy of the first two seconds. */
+static double gain_in_a_minute(model *m, const large_motion *l)
+{
+    const double mass = 0.03;
+    size_t particles, links;
+    spring_grid_size(&l->grid, &particles, &links);
+    CHECK(particles <= most && links <= most_links, "fits");
+    spring_grid_fill(&l->grid, m->position, m->pinned, m->link);
+    m->def = (spring_scene_def){.flags = l->flags | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                                .particles = particles,
+                                .links = links,
+                                .position = m->position,
+                                .mass_all = mass,
+                                .pinned = m->pinned,
+                                .link = m->link,
+                                .gravity = {0, -9.81, 0.3},
+                                .drag = l->drag_per_mass * mass};
+    spring_scene *s = scene_of(&m->def);
+    const double dt = l->fraction * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
+    const uint64_t steps = (uint64_t)ceil(0.1 / dt);
+    double kinetic = 0, gain = 0;
+    for (uint64_t i = 0; (double)(i * steps) * dt < 60; i++) {
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, steps) == SPRING_OK, "it does not overflow");
+        if ((double)(i * steps) * dt < 2)
+            kinetic = fmax(kinetic, spring_scene_energy(s).kinetic);
+        gain = fmax(gain, total_energy(s) - before);
+    }
+    free(s);
+    return gain / kinetic;
+}
+
+/* The recommendations of scene.h, at spring_scene_stable_step(). */
+static void moves_far(void)
+{
+#define ROPE(stiff) {.count = {20}, .spacing = 0.1, .stiffness = (stiff), .pinned = SPRING_GRID_FIRST_X}
+#define SHEET(springs) \
+    {.count = {10, 10}, .spacing = 0.1, .stiffness = 100, .families = (springs), .pinned = SPRING_GRID_FIRST_X}
+#define BODY {.count = {4, 4, 4}, .spacing = 0.1, .stiffness = 20, .families = 7, .pinned = SPRING_GRID_FIRST_X}
+    static const large_motion motions[] = {
+        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0.1, 0.5, false},
+        {"rope", ROPE(100), 0, 0.1, 0.5, false},
+        {"cloth", SHEET(7), 0, 0.1, 0.9, false},
+        {"tension-only net", SHEET(3), SPRING_SCENE_TENSION_ONLY, 0.1, 0.9, false},
+        {"soft body", BODY, 0, 0.1, 0.9, false},
+        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0, 0.5, true},
+        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0, 0.25, false},
+        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0.4, 0.9, true},
+        {"rope", ROPE(100), 0, 0, 0.75, true},
+        {"rope", ROPE(100), 0, 0, 0.125, false},
+    };
+#undef ROPE
+#undef SHEET
+#undef BODY
+    static model m;
+    for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
+        const large_motion *l = &motions[i];
+        const double gain = gain_in_a_minute(&m, l);
+        printf("# %s, drag/mass %g/s, %g of the stable step: gains %.3g times its kinetic energy in a minute\n", l->name,
+               l->drag_per_mass, l->fraction, gain);
+        if (l->gains)
+            CHECK(gain > 1, "below the stable step, large motion gains energy by resonance");
+        else
+            CHECK_BELOW(gain, l->drag_per_mass > 0 ? 1e-3 : 1, "drag removes it, or the step is short enough");
+    }
+}
+
 /* 10^6 links without order: making the scene takes time in proportion to the links, or this would take hours. */
 static void many_links(void)
 {
@@ -660,6 +737,7 @@ int main(void)
         {"a poke of 10^6 N", poked},
         {"a frame that took 2 s", late_frame},
         {"a link that spins", spinning},
+        {"a minute of large motion", moves_far},
         {"10^6 links", many_links},
     };
     return RUN_TESTS("scene_limits", tests);

@@ -255,7 +255,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
- * with three to six significant digits: without drag the energy error stays bounded. At such errors it needs fewer
+ * with three to six significant digits: without drag the energy error of smooth motion stays bounded. At such errors it needs fewer
  * force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the drift, so the
  * order is still 6.
  *
@@ -267,8 +267,15 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because
  * the data of the callback may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.
  *
- * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler; see
- * spring_scene_set_colliders(). Colliders do not change the stable step.
+ * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass omega |v| in such a
+ * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
+ * (omega dt)^4/4 per step. A vibration of angular frequency w gains omega dt (w dt)^3/8/sqrt(1 - (w dt)^2/4), in
+ * addition, unless drag/mass or a similar link damping exceeds this fraction divided by dt. Use RK4, which loses
+ * (omega dt)^6/72 per step without links. Symplectic Euler gains (omega dt)^2 (tests/test_scene_forces.c).
+ *
+ * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler. With friction,
+ * the order is 1 after a particle has reversed its direction or stopped, because a particle that stops sticks for the
+ * rest of the step. See spring_scene_set_colliders(). Colliders do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
@@ -297,9 +304,9 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
 /**
  * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow.
  *
- * The bound holds while no link is compressed below half its rest length. Tension-only links may be compressed further.
- * The bound follows from three sums over the links of a particle. Each is the largest sum of any free particle. A link
- * counts once instead of twice if its other end is pinned.
+ * The bound holds for small motion about any equilibrium, however links are stretched or compressed, because
+ * tension/length <= stiffness (tests/test_scene_limits.c). It follows from three sums over the links of a particle.
+ * Each is the largest sum of any free particle. A link counts once instead of twice if its other end is pinned.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -314,12 +321,19 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     Euler             min(drag/K, 2/G) with drag, else 0
  *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G without drag) - drag/(largest mass)
  *
- * In practice, use half of the bound. Close to the bound, links that rotate or oscillate with a large amplitude can
- * gain energy by resonance with the step. Use an even smaller step if a link rotates faster than it would oscillate.
- * The forces of the callback are not considered.
+ * The bound is not for large motion. Links that rotate, oscillate with a large amplitude or become taut and slack gain
+ * energy by resonance with the step, even below the bound. Damping removes this energy. In practice:
+ *  - With drag or link damping, use up to 0.9 of the bound.
+ *  - Without any damping, use half of the bound for small or short motion. Use an eighth of it for large motion over
+ *    minutes, for tension-only links, or if a link rotates faster than it would oscillate. The gain does not stop: check
+ *    spring_scene_energy().
+ * docs/games.md has measurements. The forces of the callback are not considered.
  *
- * Without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field, 1.5 to 1.8
- * times for cloth and 2 times for a soft body. With heavy damping it may be several times larger, except for leapfrog.
+ * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
+ * structural, shear and bend springs, 1.5 to 1.6 times for such a cloth and 2 times for such a soft body. It is closer
+ * to the bound with fewer springs or under tension: the ratio is 1 for a rope and for a height field of structural
+ * springs only, and 1.4 for a cloth that is stretched by half. With heavy damping, it may be several times larger,
+ * except for leapfrog.
  *
  * With SRKN6, an undamped mode of angular frequency omega grows by up to 0.07 % per step in two narrow ranges of dt
  * omega below the bound: 3.1414 ... 3.1424 and 6.3478 ... 6.3493. Drag with dt drag/mass > 0.0014 suppresses this
@@ -349,8 +363,7 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
  *
  * @param[in]  def       definition of the scene
  * @param[in]  dt        time step > 0 [s]
- * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1; 0.5 is safe, see
- *                       spring_scene_stable_step()
+ * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1; see spring_scene_stable_step()
  * @param[out] link      [links] the softened links; may be def->link
  * @return SPRING_OK; SPRING_EINVAL; otherwise as spring_scene_check(). Nothing is written after an error
  */
@@ -388,7 +401,8 @@ typedef enum spring_quantity {
     SPRING_VELOCITY, /**< [m/s] velocities */
     SPRING_FORCE     /**< [N] held forces of a scene with SPRING_SCENE_FORCES. A held force is 0 at first, and constant
                         until it is set again. Use held forces for wind, for example: compute them from the state once
-                        per frame. They are part of snapshots. A failed call does not change them, even with
+                        per frame. If they oppose the displacement with a stiffness K and are set every T seconds, they
+                        act like a negative drag K T/2, so use a callback instead. They are part of snapshots. A failed call does not change them, even with
                         SPRING_SCENE_NO_UNDO. The held force of a pinned particle acts once the particle is freed.
                         Setting held forces causes no force evaluation */
 } spring_quantity;
@@ -527,7 +541,9 @@ SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, cons
 /**
  * Transforms all particles, including pinned particles, by an affine map: x1 = A x + b, v1 = A v.
  *
- * Use it to teleport, rotate, reflect or scale a scene. Rest lengths, gravity, held forces and colliders do not change.
+ * Use it to teleport, rotate or reflect a scene. Rest lengths, gravity, held forces and colliders do not change. To
+ * scale a scene, also change the rest lengths with spring_scene_set_links(). Otherwise all links are stretched or
+ * compressed, and the scene springs back violently.
  *
  * @param[in] matrix  the rows of [A b], with b in [m]: A_xx A_xy A_xz b_x, A_yx ... With two axes, the third row and
  *                    the third column are ignored; with one axis, the second row and column too
