@@ -546,8 +546,8 @@ static void any_deformation(void)
         const bool collapsed = i % 4 == 0;
         const double stretch = random_log(0.2, 20), noise = random_uniform(0, 0.5);
         for (size_t j = 0; j < axes * m.def.particles; j++)
-            m.position[j] = collapsed ? random_uniform(-0.3, 0.3)
-                                      : stretch * (m.position[j] + random_uniform(-noise, noise));
+            m.position[j] =
+                collapsed ? random_uniform(-0.3, 0.3) : stretch * (m.position[j] + random_uniform(-noise, noise));
         static double one[3 * most], pull[3 * most];
         double shift = 0; /* at least the size of the negative eigenvalues */
         for (size_t j = 0; j < axes * m.def.particles; j++) {
@@ -559,8 +559,10 @@ static void any_deformation(void)
             }
         }
         spring_scene *s = scene_of(&m.def);
-        const double L = pow(2 / spring_scene_stable_step(s, SPRING_LEAPFROG), 2), found = largest_eigenvalue(&m, shift);
-        CHECK_BELOW(found, L * (1 + 200 * EPS), "the bound, whose sum has at most 50 terms, and as many in the quotient");
+        const double L = pow(2 / spring_scene_stable_step(s, SPRING_LEAPFROG), 2),
+                     found = largest_eigenvalue(&m, shift);
+        CHECK_BELOW(found, L * (1 + 200 * EPS),
+                    "the bound, whose sum has at most 50 terms, and as many in the quotient");
         largest[collapsed] = fmax(largest[collapsed], found / L);
         free(s);
     }
@@ -620,7 +622,8 @@ static void spinning(void)
 
 typedef struct large_motion {
     const char *name;
-    spring_grid grid;
+    uint32_t count[3], families;
+    double stiffness;
     uint32_t flags;
     double drag_per_mass, fraction; /* [1/s], of the stable step */
     bool gains;
@@ -631,10 +634,15 @@ typedef struct large_motion {
 static double gain_in_a_minute(model *m, const large_motion *l)
 {
     const double mass = 0.03;
-    size_t particles, links;
-    spring_grid_size(&l->grid, &particles, &links);
+    const spring_grid g = {.count = {l->count[0], l->count[1], l->count[2]},
+                           .spacing = 0.1,
+                           .stiffness = l->stiffness,
+                           .families = l->families,
+                           .pinned = SPRING_GRID_FIRST_X};
+    size_t particles = 0, links = 0;
+    spring_grid_size(&g, &particles, &links);
     CHECK(particles <= most && links <= most_links, "fits");
-    spring_grid_fill(&l->grid, m->position, m->pinned, m->link);
+    spring_grid_fill(&g, m->position, m->pinned, m->link);
     m->def = (spring_scene_def){.flags = l->flags | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
                                 .particles = particles,
                                 .links = links,
@@ -661,31 +669,25 @@ static double gain_in_a_minute(model *m, const large_motion *l)
 /* The recommendations of scene.h, at spring_scene_stable_step(). */
 static void moves_far(void)
 {
-#define ROPE(stiff) {.count = {20}, .spacing = 0.1, .stiffness = (stiff), .pinned = SPRING_GRID_FIRST_X}
-#define SHEET(springs) \
-    {.count = {10, 10}, .spacing = 0.1, .stiffness = 100, .families = (springs), .pinned = SPRING_GRID_FIRST_X}
-#define BODY {.count = {4, 4, 4}, .spacing = 0.1, .stiffness = 20, .families = 7, .pinned = SPRING_GRID_FIRST_X}
+    enum { structural = 1, sheared = 3, all = 7, tension = SPRING_SCENE_TENSION_ONLY };
     static const large_motion motions[] = {
-        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0.1, 0.5, false},
-        {"rope", ROPE(100), 0, 0.1, 0.5, false},
-        {"cloth", SHEET(7), 0, 0.1, 0.9, false},
-        {"tension-only net", SHEET(3), SPRING_SCENE_TENSION_ONLY, 0.1, 0.9, false},
-        {"soft body", BODY, 0, 0.1, 0.9, false},
-        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0, 0.5, true},
-        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0, 0.25, false},
-        {"tension-only rope", ROPE(2000), SPRING_SCENE_TENSION_ONLY, 0.4, 0.9, true},
-        {"rope", ROPE(100), 0, 0, 0.75, true},
-        {"rope", ROPE(100), 0, 0, 0.125, false},
+        {"tension-only rope", {20}, structural, 2000, tension, 0.1, 0.5, false},
+        {"rope", {20}, structural, 100, 0, 0.1, 0.5, false},
+        {"cloth", {10, 10}, all, 100, 0, 0.1, 0.9, false},
+        {"tension-only net", {10, 10}, sheared, 100, tension, 0.1, 0.9, false},
+        {"soft body", {4, 4, 4}, all, 20, 0, 0.1, 0.9, false},
+        {"tension-only rope", {20}, structural, 2000, tension, 0, 0.5, true},
+        {"tension-only rope", {20}, structural, 2000, tension, 0, 0.25, false},
+        {"tension-only rope", {20}, structural, 2000, tension, 0.4, 0.9, true},
+        {"rope", {20}, structural, 100, 0, 0, 0.75, true},
+        {"rope", {20}, structural, 100, 0, 0, 0.125, false},
     };
-#undef ROPE
-#undef SHEET
-#undef BODY
     static model m;
     for (size_t i = 0; i < sizeof motions / sizeof *motions; i++) {
         const large_motion *l = &motions[i];
         const double gain = gain_in_a_minute(&m, l);
-        printf("# %s, drag/mass %g/s, %g of the stable step: gains %.3g times its kinetic energy in a minute\n", l->name,
-               l->drag_per_mass, l->fraction, gain);
+        printf("# %s, drag/mass %g/s, %g of the stable step: gains %.3g times its kinetic energy in a minute\n",
+               l->name, l->drag_per_mass, l->fraction, gain);
         if (l->gains)
             CHECK(gain > 1, "below the stable step, large motion gains energy by resonance");
         else

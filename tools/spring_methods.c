@@ -10,9 +10,10 @@ static const cli_program program = {
     .name = "spring-methods",
     .summary = "List the methods of the library, in the order of tables and figures.",
     .columns = "method label order forces_per_step symplectic springs scenes",
-    .meaning = "method is the name on a command line. label is the name in a text. order is 0 if there is no error\n"
-               "except rounding error. symplectic (bounded energy error without damping), springs (available for one\n"
-               "spring and batches) and scenes (available for scenes) are 1 or 0.",
+    .meaning =
+        "method is the name on a command line. label is the name in a text. order is 0 if there is no error\n"
+        "except rounding error. symplectic (bounded energy error of smooth undamped motion), springs (available for\n"
+        "one spring and batches) and scenes (available for scenes) are 1 or 0.",
     .shown = {"order", "forces_per_step"},
     .examples = {"", "-o methods.tsv", "| awk -F'\\t' '$7 == 1 {print $1}'"},
     .options = options,

@@ -106,9 +106,9 @@ static const cli_option options[] = {
      .help = "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
              "Fields are NAME=NUMBER, separated by commas, and 0 by default. These fields apply to all shapes: x y\n"
              "z [m] is a point of the plane, the centre, or one end of the capsule. vx vy vz [m/s] is the\n"
-             "velocity. wx wy wz [rad/s] is the spin, which affects friction only. friction is at least 0.\n"
-             "restitution is from 0 to 1. A plane also has the normal nx ny nz, upwards by default. A sphere has a\n"
-             "radius. A capsule has a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size\n"
+             "velocity. wx wy wz [rad/s] is the spin, for friction: along the normal of a plane. friction is at\n"
+             "least 0, restitution from 0 to 1. A plane also has the normal nx ny nz, upwards by default. A sphere\n"
+             "has a radius. A capsule has a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size\n"
              "along x, y and z, and a radius, which rounds its edges. z is up. The rope has no y. At most 32\n"
              "colliders. Not for scenes with one axis, and not for euler, rkn8 and srkn6."},
     {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,

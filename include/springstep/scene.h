@@ -142,8 +142,10 @@ typedef struct spring_collider {
     double radius;         /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
     double velocity[3];    /**< [m/s] velocity of `at` */
     double velocity_to[3]; /**< [m/s] capsule: velocity of `to` */
-    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It affects friction only. The
-        body does not turn. With two axes, only spin[2] is used. */
+    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It is for friction: the body
+        does not turn. For a plane or a box, set only the component along the normal of the touched face. Other
+        components also move the surface along its normal, which throws particles up. With two axes, only spin[2] is
+        used. */
     double spin[3];
     double friction;    /**< Coulomb coefficient >= 0 */
     double restitution; /**< 0 to 1: ratio of the normal speeds after and before an impact */
@@ -243,7 +245,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * and leapfrog without link damping for dt/2. Link damping for a time dt multiplies the velocities by the exponential
  * of -dt M^-1 C (M: masses, C: damping matrix of the links in their directions at dt/2), computed as a Chebyshev
  * series. Leapfrog is therefore stable for dt < 2/sqrt(L) at any link damping, and damping never adds energy. The step
- * has order 2 for dt G up to about 3. For larger dt G, motion that is strongly damped has an error of order 1. A step
+ * has order 2 for dt G up to about 3. For larger dt G, motion that is strongly damped has an error of order 1: a link
+ * that creeps at the rate stiffness/damping creeps faster by about dt stiffness/(2 mass), for one pinned end. A step
  * costs two force evaluations, and about 1.4 sqrt(dt G) evaluations of damping alone, each half as expensive as a force
  * evaluation. At most 12 500 evaluations of damping are made (single precision: 760). For dt G above 8e7 (single
  * precision: 3e5), damping therefore acts for a shorter time than dt.
@@ -255,9 +258,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * spring_scene_stable_step()) an oscillator loses 6e-11 of its energy per period.
  *
  * SRKN6 has order 6. It is symplectic and time-reversible, and has the same requirements as RKN8. Use it for long runs
- * with three to six significant digits: without drag the energy error of smooth motion stays bounded. At such errors it needs fewer
- * force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the drift, so the
- * order is still 6.
+ * with three to six significant digits: without drag the energy error of smooth motion stays bounded. At such errors it
+ * needs fewer force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the
+ * drift, so the order is still 6.
  *
  * Force evaluations per step: one for both Euler methods and leapfrog (two with heavy link damping), four for RK4,
  * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
@@ -269,9 +272,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * Forces perpendicular to the velocity (magnetic, Coriolis, lift). With a callback that adds mass omega |v| in such a
  * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
- * (omega dt)^4/4 per step. A vibration of angular frequency w gains omega dt (w dt)^3/8/sqrt(1 - (w dt)^2/4), in
- * addition, unless drag/mass or a similar link damping exceeds this fraction divided by dt. Use RK4, which loses
- * (omega dt)^6/72 per step without links. Symplectic Euler gains (omega dt)^2 (tests/test_scene_forces.c).
+ * (omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency w, a fraction of about
+ * omega dt (w dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy: the
+ * fraction (omega dt)^6/72 per step without links. Both Euler methods gain (omega dt)^2 (tests/test_scene_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler. With friction,
  * the order is 1 after a particle has reversed its direction or stopped, because a particle that stops sticks for the
@@ -304,9 +307,9 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
 /**
  * Returns a lower bound of the stability limit: for 0 < dt < bound, small motion about rest does not grow.
  *
- * The bound holds for small motion about any equilibrium, however links are stretched or compressed, because
- * tension/length <= stiffness (tests/test_scene_limits.c). It follows from three sums over the links of a particle.
- * Each is the largest sum of any free particle. A link counts once instead of twice if its other end is pinned.
+ * The bound holds however far links are stretched or compressed, because tension/length <= stiffness. (A compressed
+ * scene may buckle with any step.) It follows from three sums over the links of a particle. Each is the largest sum of
+ * any free particle. A link counts once instead of twice if its other end is pinned.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -321,13 +324,14 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     Euler             min(drag/K, 2/G) with drag, else 0
  *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G without drag) - drag/(largest mass)
  *
- * The bound is not for large motion. Links that rotate, oscillate with a large amplitude or become taut and slack gain
- * energy by resonance with the step, even below the bound. Damping removes this energy. In practice:
- *  - With drag or link damping, use up to 0.9 of the bound.
- *  - Without any damping, use half of the bound for small or short motion. Use an eighth of it for large motion over
- *    minutes, for tension-only links, or if a link rotates faster than it would oscillate. The gain does not stop: check
- *    spring_scene_energy().
- * docs/games.md has measurements. The forces of the callback are not considered.
+ * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
+ * energy by resonance with the step, even at half of the bound. In practice:
+ *  - With drag/mass of at least 0.1/s, use half of the bound for ropes, and up to 0.9 of it for soft bodies and for
+ *    sheets with shear springs.
+ *  - Without damping, use half of the bound for smooth motion, and an eighth for ropes, tension-only links and violent
+ *    motion. Large motion then still gains energy, but slowly. Check spring_scene_energy() in long runs.
+ * tests/test_scene_limits.c measures a minute of such motion. Use an even smaller step if a link rotates faster than it
+ * would oscillate. The forces of the callback are not considered.
  *
  * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
  * structural, shear and bend springs, 1.5 to 1.6 times for such a cloth and 2 times for such a soft body. It is closer
@@ -401,10 +405,11 @@ typedef enum spring_quantity {
     SPRING_VELOCITY, /**< [m/s] velocities */
     SPRING_FORCE     /**< [N] held forces of a scene with SPRING_SCENE_FORCES. A held force is 0 at first, and constant
                         until it is set again. Use held forces for wind, for example: compute them from the state once
-                        per frame. If they oppose the displacement with a stiffness K and are set every T seconds, they
-                        act like a negative drag K T/2, so use a callback instead. They are part of snapshots. A failed call does not change them, even with
-                        SPRING_SCENE_NO_UNDO. The held force of a pinned particle acts once the particle is freed.
-                        Setting held forces causes no force evaluation */
+                        per frame. A held force that opposes the displacement with a stiffness K, and is set every T
+                        seconds, adds a negative drag of K T/2; use a callback instead. Held forces are part of
+                        snapshots. A failed call does not change them, even with SPRING_SCENE_NO_UNDO. The held force of
+                        a pinned particle acts once the particle is freed. Setting held forces causes no force
+                        evaluation */
 } spring_quantity;
 
 /**
@@ -445,14 +450,16 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
  * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed.
  * A bounce therefore has order 2, and no particle passes through a single collider that does not turn, at any speed. A
- * capsule whose ends have different velocities turns. Keep its angle per step small. A particle that static friction
- * can hold is held exactly, at any time step. If an impact moves the particle less than 8 eps (|x| + radius) into the
- * collider in a step, this is treated as a rounding error, and the particle does not bounce.
+ * capsule whose ends have different velocities turns. Keep its angle per step small. A box that turns from one call to
+ * the next does not hit particles: they are moved to its surface. A particle that static friction can hold is held
+ * exactly, at any time step. On a surface that spins at omega, however, its distance from the axis grows by the factor
+ * exp(omega^2 dt t/2). If an impact moves the particle less than 8 eps (|x| + radius) into the collider in a step,
+ * this is treated as a rounding error, and the particle does not bounce.
  *
  * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of the
- * colliders by a fraction of its motion in a step. Make a floor of one plane or box: a particle can be caught at the
- * seam of two boxes. Links do not collide, so a thin collider can pass between two particles. A step with negative dt
- * does not undo a step.
+ * colliders by a fraction of its motion in a step. In a groove narrower than about 10 degrees, it sinks in much deeper
+ * and does not come to rest. Make a floor of one plane or box: a particle can be caught at the seam of two boxes. Links
+ * do not collide, so a thin collider can pass between two particles. A step with negative dt does not undo a step.
  *
  * With restitution 1, no friction and no damping, energy is not conserved: it grows, and it grows faster with longer
  * steps. See docs/evidence.md.
@@ -687,6 +694,8 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
  * @{ */
 
 /** @name The springs of a grid
+ *
+ * Bend springs hardly resist small bending: their energy grows as the fourth power of the angle.
  * @{ */
 #define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural springs: to the next particle along each axis */
 #define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear springs: the diagonals of the faces and body of each cell */

@@ -58,12 +58,14 @@ typedef struct spring_params {
 /** The methods. New values are only appended. Tables list the methods in the order of spring_method_at(). */
 typedef enum spring_method {
     SPRING_EULER,    /**< order 1; for comparison: an undamped spring gains energy at every step size */
-    SPRING_LEAPFROG, /**< order 2; one force per step, bounded energy error: the default for games and long runs */
+    SPRING_LEAPFROG, /**< order 2; one force per step, bounded energy error of smooth motion: the default for games and
+                        long runs, except with forces perpendicular to the velocity, see spring_scene_advance() */
     SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
     SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
-    SPRING_SRKN6 /**< order 6, bounded energy error; scenes without damped links; long runs, 3 to 6 significant digits */
+    SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs, 3 to 6
+                    significant digits */
 } spring_method;
 
 /** The number of methods, for array bounds and `#if`. It is a macro, so that C++ compilers do not warn when it is
@@ -420,7 +422,7 @@ typedef struct spring_method_info {
     const char *name;    /**< name on a command line, such as "leapfrog" */
     int order;           /**< order p of the error C dt^p; 0: no error except rounding error */
     int forces_per_step; /**< force evaluations in scenes whose forces do not depend on velocities */
-    bool symplectic;     /**< without damping: bounded energy error over any time */
+    bool symplectic;     /**< without damping: bounded energy error of smooth motion over any time */
     bool springs;        /**< offered for one spring and batches */
     bool scenes;         /**< offered for scenes */
     const char *label;   /**< name in a text, such as "RK4" */

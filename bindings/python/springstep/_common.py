@@ -122,7 +122,7 @@ class Method(NamedTuple):
     label: str  #: as in a text: "RK4"
     order: int  #: error C dt^order; 0: no error but rounding
     forces_per_step: int  #: evaluations; of scenes without forces that depend on velocities
-    symplectic: bool  #: without damping: bounded energy error over any time
+    symplectic: bool  #: without damping: bounded energy error of smooth motion over any time
     springs: bool  #: offered for one spring and batches
     scenes: bool  #: offered for scenes
     positions_only: bool  #: not for scenes with damped links or with a force that may use velocities
