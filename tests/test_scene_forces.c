@@ -333,6 +333,57 @@ static void perpendicular_force(void)
     }
 }
 
+/* ------------------------------------------------------------------------------------- rest far from the origin */
+
+/* In how many of 600 frames a rope at rest is found at rest. The table of docs/games.md. */
+static int frames_at_rest(double offset, double damping)
+{
+    enum { n = 20 };
+    const double mass = 0.05, stiffness = 2000;
+    double x[3 * n];
+    uint8_t pinned[n];
+    spring_link link[n - 1];
+    spring_grid_fill(
+        &(spring_grid){
+            .count = {1, n}, .spacing = 0.1, .stiffness = stiffness, .damping = damping, .pinned = SPRING_GRID_LAST_Y},
+        x, pinned, link);
+    for (uint32_t i = n - 1; i-- > 0;) /* each link carries the particles below it */
+        x[3 * i + 1] = x[3 * i + 4] - 0.1 - (i + 1) * mass * 9.81 / stiffness;
+    for (size_t i = 0; i < n; i++)
+        x[3 * i] += offset, x[3 * i + 1] += offset;
+    const spring_scene_def def = {.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                                  .particles = n,
+                                  .links = n - 1,
+                                  .position = x,
+                                  .mass_all = mass,
+                                  .pinned = pinned,
+                                  .link = link,
+                                  .gravity = {0, -9.81, 0}};
+    spring_scene *s = scene_of(&def);
+    int frames = 0;
+    for (int i = 0; i < 600; i++) {
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1.0 / 960, 16) == SPRING_OK, "stable");
+        frames += spring_scene_at_rest(s, 0.01, 0.5);
+    }
+    free(s);
+    return frames;
+}
+
+static void rest_far_from_the_origin(void)
+{
+    static const double offsets[] = {0, 1, 10, 100, 1000};
+    for (int damped = 0; damped < 2; damped++)
+        for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
+            const int frames = frames_at_rest(offsets[i], damped);
+            printf("# link damping %d N s/m, %g m from the origin: at rest in %d of 600 frames\n", damped, offsets[i],
+                   frames);
+            if (sizeof(scalar) == 8 || offsets[i] == 0)
+                CHECK(frames == 600, "rounding errors are small");
+            else if (offsets[i] == 1000)
+                CHECK(frames == 0, "an ulp of the position, 6e-5 m, times stiffness/mass is 2.4 m/s^2");
+        }
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -347,6 +398,7 @@ int main(void)
         {"at rest", at_rest},
         {"at rest with drag", at_rest_with_drag},
         {"a force perpendicular to the velocity", perpendicular_force},
+        {"rest far from the origin", rest_far_from_the_origin},
     };
     return RUN_TESTS("scene_forces", tests);
 }
