@@ -244,7 +244,7 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  * @param[in,out] s                state; unchanged unless SPRING_OK is returned
  * @param[in]     p                parameters
  * @param[in]     target           target at the end of the step [m], finite
- * @param[in]     target_velocity  velocity of the target during the step [m/s], finite
+ * @param[in]     target_velocity  mean velocity of the target in the step, (target - previous target)/dt [m/s], finite
  * @param[in]     dt               finite time step [s]; a negative step integrates backwards; 0 changes nothing
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ENONFINITE
  * @par Accuracy  With y = x - rest position and u = v - T' before the step, the error of (x, v/omega) is at most the

@@ -132,7 +132,7 @@ class Spring:
         before.
 
         target: [m] position of the target at the end of the step
-        target_velocity: [m/s] velocity of the target during the step; 0 for a target that jumps
+        target_velocity: [m/s] mean velocity of the target during the step; 0 for a target that jumps
 
         After an error nothing has changed.
         """
