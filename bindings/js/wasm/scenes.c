@@ -36,7 +36,7 @@ typedef struct shown {
     spring_clock clock; /* dropped: by failed frames, and not yet in times[1] of a frame */
     spring_clock next;  /* after the frame that has begun */
     double alpha, next_alpha;
-    bool in_frame; /* whether a frame has begun that takes steps */
+    bool in_frame;        /* whether a frame has begun that takes steps */
     double *before, *now; /* [particles*axes] the last two states of a frame; NULL before the first */
     float *positions;     /* [3*particles] */
 } shown;
