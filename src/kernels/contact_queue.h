@@ -14,7 +14,6 @@
 /* A vector of particles, with all their axes. */
 typedef struct particle_vector {
     size_t first; /* particle */
-    bool quads;   /* quantities are arrays of quads */
     uint32_t axes;
     size_t stride; /* elements from one axis to the next */
     real inverse_mass;
@@ -27,12 +26,7 @@ typedef struct particle_vector {
 /* A quantity along one axis. */
 SPRING_INLINE real load_axis(const particle_vector *p, const scalar *quantity, uint32_t axis)
 {
-    if (!p->quads)
-        return vec_load(quantity + axis * p->stride + p->first);
-    scalar each[lanes];
-    for (size_t i = 0; i < lanes; i++)
-        each[i] = quantity[quad_size * (p->first + i) + axis];
-    return vec_load(each);
+    return vec_load(quantity + axis * p->stride + p->first);
 }
 
 SPRING_INLINE real3 load_axes(const particle_vector *p, const scalar *quantity)
@@ -41,24 +35,12 @@ SPRING_INLINE real3 load_axes(const particle_vector *p, const scalar *quantity)
                    p->axes > 2 ? load_axis(p, quantity, 2) : splat(0)};
 }
 
-/* Sets all four numbers of a quad: after a call that failed, the unused ones could be NaN. */
 SPRING_INLINE void store_axes(const particle_vector *p, scalar *quantity, real3 value)
 {
-    if (!p->quads) {
-        vec_store(quantity + p->first, value.x);
-        vec_store(quantity + p->stride + p->first, value.y);
-        if (p->axes > 2)
-            vec_store(quantity + 2 * p->stride + p->first, value.z);
-        return;
-    }
-    scalar each[quad_size][lanes];
-    vec_store(each[0], value.x);
-    vec_store(each[1], value.y);
-    vec_store(each[2], value.z);
-    vec_store(each[3], splat(0));
-    for (size_t i = 0; i < lanes; i++)
-        for (size_t a = 0; a < quad_size; a++)
-            quantity[quad_size * (p->first + i) + a] = each[a][i];
+    vec_store(quantity + p->first, value.x);
+    vec_store(quantity + p->stride + p->first, value.y);
+    if (p->axes > 2)
+        vec_store(quantity + 2 * p->stride + p->first, value.z);
 }
 
 /* The following functions have the same operations as particles.h, so that the results of a particle without contacts
@@ -67,7 +49,7 @@ SPRING_INLINE real free_on_axis(const scene_particles *s, const scene_motion *m,
                                 uint32_t axis)
 {
     const real held = s->held_stride != 0 ? load_axis(p, s->held, axis) : splat(-(scalar)0);
-    const real gravity = splat(p->quads ? s->gravity[axis] : s->gravity[axis * padding]);
+    const real gravity = vec_load(s->gravity + axis * padding);
     return select_real(p->free, p->inverse_mass * (load_axis(p, m->force, axis) + held) + gravity, splat(0));
 }
 
@@ -208,14 +190,14 @@ SPRING_INLINE void remove_group(contact_queue *q)
 /* Writes a quantity of the particles of the first group. */
 SPRING_INLINE void scatter(const contact_queue *q, const particle_vector *p, scalar *quantity, real3 value)
 {
-    const size_t each = p->quads ? quad_size : 1, stride = p->quads ? 1 : p->stride, count = first_group(q);
+    const size_t count = first_group(q);
     scalar on_axis[3][lanes];
     vec_store(on_axis[0], value.x);
     vec_store(on_axis[1], value.y);
     vec_store(on_axis[2], value.z);
     for (uint32_t a = 0; a < p->axes; a++)
         for (size_t i = 0; i < count; i++)
-            quantity[a * stride + each * q->particle[i]] = on_axis[a][i];
+            quantity[a * p->stride + q->particle[i]] = on_axis[a][i];
 }
 
 /* Computes the contacts of the first group during a drift. */
@@ -243,20 +225,18 @@ SPRING_INLINE bool for_each_particle(const scene_particles *particles, const sce
 {
     const scene_particles s = *particles;
     const scene_motion m = *motion;
-    const size_t each = m.contacts->quads ? quad_size : 1, count = s.count / each;
     contact_queue q;
     q.count = 0;
     mask wrong = {0};
     particle_vector p, queued;
-    p.quads = queued.quads = m.contacts->quads;
     p.axes = queued.axes = m.contacts->axes;
     p.stride = queued.stride = s.stride;
     p.dragged = queued.dragged = s.drag != 0;
-    for (size_t i = from / each; i < to / each; i += lanes) {
+    for (size_t i = from; i < to; i += lanes) {
         p.first = i;
         real inverse_mass = s.mass_stride == 0 ? vec_load(s.inverse_mass) : load_axis(&p, s.inverse_mass, 0);
-        if (SPRING_UNLIKELY(i + lanes > count))
-            inverse_mass = select_real(first_lanes(count - i), inverse_mass, splat(0));
+        if (SPRING_UNLIKELY(i + lanes > s.count))
+            inverse_mass = select_real(first_lanes(s.count - i), inverse_mass, splat(0));
         set_mass(&p, &s, &m, inverse_mass);
         wrong |= update(&s, &m, &p, &q, variant);
         if (SPRING_UNLIKELY(q.count >= (size_t)lanes)) {

@@ -28,25 +28,10 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
     .forces = compute_unbanded_forces,
     .record_forces = compute_record_forces,
-    .quad_forces = compute_quad_forces,
 };
 #endif
 
-/* Quads have 32 bytes in double and 16 in float. */
-#if SPRING_VECTOR == 16 || (SPRING_VECTOR == 32 && !defined(SPRING_FLOAT))
-#include "one_axis.h"
-#define QUAD_TABLE    SPRING_SCENE_TABLE
-#define IS_QUAD_TABLE 1
-#elif defined(SPRING_FLOAT)
-#define QUAD_TABLE    spring_scene_v128
-#define IS_QUAD_TABLE 0
-#else
-#define QUAD_TABLE    spring_scene_v256
-#define IS_QUAD_TABLE 0
-#endif
-
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
-    .for_quads = &QUAD_TABLE,
     .band_forces = compute_band_forces,
     .band_directions = compute_band_directions,
     .unbanded = &SPRING_UNBANDED_TABLE,
@@ -64,9 +49,6 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .stretched = any_stretched,
     .contact_normal = find_contact_normal,
     .kick_damped_drift = move_kick_damped_drift,
-#if IS_QUAD_TABLE
-    .one_axis = {[SPRING_RK4] = one_axis_rk4, [SPRING_RKN8] = one_axis_rkn8, [SPRING_SRKN6] = one_axis_srkn6},
-#endif
 };
 #endif
 

@@ -7,7 +7,7 @@
 #define SPRINGSTEP_PARTICLES_H
 
 #include "../methods/implicit_kick.h"
-#include "../simd/quad.h"
+#include "../simd/real.h"
 #include "scene_kernels.h"
 
 /* A vector of coordinates along one axis. */
@@ -74,8 +74,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
     const scene_motion m = *motion;
     mask wrong = {0};
     for (uint32_t a = 0; a < p.axes; a++) {
-        const scalar *const quad_gravity = p.gravity + a * padding;
-        const real gravity = vec_load(quad_gravity);
+        const real gravity = vec_load(p.gravity + a * padding);
         const scalar *const held = p.held + a * p.stride * p.held_stride;
         for (size_t i = from; i < to; i += lanes) {
             real inverse_mass = vec_load(p.inverse_mass + i * p.mass_stride);
@@ -85,7 +84,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
                 .at = a * p.stride + i,
                 .mass = i * p.mass_stride,
                 .inverse_mass = inverse_mass,
-                .gravity = lanes < (size_t)quad_size ? vec_load(quad_gravity + i % quad_size) : gravity,
+                .gravity = gravity,
                 .drag = p.drag * inverse_mass,
                 .dragged = p.drag != 0,
                 .holds = holds,

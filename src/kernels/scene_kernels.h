@@ -84,14 +84,14 @@ typedef void direction_kernel(const scene_links *, const scalar *x, scalar *dire
    rest length 0. May return true if a link is at most 1e-5 of this length shorter. 0 <= stretch <= 1e9. */
 typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
 
-/* The particles of a scene. In a small scene, arrays of quads are treated as `count` numbers on one axis. */
+/* The particles of a scene. */
 typedef struct scene_particles {
     size_t count;
     uint32_t axes;
     size_t stride;              /* elements from one axis to the next */
     const scalar *inverse_mass; /* [1/kg]; 0: pinned */
     size_t mass_stride;         /* from particle to particle: 1, or 0: one vector for all particles */
-    const scalar *gravity;      /* a vector for each axis; for quads one vector */
+    const scalar *gravity;      /* [m/s^2] a vector for each axis */
     scalar drag;                /* [N s/m] */
     const scalar *held;         /* [N] held forces */
     size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
@@ -137,7 +137,6 @@ typedef struct scene_contacts {
     unsigned count;                 /* of colliders */
     const scene_collider *collider; /* [count] */
     uint32_t axes;
-    bool quads;             /* a small scene */
     bool adds;              /* keep the bits of `touched`: the second drift of a step */
     scalar h;               /* [s] */
     const scalar *x;        /* [m] positions at the end of the step */
@@ -175,13 +174,10 @@ typedef scene_outcome step_function(scene_step *); /* takes a step of a method *
 typedef struct unbanded_kernels {
     unbanded_kernel *forces;        /* the forces of unbanded links, added to those of bands if the scene has any */
     unbanded_kernel *record_forces; /* the same for many unbanded links, on two or three axes */
-    unbanded_kernel *quad_forces;   /* the forces of the links of a small scene */
 } unbanded_kernels;
 
 /* a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct scene_kernels {
-    /* the kernels for small scenes, with vectors of at most a quad, since a load that spans two recent stores stalls */
-    const struct scene_kernels *for_quads;
     band_kernel *band_forces; /* the forces of all bands */
     direction_kernel *band_directions;
     const unbanded_kernels *unbanded;
@@ -203,7 +199,6 @@ typedef struct scene_kernels {
     stretch_kernel *stretched;            /* see above */
     normal_kernel *contact_normal;        /* see above */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
-    step_function *one_axis[SPRING_METHOD_COUNT]; /* see one_axis.h; in tables for small scenes. NULL: none */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* named by the bits of a SIMD vector */

@@ -79,8 +79,7 @@ SPRING_NOINLINE void one_taut_link(const unbanded_links *l, size_t j, const scal
     one_quad_link(l, j, x, v, force, stride, damped, true);
 }
 
-/* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient.
-   */
+/* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
 SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
                               size_t stride, bool damped, bool tension_only)
 {
@@ -88,7 +87,7 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
     const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
-        if (stride > quad_size && j + ahead < fours) { /* not in a small scene */
+        if (j + ahead < fours) {
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_PREFETCH(x + stride * l->a[j + ahead + m]);
@@ -132,10 +131,10 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        if (tension_only && stride > quad_size)
+        if (tension_only)
             one_taut_link(l, j, x, v, force, stride, damped);
         else
-            one_quad_link(l, j, x, v, force, stride, damped, tension_only);
+            one_quad_link(l, j, x, v, force, stride, damped, false);
 }
 
 /* --------------------------------------------------------------------------- damping alone, along frozen directions */
@@ -281,29 +280,6 @@ static void compute_record_forces(const scene_links *s, const scalar *x, const s
         all_records(s, x, v, out, false, false);
     else
         all_records(s, x, v, out, true, s->terms == DAMPING_TERM);
-}
-
-SPRING_NOINLINE void small_taut_links(const scene_links *s, const scalar *x, const scalar *v, scalar *force)
-{
-    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        quad_links(&s->unbanded, x, v, force, quad_size, true, true);
-    else
-        quad_links(&s->unbanded, x, v, force, quad_size, false, true);
-}
-
-/* The forces of a small scene, whose quantities are arrays of quads. */
-static void compute_quad_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
-{
-    for (size_t i = 0; i < s->particles; i++)
-        quad_store(out->force + quad_size * i, quad_all(0));
-    if (s->terms == DAMPING_TERM)
-        quad_damping(&s->unbanded, v, out->force, quad_size);
-    else if (s->tension_only)
-        small_taut_links(s, x, v, out->force);
-    else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        quad_links(&s->unbanded, x, v, out->force, quad_size, true, false);
-    else
-        quad_links(&s->unbanded, x, v, out->force, quad_size, false, false);
 }
 
 #endif

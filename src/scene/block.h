@@ -38,7 +38,6 @@ typedef enum scene_array {
     ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
     ARRAY_LINK_DIRECTIONS,
     ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
-    ARRAY_CALLBACK,      /* a small scene: positions, velocities and forces as a callback sees them, by axis */
     ARRAY_SUMS,          /* work space of the stable step, by particle */
     ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COLLIDERS,     /* spring_collider, as set */
@@ -60,11 +59,9 @@ typedef struct band_layout {
 typedef struct scene_layout {
     uint32_t axes, flags, methods, colliders;
     size_t particles, links;
-    bool quads;             /* quantities are arrays of quads, and no link lies in a band */
-    size_t stride;          /* elements from one axis of a quantity to the next */
-    size_t particle_stride; /* elements from one particle to the next */
-    size_t quantity;        /* elements of a quantity */
-    size_t masses;          /* elements of a quantity that depends on the mass */
+    size_t stride;   /* elements from one axis of a quantity to the next */
+    size_t quantity; /* elements of a quantity */
+    size_t masses;   /* elements of a quantity that depends on the mass */
     uint32_t bands;
     band_layout band[most_bands];                    /* by ascending offset */
     size_t band_slots, band_coefficients, band_ring; /* of all bands */
@@ -99,7 +96,7 @@ struct spring_scene {
     void *user;
     double mass_all, drag, gravity[3];
     scalar max_speed;                    /* [m/s] SCALAR_MAX: no limit */
-    scalar gravity_vectors[3][padding];  /* by axis; in a small scene the first holds quads */
+    scalar gravity_vectors[3][padding];  /* [m/s^2] by axis */
     scalar inverse_mass_vector[padding]; /* for scenes without ARRAY_INVERSE_MASS */
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
@@ -151,8 +148,7 @@ static inline const void *scene_read(const spring_scene *s, scene_array a)
     return scene_has(s, a) ? (const char *)s + s->layout.offset[a] : NULL;
 }
 
-/* The element of particle 0 on an axis, for a quantity that every scene has. The element of particle i is
-   particle_stride * i elements further. */
+/* The element of particle 0 on an axis, for a quantity that every scene has. */
 static inline scalar *scene_axis(spring_scene *s, scene_array a, uint32_t axis)
 {
     void *start = (char *)s + s->layout.offset[a];
@@ -228,7 +224,7 @@ static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32
 static inline double inverse_mass_at(const spring_scene *s, size_t i)
 {
     const scalar *each = scene_read(s, ARRAY_INVERSE_MASS);
-    return each != NULL ? (double)each[s->layout.particle_stride * i] : 1 / s->mass_all;
+    return each != NULL ? (double)each[i] : 1 / s->mass_all;
 }
 
 static inline bool scene_callback_uses_velocity(const spring_scene *s)

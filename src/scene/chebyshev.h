@@ -82,8 +82,8 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
     const scene_layout *l = &s->scene->layout;
     scene_forces forces = s->forces;
     forces.force = damping_storage(s, 0);
-    if (l->quads || l->unbanded > 0) {
-        evaluate_links(s->kernels, s->scene, links, x, v, &forces);
+    if (l->unbanded > 0) {
+        evaluate_links(s->kernels, links, x, v, &forces);
         return move(s, kernel, m);
     }
     for (size_t i = 0; i < l->particles; i += chunk) {
@@ -105,8 +105,7 @@ static inline void freeze_directions(const scene_step *s, const scalar *x)
         s->kernels->band_directions(s->links, x, scene_memory(s->scene, ARRAY_BAND_DIRECTIONS));
     scalar *const direction = scene_memory(s->scene, ARRAY_LINK_DIRECTIONS);
     for (size_t j = 0; j < links->count; j++) {
-        const scalar *const from = x + l->particle_stride * links->a[j], *const to =
-                                                                             x + l->particle_stride * links->b[j];
+        const scalar *const from = x + links->a[j], *const to = x + links->b[j];
         scalar delta[3], square = 0;
         for (uint32_t a = 0; a < l->axes; a++) {
             delta[a] = to[a * l->stride] - from[a * l->stride];

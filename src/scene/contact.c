@@ -270,7 +270,7 @@ double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s
     scalar at[3] = {0};
     size_t count = 0;
     for (uint32_t a = 0; a < s->layout.axes; a++)
-        at[a] = scene_state(s, SPRING_POSITION, a)[s->layout.particle_stride * i];
+        at[a] = scene_state(s, SPRING_POSITION, a)[i];
     for (uint32_t k = 0; k < s->colliders; k++) {
         if ((touched[i] >> k & 1) == 0)
             continue;

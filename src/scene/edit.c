@@ -146,7 +146,7 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         const bool pinned = will_be_pinned(s, p, i);
         const scalar inverse = free_inverse_mass(s, p, i);
         for (uint32_t a = 0; a < s->layout.axes && pinned && !is_pinned_now(s, i); a++)
-            scene_set_state(s, SPRING_VELOCITY, a)[s->layout.particle_stride * i] = 0;
+            scene_set_state(s, SPRING_VELOCITY, a)[i] = 0;
         if (pinned != is_pinned_now(s, i))
             scene_clear_touched(s, i, 1);
         freed[i] = inverse;
@@ -173,17 +173,16 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
         return SPRING_ERANGE;
     if (inverse_mass_at(s, particle) != 0)
         return SPRING_EINVAL;
-    const size_t stride = s->layout.particle_stride;
     scalar velocity[3] = {0};
     for (uint32_t a = 0; a < s->layout.axes && target != NULL; a++) {
-        const double distance = target[a] - (double)scene_state(s, SPRING_POSITION, a)[stride * particle];
+        const double distance = target[a] - (double)scene_state(s, SPRING_POSITION, a)[particle];
         velocity[a] = (scalar)(distance / duration);
         if (!(duration > 0) || !spring_finite(duration) || !spring_finite(distance) || !scalar_finite(velocity[a]))
             return SPRING_EINVAL;
     }
     bool same = true;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        scalar *v = scene_set_state(s, SPRING_VELOCITY, a) + stride * particle;
+        scalar *v = scene_set_state(s, SPRING_VELOCITY, a) + particle;
         same = same && *v == velocity[a];
         *v = velocity[a];
     }

@@ -156,7 +156,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
-    const bool records = l->axes > 1 && !l->quads && l->unbanded >= l->particles;
+    const bool records = l->axes > 1 && l->unbanded >= l->particles;
     const bool collides = l->colliders > 0;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
@@ -187,7 +187,6 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_BAND_DIRECTIONS] = {number, l->axes * l->band_slots, series && l->bands > 0},
         [ARRAY_LINK_DIRECTIONS] = {number, quad_size * l->unbanded, series && l->unbanded > 0},
         [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
-        [ARRAY_CALLBACK] = {number, 3 * l->axes * l->particles, l->quads},
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
@@ -225,9 +224,6 @@ static void align_arrays(scene_layout *l, const void *memory)
         l->offset[a] += l->offset[a] != SIZE_MAX ? shift : 0;
 }
 
-/* Maximum number of particles, and of links, of a small scene. So few do not fill SIMD vectors of particles. */
-enum { most_small = 12 };
-
 static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
 {
     const spring_status status = spring_scene_check(def, NULL, NULL);
@@ -243,19 +239,12 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
         .unbanded = def->links,
     };
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
-    l->quads = l->axes > 1 && def->particles <= most_small && def->links <= most_small;
-    if (l->quads) {
-        l->particle_stride = quad_size;
-        l->stride = 1;
-        l->quantity = quad_size * (l->particles + quad_size) + 2 * padding;
-        l->masses = each_mass ? l->quantity : padding;
-    } else {
-        find_bands(def, l);
-        l->particle_stride = 1;
-        l->stride = (def->particles + tile - 1) / tile * tile + padding;
-        l->quantity = l->axes * l->stride + 2 * padding;
-        l->masses = each_mass ? l->stride : padding;
-    }
+    find_bands(def, l);
+    /* the loops over bands read whole tiles, the others whole vectors */
+    const size_t unit = l->bands > 0 ? tile : padding;
+    l->stride = (def->particles + unit - 1) / unit * unit + padding;
+    l->quantity = l->axes * l->stride + 2 * padding;
+    l->masses = each_mass ? l->stride : padding;
     place_arrays(def, l);
     return l->bytes <= SIZE_MAX ? SPRING_OK : SPRING_ERANGE;
 }
@@ -284,12 +273,11 @@ static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
 static void fill_particles(spring_scene *s, const spring_scene_def *def)
 {
     const uint32_t axes = s->layout.axes;
-    const size_t stride = s->layout.particle_stride;
     for (uint32_t a = 0; a < axes; a++) {
         scalar *x = scene_axis(s, ARRAY_X_0, a), *v = scene_axis(s, ARRAY_V_0, a);
         for (size_t i = 0; i < def->particles; i++) {
-            x[stride * i] = (scalar)def->position[i * axes + a];
-            v[stride * i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
+            x[i] = (scalar)def->position[i * axes + a];
+            v[i] = def->velocity != NULL ? (scalar)def->velocity[i * axes + a] : 0;
         }
     }
     for (size_t i = 0; i < def->particles && scene_has(s, ARRAY_INVERSE_MASS); i++)

@@ -127,8 +127,8 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
     const scene_layout *l = &s->layout;
     const bool each = scene_has(s, ARRAY_INVERSE_MASS), holds = scene_has(s, ARRAY_HELD);
     return (scene_particles){
-        .count = l->quads ? quad_size * l->particles : l->particles,
-        .axes = l->quads ? 1 : l->axes,
+        .count = l->particles,
+        .axes = l->axes,
         .stride = l->stride,
         .inverse_mass = each ? scene_read(s, ARRAY_INVERSE_MASS) : s->inverse_mass_vector,
         .mass_stride = each,
@@ -194,35 +194,10 @@ static inline scene_forces scene_prepare_forces(spring_scene *s, scalar *force)
 
 /* ------------------------------------------------------------------------------------------------------- evaluation */
 
-/* Calls the callback in a small scene, with copies of the quantities by axis. */
-SPRING_NOINLINE void call_back_small(spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
-{
-    const size_t n = s->layout.particles;
-    const scalar *position[3] = {NULL}, *velocity[3] = {NULL};
-    scalar *force[3] = {NULL};
-    for (uint32_t a = 0; a < s->layout.axes; a++) {
-        scalar *const shown = (scalar *)scene_memory(s, ARRAY_CALLBACK) + 3 * a * n;
-        position[a] = shown;
-        velocity[a] = shown + n;
-        force[a] = shown + 2 * n;
-        for (size_t i = 0; i < n; i++) {
-            shown[i] = x[quad_size * i + a];
-            shown[n + i] = v[quad_size * i + a];
-            shown[2 * n + i] = sum[quad_size * i + a];
-        }
-    }
-    s->force(s->user, t, n, position, velocity, force);
-    for (uint32_t a = 0; a < s->layout.axes; a++)
-        for (size_t i = 0; i < n; i++)
-            sum[quad_size * i + a] = force[a][i];
-}
-
-/* axes may be a constant. */
-SPRING_INLINE void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum,
-                             uint32_t axes)
+static inline void call_back(const spring_scene *s, const scalar *x, const scalar *v, double t, scalar *sum)
 {
     const size_t stride = s->layout.stride;
-    const bool second = axes > 1, third = axes > 2;
+    const bool second = s->layout.axes > 1, third = s->layout.axes > 2;
     const scalar *const position[3] = {x, second ? x + stride : NULL, third ? x + 2 * stride : NULL};
     const scalar *const velocity[3] = {v, second ? v + stride : NULL, third ? v + 2 * stride : NULL};
     scalar *const force[3] = {sum, second ? sum + stride : NULL, third ? sum + 2 * stride : NULL};
@@ -230,14 +205,10 @@ SPRING_INLINE void call_back(const spring_scene *s, const scalar *x, const scala
 }
 
 /* Computes out->force, the forces of links at positions x and velocities v. */
-static inline void evaluate_links(const scene_kernels *kernels, const spring_scene *s, const scene_links *links,
-                                  const scalar *x, const scalar *v, scene_forces *out)
+static inline void evaluate_links(const scene_kernels *kernels, const scene_links *links, const scalar *x,
+                                  const scalar *v, scene_forces *out)
 {
     const unbanded_kernels *const unbanded = kernels->unbanded;
-    if (s->layout.quads) {
-        unbanded->quad_forces(links, x, v, out);
-        return;
-    }
     if (links->bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
     if (links->bands == 0 || links->unbanded.count > 0)
@@ -248,29 +219,25 @@ static inline void evaluate_links(const scene_kernels *kernels, const spring_sce
 static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s, const scene_links *links,
                                   const scalar *x, const scalar *v, double t, scene_forces *out)
 {
-    evaluate_links(kernels, s, links, x, v, out);
-    if (s->force != NULL && s->layout.quads)
-        call_back_small(s, x, v, t, out->force);
-    else if (s->force != NULL)
-        call_back(s, x, v, t, out->force, s->layout.axes);
+    evaluate_links(kernels, links, x, v, out);
+    if (s->force != NULL)
+        call_back(s, x, v, t, out->force);
 }
 
 /* Evaluates the forces at x and v, at a fraction of the step, and stores them in s->forces. */
-typedef void evaluation(scene_step *s, const scalar *x, const scalar *v, double fraction);
-
 static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     scene_evaluate(s->kernels, s->scene, s->links, x, v, time_at(s, fraction), &s->forces);
 }
 
 /* Sets s->whole.force: the forces at the start of the step. They are evaluated unless they are cached. */
-SPRING_INLINE void find_start_force(scene_step *s, evaluation *evaluate_forces)
+static inline void find_start_force(scene_step *s)
 {
     s->whole.force = force_at(s, s->from);
     if (s->damping.terms > 0 ? s->cached == ELASTIC_FORCE
                              : s->cached == FORCE || (s->cached == PREDICTED_FORCE && s->predicts))
         return;
-    evaluate_forces(s, s->whole.x0, s->whole.v0, 0);
+    evaluate(s, s->whole.x0, s->whole.v0, 0);
     s->whole.force = s->forces.force; /* predicted forces stay in the other array, for a rollback */
 }
 
@@ -304,7 +271,7 @@ static inline bool move_evaluate_move(scene_step *s, particle_kernel *first_kern
                                       const scene_motion *second)
 {
     const scene_layout *l = &s->scene->layout;
-    if (l->quads || l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
+    if (l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
         if (!move(s, first_kernel, first))
             return false;
         evaluate(s, first->x, v, fraction);

@@ -10,12 +10,11 @@ typedef struct link_extent {
 
 static link_extent length_and_rate(const spring_scene *s, const stored_link *link)
 {
-    const size_t stride = s->layout.particle_stride;
     double delta[3] = {0}, relative[3] = {0};
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
-        delta[a] = (double)x[stride * link->b] - (double)x[stride * link->a];
-        relative[a] = (double)v[stride * link->b] - (double)v[stride * link->a];
+        delta[a] = (double)x[link->b] - (double)x[link->a];
+        relative[a] = (double)v[link->b] - (double)v[link->a];
     }
     if (s->layout.axes == 1)
         return (link_extent){delta[0], relative[0]};
@@ -32,8 +31,7 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++) {
-            const double inverse = inverse_mass_at(s, i), xi = (double)x[s->layout.particle_stride * i],
-                         vi = (double)v[s->layout.particle_stride * i];
+            const double inverse = inverse_mass_at(s, i), xi = (double)x[i], vi = (double)v[i];
             if (inverse > 0) {
                 e.kinetic += vi * vi / inverse / 2;
                 e.gravity -= xi * s->gravity[a] / inverse;
@@ -89,9 +87,9 @@ spring_status spring_scene_get(const spring_scene *s, spring_quantity q, double 
     if (status != SPRING_OK)
         return status;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        const scalar *from = scene_state(s, q, a) + s->layout.particle_stride * first;
+        const scalar *from = scene_state(s, q, a) + first;
         for (size_t i = 0; i < count; i++)
-            out[i * stride + a] = (double)from[s->layout.particle_stride * i];
+            out[i * stride + a] = (double)from[i];
     }
     return SPRING_OK;
 }
@@ -103,9 +101,9 @@ spring_status spring_scene_getf(const spring_scene *s, spring_quantity q, float 
     if (status != SPRING_OK)
         return status;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        const scalar *from = scene_state(s, q, a) + s->layout.particle_stride * first;
+        const scalar *from = scene_state(s, q, a) + first;
         for (size_t i = 0; i < count; i++)
-            out[i * stride + a] = (float)from[s->layout.particle_stride * i];
+            out[i * stride + a] = (float)from[i];
     }
     return SPRING_OK;
 }
@@ -121,9 +119,9 @@ spring_status spring_scene_set(spring_scene *s, spring_quantity q, const double 
             if (!scalar_finite((scalar)in[i * stride + a]))
                 return SPRING_EINVAL;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        scalar *to = scene_set_state(s, q, a) + s->layout.particle_stride * first;
+        scalar *to = scene_set_state(s, q, a) + first;
         for (size_t i = 0; i < count; i++)
-            to[s->layout.particle_stride * i] = (scalar)in[i * stride + a];
+            to[i] = (scalar)in[i * stride + a];
     }
     if (q == SPRING_POSITION)
         scene_clear_touched(s, first, count);

@@ -26,11 +26,10 @@ double spring_scene_time(const spring_scene *s)
 
 static bool finite_scene(const spring_scene *s)
 {
-    const size_t stride = s->layout.particle_stride;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
-            if (!scalar_finite(x[stride * i]) || !scalar_finite(v[stride * i]))
+            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
                 return false;
     }
     return true;
@@ -40,12 +39,10 @@ static bool finite_scene(const spring_scene *s)
    finite. */
 static void invalidate(spring_scene *s)
 {
-    const size_t stride = s->layout.particle_stride;
-    for (uint32_t a = 0; a < (s->layout.quads ? quad_size : s->layout.axes); a++) {
-        const bool axis = a < s->layout.axes; /* spring_scene_set() never sets the other numbers of a quad */
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
         scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
-            x[stride * i] = v[stride * i] = axis ? (scalar)NAN : 0;
+            x[i] = v[i] = (scalar)NAN;
     }
     scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;
@@ -95,18 +92,6 @@ static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper,
     return chebyshev_for(dt, bounds->link_damping);
 }
 
-/* Largest number of particles for which steps with inlined kernels are faster. */
-enum { most_inlined = 16 };
-
-/* The function for the steps of a method. With inlined kernels or without, the results are bit-identical. */
-static step_function *step_function_of(const scene_kernels *kernels, const scene_step *s, spring_method m)
-{
-    step_function *const one_axis = kernels->for_quads->one_axis[m];
-    const bool few = s->links->particles <= most_inlined && s->particles.axes == 1;
-    const bool plain = s->links->bands == 0 && s->contacts.count == 0 && s->particles.held_stride == 0;
-    return few && plain && one_axis != NULL ? one_axis : spring_scene_steppers[m].step;
-}
-
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
                                         uint64_t n)
 {
@@ -127,23 +112,21 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const chebyshev_series damping = series_of(s, &spring_scene_steppers[m], dt);
     if (damping.terms > 0)
         links.terms = STIFFNESS_TERM;
-    scene_step step = {.kernels = s->layout.quads ? kernels->for_quads : kernels,
-                       .scene = s,
-                       .links = &links,
-                       .forces = scene_prepare_forces(s, NULL),
-                       .particles = scene_prepare_particles(s),
-                       .h = (scalar)dt,
-                       .t0 = t0,
-                       .dt = dt,
-                       .predicts = spring_scene_steppers[m].predicts,
-                       .damping = damping,
-                       .contacts = {.count = s->colliders,
-                                    .collider = scene_read(s, ARRAY_PLACED),
-                                    .axes = s->layout.axes,
-                                    .quads = s->layout.quads}};
+    scene_step step = {
+        .kernels = kernels,
+        .scene = s,
+        .links = &links,
+        .forces = scene_prepare_forces(s, NULL),
+        .particles = scene_prepare_particles(s),
+        .h = (scalar)dt,
+        .t0 = t0,
+        .dt = dt,
+        .predicts = spring_scene_steppers[m].predicts,
+        .damping = damping,
+        .contacts = {.count = s->colliders, .collider = scene_read(s, ARRAY_PLACED), .axes = s->layout.axes}};
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
-    const cached_force cached = take_scene_steps(&step, step_function_of(kernels, &step, m), before, n, &finite);
+    const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m].step, before, n, &finite);
     if (!finite) {
         if (!rollback)
             invalidate(s);
@@ -175,8 +158,7 @@ static const scalar *forces_of_state(spring_scene *s)
     scene_band band[most_bands];
     const scene_links links = scene_prepare_links(s, band);
     scene_forces forces = scene_prepare_forces(s, force);
-    const scene_kernels *kernels = best_scene_kernels();
-    scene_evaluate(s->layout.quads ? kernels->for_quads : kernels, s, &links, scene_state(s, SPRING_POSITION, 0),
+    scene_evaluate(best_scene_kernels(), s, &links, scene_state(s, SPRING_POSITION, 0),
                    scene_state(s, SPRING_VELOCITY, 0), time_of(s), &forces);
     return force;
 }
@@ -186,16 +168,15 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
     if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
         return false;
     const scalar *all = forces_of_state(s);
-    const size_t stride = s->layout.particle_stride;
     if (s->colliders > 0)
         spring_scene_place_colliders(s, time_of(s), time_of(s));
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, accel[3] = {0};
         for (uint32_t a = 0; a < s->layout.axes; a++) {
-            const double v = (double)scene_state(s, SPRING_VELOCITY, a)[stride * i];
-            const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[stride * i] : 0;
-            const double force = (double)all[a * s->layout.stride + stride * i] + held - s->drag * v;
+            const double v = (double)scene_state(s, SPRING_VELOCITY, a)[i];
+            const double held = scene_has(s, ARRAY_HELD) ? (double)scene_state(s, SPRING_FORCE, a)[i] : 0;
+            const double force = (double)all[a * s->layout.stride + i] + held - s->drag * v;
             accel[a] = inverse > 0 ? inverse * force + s->gravity[a] : 0;
             speed = spring_hypot(speed, fabs(v));
         }

@@ -12,7 +12,7 @@
 /* x1 = x + h v;  v1 = v + h a(x, v) */
 static scene_outcome scene_euler(scene_step *s)
 {
-    find_start_force(s, evaluate);
+    find_start_force(s);
     const scene_motion m = s->whole;
     return (scene_outcome){.finite = move(s, s->kernels->stage, &m)};
 }
@@ -25,7 +25,7 @@ static double scene_euler_limit(const scene_bounds *b)
 /* v1 = v + h a(x, v1), with implicit drag and explicit damping of links;  x1 = x + h v1 */
 static scene_outcome scene_symplectic_euler(scene_step *s)
 {
-    find_start_force(s, evaluate);
+    find_start_force(s);
     const scene_motion m = s->whole;
     return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
 }
@@ -55,7 +55,7 @@ static bool stop_at_contacts(scene_step *s, const scene_motion *last_kick)
 static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
 {
     const bool keeps = !scene_callback_uses_velocity(s->scene);
-    find_start_force(s, evaluate);
+    find_start_force(s);
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 4;
     kick_drift.drift = s->h / 2;
@@ -97,7 +97,7 @@ static scene_outcome scene_leapfrog(scene_step *s)
     if (s->damping.terms > 0)
         return scene_leapfrog_with_heavy_damping(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
-    find_start_force(s, evaluate);
+    find_start_force(s);
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 2;
     kick_drift.ends_step = keeps && !s->first;
@@ -125,72 +125,16 @@ static double scene_leapfrog_explicit_limit(const scene_bounds *b)
     return 2 / (b->damping + spring_hypot(b->damping, spring_sqrt(b->stiffness)));
 }
 
-/* Two passes: for a sheet that exceeds the cache, a fused pass is 4 % slower. */
-static bool move_then_evaluate(scene_step *s, particle_kernel *kernel, const scene_motion *m, const scalar *v,
-                               double fraction)
-{
-    if (!move(s, kernel, m))
-        return false;
-    evaluate(s, m->x, v, fraction);
-    return true;
-}
-
-static bool rk4_first_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
-{
-    return move_then_evaluate(s, s->kernels->first_stage, m, v, fraction);
-}
-
-static bool rk4_next_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
-{
-    return move_then_evaluate(s, s->kernels->next_stage, m, v, fraction);
-}
-
-static bool rk4_last_stage(const scene_step *s, const scene_motion *m)
-{
-    return move(s, s->kernels->last_stage, m);
-}
-
-static scene_outcome scene_rk4(scene_step *s)
-{
-    return take_rk4_step(s, evaluate, rk4_first_stage, rk4_next_stage, rk4_last_stage);
-}
-
 static double scene_rk4_limit(const scene_bounds *b)
 {
     const double limit = 2.61; /* for |h z| below it RK4 is stable in the whole left half plane */
     return limit / fmax(spring_sqrt(b->stiffness), b->damping);
 }
 
-static bool rkn8_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
-{
-    return move_and_evaluate(s, s->kernels->nystrom_stage, m, v, fraction);
-}
-
-static bool rkn8_end(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
-{
-    return move_and_evaluate(s, s->kernels->nystrom_end, m, v, fraction);
-}
-
-static scene_outcome scene_rkn8(scene_step *s)
-{
-    return take_rkn8_step(s, rkn8_stage, rkn8_end);
-}
-
 /* A growth far beyond e^20 would overflow in float, and leave no significant digit of a stage. */
 static double scene_rkn8_limit(const scene_bounds *b)
 {
     return fmin(3.14 / spring_sqrt(b->stiffness), 40 / b->damping);
-}
-
-static bool srkn6_stage(scene_step *s, const scene_motion *m, const scalar *v, double fraction)
-{
-    return move_and_evaluate(s, m->span != NULL ? s->kernels->kick_damped_drift : s->kernels->kick_drift, m, v,
-                             fraction);
-}
-
-static scene_outcome scene_srkn6(scene_step *s)
-{
-    return take_srkn6_step(s, srkn6_stage);
 }
 
 /* With heavy drag, the growth in backward drifts would exceed the decay in the others; see srkn6.h. */

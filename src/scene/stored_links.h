@@ -83,19 +83,14 @@ static inline void scene_store_gravity(spring_scene *s, const double *gravity)
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         s->gravity[a] = gravity[a];
         for (size_t i = 0; i < padding; i++)
-            if (!s->layout.quads)
-                s->gravity_vectors[a][i] = (scalar)gravity[a];
-            else if (i % quad_size == a)
-                s->gravity_vectors[0][i] = (scalar)gravity[a];
+            s->gravity_vectors[a][i] = (scalar)gravity[a];
     }
 }
 
-/* In a small scene, sets all numbers of a quad. */
 static inline void scene_set_inverse_mass(spring_scene *s, size_t i, scalar inverse)
 {
-    scalar *const mass = (scalar *)scene_memory(s, ARRAY_INVERSE_MASS) + s->layout.particle_stride * i;
-    for (size_t k = 0; k < s->layout.particle_stride; k++)
-        mass[k] = inverse;
+    scalar *const mass = scene_memory(s, ARRAY_INVERSE_MASS);
+    mass[i] = inverse;
 }
 
 /* ----------------------------------------------------------------------------------------------------- valid values */

@@ -31,11 +31,10 @@ static double least_limit(const double *limit, size_t links)
 /* With one axis the length has the sign of the link. */
 static double length_of(const spring_scene *s, const spring_link *link)
 {
-    const size_t stride = s->layout.particle_stride;
     double delta = 0, square = 0;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         const scalar *x = scene_state(s, SPRING_POSITION, a);
-        delta = (double)x[stride * link->b] - (double)x[stride * link->a];
+        delta = (double)x[link->b] - (double)x[link->a];
         square += delta * delta;
     }
     return s->layout.axes == 1 ? delta : spring_sqrt(square);

@@ -18,12 +18,12 @@ static bool transform_quantity(spring_scene *s, spring_quantity q, const double 
     for (size_t i = 0; i < s->layout.particles; i++) {
         double old[3] = {0};
         for (uint32_t a = 0; a < s->layout.axes; a++)
-            old[a] = (double)scene_state(s, q, a)[s->layout.particle_stride * i];
+            old[a] = (double)scene_state(s, q, a)[i];
         for (uint32_t a = 0; a < s->layout.axes; a++) {
             const scalar moved = transformed(s, matrix, a, old, part);
             finite = finite && scalar_finite(moved);
             if (store)
-                scene_set_state(s, q, a)[s->layout.particle_stride * i] = moved;
+                scene_set_state(s, q, a)[i] = moved;
         }
     }
     return finite;
