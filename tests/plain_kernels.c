@@ -21,10 +21,10 @@
 #undef __clang__
 #undef __GNUC__
 #include "spring/propagator.h"
-#define SPRING_VECTOR         16
-#define SPRING_BATCH_TABLE    plain_batch
-#define SPRING_SCENE_TABLE    plain_scene
-#define SPRING_UNBANDED_TABLE plain_unbanded
-#define SPRING_EXACT_KERNEL   plain_exact /* one, in double, for both precisions */
+#define SPRING_VECTOR       16
+#define SPRING_BATCH_TABLE  plain_batch
+#define SPRING_SCENE_TABLE  plain_scene
+#define SPRING_COMMON_TABLE plain_common
+#define SPRING_EXACT_KERNEL plain_exact /* one, in double, for both precisions */
 extern exact_kernel plain_exact;
 #include "kernels/kernels.h"

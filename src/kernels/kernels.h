@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * All kernels for one vector width (SPRING_VECTOR bytes) and one precision (double, or float with SPRING_FLOAT), and
- * their tables SPRING_BATCH_TABLE, SPRING_SCENE_TABLE and SPRING_UNBANDED_TABLE. Included by the sources of this
+ * their tables SPRING_BATCH_TABLE, SPRING_SCENE_TABLE and SPRING_COMMON_TABLE. Included by the sources of this
  * folder.
  */
 #include <math.h>
@@ -19,22 +19,19 @@ SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .adv
 
 #ifndef SPRING_NO_SCENE
 #include "bands.h"
+#include "leapfrog_particles.h"
+
+#if SPRING_VECTOR < 64
+#include "contact_kernels.h"
 #include "directions.h"
 #include "particles.h"
-#include "contact_kernels.h"
 #include "stretch.h"
-#if SPRING_VECTOR < 64
 #include "unbanded.h"
-SPRING_TABLE const unbanded_kernels SPRING_UNBANDED_TABLE = {
-    .forces = compute_unbanded_forces,
-    .record_forces = compute_record_forces,
-};
-#endif
 
-SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
-    .band_forces = compute_band_forces,
+SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
+    .unbanded_forces = compute_unbanded_forces,
+    .record_forces = compute_record_forces,
     .band_directions = compute_band_directions,
-    .unbanded = &SPRING_UNBANDED_TABLE,
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
     .implicit_kick_drift = move_implicit_kick_drift,
@@ -46,10 +43,37 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .nystrom_end = move_nystrom_end,
     .damping_term = move_damping_term,
     .last_damping_term = move_last_damping_term,
+    .kick_damped_drift = move_kick_damped_drift,
     .stretched = any_stretched,
     .contact_normal = find_contact_normal,
-    .kick_damped_drift = move_kick_damped_drift,
 };
+
+SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
+    .common = &SPRING_COMMON_TABLE,
+    .band_forces = compute_band_forces,
+    .kick_drift = move_kick_drift,
+    .implicit_kick = move_implicit_kick,
+};
+#else
+static bool wide_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+}
+
+static bool wide_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_implicit_kick_free(p, m, from, to) : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
+}
+
+SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
+    .common = &SPRING_COMMON_TABLE,
+    .band_forces = compute_band_forces,
+    .kick_drift = wide_kick_drift,
+    .implicit_kick = wide_implicit_kick,
+};
+#endif
 #endif
 
 #include "../simd/target_end.h"

@@ -3,10 +3,10 @@
 #include "../simd/targets.h"
 #if SPRING_LONG_VECTORS
 #define SPRING_FLOAT
-#define SPRING_VECTOR         64
-#define SPRING_BATCH_TABLE    spring_batch_v512
-#define SPRING_SCENE_TABLE    spring_scene_v512
-#define SPRING_UNBANDED_TABLE spring_unbanded_v256
-#define SPRING_EXACT_KERNEL   spring_exact_v512
+#define SPRING_VECTOR       64
+#define SPRING_BATCH_TABLE  spring_batch_v512
+#define SPRING_SCENE_TABLE  spring_scene_v512
+#define SPRING_COMMON_TABLE spring_common_v256
+#define SPRING_EXACT_KERNEL spring_exact_v512
 #include "kernels.h"
 #endif

@@ -166,21 +166,11 @@ typedef struct scene_motion {
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
 
-typedef struct scene_step scene_step;              /* scene/pass.h */
-typedef struct scene_outcome scene_outcome;        /* scene/steppers.h */
-typedef scene_outcome step_function(scene_step *); /* takes a step of a method */
-
-/* Unbanded links are computed on quads, so vectors of 64 bytes are hardly faster than 32 (1 % on an AMD EPYC). */
-typedef struct unbanded_kernels {
-    unbanded_kernel *forces;        /* the forces of unbanded links, added to those of bands if the scene has any */
-    unbanded_kernel *record_forces; /* the same for many unbanded links, on two or three axes */
-} unbanded_kernels;
-
-/* a(u): the acceleration by force, gravity and the drag at velocity u */
-typedef struct scene_kernels {
-    band_kernel *band_forces; /* the forces of all bands */
+/* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
+typedef struct common_kernels {
+    unbanded_kernel *unbanded_forces; /* the forces of unbanded links, added to those of bands if the scene has any */
+    unbanded_kernel *record_forces;   /* the same for many unbanded links, on two or three axes */
     direction_kernel *band_directions;
-    const unbanded_kernels *unbanded;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced
        by the solution u of u = v0 + kick a(u). */
     particle_kernel *kick_drift;
@@ -196,16 +186,24 @@ typedef struct scene_kernels {
     particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
                                              + kick force/mass */
     particle_kernel *last_damping_term;   /* the same, but pinned particles keep v0 */
+    particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
     stretch_kernel *stretched;            /* see above */
     normal_kernel *contact_normal;        /* see above */
-    particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
+} common_kernels;
+
+/* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain
+   most: the forces of bands, and leapfrog without colliders and held forces. */
+typedef struct scene_kernels {
+    const common_kernels *common;
+    band_kernel *band_forces;                    /* the forces of all bands */
+    particle_kernel *kick_drift, *implicit_kick; /* as above */
 } scene_kernels;
 
 SPRING_INTERNAL const scene_kernels spring_scene_v128; /* named by the bits of a SIMD vector */
-SPRING_INTERNAL const unbanded_kernels spring_unbanded_v128;
+SPRING_INTERNAL const common_kernels spring_common_v128;
 #if SPRING_LONG_VECTORS
 SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;
-SPRING_INTERNAL const unbanded_kernels spring_unbanded_v256;
+SPRING_INTERNAL const common_kernels spring_common_v256;
 #endif
 
 #endif

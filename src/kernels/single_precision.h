@@ -50,8 +50,8 @@
 #define spring_scene_v128            spring_scenef_v128
 #define spring_scene_v256            spring_scenef_v256
 #define spring_scene_v512            spring_scenef_v512
-#define spring_unbanded_v128         spring_unbandedf_v128
-#define spring_unbanded_v256         spring_unbandedf_v256
+#define spring_common_v128           spring_commonf_v128
+#define spring_common_v256           spring_commonf_v256
 #define spring_scene_set_links       spring_scenef_set_links
 #define spring_scene_tear            spring_scenef_tear
 #define spring_scene_tear_with       spring_scenef_tear_with

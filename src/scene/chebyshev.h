@@ -102,7 +102,7 @@ static inline void freeze_directions(const scene_step *s, const scalar *x)
     const scene_layout *l = &s->scene->layout;
     const unbanded_links *links = &s->links->unbanded;
     if (l->bands > 0)
-        s->kernels->band_directions(s->links, x, scene_memory(s->scene, ARRAY_BAND_DIRECTIONS));
+        s->kernels->common->band_directions(s->links, x, scene_memory(s->scene, ARRAY_BAND_DIRECTIONS));
     scalar *const direction = scene_memory(s->scene, ARRAY_LINK_DIRECTIONS);
     for (size_t j = 0; j < links->count; j++) {
         const scalar *const from = x + links->a[j], *const to = x + links->b[j];
@@ -143,7 +143,7 @@ static inline bool damp_links(scene_step *s, const scalar *x, scalar *v)
         m.kick = (scalar)(first ? times * last * p->kick : times * p->kick);
         m.v = k > 1 ? storage[k % 2] : v;
         finite = damping_term(s, &links, x, term.before,
-                              k > 1 ? s->kernels->damping_term : s->kernels->last_damping_term, &m);
+                              k > 1 ? s->kernels->common->damping_term : s->kernels->common->last_damping_term, &m);
         term.second_before = first ? v : term.before;
         term.before = m.v;
     }

@@ -275,7 +275,7 @@ double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s
         if ((touched[i] >> k & 1) == 0)
             continue;
         scalar n[3];
-        kernels->contact_normal(&placed[k], at, n);
+        kernels->common->contact_normal(&placed[k], at, n);
         for (int a = 0; a < 3; a++)
             normal[count][a] = (double)n[a];
         friction[count++] = (double)placed[k].friction;

@@ -240,9 +240,9 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
     };
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
     find_bands(def, l);
-    /* the loops over bands read whole tiles, the others whole vectors */
-    const size_t unit = l->bands > 0 ? tile : padding;
-    l->stride = (def->particles + unit - 1) / unit * unit + padding;
+    /* Loops over bands read whole tiles and the vectors that upper ends begin. Other loops read whole vectors. */
+    const size_t unit = l->bands > 0 ? tile : padding, beyond = l->bands > 0 ? padding : 0;
+    l->stride = (def->particles + unit - 1) / unit * unit + beyond;
     l->quantity = l->axes * l->stride + 2 * padding;
     l->masses = each_mass ? l->stride : padding;
     place_arrays(def, l);

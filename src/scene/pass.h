@@ -208,11 +208,11 @@ static inline void call_back(const spring_scene *s, const scalar *x, const scala
 static inline void evaluate_links(const scene_kernels *kernels, const scene_links *links, const scalar *x,
                                   const scalar *v, scene_forces *out)
 {
-    const unbanded_kernels *const unbanded = kernels->unbanded;
+    const common_kernels *const common = kernels->common;
     if (links->bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
     if (links->bands == 0 || links->unbanded.count > 0)
-        (out->records != NULL ? unbanded->record_forces : unbanded->forces)(links, x, v, out);
+        (out->records != NULL ? common->record_forces : common->unbanded_forces)(links, x, v, out);
 }
 
 /* The same, with the forces of the callback at time t. */

@@ -29,19 +29,19 @@ static scene_outcome scene_rk4(scene_step *s)
     stage.sum_v = end.sum_v = stage_storage(s, 3);
     stage.kick = stage.drift = s->h / 2;
     stage.weight = 2;
-    if (!rk4_stage(s, s->kernels->first_stage, &stage, 0.5))
+    if (!rk4_stage(s, s->kernels->common->first_stage, &stage, 0.5))
         return (scene_outcome){.finite = false};
     stage.stage_v = end.stage_v = stage.v;
     stage.force = end.force = s->forces.force;
     for (int k = 1; k < 3; k++) {
         const double fraction = k == 1 ? 0.5 : 1;
         stage.kick = stage.drift = (scalar)fraction * s->h;
-        if (!rk4_stage(s, s->kernels->next_stage, &stage, fraction))
+        if (!rk4_stage(s, s->kernels->common->next_stage, &stage, fraction))
             return (scene_outcome){.finite = false};
     }
     end.kick = end.drift = s->h / 6;
     end.weight = 1;
-    return (scene_outcome){.finite = move(s, s->kernels->last_stage, &end)};
+    return (scene_outcome){.finite = move(s, s->kernels->common->last_stage, &end)};
 }
 
 _Static_assert((int)rkn8_stages == (int)nystrom_stages, "the kernels compute the stages of RKN8");
@@ -86,7 +86,7 @@ static scene_outcome scene_rkn8(scene_step *s)
         stage.drift = (scalar)rkn8_c[k] * s->h;
         n.weight_x = rkn8_a[k];
         n.decay = dragged ? mass_factor(s, RKN8_DECAY + k) : NULL;
-        if (!move_and_evaluate(s, s->kernels->nystrom_stage, &stage, stage.v0, rkn8_c[k]))
+        if (!move_and_evaluate(s, s->kernels->common->nystrom_stage, &stage, stage.v0, rkn8_c[k]))
             return (scene_outcome){.finite = false};
         stage.force = end.force = s->forces.force;
         n.growth = dragged ? mass_factor(s, RKN8_GROWTH + k) : NULL;
@@ -94,7 +94,8 @@ static scene_outcome scene_rkn8(scene_step *s)
     n.weight_x = rkn8_b;
     n.weight_v = rkn8_b_v;
     n.loss = dragged ? mass_factor(s, RKN8_LOSS) : NULL;
-    return (scene_outcome){.finite = move_and_evaluate(s, s->kernels->nystrom_end, &end, end.v, 1), .cached = FORCE};
+    return (scene_outcome){.finite = move_and_evaluate(s, s->kernels->common->nystrom_end, &end, end.v, 1),
+                           .cached = FORCE};
 }
 
 /* Indices of the factors that SRKN6 stores for each mass, with drag, for each of its different drifts; see
@@ -127,7 +128,7 @@ static scene_outcome scene_srkn6(scene_step *s)
         compute_srkn6_factors(s);
     find_start_force(s);
     s->particles.drag = 0;
-    particle_kernel *const kick_drift = dragged ? s->kernels->kick_damped_drift : s->kernels->kick_drift;
+    particle_kernel *const kick_drift = dragged ? s->kernels->common->kick_damped_drift : s->kernels->kick_drift;
     scene_motion m = s->whole, last_kick = s->whole;
     last_kick.v0 = last_kick.v;
     last_kick.force = s->forces.force;

@@ -14,7 +14,7 @@ static scene_outcome scene_euler(scene_step *s)
 {
     find_start_force(s);
     const scene_motion m = s->whole;
-    return (scene_outcome){.finite = move(s, s->kernels->stage, &m)};
+    return (scene_outcome){.finite = move(s, s->kernels->common->stage, &m)};
 }
 
 static double scene_euler_limit(const scene_bounds *b)
@@ -27,7 +27,7 @@ static scene_outcome scene_symplectic_euler(scene_step *s)
 {
     find_start_force(s);
     const scene_motion m = s->whole;
-    return (scene_outcome){.finite = move(s, s->kernels->implicit_kick_drift, &m)};
+    return (scene_outcome){.finite = move(s, s->kernels->common->implicit_kick_drift, &m)};
 }
 
 /* Explicit link damping lowers the limit, and implicit drag raises it. A motion with stiffness k, link damping c and

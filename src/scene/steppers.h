@@ -5,11 +5,15 @@
 
 #include "block.h"
 
+typedef struct scene_step scene_step; /* pass.h */
+
 /* A step ends at the first number that is not finite, so that a callback sees finite numbers only. */
-struct scene_outcome {
+typedef struct scene_outcome {
     bool finite;
     cached_force cached; /* at the end of the step */
-};
+} scene_outcome;
+
+typedef scene_outcome step_function(scene_step *); /* takes a step of a method */
 
 typedef struct scene_stepper {
     step_function *step; /* NULL: the method is not for scenes */

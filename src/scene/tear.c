@@ -73,7 +73,8 @@ static bool any_longer(const scene_kernels *kernels, const spring_scene *s, doub
         return true;
     scene_band band[most_bands];
     const scene_links links = scene_prepare_links(s, band);
-    return s->layout.bands > 0 && kernels->stretched(&links, scene_state(s, SPRING_POSITION, 0), (scalar)stretch);
+    return s->layout.bands > 0 &&
+           kernels->common->stretched(&links, scene_state(s, SPRING_POSITION, 0), (scalar)stretch);
 }
 
 spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch, const double *limit,
