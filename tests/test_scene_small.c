@@ -42,10 +42,24 @@ static void against_a_plain_loop(void)
                 }
 }
 
+/* The results of bands and of unbanded links differ in rounding errors, so a scene of few links must stay without bands. */
+static void few_links_form_no_band(void)
+{
+    static model m;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (uint32_t n = 9; n <= 13; n++) {
+            build(&m, (uint32_t[]){n, 1, 1}, axes, 0);
+            spring_scene *s = scene_of(&m.def);
+            CHECK(s->layout.bands == (axes == 1 || n > 12), "a sorted rope of 12 particles has no band");
+            free(s);
+        }
+}
+
 int main(void)
 {
     static const test tests[] = {
         {"forces against a plain loop", against_a_plain_loop},
+        {"few links form no band", few_links_form_no_band},
     };
     return RUN_TESTS("scene-small", tests);
 }

@@ -224,6 +224,14 @@ static void align_arrays(scene_layout *l, const void *memory)
         l->offset[a] += l->offset[a] != SIZE_MAX ? shift : 0;
 }
 
+/* Whether a scene has so few particles and links that bands, which are computed in whole SIMD vectors, are not worthwhile.
+   The results of bands and of unbanded links differ in rounding errors, so this limit is part of the results. */
+static bool has_few_links(const spring_scene_def *def)
+{
+    const size_t few = 12;
+    return axes_of(def) > 1 && def->particles <= few && def->links <= few;
+}
+
 static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
 {
     const spring_status status = spring_scene_check(def, NULL, NULL);
@@ -239,7 +247,8 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
         .unbanded = def->links,
     };
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
-    find_bands(def, l);
+    if (!has_few_links(def))
+        find_bands(def, l);
     /* Loops over bands read whole tiles and the vectors that upper ends begin. Other loops read whole vectors. */
     const size_t unit = l->bands > 0 ? tile : padding, beyond = l->bands > 0 ? padding : 0;
     l->stride = (def->particles + unit - 1) / unit * unit + beyond;
