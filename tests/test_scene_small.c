@@ -49,6 +49,9 @@ static void few_links_form_no_band(void)
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (uint32_t n = 9; n <= 13; n++) {
             build(&m, (uint32_t[]){n, 1, 1}, axes, 0);
+            m.def.links = n - 1;
+            for (uint32_t i = 0; i + 1 < n; i++)
+                m.link[i] = (spring_link){i, i + 1, 0.3, 20, 0};
             spring_scene *s = scene_of(&m.def);
             CHECK(s->layout.bands == (axes == 1 || n > 12), "a sorted rope of 12 particles has no band");
             free(s);
