@@ -141,6 +141,14 @@ static storage_needs needs_of(uint32_t methods)
     return most;
 }
 
+/* Whether a scene has so few particles and links that it has neither bands, which are computed in whole SIMD vectors, nor
+   records. The results of bands and of unbanded links differ in rounding errors, so this limit is part of the results. */
+static bool has_few_links(const spring_scene_def *def)
+{
+    const size_t few = 12;
+    return axes_of(def) > 1 && def->particles <= few && def->links <= few;
+}
+
 /* A row of the table of arrays. */
 typedef struct array_row {
     size_t element; /* [bytes] */
@@ -156,7 +164,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
-    const bool records = l->axes > 1 && l->unbanded >= l->particles;
+    const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
     const bool collides = l->colliders > 0;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
@@ -222,14 +230,6 @@ static void align_arrays(scene_layout *l, const void *memory)
     const size_t beyond = (uintptr_t)memory % SPRING_SCENE_ALIGN, shift = beyond > 0 ? SPRING_SCENE_ALIGN - beyond : 0;
     for (int a = 0; a < ARRAY_COUNT; a++)
         l->offset[a] += l->offset[a] != SIZE_MAX ? shift : 0;
-}
-
-/* Whether a scene has so few particles and links that bands, which are computed in whole SIMD vectors, are not worthwhile.
-   The results of bands and of unbanded links differ in rounding errors, so this limit is part of the results. */
-static bool has_few_links(const spring_scene_def *def)
-{
-    const size_t few = 12;
-    return axes_of(def) > 1 && def->particles <= few && def->links <= few;
 }
 
 static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
