@@ -57,7 +57,7 @@ install_missing() {
         as_root=(sudo)
     fi
     say "installing ${missing[*]}"
-    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y)
+    as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=300)
     if ! { "${as_root[@]}" update && "${as_root[@]}" install --no-install-recommends "${missing[@]}"; } >&2 </dev/null; then
         give_up 'apt-get failed' "${missing[@]}"
     fi
