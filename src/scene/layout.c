@@ -249,7 +249,7 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
     if (!has_few_links(def))
         find_bands(def, l);
-    /* Loops over bands read whole tiles and the vectors that upper ends begin. Other loops read whole vectors. */
+    /* Loops over bands read whole tiles, and vectors that start at upper ends. Other loops read whole vectors. */
     const size_t unit = l->bands > 0 ? tile : padding, beyond = l->bands > 0 ? padding : 0;
     l->stride = (def->particles + unit - 1) / unit * unit + beyond;
     l->quantity = l->axes * l->stride + 2 * padding;
