@@ -82,19 +82,25 @@ SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const
     }
 }
 
-SPRING_INLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
+SPRING_NOINLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
         for (size_t j = 0; j < slots; j += lanes)
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* Computes the forces of a band in `slots` slots from t on. Forces along axis a are stored at force + a * axis.
-   shared: all slots have the same coefficients; a constant, so that the compiler keeps them in registers. */
-SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                               size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped, bool shared,
-                               bool tension_only)
+/* Computes the forces of a band in `slots` slots from t on. Forces along axis a are stored at force + a * axis. */
+typedef void tile_kernel(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v, ptrdiff_t t,
+                         size_t slots, scalar *force, size_t axis);
+
+/* See tile_kernel. shared: all slots have the same coefficients; a constant, so that the compiler keeps them in
+   registers. */
+SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                               ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped,
+                               bool shared)
 {
+    const size_t stride = s->stride;
+    const bool tension_only = axes > 1 && s->tension_only;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
@@ -140,55 +146,59 @@ SPRING_INLINE void tile_forces(const scene_band *band, const scalar *x, const sc
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-SPRING_INLINE void one_band_forces(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                                   size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped)
+/* On one axis a link has few operations, so that a call, or loads of equal coefficients, would matter. */
+SPRING_INLINE void linear_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                               ptrdiff_t t, size_t slots, scalar *force, size_t axis, bool damped)
 {
-    if (axes == 1 && band->coefficient_stride == 0) /* with so few operations, loads of coefficients would matter */
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, true, false);
+    if (band->coefficient_stride == 0 && !SPRING_COMPACT)
+        tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, true);
     else
-        tile_forces(band, x, v, stride, t, slots, force, axis, axes, damped, false, false);
+        tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, false);
 }
 
-/* Tension-only links. Separate functions, so that the loop over tiles is compiled once. */
-typedef void taut_kernel(const scene_band *band, const scalar *x, const scalar *v, size_t stride, ptrdiff_t t,
-                         size_t slots, scalar *force, size_t axis);
-
-SPRING_NOINLINE void taut_forces_on_2_axes(const scene_band *band, const scalar *x, const scalar *v, size_t stride,
-                                           ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_INLINE void tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                  ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_forces(band, x, v, stride, t, slots, force, axis, 2, false, false, true);
+    linear_tile(s, band, x, v, t, slots, force, axis, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM);
 }
 
-SPRING_NOINLINE void damped_taut_forces_on_2_axes(const scene_band *band, const scalar *x, const scalar *v,
-                                                  size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_INLINE void damped_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                         ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_forces(band, x, v, stride, t, slots, force, axis, 2, true, false, true);
+    linear_tile(s, band, x, v, t, slots, force, axis, true);
 }
 
-SPRING_NOINLINE void taut_forces_on_3_axes(const scene_band *band, const scalar *x, const scalar *v, size_t stride,
-                                           ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_forces(band, x, v, stride, t, slots, force, axis, 3, false, false, true);
+    tile_forces(s, band, x, v, t, slots, force, axis, 2, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM,
+                false);
 }
 
-SPRING_NOINLINE void damped_taut_forces_on_3_axes(const scene_band *band, const scalar *x, const scalar *v,
-                                                  size_t stride, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void damped_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_forces(band, x, v, stride, t, slots, force, axis, 3, true, false, true);
+    tile_forces(s, band, x, v, t, slots, force, axis, 2, true, false);
 }
 
-SPRING_INLINE taut_kernel *taut_forces(uint32_t axes, bool damped)
+SPRING_NOINLINE void tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    if (axes == 2)
-        return damped ? damped_taut_forces_on_2_axes : taut_forces_on_2_axes;
-    return damped ? damped_taut_forces_on_3_axes : taut_forces_on_3_axes;
+    tile_forces(s, band, x, v, t, slots, force, axis, 3, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM,
+                false);
 }
 
-/* Like tile_forces(), for damping alone along frozen directions d: the force is d (d . relative velocity). Separate
-   functions, so that the loop over tiles is compiled once. */
-SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
+SPRING_NOINLINE void damped_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(s, band, x, v, t, slots, force, axis, 3, true, false);
+}
+
+/* Like tile_forces(), for damping alone along frozen directions d: the force is d (d . relative velocity). */
+SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *v, ptrdiff_t t,
                                        size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
+    const size_t stride = s->stride;
     const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
                         *const upper = lower + band->offset;
     const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
@@ -214,30 +224,25 @@ SPRING_INLINE void tile_damping_forces(const scene_band *band, const scalar *v, 
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-SPRING_NOINLINE void damping_forces_on_1_axis(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
-                                              size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void damping_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_damping_forces(band, v, stride, t, slots, force, axis, 1);
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 1);
 }
 
-SPRING_NOINLINE void damping_forces_on_2_axes(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
-                                              size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void damping_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_damping_forces(band, v, stride, t, slots, force, axis, 2);
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 2);
 }
 
-SPRING_NOINLINE void damping_forces_on_3_axes(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t,
-                                              size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    tile_damping_forces(band, v, stride, t, slots, force, axis, 3);
-}
-
-SPRING_INLINE void damping_forces(const scene_band *band, const scalar *v, size_t stride, ptrdiff_t t, size_t slots,
-                                  scalar *force, size_t axis, uint32_t axes)
-{
-    (axes == 1   ? damping_forces_on_1_axis
-     : axes == 2 ? damping_forces_on_2_axes
-                 : damping_forces_on_3_axes)(band, v, stride, t, slots, force, axis);
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 3);
 }
 
 /* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
@@ -247,6 +252,9 @@ typedef struct kept_forces {
 } kept_forces;
 
 /* Sets `to` to the sum of the forces of all bands on `count` particles. */
+typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                           const kept_forces *minus, size_t minuses);
+
 SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
                           const kept_forces *minus, size_t minuses, uint32_t axes)
 {
@@ -285,8 +293,26 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
     }
 }
 
+SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                    const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 1);
+}
+
+SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 2);
+}
+
+SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 3);
+}
+
 /* Copies the first tile of a ring behind its last tile, so that any `tile` consecutive slots are contiguous. */
-SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
+SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
 {
     for (uint32_t a = 0; a < axes; a++)
         for (size_t j = 0; j < slots; j += lanes)
@@ -296,7 +322,7 @@ SPRING_INLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size
 /* Computes the forces of all bands on particles from ... to - 1. The rings contain the forces of earlier links. In the
    loop, `t` is the first slot of a tile, and `axis` is the stride between the axes of a ring. */
 SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                             size_t to, uint32_t axes, bool damped)
+                             size_t to, uint32_t axes, tile_kernel *forces, gather_kernel *sum)
 {
     ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
@@ -317,12 +343,7 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
             if (t >= band->start && t < band->end) {
-                if (!damped && SPRING_UNLIKELY(s->terms == DAMPING_TERM))
-                    damping_forces(band, v, s->stride, t, count, force, axis, axes);
-                else if (axes > 1 && SPRING_UNLIKELY(s->tension_only))
-                    taut_forces(axes, damped)(band, x, v, s->stride, t, count, force, axis);
-                else
-                    one_band_forces(band, x, v, s->stride, t, count, force, axis, axes, damped);
+                forces(s, band, x, v, t, count, force, axis);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
@@ -333,43 +354,39 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
                 minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
             slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
         }
-        gather(out->force + t, s->stride, count, plus, pluses, minus, minuses, axes);
+        sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
     }
 }
 
-/* One function per number of axes: in a common function, gcc would keep fewer variables of the loops in registers. */
 SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            size_t from, size_t to)
 {
-    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        all_bands(s, x, v, out, from, to, 1, true);
+    if (s->terms == DAMPING_TERM)
+        all_bands(s, x, v, out, from, to, 1, damping_tile_on_1_axis, gather_on_1_axis);
+    else if (s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT)
+        all_bands(s, x, v, out, from, to, 1, damped_tile_on_1_axis, gather_on_1_axis);
     else
-        all_bands(s, x, v, out, from, to, 1, false);
-}
-
-SPRING_NOINLINE void band_forces_on_2_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                           size_t from, size_t to)
-{
-    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        all_bands(s, x, v, out, from, to, 2, true);
-    else
-        all_bands(s, x, v, out, from, to, 2, false);
-}
-
-SPRING_NOINLINE void band_forces_on_3_axes(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                           size_t from, size_t to)
-{
-    if (s->terms == STIFFNESS_AND_DAMPING_TERM)
-        all_bands(s, x, v, out, from, to, 3, true);
-    else
-        all_bands(s, x, v, out, from, to, 3, false);
+        all_bands(s, x, v, out, from, to, 1, tile_on_1_axis, gather_on_1_axis);
 }
 
 static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
                                 size_t to)
 {
-    band_kernel *const of_axes[] = {band_forces_on_1_axis, band_forces_on_2_axes, band_forces_on_3_axes};
-    of_axes[s->axes - 1](s, x, v, out, from, to);
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT, alone = s->terms == DAMPING_TERM;
+    if (s->axes == 1)
+        band_forces_on_1_axis(s, x, v, out, from, to);
+    else if (s->axes == 2)
+        all_bands(s, x, v, out, from, to, 2,
+                  alone    ? damping_tile_on_2_axes
+                  : damped ? damped_tile_on_2_axes
+                           : tile_on_2_axes,
+                  gather_on_2_axes);
+    else
+        all_bands(s, x, v, out, from, to, 3,
+                  alone    ? damping_tile_on_3_axes
+                  : damped ? damped_tile_on_3_axes
+                           : tile_on_3_axes,
+                  gather_on_3_axes);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "follow_springs.h"
 #include "spring_group.h"
 
+#if SPRING_VECTOR < 64
 SPRING_INLINE bool advance_alike(const batch_run *b, bool loaded)
 {
     const exact_coefficients c = exact_prepare(b->propagator);
@@ -26,6 +27,7 @@ SPRING_INLINE bool advance_alike(const batch_run *b, bool loaded)
     }
     return all;
 }
+#endif
 
 #ifndef SPRING_FLOAT
 SPRING_INLINE void exact_store(void *array, size_t i, real a, bool single)
@@ -90,12 +92,8 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 }
 #endif
 
-static bool advance_exactly(const batch_run *b)
+static bool advance_each_exactly(const batch_run *b)
 {
-    if (b->propagator != NULL && b->target != NULL)
-        return SPRING_BY_FEATURES(b->accel.first != NULL, b->propagator->half == 1, follow_alike, b);
-    if (b->propagator != NULL)
-        return b->accel.first != NULL ? advance_alike(b, true) : advance_alike(b, false);
     const exact_run each = {
         .count = b->count,
         .single = sizeof(scalar) == sizeof(float),
@@ -110,5 +108,17 @@ static bool advance_exactly(const batch_run *b)
     };
     return SPRING_EXACT_KERNEL(&each);
 }
+
+#if SPRING_VECTOR < 64
+static bool advance_exactly(const batch_run *b)
+{
+    const bool loaded = b->accel.first != NULL;
+    if (b->propagator == NULL)
+        return advance_each_exactly(b);
+    if (b->target == NULL)
+        return SPRING_COMPACT ? advance_alike(b, loaded) : loaded ? advance_alike(b, true) : advance_alike(b, false);
+    return b->propagator->half == 1 && !SPRING_COMPACT ? follow_alike(b, true) : follow_alike(b, false);
+}
+#endif
 
 #endif

@@ -86,9 +86,10 @@ SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coeff
 }
 
 /* Springs with equal coefficients, and with stiffness. unit: exact_coefficients.half is 1, as for most time steps. */
-SPRING_INLINE bool follow_alike(const batch_run *run, bool loaded, bool unit)
+SPRING_INLINE bool follow_alike(const batch_run *run, bool unit)
 {
     const batch_run b = *run; /* a local copy, so that stores cannot alias its fields */
+    const bool loaded = b.accel.first != NULL;
     const bool single = sizeof(scalar) == sizeof(float);
     follow_coefficients c =
         follow_prepare(exact_prepare(b.propagator), splat(b.omega2.first[0]), splat((scalar)b.t), single);

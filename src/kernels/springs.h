@@ -58,7 +58,10 @@ SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_
     do {
         const uint64_t some = left < SPRING_CHECK_INTERVAL ? left : SPRING_CHECK_INTERVAL;
         left -= some;
-        SPRING_BY_FEATURES(damped, loaded, step_group, x, v, h, c, some, start, step);
+        if (SPRING_COMPACT)
+            step_group(x, v, h, c, some, start, step, damped, loaded);
+        else
+            SPRING_BY_FEATURES(damped, loaded, step_group, x, v, h, c, some, start, step);
     } while (left > 0 && !none_finite(x, v));
     return store_group(run, i, b->x + i, b->v + i, x, v, vectors, signs);
 }
@@ -75,7 +78,7 @@ SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare,
     bool all = true;
     for (size_t i = 0; i < b.count; i += group) {
         if (i == 0 || !alike)
-            signs = SPRING_BY_FEATURES(damped, loaded, prepare_group, c, &b, i, h, prepare);
+            signs = prepare_group(c, &b, i, h, prepare, damped, loaded);
         all &= advance_group(run, &b, i, h, c, signs, start, step, damped, loaded);
     }
     return all;
@@ -100,14 +103,17 @@ SPRING_INLINE bool advance_once(const batch_run *run, method_prepare *prepare, m
     return all;
 }
 
+/* Only leapfrog has a loop over single steps for each set of features. */
 SPRING_INLINE bool advance_by(const batch_run *b, method_prepare *prepare, method_start *start, method_step *step)
 {
     const bool damped = b->gamma.first != NULL, loaded = b->accel.first != NULL;
-    if (b->n > 1)
+    if (b->n > 1 || SPRING_COMPACT)
         return advance_groups(b, prepare, start, step, damped, loaded);
-    return SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step);
+    return step == leapfrog_step ? SPRING_BY_FEATURES(damped, loaded, advance_once, b, prepare, start, step)
+                                 : advance_once(b, prepare, start, step, damped, loaded);
 }
 
+#if SPRING_VECTOR < 64
 static bool advance_springs(const batch_run *b)
 {
 #define STEP_METHOD(value, prepare, start, step) \
@@ -119,5 +125,16 @@ static bool advance_springs(const batch_run *b)
 #undef STEP_METHOD
     return advance_exactly(b);
 }
+#else
+/* Several steps of leapfrog, and exact solutions with different coefficients, gain most from vectors of 64 bytes. */
+static bool advance_springs(const batch_run *b)
+{
+    if (b->method == SPRING_LEAPFROG && b->n > 1)
+        return advance_by(b, leapfrog_prepare, leapfrog_force, leapfrog_step);
+    if (b->method == SPRING_EXACT && b->propagator == NULL)
+        return advance_each_exactly(b);
+    return spring_batch_v256.advance(b);
+}
+#endif
 
 #endif

@@ -10,7 +10,20 @@
 
 #include "targets.h"
 
-#if SPRING_VECTOR == 16
+/* Kernels for vectors of 16 bytes on x86-64 serve processors without AVX2, which are rare. They are compiled for size:
+   conditions that other kernels compile as constants, one loop for each combination, are tested in the loop. */
+#if SPRING_VECTOR == 16 && SPRING_LONG_VECTORS
+#define SPRING_COMPACT 1
+#else
+#define SPRING_COMPACT 0
+#endif
+
+#if SPRING_COMPACT && defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#elif SPRING_COMPACT
+#pragma GCC push_options
+#pragma GCC optimize("Os")
+#elif SPRING_VECTOR == 16
 #elif defined(__clang__) && SPRING_VECTOR == 32
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
 #elif defined(__clang__)
