@@ -23,9 +23,8 @@ static bool move_kick_drift(const scene_particles *p, const scene_motion *m, siz
 {
     if (m->contacts != NULL)
         return move_kick_drift_contact(p, m, from, to);
-    if (p->held_stride != 0)
-        return move_kick_drift_held(p, m, from, to);
-    return move_kick_drift_free(p, m, from, to);
+    return p->held_stride != 0 || SPRING_COMPACT ? move_kick_drift_held(p, m, from, to)
+                                                 : move_kick_drift_free(p, m, from, to);
 }
 
 SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -37,7 +36,8 @@ static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, 
 {
     if (m->contacts != NULL)
         return move_implicit_kick_contact(p, m, from, to);
-    return p->held_stride != 0 ? move_implicit_kick_held(p, m, from, to) : move_implicit_kick_free(p, m, from, to);
+    return p->held_stride != 0 || SPRING_COMPACT ? move_implicit_kick_held(p, m, from, to)
+                                                 : move_implicit_kick_free(p, m, from, to);
 }
 
 SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -121,7 +121,7 @@ SPRING_INLINE real nystrom_acceleration(const scene_motion *m, const coordinates
 SPRING_INLINE real nystrom_sum(const scene_motion *m, const coordinates *c, const scalar *weight, size_t count)
 {
     real sum = weight[0] * vec_load(m->nystrom->accel + c->at);
-    SPRING_UNROLL
+    SPRING_ROLLED
     for (size_t i = 1; i < count; i++)
         sum += weight[i] * vec_load(m->nystrom->accel + i * m->nystrom->accel_stride + c->at);
     return sum;
@@ -138,31 +138,9 @@ SPRING_INLINE mask update_nystrom_stage(const scene_motion *m, const coordinates
     return not_finite(x);
 }
 
-/* With the number of the stage as a constant. */
-SPRING_INLINE bool update_each_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to,
-                                             bool holds)
-{
-    switch (m->nystrom->number) {
-    case 1:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 1, holds);
-    case 2:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 2, holds);
-    case 3:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 3, holds);
-    case 4:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 4, holds);
-    case 5:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 5, holds);
-    case 6:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, 6, holds);
-    default:
-        return for_each_vector(p, m, from, to, update_nystrom_stage, nystrom_stages, holds);
-    }
-}
-
 static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return update_each_nystrom_stage(p, m, from, to, true);
+    return for_each_vector(p, m, from, to, update_nystrom_stage, (unsigned)m->nystrom->number, true);
 }
 
 SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -202,14 +180,20 @@ SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates 
     return last ? not_finite(term) : (mask){0};
 }
 
+SPRING_NOINLINE bool move_any_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to,
+                                           unsigned last)
+{
+    return for_each_vector(p, m, from, to, update_damping_term, last, false);
+}
+
 static bool move_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, 0, false);
+    return move_any_damping_term(p, m, from, to, 0);
 }
 
 static bool move_last_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, 1, false);
+    return move_any_damping_term(p, m, from, to, 1);
 }
 
 /* -------------------------------------------------------------------------------- kicks, and drifts with exact drag */
@@ -225,8 +209,7 @@ SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordin
 
 static bool move_kick_damped_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_damped_drift, ENDS_STEP, true)
-                        : for_each_vector(p, m, from, to, update_kick_damped_drift, 0, true);
+    return for_each_vector(p, m, from, to, update_kick_damped_drift, m->ends_step ? ENDS_STEP : 0, true);
 }
 
 #endif

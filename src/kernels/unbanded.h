@@ -58,8 +58,9 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
     }
 }
 
-SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
-                                 size_t stride, bool damped, bool tension_only)
+/* Not inlined, since it is called for few links. */
+SPRING_NOINLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                   size_t stride, bool damped, bool tension_only)
 {
     const size_t a = stride * l->a[j], b = stride * l->b[j];
     const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
@@ -70,13 +71,6 @@ SPRING_INLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar
     const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped, tension_only)), delta);
     quad_store(force + a, quad_plus(quad_load(force + a), pull));
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
-}
-
-/* Tension-only; not inlined, since it is called for few links. */
-SPRING_NOINLINE void one_taut_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
-                                   size_t stride, bool damped)
-{
-    one_quad_link(l, j, x, v, force, stride, damped, true);
 }
 
 /* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient. */
@@ -112,10 +106,7 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
                                                 quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
         if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
             for (size_t m = 0; m < some; m++)
-                if (tension_only)
-                    one_taut_link(l, j + m, x, v, force, stride, damped);
-                else
-                    one_quad_link(l, j + m, x, v, force, stride, damped, false);
+                one_quad_link(l, j + m, x, v, force, stride, damped, tension_only);
             continue;
         }
         if (tension_only)
@@ -131,10 +122,7 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        if (tension_only)
-            one_taut_link(l, j, x, v, force, stride, damped);
-        else
-            one_quad_link(l, j, x, v, force, stride, damped, false);
+        one_quad_link(l, j, x, v, force, stride, damped, tension_only);
 }
 
 /* --------------------------------------------------------------------------- damping alone, along frozen directions */
@@ -182,17 +170,6 @@ SPRING_INLINE size_t force_in_record(bool damped)
     return (damped ? 2 : 1) * quad_size;
 }
 
-/* Tension-only links of records. Separate functions, so that other links are not slower. */
-SPRING_NOINLINE void taut_links(const unbanded_links *l, const scalar *x, scalar *force)
-{
-    quad_links(l, x, NULL, force, force_in_record(false) + quad_size, false, true);
-}
-
-SPRING_NOINLINE void damped_taut_links(const unbanded_links *l, const scalar *x, const scalar *v, scalar *force)
-{
-    quad_links(l, x, v, force, force_in_record(true) + quad_size, true, true);
-}
-
 SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                 uint32_t axes, bool damped)
 {
@@ -221,8 +198,7 @@ SPRING_INLINE void forces_of_records(const scene_links *s, scene_forces *out, ui
     }
 }
 
-SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped,
-                               bool alone)
+SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped)
 {
     const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
     scalar *const records = out->records;
@@ -230,18 +206,24 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
         fill_records(s, x, v, out, 3, damped);
     else
         fill_records(s, x, v, out, 2, damped);
-    if (alone)
+    if (s->terms == DAMPING_TERM)
         quad_damping(&s->unbanded, records + quad_size, records + at_force, stride);
-    else if (!s->tension_only)
-        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, false);
-    else if (damped)
-        damped_taut_links(&s->unbanded, records, records + quad_size, records + at_force);
     else
-        taut_links(&s->unbanded, records, records + at_force);
+        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, s->tension_only);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
         forces_of_records(s, out, 2, damped);
+}
+
+static void compute_record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    if (SPRING_COMPACT)
+        all_records(s, x, v, out, s->terms != STIFFNESS_TERM);
+    else if (s->terms == STIFFNESS_TERM)
+        all_records(s, x, v, out, false);
+    else
+        all_records(s, x, v, out, true);
 }
 
 /* function(..., axes, damped, false) with both as constants. */
@@ -251,13 +233,16 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
        : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
                    : function(__VA_ARGS__, 3, false, false))
 
-/* The same for tension-only links. Few are computed here, so `damped` is not a constant. */
-SPRING_NOINLINE void all_taut(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+/* Neither `damped` nor `tension_only` is a constant. */
+SPRING_NOINLINE void any_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
     if (s->axes == 3)
-        all_unbanded(s, x, v, out, 3, s->terms == STIFFNESS_AND_DAMPING_TERM, true);
+        all_unbanded(s, x, v, out, 3, damped, s->tension_only);
+    else if (s->axes == 2)
+        all_unbanded(s, x, v, out, 2, damped, s->tension_only);
     else
-        all_unbanded(s, x, v, out, 2, s->terms == STIFFNESS_AND_DAMPING_TERM, true);
+        all_unbanded(s, x, v, out, 1, damped, false);
 }
 
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
@@ -268,18 +253,10 @@ static void compute_unbanded_forces(const scene_links *s, const scalar *x, const
             memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
     if (s->terms == DAMPING_TERM)
         all_unbanded_damping(s, v, out, s->axes);
-    else if (s->tension_only)
-        all_taut(s, x, v, out);
+    else if (s->tension_only || SPRING_COMPACT)
+        any_unbanded(s, x, v, out);
     else
         SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
-}
-
-static void compute_record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
-{
-    if (s->terms == STIFFNESS_TERM)
-        all_records(s, x, v, out, false, false);
-    else
-        all_records(s, x, v, out, true, s->terms == DAMPING_TERM);
 }
 
 #endif
