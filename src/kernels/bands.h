@@ -127,8 +127,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
                 delta[m][a] = vec_load(at + offset) - vec_load(at);
-                if (damped)
-                    relative[m][a] = vec_load(with + offset) - vec_load(with);
+                relative[m][a] = damped ? vec_load(with + offset) - vec_load(with) : splat(0);
             }
         }
         if (axes == 1)

@@ -1,55 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* The kernels of particles.h for scenes with colliders: free_...() computes the motion without contacts, resolve_...()
-   with contacts. */
+/*
+ * The kernels of particles.h for scenes with colliders. First, all particles are advanced without colliders, one SIMD
+ * vector of particles at a time with all their axes. Particles that may be in contact are collected in a queue, and are
+ * advanced again in full SIMD vectors by resolve_...(). Few particles touch a collider, so most vectors of neighbours
+ * would be nearly empty.
+ */
 #ifndef SPRINGSTEP_CONTACT_KERNELS_H
 #define SPRINGSTEP_CONTACT_KERNELS_H
 
 #include "contact_queue.h"
 
-/* --------------------------------------------------------------------------------------------------- kick and drift */
-
-SPRING_INLINE void clear_touched(const scene_contacts *t, size_t first)
-{
-    if (!t->adds)
-        memset(t->touched + first, 0, lanes * sizeof *t->touched);
-}
-
-SPRING_INLINE mask free_kick_drift(const scene_particles *s, const scene_motion *m, const particle_vector *p,
-                                   contact_queue *q, unsigned variant)
-{
-    const uint32_t *const before = m->contacts->before + p->first;
-    const real3 free = free_on_axes(s, m, p), x0 = load_axes(p, m->x0), start = load_axes(p, m->v0);
-    const real3 v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly3(m, p, start, free) : start;
-    const real3 w = plus_scaled3(v0, splat(m->kick), minus_drag(p, free, v0)), d = times3(splat(m->drift), w);
-    mask queued = near_colliders(m->contacts, p, x0, d);
-    if ((variant & ENDS_STEP) != 0)
-        queued |= touching(before) & p->free;
-    if (SPRING_UNLIKELY(any(queued)))
-        enqueue(q, p, before, queued, 3, (const real3 *const[]){&x0, &v0, &free});
-    clear_touched(m->contacts, p->first);
-    const real3 x = plus3(x0, d);
-    store_axes(p, m->x, x);
-    store_axes(p, m->v, w);
-    mask wrong = not_finite3(x) | not_finite3(w);
-    if ((variant & ENDS_STEP) != 0)
-        wrong |= too_fast3(m, p, v0) & not_mask(queued);
-    if (m->predicted != NULL) {
-        const real3 predicted = kicked_implicitly3(m, p, w, free);
-        store_axes(p, m->predicted, predicted);
-        wrong |= not_finite3(predicted);
-    }
-    return wrong;
-}
-
 SPRING_NOINLINE mask resolve_kick_drift(const scene_motion *m, const particle_vector *p, const contact_queue *q,
-                                        unsigned variant)
+                                        bool ends_step)
 {
     const real3 x0 = queued_value(q, QUEUED_X0), free = queued_value(q, QUEUED_THIRD);
     real3 v0 = queued_value(q, QUEUED_V0);
     mask wrong = {0};
     drifting d;
     d.known = 0;
-    if ((variant & ENDS_STEP) != 0) {
+    if (ends_step) {
         d.known = stop_at_colliders(m->contacts, load_bits(q->before), STEP_START, p->free, &x0, &v0, d.start);
         wrong = too_fast3(m, p, v0);
     }
@@ -75,34 +44,8 @@ SPRING_NOINLINE mask resolve_kick_drift(const scene_motion *m, const particle_ve
     return wrong | not_finite3(predicted);
 }
 
-SPRING_NOINLINE bool move_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+SPRING_NOINLINE mask resolve_implicit_kick(const scene_motion *m, const particle_vector *p, const contact_queue *q)
 {
-    return m->ends_step ? for_each_particle(p, m, from, to, free_kick_drift, resolve_kick_drift, ENDS_STEP)
-                        : for_each_particle(p, m, from, to, free_kick_drift, resolve_kick_drift, 0);
-}
-
-/* -------------------------------------------------------------------------------------------------------- last kick */
-
-/* A kick of 0 only removes the velocity components into colliders. */
-SPRING_INLINE mask free_implicit_kick(const scene_particles *s, const scene_motion *m, const particle_vector *p,
-                                      contact_queue *q, unsigned variant)
-{
-    (void)variant;
-    const uint32_t *const touched = m->contacts->touched + p->first;
-    const real3 v = kicked_implicitly3(m, p, load_axes(p, m->v0), free_on_axes(s, m, p));
-    const mask queued = touching(touched) & p->free;
-    if (SPRING_UNLIKELY(any(queued))) {
-        const real3 x = load_axes(p, m->contacts->x);
-        enqueue(q, p, touched, queued, 2, (const real3 *const[]){&x, &v});
-    }
-    store_axes(p, m->v, v);
-    return not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
-}
-
-SPRING_NOINLINE mask resolve_implicit_kick(const scene_motion *m, const particle_vector *p, const contact_queue *q,
-                                           unsigned variant)
-{
-    (void)variant;
     const real3 x = queued_value(q, QUEUED_X0);
     real3 v = queued_value(q, QUEUED_V0);
     contact_point found[most_colliders];
@@ -111,35 +54,9 @@ SPRING_NOINLINE mask resolve_implicit_kick(const scene_motion *m, const particle
     return too_fast3(m, p, v);
 }
 
-SPRING_NOINLINE bool move_implicit_kick_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return for_each_particle(p, m, from, to, free_implicit_kick, resolve_implicit_kick, 0);
-}
-
-/* ------------------------------------------------------------------------------------------------- symplectic Euler */
-
-SPRING_INLINE mask free_implicit_kick_drift(const scene_particles *s, const scene_motion *m, const particle_vector *p,
-                                            contact_queue *q, unsigned variant)
-{
-    (void)variant;
-    const real3 free = free_on_axes(s, m, p), x0 = load_axes(p, m->x0);
-    const real3 w = kicked_implicitly3(m, p, load_axes(p, m->v0), free), d = times3(splat(m->drift), w);
-    const mask queued = near_colliders(m->contacts, p, x0, d), hidden = not_finite(m->kick * p->drag);
-    if (SPRING_UNLIKELY(any(queued))) {
-        const real3 accel = minus_drag(p, free, w);
-        enqueue(q, p, m->contacts->before + p->first, queued, 3, (const real3 *const[]){&x0, &w, &accel});
-    }
-    clear_touched(m->contacts, p->first);
-    const real3 x = plus3(x0, d);
-    store_axes(p, m->x, x);
-    store_axes(p, m->v, w);
-    return hidden | not_finite3(x) | not_finite3(w) | (too_fast3(m, p, w) & not_mask(queued));
-}
-
 SPRING_NOINLINE mask resolve_implicit_kick_drift(const scene_motion *m, const particle_vector *p,
-                                                 const contact_queue *q, unsigned variant)
+                                                 const contact_queue *q)
 {
-    (void)variant;
     const real3 x0 = queued_value(q, QUEUED_X0), w = queued_value(q, QUEUED_V0);
     drifting d;
     d.x0 = x0;
@@ -157,37 +74,9 @@ SPRING_NOINLINE mask resolve_implicit_kick_drift(const scene_motion *m, const pa
     return not_finite3(x) | too_fast3(m, p, d.w);
 }
 
-SPRING_NOINLINE bool move_implicit_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from,
-                                                      size_t to)
-{
-    return for_each_particle(p, m, from, to, free_implicit_kick_drift, resolve_implicit_kick_drift, 0);
-}
-
-/* -------------------------------------------------------------------------------------------------------------- RK4 */
-
-SPRING_INLINE mask free_last_stage(const scene_particles *s, const scene_motion *m, const particle_vector *p,
-                                   contact_queue *q, unsigned variant)
-{
-    (void)variant;
-    const real3 dx = load_axes(p, m->stage_v), dv = minus_drag(p, free_on_axes(s, m, p), dx);
-    const real3 x0 = load_axes(p, m->x0), v0 = load_axes(p, m->v0);
-    const real weight = splat(m->weight);
-    const real3 x = plus_scaled3(x0, splat(m->drift), plus_scaled3(load_axes(p, m->sum_x), weight, dx));
-    const real3 v = plus_scaled3(v0, splat(m->kick), plus_scaled3(load_axes(p, m->sum_v), weight, dv));
-    const mask queued = near_colliders(m->contacts, p, x0, minus3(x, x0));
-    if (SPRING_UNLIKELY(any(queued)))
-        enqueue(q, p, m->contacts->before + p->first, queued, 4, (const real3 *const[]){&x0, &v0, &x, &v});
-    clear_touched(m->contacts, p->first);
-    store_axes(p, m->x, x);
-    store_axes(p, m->v, v);
-    return not_finite3(x) | not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
-}
-
 /* Contacts are computed as for a drift with the mean velocity and kicks by the mean acceleration. */
-SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_vector *p, const contact_queue *q,
-                                        unsigned variant)
+SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_vector *p, const contact_queue *q)
 {
-    (void)variant;
     const scalar h = m->contacts->h;
     const real3 x0 = queued_value(q, QUEUED_X0), v0 = queued_value(q, QUEUED_V0);
     const real3 x1 = queued_value(q, QUEUED_THIRD), v1 = queued_value(q, QUEUED_FOURTH);
@@ -212,9 +101,148 @@ SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_ve
     return not_finite3(x) | too_fast3(m, p, v);
 }
 
-SPRING_NOINLINE bool move_last_stage_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+/* --------------------------------------------------------------------------------------------------------- the loop */
+
+typedef enum contact_motion {
+    KICK_DRIFT,
+    END_KICK_DRIFT, /* after the implicit kick that ends the previous step */
+    IMPLICIT_KICK_DRIFT,
+    LAST_STAGE,
+    IMPLICIT_KICK /* a kick of 0 only removes the velocity components into colliders */
+} contact_motion;
+
+/* Advances one vector of particles without colliders, and adds the particles that may be in contact to the queue.
+   Returns the lanes whose result is infinite or NaN, including queued particles: static friction could cancel an
+   infinite force. */
+SPRING_INLINE mask advance_freely(const scene_particles *s, const scene_motion *m, const particle_vector *p,
+                                  contact_queue *q, contact_motion motion)
 {
-    return for_each_particle(p, m, from, to, free_last_stage, resolve_last_stage, 0);
+    const scene_contacts *const t = m->contacts;
+    const real3 free = free_on_axes(s, m, p), start = load_axes(p, m->v0);
+    if (motion == IMPLICIT_KICK) {
+        const real3 v = kicked_implicitly3(m, p, start, free);
+        const mask queued = touching(t->touched + p->first) & p->free;
+        if (SPRING_UNLIKELY(any(queued))) {
+            const real3 x = load_axes(p, t->x);
+            enqueue(q, p, t->touched + p->first, queued, 2, (const real3 *const[]){&x, &v});
+        }
+        store_axes(p, m->v, v);
+        return not_finite3(v) | (too_fast3(m, p, v) & not_mask(queued));
+    }
+    const real3 x0 = load_axes(p, m->x0);
+    const uint32_t *const before = t->before + p->first;
+    real3 v0 = start, third = free, x, v, d; /* v: after the motion */
+    mask wrong = {0}, queued = {0}, fast = {0};
+    if (motion == LAST_STAGE) {
+        const real3 dx = load_axes(p, m->stage_v), dv = minus_drag(p, free, dx);
+        const real weight = splat(m->weight);
+        x = plus_scaled3(x0, splat(m->drift), plus_scaled3(load_axes(p, m->sum_x), weight, dx));
+        v = plus_scaled3(v0, splat(m->kick), plus_scaled3(load_axes(p, m->sum_v), weight, dv));
+        d = minus3(x, x0);
+        third = x;
+        fast = too_fast3(m, p, v);
+    } else {
+        if (motion != KICK_DRIFT) {
+            v0 = kicked_implicitly3(m, p, start, free);
+            fast = too_fast3(m, p, v0);
+        }
+        if (motion == END_KICK_DRIFT)
+            queued = touching(before) & p->free;
+        const real3 accel = minus_drag(p, free, v0);
+        if (motion == IMPLICIT_KICK_DRIFT) {
+            v = v0;
+            third = accel;
+            wrong = not_finite(m->kick * p->drag); /* 1/(1 + q) is 0 for infinite q */
+        } else {
+            v = plus_scaled3(v0, splat(m->kick), accel);
+        }
+        d = times3(splat(m->drift), v);
+        x = plus3(x0, d);
+    }
+    queued |= near_colliders(t, p, x0, d);
+    if (SPRING_UNLIKELY(any(queued)))
+        enqueue(q, p, before, queued, motion == LAST_STAGE ? 4 : 3, (const real3 *const[]){&x0, &v0, &third, &v});
+    if (!t->adds)
+        memset(t->touched + p->first, 0, lanes * sizeof *t->touched);
+    store_axes(p, m->x, x);
+    store_axes(p, m->v, v);
+    wrong |= not_finite3(x) | not_finite3(v) | (fast & not_mask(queued));
+    if (m->predicted != NULL && motion <= END_KICK_DRIFT) {
+        const real3 predicted = kicked_implicitly3(m, p, v, free);
+        store_axes(p, m->predicted, predicted);
+        wrong |= not_finite3(predicted);
+    }
+    return wrong;
+}
+
+/* Advances the first group of the queue, with contacts. */
+SPRING_INLINE mask resolve(const scene_motion *m, const particle_vector *p, const contact_queue *q,
+                           contact_motion motion)
+{
+    switch (motion) {
+    case IMPLICIT_KICK:
+        return resolve_implicit_kick(m, p, q);
+    case IMPLICIT_KICK_DRIFT:
+        return resolve_implicit_kick_drift(m, p, q);
+    case LAST_STAGE:
+        return resolve_last_stage(m, p, q);
+    default:
+        return resolve_kick_drift(m, p, q, motion == END_KICK_DRIFT);
+    }
+}
+
+/* Like for_each_vector(), with all axes of a particle at once. The motion is not a constant: tests of it take little
+   time compared with the tests of colliders. */
+SPRING_NOINLINE bool move_with_contacts(const scene_particles *particles, const scene_motion *motion, size_t from,
+                                        size_t to, contact_motion kind)
+{
+    const scene_particles s = *particles;
+    const scene_motion m = *motion;
+    contact_queue q;
+    q.count = 0;
+    mask wrong = {0};
+    particle_vector p, queued;
+    p.axes = queued.axes = m.contacts->axes;
+    p.stride = queued.stride = s.stride;
+    p.dragged = queued.dragged = s.drag != 0;
+    for (size_t i = from; i < to || q.count > 0; i += lanes) {
+        if (i < to) {
+            p.first = i;
+            real inverse_mass = s.mass_stride == 0 ? vec_load(s.inverse_mass) : load_axis(&p, s.inverse_mass, 0);
+            if (SPRING_UNLIKELY(i + lanes > s.count))
+                inverse_mass = select_real(first_lanes(s.count - i), inverse_mass, splat(0));
+            set_mass(&p, &s, &m, inverse_mass);
+            wrong |= advance_freely(&s, &m, &p, &q, kind);
+            if (q.count < (size_t)lanes)
+                continue;
+        } else {
+            fill_group(&q);
+        }
+        set_mass(&queued, &s, &m, vec_load(q.inverse_mass));
+        wrong |= resolve(&m, &queued, &q, kind);
+        remove_group(&q);
+    }
+    return !any(wrong);
+}
+
+static bool move_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return move_with_contacts(p, m, from, to, m->ends_step ? END_KICK_DRIFT : KICK_DRIFT);
+}
+
+static bool move_implicit_kick_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return move_with_contacts(p, m, from, to, IMPLICIT_KICK);
+}
+
+static bool move_implicit_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return move_with_contacts(p, m, from, to, IMPLICIT_KICK_DRIFT);
+}
+
+static bool move_last_stage_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return move_with_contacts(p, m, from, to, LAST_STAGE);
 }
 
 #endif

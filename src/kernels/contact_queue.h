@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/*
- * The loop over the particles of a scene with colliders. First, all particles are advanced without colliders, one SIMD
- * vector of particles at a time with all their axes. Particles that may be in contact are collected in a queue, and are
- * advanced again in full SIMD vectors. Few particles touch a collider, so most vectors of neighbours would be nearly
- * empty.
- */
+/* Particles that may be in contact: vectors of particles with all their axes, and the queue that collects them. */
 #ifndef SPRINGSTEP_CONTACT_QUEUE_H
 #define SPRINGSTEP_CONTACT_QUEUE_H
 
@@ -176,7 +171,7 @@ SPRING_NOINLINE void fill_group(contact_queue *q)
 
 SPRING_INLINE void remove_group(contact_queue *q)
 {
-    q->count -= lanes;
+    q->count -= first_group(q);
     for (size_t i = 0; i < q->count; i++) {
         q->particle[i] = q->particle[lanes + i];
         q->before[i] = q->before[lanes + i];
@@ -209,48 +204,6 @@ SPRING_INLINE void drift_group(const scene_contacts *t, const contact_queue *q, 
     const size_t count = first_group(q);
     for (size_t i = 0; i < count; i++)
         t->touched[q->particle[i]] |= touched[i];
-}
-
-/* Advances one vector of particles without colliders, and adds the particles that may be in contact to the queue.
-   Returns the lanes whose result is infinite or NaN, including queued particles: static friction could cancel an
-   infinite force. */
-typedef mask free_update(const scene_particles *s, const scene_motion *m, const particle_vector *p, contact_queue *q,
-                         unsigned variant);
-/* Advances the first group of the queue, with contacts. */
-typedef mask contact_update(const scene_motion *m, const particle_vector *p, const contact_queue *q, unsigned variant);
-
-/* Like for_each_vector(), with all axes of a particle at once. */
-SPRING_INLINE bool for_each_particle(const scene_particles *particles, const scene_motion *motion, size_t from,
-                                     size_t to, free_update *update, contact_update *resolve, unsigned variant)
-{
-    const scene_particles s = *particles;
-    const scene_motion m = *motion;
-    contact_queue q;
-    q.count = 0;
-    mask wrong = {0};
-    particle_vector p, queued;
-    p.axes = queued.axes = m.contacts->axes;
-    p.stride = queued.stride = s.stride;
-    p.dragged = queued.dragged = s.drag != 0;
-    for (size_t i = from; i < to; i += lanes) {
-        p.first = i;
-        real inverse_mass = s.mass_stride == 0 ? vec_load(s.inverse_mass) : load_axis(&p, s.inverse_mass, 0);
-        if (SPRING_UNLIKELY(i + lanes > s.count))
-            inverse_mass = select_real(first_lanes(s.count - i), inverse_mass, splat(0));
-        set_mass(&p, &s, &m, inverse_mass);
-        wrong |= update(&s, &m, &p, &q, variant);
-        if (SPRING_UNLIKELY(q.count >= (size_t)lanes)) {
-            set_mass(&queued, &s, &m, vec_load(q.inverse_mass));
-            wrong |= resolve(&m, &queued, &q, variant);
-            remove_group(&q);
-        }
-    }
-    if (q.count > 0) {
-        fill_group(&q);
-        set_mass(&queued, &s, &m, vec_load(q.inverse_mass));
-        wrong |= resolve(&m, &queued, &q, variant);
-    }
-    return !any(wrong);
 }
 
 #endif

@@ -255,12 +255,18 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, driftin
     return inside;
 }
 
+/* Free lanes of `where` whose path may touch a collider. */
+SPRING_NOINLINE mask path_may_touch(const scene_collider *c, const drifting *p, mask where)
+{
+    return where & p->free & may_touch(c, p->x0, p->d, dot3(p->d, p->d));
+}
+
 /* Computes the contacts of a vector of particles during a drift. */
 SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 {
     p->touched = p->outside = bits_where((mask){0}, 0);
     for (unsigned i = 0; i < t->count; i++) {
-        const mask nearby = p->free & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        const mask nearby = path_may_touch(&t->collider[i], p, p->free);
         if (any(nearby))
             collide(&t->collider[i], i, p, nearby);
     }
@@ -268,7 +274,7 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
         const mask deflected = p->free & has_bits(p->touched, UINT32_MAX << i << 1); /* by a later collider */
         if (!any(deflected))
             break;
-        const mask nearby = deflected & may_touch(&t->collider[i], p->x0, p->d, dot3(p->d, p->d));
+        const mask nearby = path_may_touch(&t->collider[i], p, deflected);
         if (any(nearby))
             collide(&t->collider[i], i, p, nearby);
     }
@@ -281,7 +287,7 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
             const mask open = before & not_mask(has_bits(p->outside, UINT32_C(1) << i));
             if (!any(open))
                 continue;
-            const mask nearby = open & may_touch(c, p->x0, p->d, dot3(p->d, p->d));
+            const mask nearby = path_may_touch(c, p, open);
             if (any(nearby))
                 moved |= leave_collider(c, i, p, nearby);
         }

@@ -8,6 +8,8 @@
  */
 #include <springstep/scene.h>
 
+#include "../simd/size_begin.h"
+
 static bool valid_coefficient(double value)
 {
     return value >= 0 && value - value == 0;
@@ -49,3 +51,5 @@ size_t spring_links_components(size_t particles, size_t links, const spring_link
         component[i] = component[i] == i ? count++ : component[component[i]];
     return count;
 }
+
+#include "../simd/size_end.h"

@@ -10,6 +10,8 @@
 
 #include <springstep/scene.h>
 
+#include "../simd/size_begin.h"
+
 typedef struct grid_direction {
     int step[3];
     uint32_t family;
@@ -149,3 +151,5 @@ spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *
     }
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

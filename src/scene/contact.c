@@ -189,6 +189,8 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
 
 /* ------------------------------------------------------------------------------------------------- public functions */
 
+#include "../simd/size_begin.h"
+
 spring_status spring_scene_check_colliders(const spring_scene *s, const spring_collider *c, uint32_t count,
                                            const char **field, size_t *index)
 {
@@ -286,3 +288,5 @@ double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s
         left = fmax(0, left - friction[k] * pressing[k]);
     return left;
 }
+
+#include "../simd/size_end.h"

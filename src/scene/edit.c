@@ -2,6 +2,8 @@
 /* Changing the links, masses and pins of a scene, and the velocities of pinned particles. */
 #include "stored_links.h"
 
+#include "../simd/size_begin.h"
+
 static bool is_editable(const spring_scene *s)
 {
     return (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
@@ -190,3 +192,5 @@ spring_status spring_scene_drive(spring_scene *s, size_t particle, const double 
         scene_drop_forces(s);
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

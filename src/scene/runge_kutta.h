@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_RUNGE_KUTTA_H
 #define SPRINGSTEP_RUNGE_KUTTA_H
 
-#include "pass.h"
+#include "fused_pass.h"
 #include "../methods/rkn8_tableau.h"
 #include "../methods/srkn6_coefficients.h"
 #include "../spring/propagator.h"

@@ -14,6 +14,8 @@
 
 #include <string.h>
 
+#include "../simd/size_begin.h"
+
 enum { soften_block = 1024 };
 
 /* The sums of a block of particles. */
@@ -72,3 +74,5 @@ spring_status spring_links_soften(const spring_scene_def *def, double dt, double
     }
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

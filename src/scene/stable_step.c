@@ -12,6 +12,8 @@
 #include <limits.h>
 #include <string.h>
 
+#include "../simd/size_begin.h"
+
 typedef enum link_coefficient { STIFFNESS, DAMPING } link_coefficient;
 
 static double coefficient_of(const stored_link *link, link_coefficient which)
@@ -119,3 +121,5 @@ double spring_scene_stable_step(spring_scene *s, spring_method m)
         return (double)NAN;
     return spring_scene_steppers[m].stable_step(spring_scene_find_bounds(s));
 }
+
+#include "../simd/size_end.h"

@@ -52,7 +52,7 @@ static bool stop_at_contacts(scene_step *s, const scene_motion *last_kick)
 /* Leapfrog without link damping for half a step, link damping for the whole step, and leapfrog for the other half. Each
    half is kick, drift, evaluate, implicit kick. As in scene_leapfrog(), the forces of a callback that uses velocities
    are not kept, and are evaluated at predicted velocities. */
-static scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
+SPRING_NOINLINE scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
 {
     const bool keeps = !scene_callback_uses_velocity(s->scene);
     find_start_force(s);

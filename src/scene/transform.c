@@ -2,6 +2,8 @@
 /* Moving a whole scene by an affine map, x1 = A x + b and v1 = A v: teleport, rotation, reflection. */
 #include "block.h"
 
+#include "../simd/size_begin.h"
+
 /* Element i of A x + b * part, for the particle whose coordinates start at x. */
 static scalar transformed(const spring_scene *s, const double matrix[12], uint32_t row, const double x[3], double part)
 {
@@ -46,3 +48,5 @@ spring_status spring_scene_transform(spring_scene *s, const double matrix[12])
     scene_clear_touched(s, 0, s->layout.particles);
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

@@ -252,6 +252,20 @@ SPRING_INLINE real vec_min(real a, real b)
 #endif
 }
 
+#ifndef SPRING_FLOAT
+/* vec_inverse_sqrt() for numbers of any size. */
+SPRING_NOINLINE void vec_inverse_sqrt_of_any(real *a, int many)
+{
+    const mask least = (mask)splat(0x1p-84), beyond = (mask){0} - ((int64_t)1 << 59);
+    for (int k = 0; k < many; k++) {
+        const mask fits = (((mask)a[k] - least) & beyond) == 0;
+        const real one = select_real(fits, a[k], splat(1)), seed = vec_seed(one), rest = 1 - one * (seed * seed);
+        const real root = seed + seed * rest * ((scalar)0.5 + (scalar)0.375 * rest);
+        a[k] = select_real(fits, root, select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0)));
+    }
+}
+#endif
+
 /* 1/sqrt(a) for a > 0, and 0 for 0, of several vectors at once. Lanes outside of `where` have any result. The error is
    1 ulp with a seed, and 1.5 ulp with a quotient, as in float (tests/test_inverse_sqrt.c).
 
@@ -275,12 +289,14 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
     for (int k = 0; k < many; k++)
         wrong |= where[k] & ((mask)a[k] - least);
     if (SPRING_UNLIKELY(any(wrong & beyond))) {
-        for (int k = 0; k < many; k++) {
-            const mask fits = (((mask)a[k] - least) & beyond) == 0;
-            const real one = select_real(fits, a[k], splat(1)), seed = vec_seed(one), rest = 1 - one * (seed * seed);
-            const real root = seed + seed * rest * ((scalar)0.5 + (scalar)0.375 * rest);
-            a[k] = select_real(fits, root, select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0)));
-        }
+        real any_size[8]; /* a copy, so that a stays in registers */
+        SPRING_UNROLL
+        for (int k = 0; k < many; k++)
+            any_size[k] = a[k];
+        vec_inverse_sqrt_of_any(any_size, many);
+        SPRING_UNROLL
+        for (int k = 0; k < many; k++)
+            a[k] = any_size[k];
         return;
     }
     SPRING_UNROLL

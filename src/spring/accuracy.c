@@ -28,6 +28,8 @@
 #include "accuracy.h"
 #include "roots.h"
 
+#include "../simd/size_begin.h"
+
 static const spring_matrix matrix_identity = {1, 0, 0, 1};
 
 /* i steps: F^i - 1 and R^i - F^i. */
@@ -397,3 +399,5 @@ double spring_accurate_steps(const accuracy *of, double tolerance)
             n = tries > 12 ? bad + floor((good - bad) / 2) : fmin(fmax(law, bad + finest), good - finest);
     }
 }
+
+#include "../simd/size_end.h"

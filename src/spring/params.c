@@ -6,6 +6,8 @@
 
 #include <springstep/spring.h>
 
+#include "../simd/size_begin.h"
+
 static const double two_pi = 6.283185307179586;
 
 static bool positive_time(double t)
@@ -55,3 +57,5 @@ spring_params spring_params_settling(double time, double damping_ratio, double t
     const spring_state released = {1, 0};
     return params_of(spring_settling_time(&released, &unit, tolerance) / time, damping_ratio);
 }
+
+#include "../simd/size_end.h"

@@ -16,6 +16,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "../simd/size_begin.h"
+
 static bool rounds_to_nearest(void)
 {
     const volatile double one = 1, less_than_half = 0x1p-54, more_than_half = 0x1.8p-53; /* of an ulp */
@@ -136,3 +138,5 @@ spring_status spring_self_test(void)
            : !bits_are_right()  ? SPRING_EBITS
                                 : SPRING_OK;
 }
+
+#include "../simd/size_end.h"

@@ -17,6 +17,8 @@
 #include "exact_formula.h"
 #include "propagator.h"
 
+#include "../simd/size_begin.h"
+
 static const double pi = 3.141592653589793;
 
 typedef struct motion {
@@ -114,3 +116,5 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
         return m.start.v == 0 && is_within(&m, 0) ? 0 : (double)INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
 }
+
+#include "../simd/size_end.h"

@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: MIT */
+/* Functions between this file and size_end.h are compiled for size, because they are rarely called. */
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((minsize)), apply_to = function)
+#elif defined(__GNUC__)
+#pragma GCC push_options
+#pragma GCC optimize("Os")
+#endif

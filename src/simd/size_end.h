@@ -1,0 +1,7 @@
+/* SPDX-License-Identifier: MIT */
+/* Ends what size_begin.h begins. */
+#if defined(__clang__)
+#pragma clang attribute pop
+#elif defined(__GNUC__)
+#pragma GCC pop_options
+#endif
