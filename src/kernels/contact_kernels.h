@@ -17,9 +17,10 @@ SPRING_NOINLINE mask resolve_kick_drift(const scene_motion *m, const particle_ve
     real3 v0 = queued_value(q, QUEUED_V0);
     mask wrong = {0};
     drifting d;
-    d.known = 0;
+    d.start.count = 0;
+    d.start.known = 0;
     if (ends_step) {
-        d.known = stop_at_colliders(m->contacts, load_bits(q->before), STEP_START, p->free, &x0, &v0, d.start);
+        stop_at_colliders(m->contacts, load_bits(q->before), STEP_START, p->free, &x0, &v0, &d.start);
         wrong = too_fast3(m, p, v0);
     }
     const real3 accel = minus_drag(p, free, v0), w = plus_scaled3(v0, splat(m->kick), accel);
@@ -38,8 +39,8 @@ SPRING_NOINLINE mask resolve_kick_drift(const scene_motion *m, const particle_ve
     if (m->predicted == NULL)
         return wrong;
     real3 predicted = kicked_implicitly3(m, p, d.w, free);
-    contact_point found[most_colliders];
-    stop_at_colliders(m->contacts, d.touched, STEP_END, p->free, &x, &predicted, found);
+    kept_contacts found;
+    stop_at_colliders(m->contacts, d.touched, STEP_END, p->free, &x, &predicted, &found);
     scatter(q, p, m->predicted, predicted);
     return wrong | not_finite3(predicted);
 }
@@ -48,8 +49,8 @@ SPRING_NOINLINE mask resolve_implicit_kick(const scene_motion *m, const particle
 {
     const real3 x = queued_value(q, QUEUED_X0);
     real3 v = queued_value(q, QUEUED_V0);
-    contact_point found[most_colliders];
-    stop_at_colliders(m->contacts, load_bits(q->before), STEP_END, p->free, &x, &v, found);
+    kept_contacts found;
+    stop_at_colliders(m->contacts, load_bits(q->before), STEP_END, p->free, &x, &v, &found);
     scatter(q, p, m->v, v);
     return too_fast3(m, p, v);
 }
@@ -66,7 +67,7 @@ SPRING_NOINLINE mask resolve_implicit_kick_drift(const scene_motion *m, const pa
     d.free = p->free;
     d.h = m->drift;
     d.kappa = 1;
-    d.known = 0;
+    d.start.known = 0;
     drift_group(m->contacts, q, &d);
     const real3 x = plus3(x0, d.d);
     scatter(q, p, m->x, x);
@@ -89,13 +90,13 @@ SPRING_NOINLINE mask resolve_last_stage(const scene_motion *m, const particle_ve
     d.free = p->free;
     d.h = h;
     d.kappa = (scalar)0.5;
-    d.known = 0;
+    d.start.known = 0;
     drift_group(m->contacts, q, &d);
     const mask changed = has_bits(d.touched, UINT32_MAX);
     const real3 x = select3(changed, plus3(x0, d.d), x1);
     real3 v = select3(changed, plus3(d.w, second_kick), v1);
-    contact_point found[most_colliders];
-    stop_at_colliders(m->contacts, d.touched, STEP_END, p->free, &x, &v, found);
+    kept_contacts found;
+    stop_at_colliders(m->contacts, d.touched, STEP_END, p->free, &x, &v, &found);
     scatter(q, p, m->x, x);
     scatter(q, p, m->v, v);
     return not_finite3(x) | too_fast3(m, p, v);

@@ -31,23 +31,51 @@
 #include "colliders.h"
 
 enum { impact_iterations = 8, friction_passes = 2, surface_iterations = 2, corner_passes = 2, stop_rounds = 32 };
+enum { most_kept = 4 }; /* contacts */
 
 /* Fractions of a step up to this size are rounding errors. */
 static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON);
 
+/* Contacts of a vector of particles at one time, by collider. Only the first few are kept, so that the stack stays
+   small; others are computed again. */
+typedef struct kept_contacts {
+    unsigned count;
+    uint32_t known; /* bit i: the contact with collider i is kept, at index[i] */
+    uint8_t index[most_colliders];
+    contact_point at[most_kept];
+} kept_contacts;
+
+SPRING_INLINE void keep_contact(kept_contacts *k, unsigned i, const contact_point *p)
+{
+    if (k->count == most_kept)
+        return;
+    k->at[k->count] = *p;
+    k->index[i] = (uint8_t)k->count++;
+    k->known |= UINT32_C(1) << i;
+}
+
+/* The contact with collider i at x. */
+SPRING_INLINE void recall_contact(const kept_contacts *k, const scene_collider *c, unsigned i, pose_time when,
+                                  const real3 *x, contact_point *p)
+{
+    if ((k->known >> i & 1) != 0)
+        *p = k->at[k->index[i]];
+    else
+        find_contact(c, when, splat(0), x, p);
+}
+
 /* A vector of particles in a drift. */
 typedef struct drifting {
-    real3 x0;          /* [m] */
-    real3 accel;       /* [m/s^2] of the kick before the drift */
-    real3 d;           /* [m] displacement */
-    real3 w;           /* [m/s] velocity during the drift */
-    mask free;         /* not pinned */
-    lane_bits touched; /* bit i: collider i, in this step */
-    lane_bits outside; /* bit i: the path is known to end outside of collider i, to within contact_slop() */
-    scalar h;          /* [s] duration of the drift */
-    scalar kappa;      /* fraction of the kick of the step that w includes */
-    uint32_t known;    /* bit i: start[i] is set */
-    contact_point start[most_colliders]; /* at x0, at the start of the step */
+    real3 x0;            /* [m] */
+    real3 accel;         /* [m/s^2] of the kick before the drift */
+    real3 d;             /* [m] displacement */
+    real3 w;             /* [m/s] velocity during the drift */
+    mask free;           /* not pinned */
+    lane_bits touched;   /* bit i: collider i, in this step */
+    lane_bits outside;   /* bit i: the path is known to end outside of collider i, to within contact_slop() */
+    scalar h;            /* [s] duration of the drift */
+    scalar kappa;        /* fraction of the kick of the step that w includes */
+    kept_contacts start; /* at x0, at the start of the step */
 } drifting;
 
 /* The part of a tangential velocity that friction removes, at most `limit`. */
@@ -77,10 +105,7 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
 SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask nearby, contact_point *at,
                                real *gap, real *fraction, mask *pushed)
 {
-    if ((p->known >> i & 1) != 0)
-        *at = p->start[i];
-    else
-        find_contact(c, STEP_START, splat(0), &p->x0, at);
+    recall_contact(&p->start, c, i, STEP_START, &p->x0, at);
     const real slop = contact_slop(c, p->x0);
     mask hit = nearby;
     *pushed = hit & (at->gap < -slop);
@@ -296,45 +321,46 @@ SPRING_NOINLINE void collide_all(const scene_contacts *t, drifting *p)
 
 /* The last kick: removes the velocity components into the colliders that were touched. With several colliders, this is
    projected Gauss-Seidel: in further rounds, each collider corrects its impulse, which stays non-negative. Friction
-   acts in the first round only. Returns the bits of the colliders i whose found[i] is set, in all lanes. */
-SPRING_NOINLINE uint32_t stop_at_colliders(const scene_contacts *t, lane_bits touched, pose_time when, mask free,
-                                           const real3 *x, real3 *v, contact_point *found)
+   acts in the first round only. *found: some of the contacts. */
+SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, lane_bits touched, pose_time when, mask free,
+                                       const real3 *x, real3 *v, kept_contacts *found)
 {
-    uint32_t known = 0;
-    real3 surface[most_colliders];
     real pressed[most_colliders]; /* [m/s] along the normal */
-    mask touches[most_colliders], several = {0}, any_yet = {0};
+    mask several = {0}, any_yet = {0};
+    contact_point at;
+    found->count = 0;
+    found->known = 0;
     for (unsigned i = 0; i < t->count; i++) {
         const scene_collider *const c = &t->collider[i];
-        touches[i] = free & has_bits(touched, UINT32_C(1) << i);
-        if (!any(touches[i]))
+        const mask touches = free & has_bits(touched, UINT32_C(1) << i);
+        if (!any(touches))
             continue;
-        several |= any_yet & touches[i];
-        any_yet |= touches[i];
-        find_contact(c, when, splat(0), x, &found[i]);
-        known |= UINT32_C(1) << i;
-        const real3 normal = found[i].normal;
-        surface[i] = surface_velocity(c, &found[i]);
-        const real3 u = minus3(*v, surface[i]), tangential = tangential_to(normal, u);
-        const real rate = dot3(u, normal), limit = c->friction * vec_abs(rate);
-        const mask enters = touches[i] & (rate * t->h < 0);
+        several |= any_yet & touches;
+        any_yet |= touches;
+        find_contact(c, when, splat(0), x, &at);
+        keep_contact(found, i, &at);
+        const real3 surface = surface_velocity(c, &at);
+        const real3 u = minus3(*v, surface), tangential = tangential_to(at.normal, u);
+        const real rate = dot3(u, at.normal), limit = c->friction * vec_abs(rate);
+        const mask enters = touches & (rate * t->h < 0);
         real inverse;
         const mask slides = length_from(dot3(tangential, tangential), &inverse) > limit;
-        const real3 slid = minus3(plus_scaled3(*v, -rate, normal), times3(limit * inverse, tangential));
-        *v = select3(enters, select3(slides, slid, surface[i]), *v);
+        const real3 slid = minus3(plus_scaled3(*v, -rate, at.normal), times3(limit * inverse, tangential));
+        *v = select3(enters, select3(slides, slid, surface), *v);
         pressed[i] = select_real(enters, -rate, splat(0));
     }
     for (int round = 1; round < stop_rounds && any(several); round++)
         for (unsigned i = 0; i < t->count; i++) {
-            const mask again = several & touches[i];
+            const scene_collider *const c = &t->collider[i];
+            const mask again = several & free & has_bits(touched, UINT32_C(1) << i);
             if (!any(again))
                 continue;
-            const real wanted = pressed[i] - dot3(minus3(*v, surface[i]), found[i].normal);
+            recall_contact(found, c, i, when, x, &at);
+            const real wanted = pressed[i] - dot3(minus3(*v, surface_velocity(c, &at)), at.normal);
             const real now = select_real(wanted * t->h > 0, wanted, splat(0));
-            *v = select3(again, plus_scaled3(*v, now - pressed[i], found[i].normal), *v);
+            *v = select3(again, plus_scaled3(*v, now - pressed[i], at.normal), *v);
             pressed[i] = select_real(again, now, pressed[i]);
         }
-    return known;
 }
 
 /* See normal_kernel. */
