@@ -36,11 +36,18 @@ typedef struct batch_kernels {
     bool (*advance)(const batch_run *b); /* false: at least one spring kept its state */
 } batch_kernels;
 
-SPRING_INTERNAL const batch_kernels spring_batch_v128; /* named by the bits of a SIMD vector */
-#if SPRING_LONG_VECTORS
-SPRING_INTERNAL const batch_kernels spring_batch_v256, spring_batch_v512;
+/* Named by the bits of a SIMD vector. */
+#if SPRING_HAS_V128
+SPRING_INTERNAL const batch_kernels spring_batch_v128;
+#endif
+#if SPRING_HAS_V256
+SPRING_INTERNAL const batch_kernels spring_batch_v256;
+#endif
+#if SPRING_HAS_V512
+SPRING_INTERNAL const batch_kernels spring_batch_v512;
 #endif
 
+#if defined(SPRING_FLOAT) || !defined(SPRING_NO_DOUBLE)
 /* spring_batch_advance() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b,
                                                         spring_method m, double step, uint64_t n);
@@ -49,5 +56,6 @@ SPRING_INTERNAL spring_status spring_batch_advance_with(const batch_kernels *ker
 SPRING_INTERNAL spring_status spring_batch_follow_with(const batch_kernels *kernels, const spring_batch *b,
                                                        const scalar *target, double dt, double x_tol, double v_tol,
                                                        size_t *moving);
+#endif
 
 #endif

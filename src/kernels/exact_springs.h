@@ -92,33 +92,4 @@ bool SPRING_EXACT_KERNEL(const exact_run *run)
 }
 #endif
 
-static bool advance_each_exactly(const batch_run *b)
-{
-    const exact_run each = {
-        .count = b->count,
-        .single = sizeof(scalar) == sizeof(float),
-        .x = b->x,
-        .v = b->v,
-        .omega2 = {b->omega2.first, b->omega2.stride},
-        .gamma = {b->gamma.first, b->gamma.stride},
-        .accel = {b->accel.first, b->accel.stride},
-        .target = b->target,
-        .landing = b->landing,
-        .t = b->t,
-    };
-    return SPRING_EXACT_KERNEL(&each);
-}
-
-#if SPRING_VECTOR < 64
-static bool advance_exactly(const batch_run *b)
-{
-    const bool loaded = b->accel.first != NULL;
-    if (b->propagator == NULL)
-        return advance_each_exactly(b);
-    if (b->target == NULL)
-        return SPRING_COMPACT ? advance_alike(b, loaded) : loaded ? advance_alike(b, true) : advance_alike(b, false);
-    return b->propagator->half == 1 && !SPRING_COMPACT ? follow_alike(b, true) : follow_alike(b, false);
-}
-#endif
-
 #endif

@@ -12,12 +12,21 @@
 
 #include "../simd/target_begin.h"
 
-#ifndef SPRING_NO_BATCH
+/* Batches in float use the exact solution in double. */
+#if !defined(SPRING_FLOAT) && defined(SPRING_NO_DOUBLE)
+#define SPRING_ONLY_EXACT 1
+#else
+#define SPRING_ONLY_EXACT 0
+#endif
+
+#if !defined(SPRING_NO_BATCH) && SPRING_ONLY_EXACT
+#include "exact_springs.h"
+#elif !defined(SPRING_NO_BATCH)
 #include "springs.h"
 SPRING_TABLE const batch_kernels SPRING_BATCH_TABLE = {.group_size = group, .advance = advance_springs};
 #endif
 
-#ifndef SPRING_NO_SCENE
+#if !defined(SPRING_NO_SCENE) && !SPRING_ONLY_EXACT
 #include "bands.h"
 #include "leapfrog_particles.h"
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels with SIMD vectors of 16 bytes, single precision: SSE2 on x86-64, and all other processors. */
+#include "../simd/targets.h"
+#if SPRING_HAS_V128
 #define SPRING_FLOAT
 #define SPRING_VECTOR       16
 #define SPRING_BATCH_TABLE  spring_batch_v128
@@ -7,3 +9,4 @@
 #define SPRING_COMMON_TABLE spring_common_v128
 #define SPRING_EXACT_KERNEL spring_exact_v128
 #include "kernels.h"
+#endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels with SIMD vectors of 32 bytes, single precision: AVX2. */
 #include "../simd/targets.h"
-#if SPRING_LONG_VECTORS
+#if SPRING_HAS_V256
 #define SPRING_FLOAT
 #define SPRING_VECTOR       32
 #define SPRING_BATCH_TABLE  spring_batch_v256

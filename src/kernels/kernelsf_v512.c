@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels with SIMD vectors of 64 bytes, single precision: AVX-512. */
 #include "../simd/targets.h"
-#if SPRING_LONG_VECTORS
+#if SPRING_HAS_V512
 #define SPRING_FLOAT
 #define SPRING_VECTOR       64
 #define SPRING_BATCH_TABLE  spring_batch_v512

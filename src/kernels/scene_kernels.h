@@ -199,11 +199,17 @@ typedef struct scene_kernels {
     particle_kernel *kick_drift, *implicit_kick; /* as above */
 } scene_kernels;
 
-SPRING_INTERNAL const scene_kernels spring_scene_v128; /* named by the bits of a SIMD vector */
+/* Named by the bits of a SIMD vector. */
+#if SPRING_HAS_V128
+SPRING_INTERNAL const scene_kernels spring_scene_v128;
 SPRING_INTERNAL const common_kernels spring_common_v128;
-#if SPRING_LONG_VECTORS
-SPRING_INTERNAL const scene_kernels spring_scene_v256, spring_scene_v512;
+#endif
+#if SPRING_HAS_V256
+SPRING_INTERNAL const scene_kernels spring_scene_v256;
 SPRING_INTERNAL const common_kernels spring_common_v256;
+#endif
+#if SPRING_HAS_V512
+SPRING_INTERNAL const scene_kernels spring_scene_v512;
 #endif
 
 #endif

@@ -83,6 +83,12 @@ SPRING_INLINE mask vec_load_mask(const int8_t *p)
     int four;
     memcpy(&four, p, sizeof four);
     return (mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+#elif SPRING_X86_64 /* unpacking repeats each byte */
+    int32_t bytes = 0;
+    memcpy(&bytes, p, sizeof(mask) / sizeof(scalar));
+    const __m128i each = _mm_cvtsi32_si128(bytes), twice = _mm_unpacklo_epi8(each, each);
+    const __m128i four = _mm_unpacklo_epi16(twice, twice);
+    return (mask)(sizeof(scalar) == sizeof(float) ? four : _mm_unpacklo_epi32(four, four));
 #elif defined(__wasm_simd128__) && SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
     const v128_t both = wasm_v128_load16_splat(p);
     return (mask)wasm_i8x16_shuffle(both, both, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);

@@ -12,7 +12,7 @@
 
 /* Kernels for vectors of 16 bytes on x86-64 serve processors without AVX2, which are rare. They are compiled for size:
    conditions that other kernels compile as constants, one loop for each combination, are tested in the loop. */
-#if SPRING_VECTOR == 16 && SPRING_LONG_VECTORS
+#if SPRING_VECTOR == 16 && SPRING_HAS_V256
 #define SPRING_COMPACT 1
 #else
 #define SPRING_COMPACT 0

@@ -53,9 +53,14 @@ typedef struct exact_run {
 typedef bool exact_kernel(const exact_run *b); /* false: at least one spring has kept its state */
 
 #ifndef SPRING_NO_BATCH
-SPRING_INTERNAL exact_kernel spring_exact_v128; /* named by the bits of a SIMD vector */
-#if SPRING_LONG_VECTORS
-SPRING_INTERNAL exact_kernel spring_exact_v256, spring_exact_v512;
+#if SPRING_HAS_V128
+SPRING_INTERNAL exact_kernel spring_exact_v128;
+#endif
+#if SPRING_HAS_V256
+SPRING_INTERNAL exact_kernel spring_exact_v256;
+#endif
+#if SPRING_HAS_V512
+SPRING_INTERNAL exact_kernel spring_exact_v512;
 #endif
 #endif
 
