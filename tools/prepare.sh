@@ -14,8 +14,9 @@ say() {
 }
 
 # read_arguments OPTION ARGUMENT...: prints $usage for --help, and sets $chosen if the option is given
-chosen=
+# shellcheck disable=SC2034,SC2154 # variables of the command
 read_arguments() {
+    chosen=
     local argument
     for argument in "${@:2}"; do
         if [[ $argument == --help ]]; then
