@@ -105,13 +105,6 @@ def test_levels_of_the_table(work):
         assert math.isnan(ratio) == (row['ratio'] == 'nan') and not abs(float(row['ratio']) - ratio) > 2e-3 * ratio
 
 
-def test_crossing_of_leapfrog_and_rk4():
-    errors = {(row['solver'], int(row['force_evaluations'])): float(row['error'])
-              for row in table(WORK, '--problem', 'ideal-1', '--quick') if row['effort'] == 'crossing'}
-    assert sorted(errors) == [(solver, n) for solver in ('leapfrog', 'rk4') for n in (44, 48)]
-    assert errors['leapfrog', 44] < errors['rk4', 44] and errors['rk4', 48] < errors['leapfrog', 48]
-
-
 # --- spring-bench ---------------------------------------------------------------------------------------------------
 
 @functools.cache
@@ -152,16 +145,6 @@ def test_bench_batches():
     assert {row['count'] for row in rows} == {'1000'}
     limits = {row['limit'] for row in rows}
     assert {'ordinary', 'textbook'} < limits <= {'ordinary', 'textbook', 'streams', 'arithmetic'}
-
-
-def test_bench_counts_and_precisions():
-    assert [(row['precision'], int(row['count'])) for row in bench('--kernel leapfrog_batch_16')] == [
-        (precision, 10**k) for precision in ('double', 'float') for k in range(3, 8)]
-
-
-def test_bench_one_spring():
-    row, = bench('--part spring --kernel rk4')
-    assert (row['kernel'], row['count'], row['limit']) == ('rk4', '1', 'loop')
 
 
 def test_bench_scenes():
