@@ -10,6 +10,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,6 @@
 #include "common/cli.h"
 #include "scenes/presets.h"
 #include "sweep/grid.h"
-#include "sweep/rows.h"
 
 enum { most_parts = 1000000, most_jobs = 1024, header_size = 65536 };
 
@@ -124,8 +124,13 @@ static void list_parameters(void)
 /* The header of the output, with the part number in a part. It omits the compiler, since rows do not depend on it. */
 static void print_header(char *text, size_t size, const grid *g, uint64_t number, uint64_t parts)
 {
-    char columns[1000], line[100] = "";
-    grid_columns(g, columns, sizeof columns);
+    char columns[1000] = "", line[100] = "";
+    for (size_t i = 0; i < g->axes; i++)
+        strcat(strcat(columns, sweep_parameters[g->axis[i].parameter].column), "\t");
+    strcat(columns, "method\terror\tenergy_error\tstatus");
+    for (size_t i = 0; i < g->measures; i++)
+        strcat(strcat(columns, "\t"), sweep_measure_names[g->measure[i]]);
+    strcat(columns, "\n");
     if (parts > 0)
         snprintf(line, sizeof line, "# part %" PRIu64 " of %" PRIu64 ", %" PRIu64 " blocks\n", number, parts,
                  g->blocks);
@@ -220,14 +225,34 @@ static bool is_complete(FILE *in, uint64_t number, uint64_t parts, uint64_t bloc
     return complete;
 }
 
+/* Prints NaN without sign, because the sign of 0/0 differs between processors. Returns the number of characters. */
+static int print_number(char *text, double x)
+{
+    return isnan(x) ? sprintf(text, "\tnan") : sprintf(text, "\t%.17g", x);
+}
+
 static void write_block(cli_table *table, const grid *g, sweep_memory *memory, uint64_t block)
 {
-    size_t length;
-    char *text = memory != NULL ? grid_block(g, memory, block, &length) : NULL;
-    if (text == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    write_text(table, text, length);
-    free(text);
+    double value[SWEEP_PARAMETERS];
+    sweep_result results[SPRING_METHOD_COUNT];
+    const uint64_t first = block * g->points_of_block, count = grid_block_size(g, block);
+    for (uint64_t point = first; point < first + count; point++) {
+        if (memory == NULL || !grid_measure(g, memory, point, 1, value, results))
+            cli_fail(CLI_FAILED, "out of memory");
+        for (size_t k = 0; k < g->methods; k++) {
+            const double *number = results[k].number;
+            char line[(SWEEP_PARAMETERS + SWEEP_MEASURES) * 32 + 100], *end = line;
+            for (size_t i = 0; i < g->axes; i++)
+                end += sprintf(end, "%.17g\t", value[i]);
+            end += sprintf(end, "%s", spring_method_name(g->method[k]));
+            end += print_number(end, number[SWEEP_ERROR]);
+            end += print_number(end, number[SWEEP_ENERGY_ERROR]);
+            end += sprintf(end, "\t%s", sweep_status_names[results[k].status]);
+            for (size_t i = 0; i < g->measures; i++)
+                end += print_number(end, number[g->measure[i]]);
+            cli_row(table, "%s", line);
+        }
+    }
 }
 
 /* If the reading process has ended, this process ends by SIGPIPE. */
