@@ -61,7 +61,3 @@ def test_longest_step_of_jitter_is_compared():
     """With the stable step, 2 s."""
     told = {dt: run(ENERGY, '--method', 'leapfrog', '--duration', '10', '--jitter', '--dt', dt).stderr for dt in ('1.33', '1.34')}
     assert told == {'1.33': '', '1.34': 'spring-energy: the step of 2.01 s is not below the stable step of leapfrog here, 2 s\n'}
-
-
-def test_jitter_is_no_matter_to_the_closed_form():
-    assert max(column(energies('exact --dt 0.1 --duration 1e4 --jitter'), 'energy_error_J')) <= 1e-11

@@ -26,13 +26,6 @@ def test_list(quick):
     assert [name for name in names if name not in cases] == SLOW
 
 
-def test_quick_holds(quick):
-    assert len(quick) >= 150 and len({row['case'] for row in quick}) >= 25
-    assert {row['verdict'] for row in quick} == {'pass'}
-    assert all(0 <= float(row['error']) <= float(row['bound']) < math.inf for row in quick)
-    assert all(row['reason'] for row in quick)
-
-
 def test_quick_has_every_witness(quick):
     assert {row['shape'] for row in quick} == {'spring', 'scene'}
     assert {row['witness'] for row in quick} == {
@@ -75,12 +68,6 @@ def test_schemes_of_engines_are_of_lower_order(contacts):
     assert errors_of(contacts, 'creep', 'penalty')[4] > 1e-4
 
 
-def test_orders_are_slopes(contacts):
-    row = [row for row in contacts if (row['case'], row['scheme']) == ('sphere', 'library')][-1]
-    errors = errors_of(contacts, 'sphere', 'library')
-    assert abs(float(row['order']) - math.log2(errors[4] / errors[16]) / 2) <= 1e-12
-
-
 def test_energy_of_bounces():
     """Close to the stable step: without any loss it grows, otherwise it never exceeds the start."""
     rows = table(CONTACTS, '--part', 'energy', '--quick')
@@ -96,13 +83,6 @@ def test_list_of_contacts(contacts):
 
 # --- spring-stability -----------------------------------------------------------------------------------------------
 
-LIMITS = {  # as omega dt, at these damping ratios; None: no formula
-    'euler': {0: 0, 0.01: 0.02, 1: 2, 100: 2 / (100 + math.sqrt(9999))},
-    'leapfrog': {0: 2, 0.01: 2, 1: 2, 100: 2},
-    'rk4': {0: 2 * math.sqrt(2), 0.01: None, 1: 2.785293563405282, 100: 2.785293563405282 / (100 + math.sqrt(9999))},
-}
-
-
 @pytest.fixture(scope='module')
 def limits():
     return table(STABILITY, '--points', '3')
@@ -113,14 +93,6 @@ def test_rows(limits):
     assert [(row['method'], float(row['damping_ratio'])) for row in limits] == [
         (method, zeta) for method in STEPPERS for zeta in (0, 0.01, 1, 100)]
     assert max(column(limits, 'relative_error')) <= 1e-4
-
-
-@pytest.mark.parametrize('method', LIMITS)
-def test_limits(method, limits):
-    measured = {float(row['damping_ratio']): float(row['limit_measured']) for row in limits if row['method'] == method}
-    assert measured.keys() == LIMITS[method].keys()
-    for zeta, law in LIMITS[method].items():
-        assert law is None or abs(measured[zeta] - law) <= 1e-4 * law, zeta
 
 
 def test_map(limits):
