@@ -143,3 +143,11 @@ def test_bench_ropes():
 
 def test_bench_calls_measures_nothing():
     assert bench('--calls 1 --count 1000') == []
+
+
+def test_softened_and_xpbd_start_with_a_step_a_frame():
+    rows = table(WORK, '--quick', '--problem', 'stiff-rope')
+    for solver in 'leapfrog-softened', 'xpbd':
+        first, *more = [row for row in rows if row['solver'] == solver]
+        assert first['steps'] == '15' and float(first['stretch']) > 0 and float(first['energy_error']) > 0
+        assert float(more[-1]['error']) < float(first['error'])
