@@ -138,7 +138,7 @@ def test_killed_jobs_go_on(tmp_path):
     """With another number of jobs, and finished parts are not computed again."""
     path = tmp_path / 'map.tsv'
     with subprocess.Popen([SWEEP, *SLOW, '--jobs', '2', '-o', path], start_new_session=True) as process:
-        while len(list(tmp_path.glob('*-of-1024'))) < 100:
+        while process.poll() is None and len(list(tmp_path.glob('*-of-1024'))) < 100:
             time.sleep(0.001)
         os.killpg(process.pid, signal.SIGKILL)
     finished = next(tmp_path.glob('*-of-1024'))
@@ -154,7 +154,7 @@ LONG = ['--over', 'omega_dt=0.1:3:log:3000', 'damping_ratio=0:2:3000']
 
 def test_jobs_end_with_the_process_that_started_them(tmp_path):
     with subprocess.Popen([SWEEP, *LONG, '--jobs', '2', '-o', tmp_path / 'map.tsv']) as process:
-        while len(list(tmp_path.iterdir())) < 2:
+        while process.poll() is None and len(list(tmp_path.iterdir())) < 2:
             time.sleep(0.01)
         process.kill()
     end = time.monotonic() + 10
