@@ -13,6 +13,25 @@ say() {
     printf '%s: %s\n' "$me" "$*" >&2
 }
 
+# read_arguments OPTION ARGUMENT...: prints $usage for --help, and sets $chosen if the option is given
+# shellcheck disable=SC2034,SC2154 # variables of the command
+read_arguments() {
+    chosen=
+    local argument
+    for argument in "${@:2}"; do
+        if [[ $argument == --help ]]; then
+            printf '%s\n\n' "$usage"
+            echo 'Status: 0 success, 1 a step failed, 2 invalid usage, 3 packages are missing and cannot be installed, or build/ is not a'
+            echo 'build of this tree.'
+            exit 0
+        elif [[ $argument != "$1" ]]; then
+            say "\"$argument\" is not an option; tools/$command --help lists them"
+            exit 2
+        fi
+        chosen=yes
+    done
+}
+
 # Tests for the program, header or module itself and not with a package manager, so it works on every system.
 present() {
     local kind=$1 name=$2

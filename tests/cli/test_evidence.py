@@ -26,28 +26,11 @@ def test_list(quick):
     assert [name for name in names if name not in cases] == SLOW
 
 
-def test_quick_holds(quick):
-    assert len(quick) >= 150 and len({row['case'] for row in quick}) >= 25
-    assert {row['verdict'] for row in quick} == {'pass'}
-    assert all(0 <= float(row['error']) <= float(row['bound']) < math.inf for row in quick)
-    assert all(row['reason'] for row in quick)
-
-
 def test_quick_has_every_witness(quick):
     assert {row['shape'] for row in quick} == {'spring', 'scene'}
     assert {row['witness'] for row in quick} == {
         'iterate', 'solution', 'drive', 'gsl-rk4', 'arkode-rk4', 'gsl-rk8pd', 'cvode-adams', 'cvode-bdf', 'definition',
         'modes', 'reduced-mass', 'digits', 'formula', 'dispersion'}
-
-
-def test_euler_is_never_right_by_accident(quick):
-    rows = [row for row in quick if (row['method'], row['witness']) == ('euler', 'solution')]
-    assert {row['case'] for row in rows if float(row['error']) == 0} <= {'at-rest'}
-
-
-def test_bdf_is_in_trouble_on_light_damping(quick):
-    evaluations = {row['case']: int(row['force_evaluations']) for row in quick if row['witness'] == 'cvode-bdf'}
-    assert evaluations['settled-0.2'] > 3 * evaluations['settled-0.4'] > 0
 
 
 def test_one_case(quick):
@@ -74,12 +57,6 @@ def test_contacts_of_the_library(contacts, case, steps, bound):
     assert errors_of(contacts, case, 'library')[steps] <= bound
 
 
-def test_stopping_distance(contacts):
-    exact = 9 / (2 * 0.4 * 9.81)
-    for steps, error in errors_of(contacts, 'stopping', 'library').items():
-        assert error * exact <= 0.4 * 9.81 / 8 / (60 * steps)**2
-
-
 def test_schemes_of_engines_are_of_lower_order(contacts):
     """The simple schemes are what they say: projection has order 1, penalty springs are passed by a fast plate."""
     for case in ('spring-on-plane', 'sphere'):
@@ -89,12 +66,6 @@ def test_schemes_of_engines_are_of_lower_order(contacts):
         assert all(library[steps] < projection[steps] / 50 for steps in library)
     assert min(errors_of(contacts, 'plate-500', scheme)[4] for scheme in ('projection', 'penalty')) > 900
     assert errors_of(contacts, 'creep', 'penalty')[4] > 1e-4
-
-
-def test_orders_are_slopes(contacts):
-    row = [row for row in contacts if (row['case'], row['scheme']) == ('sphere', 'library')][-1]
-    errors = errors_of(contacts, 'sphere', 'library')
-    assert abs(float(row['order']) - math.log2(errors[4] / errors[16]) / 2) <= 1e-12
 
 
 def test_energy_of_bounces():
@@ -112,13 +83,6 @@ def test_list_of_contacts(contacts):
 
 # --- spring-stability -----------------------------------------------------------------------------------------------
 
-LIMITS = {  # as omega dt, at these damping ratios; None: no formula
-    'euler': {0: 0, 0.01: 0.02, 1: 2, 100: 2 / (100 + math.sqrt(9999))},
-    'leapfrog': {0: 2, 0.01: 2, 1: 2, 100: 2},
-    'rk4': {0: 2 * math.sqrt(2), 0.01: None, 1: 2.785293563405282, 100: 2.785293563405282 / (100 + math.sqrt(9999))},
-}
-
-
 @pytest.fixture(scope='module')
 def limits():
     return table(STABILITY, '--points', '3')
@@ -129,14 +93,6 @@ def test_rows(limits):
     assert [(row['method'], float(row['damping_ratio'])) for row in limits] == [
         (method, zeta) for method in STEPPERS for zeta in (0, 0.01, 1, 100)]
     assert max(column(limits, 'relative_error')) <= 1e-4
-
-
-@pytest.mark.parametrize('method', LIMITS)
-def test_limits(method, limits):
-    measured = {float(row['damping_ratio']): float(row['limit_measured']) for row in limits if row['method'] == method}
-    assert measured.keys() == LIMITS[method].keys()
-    for zeta, law in LIMITS[method].items():
-        assert law is None or abs(measured[zeta] - law) <= 1e-4 * law, zeta
 
 
 def test_map(limits):

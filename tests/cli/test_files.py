@@ -147,33 +147,28 @@ def test_ignored_signal_stays_ignored(tmp_path):
 
 # --- the same bytes -------------------------------------------------------------------------------------------------
 
-@each_tool
-def test_two_runs(tool):
-    assert run(tool, *SHORT[tool]).stdout == run(tool, *SHORT[tool]).stdout
+SAME = {  # ways to run a tool again: more words, and how
+    'again': ([], {}),
+    'from another place': ([], {'cwd': '/', 'env': {}}),
+    'under another name': ([], {'name': '/elsewhere/other-name'}),
+    'to /dev/stdout': (['-o', '/dev/stdout'], {}),
+    **{spelling: (spelling.split(), {}) for spelling in ['-o FILE', '-oFILE', '--output FILE', '--output=FILE']},
+    'without standard error': (['-o', 'FILE'], {'preexec_fn': lambda: os.close(2)}),
+    'umask': (['-o', 'FILE'], {'umask': 0o027}),
+}
 
 
 @each_tool
-def test_from_another_place(tool):
-    other = run(tool, *SHORT[tool], executable=shutil.which(tool), cwd='/', env={})
-    assert other.stdout == run(tool, *SHORT[tool]).stdout
-
-
-@each_tool
-def test_under_another_name(tool):
-    other = run('/elsewhere/other-name', *SHORT[tool], executable=shutil.which(tool))
-    assert other.stdout == run(tool, *SHORT[tool]).stdout
-
-
-@each_tool
-@pytest.mark.parametrize('spelling', ['-o {}', '-o{}', '--output {}', '--output={}'])
-def test_output(tool, spelling, tmp_path):
-    result = run(tool, *SHORT[tool], *spelling.format(tmp_path / 'new.tsv').split())
-    assert (result.returncode, result.stdout, files(tmp_path)) == (0, '', {'new.tsv': run(tool, *SHORT[tool]).stdout})
-
-
-@each_tool
-def test_output_to_dev_stdout(tool):
-    assert run(tool, *SHORT[tool], '-o', '/dev/stdout').stdout == run(tool, *SHORT[tool]).stdout
+@pytest.mark.parametrize('way', SAME)
+def test_same_bytes(tool, way, tmp_path):
+    more, how = SAME[way]
+    path = tmp_path / 'new.tsv'
+    how = {'executable': shutil.which(tool), **how}
+    result = run(how.pop('name', tool), *SHORT[tool], *(word.replace('FILE', str(path)) for word in more), **how)
+    assert result.returncode == 0
+    assert (path.read_text() if 'FILE' in ' '.join(more) else result.stdout) == run(tool, *SHORT[tool]).stdout
+    assert list(files(tmp_path)) == ([path.name] if 'FILE' in ' '.join(more) else [])
+    assert way != 'umask' or stat.S_IMODE(path.stat().st_mode) == 0o640
 
 
 @each_tool
@@ -185,19 +180,6 @@ def test_link_stays_a_link_and_a_file_keeps_its_mode(tool, older):
     assert link.is_symlink() and stat.S_IMODE(older.stat().st_mode) == 0o640
     want = run(tool, *SHORT[tool]).stdout
     assert files(older.parent) == {'link.tsv': want, 'old.tsv': want}
-
-
-@each_tool
-def test_new_file_follows_the_umask(tool, tmp_path):
-    path = tmp_path / 'new.tsv'
-    result = run(tool, *SHORT[tool], '-o', path, umask=0o027)
-    assert (result.returncode, stat.S_IMODE(path.stat().st_mode)) == (0, 0o640)
-
-
-@each_tool
-def test_closed_standard_error_does_no_harm(tool, tmp_path):
-    result = run(tool, *SHORT[tool], '-o', tmp_path / 'new.tsv', preexec_fn=lambda: os.close(2))
-    assert (result.returncode, files(tmp_path)) == (0, {'new.tsv': run(tool, *SHORT[tool]).stdout})
 
 
 # --- pipes and devices are written directly -------------------------------------------------------------------------

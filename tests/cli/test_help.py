@@ -7,13 +7,13 @@ import shutil
 import subprocess
 
 import pytest
-from tools import (BENCH, ENGINES, EVERY, METHODS, PLAN, RUN, SCENE, SHORT, STABILITY, WORK, choices, each_tool, every_tool, is_failure, parse,
-                   run)
+from tools import (BENCH, EVERY, METHODS, PLAN, RUN, SCENE, SHORT, STABILITY, USERS, WORK, choices, every_tool, is_failure, parse, run)
 
 MAIN = EVERY | {  # with the columns that are told; SHORT asks some for others
     STABILITY: ['--points', '1'],
     PLAN: ['--error', '.1', '--duration', '1', '--hertz', '1'],
 }
+each_user_tool = pytest.mark.parametrize('tool', USERS)
 FOLDER = pathlib.Path(shutil.which(RUN)).parent
 
 
@@ -45,10 +45,6 @@ def test_every_tool_is_looked_at():
 def test_help_fits_a_screen(tool):
     lines = help_of(tool).splitlines()
     assert lines[0].startswith(f'Usage: {tool} ') and len(lines) <= 44 and max(map(len, lines)) <= 100
-
-
-@every_tool
-def test_h_is_help(tool):
     assert run(tool, '-h').stdout == help_of(tool)
 
 
@@ -137,7 +133,7 @@ def needs(command):
         pytest.skip(f'no {command}, which checks pages of the manual')
 
 
-@every_tool
+@each_user_tool
 def test_page_is_shown_without_a_warning(tool, page):
     needs('man')
     result = subprocess.run(['man', '--warnings', '-E', 'UTF-8', '-l', page], capture_output=True, text=True, check=False,
@@ -151,7 +147,7 @@ def test_page_is_shown_without_a_warning(tool, page):
     assert [what for what in told if what not in words] == []
 
 
-@every_tool
+@each_user_tool
 def test_page_has_no_fault(tool, page):
     """But that it has no date: a page depends on the version alone."""
     needs('mandoc')
@@ -171,7 +167,7 @@ def complete(*words):
     return result.stdout.split()
 
 
-@every_tool
+@each_user_tool
 def test_options_are_completed(tool):
     names = {f'--{name}' for name, *_ in options_of(tool)}
     assert set(complete(tool, '')) == names | {'--help', '--version'} and complete(tool, '--vers') == ['--version']
@@ -186,8 +182,6 @@ def test_options_are_completed(tool):
     ([RUN, '--arithmetic', 's'], ['stages']),
     ([SCENE, '--scene', ''], ['rope', 'cloth', 'jelly', 'chain', 'water']),
     ([SCENE, '--hash', '--posi'], ['--positions']),
-    ([BENCH, '--part', 'b'], ['batch']),
-    ([WORK, '--problem', 'seed'], ['seed-1000s']),
 ], ids=' '.join)
 def test_words_are_completed(words, wanted):
     assert complete(*words) == wanted
@@ -236,7 +230,3 @@ def test_meant(words, meant):
 def test_nothing_is_like_it(words):
     result = run(*shlex.split(words))
     assert result.returncode == 2 and 'did you mean' not in result.stderr
-
-
-def test_engines_are_optional():
-    assert (shutil.which(ENGINES) is None) == (ENGINES not in EVERY)

@@ -43,24 +43,6 @@ def test_rows_and_fit(how):
     assert 0.9998 < float(fit['r_squared']) <= 1 and fit['points'] == str(len(rows))
 
 
-def test_arithmetics_of_rk4_differ_by_rounding():
-    library, stages = (column(table(ORDER, '--method', *how.split()), 'error_m') for how in ('rk4', STAGES))
-    assert 0 < max(abs(a - b) for a, b in zip(library, stages, strict=True)) <= 1e-14
-
-
-def test_exact_has_no_error_but_rounding():
-    errors = column(table(ORDER, '--method', 'exact'), 'error_m')
-    assert len(errors) == 1000 and max(errors) <= 1e-15
-
-
-@pytest.mark.parametrize('method, law', [('euler', abs(math.cos(2)) * 2**2 / 2), ('leapfrog', math.sin(2) * 2**3 / 24),
-                                         ('rk4', math.sin(2) * 2**5 / 120)])
-def test_theory_for_another_duration(method, law):
-    fit, = table(ORDER, '--method', method, '--duration', '2', '--fit', '--n-min', '100', '--n-max', '400')
-    assert abs(float(fit['theory_coefficient_m']) / law - 1) <= 1e-15
-    assert abs(float(fit['coefficient_m']) / law - 1) <= 0.1
-
-
 # --- --match-error --------------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize('method, n, first', [('leapfrog', '34766', '630'), ('rk4', '3719', '1605')])

@@ -29,17 +29,6 @@ def test_verdicts(quick):
             assert row['verdict'] != 'gaining' or float(row['energy_error']) <= stable
 
 
-def test_euler_explodes(quick):
-    verdicts = {row['verdict'] for row in quick if row['method'] == 'euler' and row['scene'] != 'chain'}
-    assert verdicts == {'exploded'}
-
-
-@pytest.mark.parametrize('method', ['leapfrog', 'rk4'])
-def test_short_steps_are_fine(method, quick):
-    shortest = [row for row in quick if (row['method'], row['substeps']) == (method, '64')]
-    assert {row['scene']: row['verdict'] for row in shortest} == dict.fromkeys(SCENES, 'fine')
-
-
 def test_part_is_the_part(quick):
     assert table(MAP, '--quick', '--scene', 'jelly', '--method', 'rk4') == [
         row for row in quick if (row['scene'], row['method']) == ('jelly', 'rk4')]
@@ -61,3 +50,8 @@ def test_time(quick, tmp_path):
         assert int(row['substeps']) == min(
             n for n in of if n >= below and all(verdict == 'fine' for k, verdict in of.items() if k >= n))
         assert abs(float(row['particles_per_ms']) * float(row['frame_ms']) / int(row['particles']) - 1) <= 1e-3
+
+
+def test_euler_explodes(quick):
+    verdicts = {row['verdict'] for row in quick if row['method'] == 'euler' and row['scene'] != 'chain'}
+    assert verdicts == {'exploded'}

@@ -17,6 +17,7 @@ CONTACTS = 'spring-contacts'
 SWEEP = 'spring-sweep'
 BENCH, WORK = 'spring-bench', 'spring-work'  # measure time: no two runs give the same bytes
 ENGINES = 'spring-engines'  # built where there are engines
+USERS = METHOD_TABLE, PLAN, RUN, SCENE, SWEEP  # installed; the others are for the study
 SHORT = {  # for every tool that gives the same bytes twice a run that takes no time
     ORDER: ['--method', 'euler', '--n-max', '50'],
     RUN: ['--method', 'rk4', '--duration', '3', '--steps', '30', '--every', '1'],

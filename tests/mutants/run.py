@@ -3,14 +3,9 @@
 """Checks that the test suite notices mistakes: makes each of them in a copy of the tree and runs the C tests.
 
 usage: run.py [PATTERN]...
-       run.py --survivors FILE[:FUNCTION]
 
-Without --survivors: the mistakes of mutants.tsv, or those whose name or file contains a PATTERN. Each must make the test
-that its row names fail. Status 1 if one does not. The last line is "N passed, N failed, N skipped".
-
-With --survivors, a tool for development: changes every operator, constant and statement of a source file, or of one
-function, in turn (see generate.py), and prints the changes that no C test notices. Some of them are equivalent to the
-original. Takes minutes for a function, hours for a file.
+Makes the mistakes of mutants.tsv, or those whose name or file contains a PATTERN. Each must make the test that its row
+names fail. Status 1 if one does not. The last line is "N passed, N failed, N skipped".
 
 Compiling takes longer than running. So the changed bodies of a function are compiled together with the original one, as
 cases of a switch over the environment variable SPRING_MUTANT. A change outside of functions is compiled by itself.
@@ -29,8 +24,6 @@ import sys
 import tempfile
 import time
 from typing import NamedTuple
-
-import generate
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -58,9 +51,14 @@ __attribute__((weak, constructor)) void spring_mutant_read(void)
 class Mutant(NamedTuple):
     name: str
     file: str
-    test: str  # that must fail; "": any may
-    change: generate.Change
+    test: str  # that must fail
+    start: int  # of the old text
+    end: int
+    new: str
     body: tuple  # start and end of the function's body, or None
+
+    def apply(self, text):
+        return text[: self.start] + self.new + text[self.end :]
 
 
 class Program(NamedTuple):
@@ -78,12 +76,11 @@ class BuildFailed(Exception):
 # ------------------------------------------------------------------------------------------------------- the mutants
 
 
-def body_at(definitions, start):
-    for definition in definitions:
-        body = None if definition.is_macro else definition.body()
-        if body and body[0] <= start < body[1]:
-            return body
-    return None
+def body_at(text, start):
+    """The start and end of the body of the function at this offset, or None. In this layout its braces begin a line."""
+    begin = text.rfind("\n{\n", 0, start) + 1
+    end = text.find("\n}\n", begin) + 2
+    return (begin, end) if 0 < begin <= start < end else None
 
 
 def written_by_hand(patterns):
@@ -98,21 +95,8 @@ def written_by_hand(patterns):
         if len(found) != 1:
             sys.exit(f"mutants.tsv: {row['mistake']}: {row['file']} has this text {len(found)} times, expected once: "
                      f"{row['old']}")
-        change = generate.Change("", found[0].start(), found[0].end(), row["new"])
-        yield Mutant(row["mistake"], row["file"], row["test"], change,
-                     body_at(generate.definitions(text), change.start))
-
-
-def generated(place):
-    file, _, function = place.partition(":")
-    path = (ROOT / file).resolve()
-    if not path.is_file() or not path.is_relative_to(ROOT):
-        sys.exit(f"run.py: {file}: expected a source file of the tree")
-    file = path.relative_to(ROOT).as_posix()
-    for definition, change in generate.generate((ROOT / file).read_text(encoding="utf-8")):
-        if function in ("", definition.name):
-            yield Mutant(change.name, file, "", change,
-                         None if definition.is_macro else body_at([definition], change.start))
+        start, end = found[0].span()
+        yield Mutant(row["mistake"], row["file"], row["test"], start, end, row["new"], body_at(text, start))
 
 
 # ---------------------------------------------------------------------------------------------------------- programs
@@ -192,8 +176,8 @@ def with_switches(text, mutants):
         cases = ""
         for number, mutant in mutants.items():
             if mutant.body == (start, end):
-                longer = len(mutant.change.new) - (mutant.change.end - mutant.change.start)
-                cases += f"case {number}: {{\n{mutant.change.apply(text)[start : end + longer]}\nbreak; }}\n"
+                longer = len(mutant.new) - (mutant.end - mutant.start)
+                cases += f"case {number}: {{\n{mutant.apply(text)[start : end + longer]}\nbreak; }}\n"
         text = (f"{text[:start]}{{ switch (spring_mutant) {{\n{cases}default: {{\n{text[start:end]}\nbreak; }} }} }}"
                 f"{text[end:]}")
     return text
@@ -208,7 +192,7 @@ def write_switches(tree, mutants):
 
 def killer(mutant, number, programs, build):
     for program in programs:
-        if mutant.test in ("", program.name):
+        if mutant.test == program.name:
             failure = failure_of(program, build, number)
             if failure:
                 return f"{program.name}: {failure}"
@@ -228,9 +212,9 @@ def killers(mutants, tree, build, programs):
         if not mutant.body:
             path = tree / mutant.file
             kept = path.read_text(encoding="utf-8")
-            path.write_text(mutant.change.apply((ROOT / mutant.file).read_text(encoding="utf-8")), encoding="utf-8")
+            path.write_text(mutant.apply((ROOT / mutant.file).read_text(encoding="utf-8")), encoding="utf-8")
             try:
-                needed = [program for program in programs if mutant.test in ("", program.name)]
+                needed = [program for program in programs if mutant.test == program.name]
                 compile_targets(build, needed)
                 found[i] = killer(mutant, 0, needed, build)
             finally:
@@ -240,12 +224,12 @@ def killers(mutants, tree, build, programs):
 
 def check_all(mutants, tree):
     build, programs = configured(tree)
-    unknown = {mutant.test for mutant in mutants} - {program.name for program in programs} - {""}
+    unknown = {mutant.test for mutant in mutants} - {program.name for program in programs}
     if unknown:
         sys.exit(f"mutants.tsv: no such test: {', '.join(sorted(unknown))}")
     named = {mutant.test for mutant in mutants}
     failed = 0
-    wanted = programs if "" in named else [program for program in programs if program.name in named]
+    wanted = [program for program in programs if program.name in named]
     try:
         found = killers(mutants, tree, build, wanted)
     except BuildFailed as error:
@@ -258,35 +242,18 @@ def check_all(mutants, tree):
     return 1 if failed else 0
 
 
-def print_survivors(mutants, tree):
-    build, programs = configured(tree)
-
-    def survivors(group):
-        try:
-            return [mutant for mutant, by in zip(group, killers(group, tree, build, programs)) if not by]
-        except BuildFailed:
-            half = len(group) // 2
-            return survivors(group[:half]) + survivors(group[half:]) if half else []  # what does not compile is noticed
-
-    for body in dict.fromkeys(mutant.body for mutant in mutants):
-        for mutant in survivors([mutant for mutant in mutants if mutant.body == body]):
-            line = (ROOT / mutant.file).read_text(encoding="utf-8").count("\n", 0, mutant.change.start) + 1
-            print(f"{mutant.file}:{line}: {mutant.name}", flush=True)
-
-
 def main():
-    words = sys.argv[1:]
-    survivors = words[:1] == ["--survivors"]
-    if any(word.startswith("-") for word in words[survivors:]) or (survivors and len(words) != 2):
+    patterns = sys.argv[1:]
+    if any(pattern.startswith("-") for pattern in patterns):
         print(__doc__)
-        return 0 if words == ["--help"] else 2
-    mutants = list(generated(words[1]) if survivors else written_by_hand(words))
+        return 0 if patterns == ["--help"] else 2
+    mutants = list(written_by_hand(patterns))
     if not mutants:
-        sys.exit(f"run.py: {' '.join(words[survivors:])}: no such mistake or function")
+        sys.exit(f"run.py: {' '.join(patterns)}: no such mistake")
     with tempfile.TemporaryDirectory(prefix="springstep-mutants-") as scratch:
         tree = pathlib.Path(scratch).resolve() / "tree"
         shutil.copytree(ROOT, tree, symlinks=True, ignore=shutil.ignore_patterns("build*", ".git"))
-        return print_survivors(mutants, tree) if survivors else check_all(mutants, tree)
+        return check_all(mutants, tree)
 
 
 if __name__ == "__main__":

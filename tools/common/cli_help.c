@@ -226,34 +226,6 @@ static void print_output(const cli_program *p)
         puts(".PP");
         print_paragraphs(p->meaning);
     }
-    if (p->shown[0] == NULL)
-        return;
-    memory text;
-    open_memory(&text);
-    fprintf(text.stream,
-            "gnuplot -p -e 'set datafile separator tab; plot \"FILE\" using \"%s\":\"%s\" with lines'\n"
-            "python3 -c 'import pandas; print(pandas.read_csv(\"FILE\", sep=\"\\t\", comment=\"#\"))'\n"
-            "awk -F'\\t' '!/^#/ {print $%d, $%d}' FILE\n",
-            p->shown[0], p->shown[1], column_number(p->columns, p->shown[0]), column_number(p->columns, p->shown[1]));
-    puts(".PP\nTo read a table in FILE:\n.PP\n.nf");
-    print_memory(&text);
-    puts(".fi");
-}
-
-static void print_see_also(void)
-{
-    static const char *const tools[] = {"spring-methods", "spring-plan", "spring-run", "spring-scene", NULL};
-    print_section("SEE ALSO");
-    bool first = true;
-    for (int i = 0; tools[i] != NULL; i++) {
-        if (strcmp(tools[i], cli_asked.program->name) == 0)
-            continue;
-        fputs(first ? ".BR " : ",\n.BR ", stdout);
-        print_roff(tools[i]);
-        fputs(" (1)", stdout);
-        first = false;
-    }
-    putchar('\n');
 }
 
 void cli_print_man(void)
@@ -298,7 +270,9 @@ void cli_print_man(void)
         print_roff(p->examples[i]);
         fputs(i + 1 == EXAMPLES || p->examples[i + 1] == NULL ? "\n.fi\n" : "\n", stdout);
     }
-    print_see_also();
+    print_section("SEE ALSO");
+    puts(".BR spring\\-methods (1),\n.BR spring\\-plan (1),\n.BR spring\\-run (1),\n.BR spring\\-scene (1),\n"
+         ".BR spring\\-sweep (1)");
 }
 
 /* ------------------------------------------------------------------------------------------- for completion */

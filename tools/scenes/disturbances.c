@@ -4,7 +4,6 @@
 
 #include <math.h> /* INFINITY, sqrt(), fabs() */
 #include <stdlib.h>
-#include <string.h>
 
 #include "random.h"
 
@@ -20,14 +19,15 @@ typedef struct entry {
 
 struct disturbances {
     uint32_t last_axis;
-    size_t count, capacity, shares, share_capacity;
-    entry *list; /* [capacity], sorted by start */
+    size_t count, shares;
+    entry *list; /* [count], sorted by start */
     share *share;
 };
 
 static const double pi = 3.14159265358979323846;
 
-double disturbances_peak(double momentum, double duration)
+/* The peak force [N] of a disturbance with this momentum [kg m/s]. */
+static double peak_of(double momentum, double duration)
 {
     const double mean_of_profile = 128.0 / 315; /* 256 B(5, 5) */
     return momentum / (mean_of_profile * duration);
@@ -60,7 +60,7 @@ disturbance disturbances_drop(const preset *r, const preset_settings *s, double 
                          .x = x,
                          .y = y,
                          .area = edge * edge,
-                         .peak = disturbances_peak(s->mass * speed, duration)};
+                         .peak = peak_of(s->mass * speed, duration)};
 }
 
 disturbance disturbances_box(const preset *r, const preset_settings *s, double start, double mass, double duration)
@@ -68,21 +68,9 @@ disturbance disturbances_box(const preset *r, const preset_settings *s, double s
     const double height = 1, gravity = 9.81; /* [m], [m/s^2] */
     disturbance d = disturbances_poke(r, s, duration);
     d.start = start;
-    d.peak = disturbances_peak(mass * sqrt(2 * gravity * height), duration);
+    d.peak = peak_of(mass * sqrt(2 * gravity * height), duration);
     d.shape = DISTURBANCE_SQUARE;
     return d;
-}
-
-/* Returns the array with room for at least one more entry. Out of memory: NULL, and the array is unchanged. */
-static void *grown(void *array, size_t *capacity, size_t count, size_t size)
-{
-    if (count < *capacity)
-        return array;
-    const size_t more = 2 * count + 64;
-    void *memory = realloc(array, more * size);
-    if (memory != NULL)
-        *capacity = more;
-    return memory;
 }
 
 static double weight(const disturbance *d, double dx, double dy)
@@ -93,21 +81,12 @@ static double weight(const disturbance *d, double dx, double dy)
     return relative < 1 ? (1 - relative) * (1 - relative) : 0;
 }
 
-static bool add_share(disturbances *p, size_t at, size_t particle, double part)
-{
-    share *more = grown(p->share, &p->share_capacity, at, sizeof *more);
-    if (more == NULL)
-        return false;
-    p->share = more;
-    p->share[at] = (share){(uint32_t)particle, part};
-    return true;
-}
-
-/* Appends the shares of one disturbance and stores their number in *count. */
-static bool spread(disturbances *p, const preset *r, const disturbance *d, size_t *count)
+/* Appends the shares of one disturbance. */
+static void spread(disturbances *p, const preset *r, const disturbance *d)
 {
     double sum = 0, least = INFINITY;
-    size_t end = p->shares, nearest = 0;
+    const size_t first = p->shares;
+    size_t nearest = 0;
     for (size_t i = 0; i < r->def.particles; i++) {
         if (r->pinned[i])
             continue;
@@ -116,27 +95,16 @@ static bool spread(disturbances *p, const preset *r, const disturbance *d, size_
             least = dx * dx + dy * dy;
             nearest = i;
         }
-        if (w > 0 && !add_share(p, end++, i, w))
-            return false;
+        if (w > 0)
+            p->share[p->shares++] = (share){(uint32_t)i, w};
         sum += w;
     }
-    if (end == p->shares && least < INFINITY) {
+    if (p->shares == first && least < INFINITY) {
         sum = 1;
-        if (!add_share(p, end++, nearest, 1))
-            return false;
+        p->share[p->shares++] = (share){(uint32_t)nearest, 1};
     }
-    for (size_t i = p->shares; i < end; i++)
+    for (size_t i = first; i < p->shares; i++)
         p->share[i].part /= sum;
-    *count = end - p->shares;
-    return true;
-}
-
-disturbances *disturbances_new(const preset *r)
-{
-    disturbances *p = calloc(1, sizeof *p);
-    if (p != NULL)
-        p->last_axis = r->def.axes - 1;
-    return p;
 }
 
 void disturbances_free(disturbances *p)
@@ -148,41 +116,38 @@ void disturbances_free(disturbances *p)
     free(p);
 }
 
-spring_status disturbances_add(disturbances *p, const preset *r, const disturbance *d)
+disturbances *disturbances_new(preset *r, const disturbance *list, size_t count)
 {
-    entry new = {.what = *d, .first = p->shares};
-    entry *more = grown(p->list, &p->capacity, p->count, sizeof *more);
-    if (more == NULL)
-        return SPRING_ENOMEM;
-    p->list = more;
-    if (!spread(p, r, d, &new.count))
-        return SPRING_ENOMEM;
-    size_t at = p->count;
-    while (at > 0 && p->list[at - 1].what.start > d->start)
-        at--;
-    memmove(&p->list[at + 1], &p->list[at], (p->count - at) * sizeof *p->list);
-    p->list[at] = new;
-    p->count++;
-    p->shares += new.count;
-    return SPRING_OK;
+    disturbances *p = calloc(1, sizeof *p);
+    if (p == NULL)
+        return NULL;
+    p->last_axis = r->def.axes - 1;
+    p->list = malloc(count * sizeof *p->list);
+    for (; p->list != NULL && p->count < count; p->count++) {
+        share *more = realloc(p->share, (p->shares + r->def.particles) * sizeof *more);
+        if (more == NULL)
+            break;
+        p->share = more;
+        entry new = {.what = list[p->count], .first = p->shares};
+        spread(p, r, &new.what);
+        new.count = p->shares - new.first;
+        size_t at = p->count;
+        for (; at > 0 && p->list[at - 1].what.start > new.what.start; at--)
+            p->list[at] = p->list[at - 1];
+        p->list[at] = new;
+    }
+    if (p->count < count) {
+        disturbances_free(p);
+        return NULL;
+    }
+    r->def.force = disturbances_force;
+    r->def.user = p;
+    return p;
 }
 
 static bool has_ended(const disturbance *d, double t)
 {
     return d->start + d->duration <= t;
-}
-
-bool disturbances_any(const disturbances *p)
-{
-    return p->count > 0;
-}
-
-void disturbances_forget(disturbances *p, double t)
-{
-    for (size_t i = 0; i < p->count; i++)
-        if (!has_ended(&p->list[i].what, t))
-            return;
-    p->count = p->shares = 0;
 }
 
 /* The first disturbance that has not ended at t. */

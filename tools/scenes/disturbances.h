@@ -32,9 +32,6 @@ typedef struct disturbance {
     disturbance_shape shape;
 } disturbance;
 
-/** The peak force [N] of a disturbance with this momentum [kg m/s]. */
-double disturbances_peak(double momentum, double duration);
-
 /** The default disturbance of height-field water: a poke in the middle at the start. */
 disturbance disturbances_poke(const preset *r, const preset_settings *s, double duration);
 
@@ -48,19 +45,9 @@ disturbance disturbances_box(const preset *r, const preset_settings *s, double s
 
 typedef struct disturbances disturbances;
 
-/** Creates an empty list for a scene; NULL: out of memory. */
-disturbances *disturbances_new(const preset *r);
+/** Makes a list of disturbances the force callback of a scene; NULL: out of memory. All should have the same duration. */
+disturbances *disturbances_new(preset *r, const disturbance *list, size_t count);
 void disturbances_free(disturbances *p); /* NULL: nothing */
-
-/** Adds a disturbance, before or while the scene runs. All should have the same duration. Adding in the order of the
-    starts is fast; equal starts keep the order of adding. SPRING_ENOMEM leaves the list unchanged. */
-spring_status disturbances_add(disturbances *p, const preset *r, const disturbance *d);
-
-/** Returns true if the list is not empty, whether its disturbances are past, active or future. */
-bool disturbances_any(const disturbances *p);
-
-/** Empties the list if all disturbances have ended at t, so that memory does not grow in endless runs. */
-void disturbances_forget(disturbances *p, double t);
 
 /** The force callback of a scene; `user` points to the disturbances. Forces are along the last axis and depend on time
     only. */

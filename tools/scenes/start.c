@@ -37,12 +37,9 @@ disturbances *start_disturbances(preset *r, const disturbance *list, size_t coun
 {
     if (count == 0)
         return NULL;
-    disturbances *p = disturbances_new(r);
-    for (size_t i = 0; i < count; i++)
-        if (p == NULL || disturbances_add(p, r, &list[i]) != SPRING_OK)
-            cli_fail(CLI_FAILED, "no memory for the disturbances on a scene");
-    r->def.force = disturbances_force;
-    r->def.user = p;
+    disturbances *p = disturbances_new(r, list, count);
+    if (p == NULL)
+        cli_fail(CLI_FAILED, "no memory for the disturbances on a scene");
     return p;
 }
 

@@ -317,15 +317,10 @@ static spring_status begin(subject *s, const preset_settings *settings, const do
     if (settings->kind != PRESET_WATER)
         return SPRING_OK;
     const disturbance poke = disturbances_poke(&s->preset, settings, disturbance_duration);
-    s->poke = disturbances_new(&s->preset);
-    if (s->poke == NULL || disturbances_add(s->poke, &s->preset, &poke) != SPRING_OK) {
-        disturbances_free(s->poke);
+    s->poke = disturbances_new(&s->preset, &poke, 1);
+    if (s->poke == NULL)
         preset_clear(&s->preset);
-        return SPRING_ENOMEM;
-    }
-    s->preset.def.force = disturbances_force;
-    s->preset.def.user = s->poke;
-    return SPRING_OK;
+    return s->poke == NULL ? SPRING_ENOMEM : SPRING_OK;
 }
 
 static void end(subject *s)

@@ -2,14 +2,15 @@
 /*
  * spring-sweep: measures one spring or a preset scene at every point of a grid of parameters.
  *
- * Points are independent. The grid is divided into blocks; each part consists of every N-th block and is a file that is
- * its own journal (journal.h). Parts are computed by independent processes, on one or several machines, and joined in
- * the order of the grid. The joined output does not depend on the number of parts.
+ * Points are independent. The grid is divided into blocks, and each part consists of every N-th block. Its file has a
+ * header, and a line "# block K" after the rows of each block. Parts are computed by independent processes, on one or
+ * several machines, and joined in the order of the grid. The joined output does not depend on the number of parts. The
+ * file of a part is written under a temporary name and renamed when it is complete, so any part can be repeated.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <errno.h>
 #include <inttypes.h>
-#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,10 +21,8 @@
 #include "common/cli.h"
 #include "scenes/presets.h"
 #include "sweep/grid.h"
-#include "sweep/journal.h"
-#include "sweep/rows.h"
 
-enum { most_parts = 1000000, header_size = 65536 };
+enum { most_parts = 1000000, most_jobs = 1024, header_size = 65536 };
 
 static cli_words over, methods, measures, part, joined;
 static uint64_t jobs; /* 0: not given */
@@ -42,13 +41,13 @@ static const cli_option options[] = {
     {"measure", CLI_WORDS, .words = &measures, .value = "C,...",
      .help = "additional columns, separated by commas\n"
              "These are available: steps, force_evaluations, dt_s, stable_step_s, explode_time_s, settling_time_s."},
-    {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = 1024, .unstamped = true,
+    {"jobs", CLI_COUNT, .count = &jobs, .value = "J", .least = 1, .most = most_jobs, .unstamped = true,
      .help = "run J processes on this machine; requires --output\n"
-             "Their results are stored in FILE.1-of-J, FILE.2-of-J, ... until all are complete. The same command\n"
-             "continues an incomplete sweep."},
+             "Finished parts are stored in FILE.1-of-N, FILE.2-of-N, ... until all are complete. The same command\n"
+             "continues an incomplete sweep, with any number of jobs."},
     {"part", CLI_WORDS, .words = &part, .value = "I/N", .unstamped = true,
      .help = "compute only part I of N; requires --output\n"
-             "If the file exists, the run continues after its last complete block."},
+             "The file appears when the part is complete. If it exists, nothing is computed."},
     {"join", CLI_WORDS, .words = &joined, .value = "FILE...", .unstamped = true,
      .help = "write the rows of all parts, in the order of the grid"},
     {"list", CLI_FLAG, .flag = &list, .help = "print the parameters of the scene, and exit", .unstamped = true},
@@ -125,8 +124,13 @@ static void list_parameters(void)
 /* The header of the output, with the part number in a part. It omits the compiler, since rows do not depend on it. */
 static void print_header(char *text, size_t size, const grid *g, uint64_t number, uint64_t parts)
 {
-    char columns[1000], line[100] = "";
-    grid_columns(g, columns, sizeof columns);
+    char columns[1000] = "", line[100] = "";
+    for (size_t i = 0; i < g->axes; i++)
+        strcat(strcat(columns, sweep_parameters[g->axis[i].parameter].column), "\t");
+    strcat(columns, "method\terror\tenergy_error\tstatus");
+    for (size_t i = 0; i < g->measures; i++)
+        strcat(strcat(columns, "\t"), sweep_measure_names[g->measure[i]]);
+    strcat(columns, "\n");
     if (parts > 0)
         snprintf(line, sizeof line, "# part %" PRIu64 " of %" PRIu64 ", %" PRIu64 " blocks\n", number, parts,
                  g->blocks);
@@ -144,31 +148,114 @@ typedef struct work {
     int done;               /* file descriptor that receives a byte per block; -1: none */
 } work;
 
-static _Noreturn void fail_journal(journal *j)
+/* The line in which two headers differ. */
+static int different_line(const char *a, const char *b, const char **line_a, const char **line_b)
 {
-    char message[sizeof journal_message];
-    strcpy(message, journal_message);
-    journal_close(j);
-    cli_fail(CLI_IO, "%s", message);
+    size_t same = 0, line = 0;
+    for (; a[same] == b[same] && a[same] != '\0'; same++)
+        if (a[same] == '\n')
+            line = same + 1;
+    *line_a = a + line;
+    *line_b = b + line;
+    return (int)strcspn(*line_a, "\n");
 }
 
-static char *block_text(const grid *g, sweep_memory *memory, uint64_t block, size_t *length)
+/* Opens the file of a part at its first block. NULL: there is no file, or it ends within the header. Any other file is an
+   error, because it must not be replaced. */
+static FILE *open_part(const char *path, const char *header)
 {
-    char *text = grid_block(g, memory, block, length);
-    if (text == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    return text;
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return NULL;
+    FILE *in = S_ISREG(status.st_mode) ? fopen(path, "r") : NULL;
+    if (in == NULL)
+        cli_fail(CLI_IO, "cannot write \"%s\": a part should be a file that can be read and replaced", path);
+    char start[header_size];
+    const size_t length = strlen(header), read = fread(start, 1, length, in);
+    start[read] = '\0';
+    const char *own, *wanted;
+    const int width = different_line(start, header, &own, &wanted);
+    if (memcmp(start, header, read) != 0)
+        cli_fail(CLI_IO, "\"%s\" exists, but is not this part of this sweep: it has \"%.*s\" instead of \"%.*s\"", path,
+                 width, own, (int)strcspn(wanted, "\n"), wanted);
+    if (read == length)
+        return in;
+    fclose(in);
+    return NULL;
 }
 
-static sweep_memory *new_memory(void)
+static void check_part(const char *path, const char *header)
 {
-    sweep_memory *memory = sweep_memory_new();
-    if (memory == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    return memory;
+    FILE *in = open_part(path, header);
+    if (in != NULL)
+        fclose(in);
 }
 
-/* If the reading process has ended, this process ends by SIGPIPE, and its journal keeps the completed blocks. */
+/* Writes text that ends with "\n". */
+static void write_text(cli_table *table, const char *text, size_t length)
+{
+    if (length > 0)
+        cli_row(table, "%.*s", (int)length - 1, text);
+}
+
+/* Copies the rows of a block, or reads them if table is NULL. False: the next block of the file is incomplete, or is
+   another block. */
+static bool copy_block(FILE *in, uint64_t block, cli_table *table)
+{
+    char line[4096], end[50];
+    snprintf(end, sizeof end, "# block %" PRIu64 "\n", block);
+    while (fgets(line, sizeof line, in) != NULL) {
+        const size_t length = strlen(line);
+        if (length == 0 || line[length - 1] != '\n' || line[0] == '#')
+            return strcmp(line, end) == 0;
+        if (table != NULL)
+            write_text(table, line, length);
+    }
+    return false;
+}
+
+/* Returns true if the file has all blocks of a part, and nothing else. Closes the file. */
+static bool is_complete(FILE *in, uint64_t number, uint64_t parts, uint64_t blocks)
+{
+    bool complete = true;
+    for (uint64_t block = number - 1; complete && block < blocks; block += parts)
+        complete = copy_block(in, block, NULL);
+    complete = complete && getc(in) == EOF;
+    fclose(in);
+    return complete;
+}
+
+/* Prints NaN without sign, because the sign of 0/0 differs between processors. Returns the number of characters. */
+static int print_number(char *text, double x)
+{
+    return isnan(x) ? sprintf(text, "\tnan") : sprintf(text, "\t%.17g", x);
+}
+
+static void write_block(cli_table *table, const grid *g, sweep_memory *memory, uint64_t block)
+{
+    double value[SWEEP_PARAMETERS];
+    sweep_result results[SPRING_METHOD_COUNT];
+    const uint64_t first = block * g->points_of_block, count = grid_block_size(g, block);
+    for (uint64_t point = first; point < first + count; point++) {
+        if (memory == NULL || !grid_measure(g, memory, point, 1, value, results))
+            cli_fail(CLI_FAILED, "out of memory");
+        for (size_t k = 0; k < g->methods; k++) {
+            const double *number = results[k].number;
+            char line[(SWEEP_PARAMETERS + SWEEP_MEASURES) * 32 + 100], *end = line;
+            for (size_t i = 0; i < g->axes; i++)
+                end += sprintf(end, "%.17g\t", value[i]);
+            end += sprintf(end, "%s", spring_method_name(g->method[k]));
+            end += print_number(end, number[SWEEP_ERROR]);
+            end += print_number(end, number[SWEEP_ENERGY_ERROR]);
+            end += sprintf(end, "\t%s", sweep_status_names[results[k].status]);
+            for (size_t i = 0; i < g->measures; i++)
+                end += print_number(end, number[g->measure[i]]);
+            cli_row(table, "%s", line);
+        }
+    }
+}
+
+/* If the reading process has ended, this process ends by SIGPIPE. */
 static void tell_done(const work *w, uint64_t block)
 {
     if (w->done < 0)
@@ -181,28 +268,24 @@ static void do_part(const work *w)
 {
     char header[header_size];
     print_header(header, sizeof header, w->grid, w->number, w->parts);
-    journal *j = journal_open(w->path, header, w->number - 1, w->parts, w->grid->blocks);
-    if (j == NULL)
-        cli_fail(CLI_IO, "%s", journal_message);
-    if (journal_damaged(j))
-        cli_warn("\"%s\" is damaged: incomplete points are computed again", w->path);
-    sweep_memory *memory = new_memory();
+    FILE *in = open_part(w->path, header);
+    const bool there = in != NULL && is_complete(in, w->number, w->parts, w->grid->blocks);
+    cli_table *table = there ? NULL : cli_open_file("output", w->path);
+    sweep_memory *memory = sweep_memory_new();
+    if (!there)
+        write_text(table, header, strlen(header));
     for (uint64_t block = w->number - 1; block < w->grid->blocks; block += w->parts) {
-        bool there;
-        if (!journal_has(j, block, &there))
-            fail_journal(j);
         if (!there) {
-            size_t length;
-            char *rows = block_text(w->grid, memory, block, &length);
-            if (!journal_add(j, block, rows, length))
-                fail_journal(j);
-            free(rows);
+            write_block(table, w->grid, memory, block);
+            cli_row(table, "# block %" PRIu64, block);
         }
         tell_done(w, block);
     }
     sweep_memory_free(memory);
-    if (!journal_close(j))
-        cli_fail(CLI_IO, "%s", journal_message);
+    if (!there) {
+        check_part(w->path, header);
+        cli_close(table);
+    }
 }
 
 static uint64_t read_number(const char *text, char **end)
@@ -229,10 +312,39 @@ static void do_one_part(const grid *g)
 
 /* ------------------------------------------------------------------------------------------------------------- join */
 
-typedef struct found {
-    journal_reader reader;
-    bool there;
-} found;
+/* The file of a part. It is opened for each block, because there can be more parts than open files. */
+typedef struct part_file {
+    const char *path; /* NULL: missing */
+    long long next;   /* position of the next block */
+} part_file;
+
+static FILE *open_at(const part_file *file)
+{
+    FILE *in = fopen(file->path, "r");
+    if (in == NULL || fseeko(in, (off_t)file->next, SEEK_SET) != 0)
+        cli_fail(CLI_IO, "--join: cannot read \"%s\": %s", file->path, strerror(errno));
+    return in;
+}
+
+/* Reads the header, up to and including the first line that does not start with "#". */
+static void read_header(part_file *file, char *header)
+{
+    FILE *in = open_at(file);
+    size_t used = 0;
+    const char *line = "#";
+    while (line[0] == '#') {
+        line = header + used;
+        const bool more = fgets(header + used, (int)(header_size - used), in) != NULL;
+        used += more ? strlen(line) : 0;
+        if (!more || line == header + used || header[used - 1] != '\n')
+            cli_fail(CLI_IO,
+                     "--join: \"%s\" is not a part of a sweep: its header should be whole lines of fewer than %d bytes "
+                     "in all",
+                     file->path, header_size);
+    }
+    file->next = (long long)used;
+    fclose(in);
+}
 
 /* Removes the line "# part I of N, K blocks" from a header. */
 static bool take_part_line(char *header, uint64_t *number, uint64_t *parts, uint64_t *blocks)
@@ -249,39 +361,26 @@ static bool take_part_line(char *header, uint64_t *number, uint64_t *parts, uint
     return true;
 }
 
-/* The line in which two headers differ. */
-static int different_line(const char *a, const char *b, const char **line_a, const char **line_b)
+static void look_at_part(const char *path, const char *first_path, part_file **all, uint64_t *parts, uint64_t *blocks,
+                         char *header)
 {
-    size_t same = 0, line = 0;
-    for (; a[same] == b[same] && a[same] != '\0'; same++)
-        if (a[same] == '\n')
-            line = same + 1;
-    *line_a = a + line;
-    *line_b = b + line;
-    return (int)strcspn(*line_a, "\n");
-}
-
-static void look_at_part(const char *path, const char *first_path, found **all, uint64_t *parts, uint64_t *blocks,
-                         const char **header)
-{
-    journal_reader reader;
+    part_file file = {.path = path};
     uint64_t number, of, its_blocks;
-    char *own = journal_header(path, &reader);
-    if (own == NULL)
-        cli_fail(CLI_IO, "--join: %s", journal_message);
+    char own[header_size];
+    read_header(&file, own);
     if (!take_part_line(own, &number, &of, &its_blocks))
         cli_fail(CLI_FAILED, "--join: \"%s\" is not a part of a sweep", path);
     if (*all == NULL) {
         *parts = of;
         *blocks = its_blocks;
-        *header = own;
+        strcpy(header, own);
         *all = calloc(of, sizeof **all);
         if (*all == NULL)
             cli_fail(CLI_FAILED, "out of memory");
     }
     const char *this, *that;
-    if (strcmp(own, *header) != 0) {
-        const int width = different_line(own, *header, &this, &that);
+    if (strcmp(own, header) != 0) {
+        const int width = different_line(own, header, &this, &that);
         cli_fail(CLI_FAILED, "--join: \"%s\" is of another sweep: it has \"%.*s\" where \"%s\" has \"%.*s\"", path,
                  width, this, first_path, (int)strcspn(that, "\n"), that);
     }
@@ -290,21 +389,21 @@ static void look_at_part(const char *path, const char *first_path, found **all, 
                  "--join: \"%s\" is one of %" PRIu64 " parts with %" PRIu64 " blocks, \"%s\" one of %" PRIu64
                  " with %" PRIu64,
                  path, of, its_blocks, first_path, *parts, *blocks);
-    found *place = &(*all)[number - 1];
-    if (place->there)
-        cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", path, number, place->reader.path);
-    *place = (found){reader, true};
-    if (own != *header)
-        free(own);
+    part_file *place = &(*all)[number - 1];
+    if (place->path != NULL)
+        cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", path, number, place->path);
+    if (!is_complete(open_at(&file), number, of, its_blocks))
+        cli_fail(CLI_FAILED, "--join: \"%s\" is incomplete or damaged; run this part again", path);
+    *place = file;
 }
 
 /* Fails with the numbers of the first few missing parts, if any are missing. */
-static void check_missing(const found *all, uint64_t parts)
+static void check_missing(const part_file *all, uint64_t parts)
 {
     char names[100] = "";
     uint64_t missing = 0;
     for (uint64_t i = 0; i < parts; i++) {
-        if (all[i].there)
+        if (all[i].path != NULL)
             continue;
         if (missing < 5)
             snprintf(names + strlen(names), sizeof names - strlen(names), "%s%" PRIu64, missing > 0 ? ", " : "", i + 1);
@@ -313,41 +412,6 @@ static void check_missing(const found *all, uint64_t parts)
     if (missing > 0)
         cli_fail(CLI_FAILED, "--join: %" PRIu64 " of %" PRIu64 " parts are missing: %s%s", missing, parts, names,
                  missing > 5 ? ", ..." : "");
-}
-
-/* Writes text that ends with "\n". */
-static void write_text(cli_table *table, const char *text, size_t length)
-{
-    if (length > 0)
-        cli_row(table, "%.*s", (int)length - 1, text);
-}
-
-/* Reads all blocks in order, and writes them unless table is NULL. */
-static void read_blocks(found *all, uint64_t parts, uint64_t blocks, cli_table *table)
-{
-    for (uint64_t block = 0; block < blocks; block++) {
-        size_t length;
-        char *rows = journal_read(&all[block % parts].reader, block, &length);
-        if (rows == NULL)
-            cli_fail(CLI_FAILED, "--join: %s", journal_message);
-        if (table != NULL)
-            write_text(table, rows, length);
-        free(rows);
-    }
-}
-
-/* Finds torn blocks before the first row is written. */
-static void check_blocks(const found *all, uint64_t parts, uint64_t blocks)
-{
-    found *copy = malloc(parts * sizeof *copy);
-    if (copy == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    memcpy(copy, all, parts * sizeof *copy);
-    read_blocks(copy, parts, blocks, NULL);
-    for (uint64_t i = 0; i < parts; i++)
-        if (!journal_ends(&copy[i].reader))
-            cli_fail(CLI_FAILED, "--join: %s", journal_message);
-    free(copy);
 }
 
 /* The output must not replace a part, under any name. */
@@ -364,61 +428,73 @@ static void check_no_part_is_replaced(const char *const *paths, size_t count)
 
 static void join(const char *const *paths, size_t count)
 {
-    found *all = NULL;
-    const char *header = NULL;
+    part_file *all = NULL;
+    char header[header_size];
     uint64_t parts = 0, blocks = 0;
     for (size_t i = 0; i < count; i++)
-        look_at_part(paths[i], paths[0], &all, &parts, &blocks, &header);
+        look_at_part(paths[i], paths[0], &all, &parts, &blocks, header);
     check_missing(all, parts);
-    check_blocks(all, parts, blocks);
     cli_table *table = cli_open_output();
     write_text(table, header, strlen(header));
-    read_blocks(all, parts, blocks, table);
+    for (uint64_t block = 0; block < blocks; block++) {
+        part_file *file = &all[block % parts];
+        FILE *in = open_at(file);
+        if (!copy_block(in, block, table))
+            cli_fail(CLI_FAILED, "--join: \"%s\" has changed", file->path);
+        file->next = ftello(in);
+        fclose(in);
+    }
     cli_finish();
-    free((char *)header);
     free(all);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- jobs */
 
-/* Writes the rows directly to the output, without a journal. */
+/* Writes the rows directly to the output, without parts. */
 static void stream(const grid *g)
 {
     char header[header_size];
     print_header(header, sizeof header, g, 0, 0);
     cli_table *table = cli_open_output();
     write_text(table, header, strlen(header));
-    sweep_memory *memory = new_memory();
+    sweep_memory *memory = sweep_memory_new();
     for (uint64_t block = 0; block < g->blocks; block++) {
-        size_t length;
-        char *rows = block_text(g, memory, block, &length);
-        write_text(table, rows, length);
-        free(rows);
+        write_block(table, g, memory, block);
         cli_progress((double)(block + 1) / (double)g->blocks);
     }
     sweep_memory_free(memory);
     cli_finish();
 }
 
-static char *path_of_part(uint64_t number)
+/* The files of the parts, next to the output. Their number does not depend on the number of jobs, so a sweep can be
+   continued with more or fewer jobs. */
+static const char **part_paths(const grid *g, uint64_t parts)
 {
     const size_t size = strlen(cli_output_path()) + 50;
-    char *path = malloc(size);
-    if (path == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    snprintf(path, size, "%s.%" PRIu64 "-of-%" PRIu64, cli_output_path(), number, jobs);
-    return path;
+    const char **paths = calloc(parts, sizeof *paths);
+    char header[header_size];
+    for (uint64_t i = 0; paths != NULL && i < parts; i++) {
+        char *path = malloc(size);
+        if (path == NULL)
+            cli_fail(CLI_FAILED, "out of memory");
+        snprintf(path, size, "%s.%" PRIu64 "-of-%" PRIu64, cli_output_path(), i + 1, parts);
+        print_header(header, sizeof header, g, i + 1, parts);
+        check_part(path, header);
+        paths[i] = path;
+    }
+    return paths;
 }
 
-static void start_jobs(const grid *g, const char *const *paths, const int ends[2])
+static void start_jobs(const grid *g, const char *const *paths, uint64_t parts, const int ends[2])
 {
-    for (uint64_t i = 0; i < jobs; i++) {
+    for (uint64_t job = 0; job < jobs; job++) {
         const pid_t child = fork();
         if (child < 0)
             cli_fail(CLI_FAILED, "cannot start a process: %s", strerror(errno));
         if (child == 0) {
             close(ends[0]); /* writing then fails as soon as the first process has ended */
-            do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = jobs, .done = ends[1]});
+            for (uint64_t i = job; i < parts; i += jobs)
+                do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = parts, .done = ends[1]});
             exit(0);
         }
     }
@@ -440,22 +516,14 @@ static void show_progress(const grid *g, int done)
     }
 }
 
-static void wait_for_jobs(const char *const *paths)
+static void wait_for_jobs(void)
 {
     int status, worst = 0;
     while (wait(&status) > 0)
         if (worst == 0 && status != 0)
             worst = WIFEXITED(status) ? WEXITSTATUS(status) : CLI_FAILED;
-    bool begun = false;
-    for (uint64_t i = 0; i < jobs; i++)
-        begun = begun || access(paths[i], F_OK) == 0;
-    if (worst != 0 && !begun)
-        cli_fail((cli_status)worst, "nothing was computed");
     if (worst != 0)
-        cli_fail((cli_status)worst,
-                 "the sweep is incomplete; its results so far are in %s.*-of-%" PRIu64
-                 ", and the same command continues it",
-                 cli_output_path(), jobs);
+        cli_fail((cli_status)worst, "the sweep is incomplete; the same command continues it");
 }
 
 /* Reports problems with the output before the work starts, not after. */
@@ -473,32 +541,20 @@ static void check_output(void)
                  path);
 }
 
-static void check_parts(const grid *g, const char *const *paths)
-{
-    char header[header_size];
-    for (uint64_t i = 0; i < jobs; i++) {
-        print_header(header, sizeof header, g, i + 1, jobs);
-        if (!journal_fits(paths[i], header))
-            cli_fail(CLI_IO, "%s", journal_message);
-    }
-}
-
 static void run_jobs(const grid *g)
 {
     check_output();
-    const char **paths = calloc(jobs, sizeof *paths);
+    const uint64_t parts = g->blocks < most_jobs ? g->blocks : most_jobs;
+    const char **paths = part_paths(g, parts);
     int ends[2];
     if (paths == NULL || pipe(ends) != 0)
         cli_fail(CLI_FAILED, "out of memory");
-    for (uint64_t i = 0; i < jobs; i++)
-        paths[i] = path_of_part(i + 1);
-    check_parts(g, paths);
-    start_jobs(g, paths, ends);
+    start_jobs(g, paths, parts, ends);
     close(ends[1]);
     show_progress(g, ends[0]);
-    wait_for_jobs(paths);
-    join(paths, jobs);
-    for (uint64_t i = 0; i < jobs; i++) {
+    wait_for_jobs();
+    join(paths, parts);
+    for (uint64_t i = 0; i < parts; i++) {
         unlink(paths[i]);
         free((char *)paths[i]);
     }
