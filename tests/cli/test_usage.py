@@ -260,6 +260,17 @@ def test_progress_is_that_towards_the_last_row(terminal):
     assert 100 / 9 < most <= 100, seen
 
 
+def test_time_left_on_a_terminal(terminal):
+    """As soon as there is an estimate, and none before."""
+    seen, patience = '', time.monotonic() + 30
+    with subprocess.Popen([ENERGY, '--method', 'rk4'], stdout=subprocess.DEVNULL, stderr=terminal[1]) as process:
+        while 'left' not in seen and time.monotonic() < patience:
+            seen += os.read(terminal[0], 4096).decode()
+        process.terminate()
+    assert re.match(r'\rspring-energy: +0\.0 % +\r', seen)
+    assert re.search(r'\rspring-energy: +\d+\.\d %, [1-9]\d* (s|min) left +', seen), seen
+
+
 def test_rows_begin_on_a_line_of_their_own(terminal):
     run(ENERGY, *PROGRESS, stdout=terminal[1], stderr=terminal[1])
     shown = os.read(terminal[0], 4096).decode().replace('\r\n', '\n').split('\n')
