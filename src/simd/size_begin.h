@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Functions between this file and size_end.h are compiled for size, because they are rarely called. */
-#if defined(__clang__)
+#if defined(__clang__) && defined(__GNUC__)
 #pragma clang attribute push(__attribute__((minsize)), apply_to = function)
 #elif defined(__GNUC__)
 #pragma GCC push_options

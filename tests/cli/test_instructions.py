@@ -30,9 +30,9 @@ def test_what_is_missing_is_named(args, wanted, tmp_path):
                     reason='llvm-mca or aarch64-linux-gnu-gcc is not installed')
 def test_cycles():
     """Every vector length, precision and vendor; a spring or link takes some cycles, and not hundreds."""
-    result = run(SCRIPT, '--cycles', '^(advance_springs|band_forces_on_3_axes)$', timeout=250)
+    result = run(SCRIPT, '--cycles', '^(advance_springs|tile_on_3_axes)$', timeout=250)
     assert (result.returncode, result.stderr) == (0, '')
-    assert f"# command: tools/bench/instructions --cycles '^(advance_springs|band_forces_on_3_axes)$'\n" in result.stdout
+    assert f"# command: tools/bench/instructions --cycles '^(advance_springs|tile_on_3_axes)$'\n" in result.stdout
     rows = parse(result.stdout)
     assert list(rows[0]) == 'loop vector precision processor item cycles_per_item at_once'.split()
     for item in 'spring', 'link':
