@@ -274,7 +274,7 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * direction, leapfrog gains energy at every time step. Without links, its energy grows by the fraction
  * (omega dt)^4/4 per step. Fast vibrations of links gain more: for an angular frequency w, a fraction of about
  * omega dt (w dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy: the
- * fraction (omega dt)^6/72 per step without links. Both Euler methods gain (omega dt)^2 (tests/test_scene_forces.c).
+ * fraction (omega dt)^6/72 per step without links. Both Euler methods gain (omega dt)^2 (tests/scene/test_forces.c).
  *
  * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler. With friction,
  * the order is 1 after a particle has reversed its direction or stopped, because a particle that stops sticks for the
@@ -330,7 +330,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *    sheets with shear springs.
  *  - Without damping, use half of the bound for smooth motion, and an eighth for ropes, tension-only links and violent
  *    motion. Large motion then still gains energy, but slowly. Check spring_scene_energy() in long runs.
- * tests/test_scene_limits.c measures a minute of such motion. Use an even smaller step if a link rotates faster than it
+ * tests/scene/test_limits.c measures a minute of such motion. Use an even smaller step if a link rotates faster than it
  * would oscillate. The forces of the callback are not considered.
  *
  * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
@@ -348,7 +348,7 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * @return time step [s]. 0: no stable step is known. INFINITY: the scene has no links and no drag that could make the
  *         method unstable. NaN for NULL, an unknown method and the exact solution
- * @par Source    Gershgorin's circles; tests/test_scene_limits.c measures the distance to the limit
+ * @par Source    Gershgorin's circles; tests/scene/test_limits.c measures the distance to the limit
  */
 SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 
@@ -733,7 +733,7 @@ SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t
  *
  * The formulas for two corners agree within 5 % with square sheets at rest: without shear springs for 12 to 32
  * particles along an edge and a stretch of 1 to 4 %, with shear springs for 8 to 24 particles and a stretch of 1 %
- * (tests/test_scene_hanging.c). For other scenes, use spring-plan --sag to find the stiffness. */
+ * (tests/scene/test_hanging.c). For other scenes, use spring-plan --sag to find the stiffness. */
 typedef struct spring_grid {
     uint32_t count[3]; /**< particles along x, y, z; 0 means 1 */
     uint32_t axes;     /**< axes of the positions, 1, 2 or 3; the grid extends along no other axes; 0 means 3 */

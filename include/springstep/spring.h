@@ -115,7 +115,7 @@ typedef enum spring_status {
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
  * @param[in]     dt  time step [s]; a negative step integrates backwards
- * @par Accuracy  error C dt; tests/test_order.c verifies the order and C
+ * @par Accuracy  error C dt; tests/spring/test_order.c verifies the order and C
  * @par Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section I.7
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -134,7 +134,7 @@ SPRING_API void spring_step_euler(spring_state *s, const spring_params *p, doubl
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
  * @param[in]     dt  time step [s]; a negative step integrates backwards
- * @par Accuracy  error C dt; tests/test_order.c verifies the order and C
+ * @par Accuracy  error C dt; tests/spring/test_order.c verifies the order and C
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -154,7 +154,7 @@ SPRING_API void spring_step_symplectic_euler(spring_state *s, const spring_param
  * @param[in,out] s   state, x and v at the same time
  * @param[in]     p   parameters; not checked, see spring_advance()
  * @param[in]     dt  time step [s]; a negative step integrates backwards
- * @par Accuracy  error C dt^2; tests/test_order.c verifies the order and C
+ * @par Accuracy  error C dt^2; tests/spring/test_order.c verifies the order and C
  * @par Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -172,7 +172,7 @@ SPRING_API void spring_step_leapfrog(spring_state *s, const spring_params *p, do
  * @param[in,out] s   state
  * @param[in]     p   parameters; not checked, see spring_advance()
  * @param[in]     dt  time step [s]; a negative step integrates backwards
- * @par Accuracy  error C dt^4; tests/test_order.c verifies the order and C
+ * @par Accuracy  error C dt^4; tests/spring/test_order.c verifies the order and C
  * @par Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.1
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -190,7 +190,7 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *                where zeta is the damping ratio, Phi is the propagator of (x, v/omega), and all norms are Euclidean.
  *                The bound holds at critical damping too. A load adds a term to x. The error of this term is at most
  *                8 eps (1 + omega t) times the term, or times accel/omega2 for an oscillating spring
- *                (tests/test_exact.c).
+ *                (tests/spring/test_exact.c).
  * @par Source    src/spring/exact_formula.h derives the formula
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
@@ -252,7 +252,7 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *                    4 eps (1 + omega |dt| max(1, zeta)) |Phi| |(y, u/omega)| + DBL_MIN (1 + 1/omega)
  *                    2 eps max(1, |Phi|) (|rest position| + |load/stiffness| + |T' dt| + |T'|/omega)
  *                    9/8 ulp/max(min(1, slow dt), 2^-16), if the spring is placed on its target
- *                where the first line is the bound of spring_step_exact() (tests/test_follow.c). Without stiffness,
+ *                where the first line is the bound of spring_step_exact() (tests/spring/test_follow.c). Without stiffness,
  *                the error is at most the bound of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
  *                For dt > 0 errors do not grow. Steps of any lengths therefore agree with one step over the same time
  *                to within the sum of their bounds.
@@ -300,7 +300,7 @@ SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
  *         or n exceeds 2^53. `duration` for the exact solution. NaN for invalid input and a method that is not offered
  *         for one spring.
  * @par Accuracy  the error of a run is at most 1.001 times the tolerance, and rarely below 0.9 times
- *                (tests/test_accurate_step.c)
+ *                (tests/spring/test_accurate_step.c)
  * @par Source    src/spring/accuracy.c derives the error
  */
 SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, double duration, double tolerance);
@@ -312,7 +312,7 @@ SPRING_API double spring_accurate_step(const spring_params *p, spring_method m, 
  * @param[in] dt        > 0 [s]
  * @return E without rounding error. 0 for the exact solution. INFINITY if E overflows, and for more than 2^53 steps.
  *         NaN for invalid input and a method that is not offered for one spring.
- * @par Accuracy  for E < 0.5, E is 0.999 ... 1.05 times the error of a run (tests/test_accurate_step.c)
+ * @par Accuracy  for E < 0.5, E is 0.999 ... 1.05 times the error of a run (tests/spring/test_accurate_step.c)
  */
 SPRING_API double spring_step_error(const spring_params *p, spring_method m, double duration, double dt);
 
@@ -367,7 +367,7 @@ SPRING_API spring_params spring_params_bounce(double duration, double bounce);
  * @param[in] damping_ratio  > 0; 1 is critical
  * @param[in] tolerance      0 < tolerance < 1, relative to the initial distance; 0.001 looks settled
  * @return parameters; all NaN, which spring_advance() rejects, for invalid input or numbers out of range
- * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/test_follow.c)
+ * @par Accuracy  spring_settling_time() of such a spring is `time` to 1e-9 (tests/spring/test_follow.c)
  */
 SPRING_API spring_params spring_params_settling(double time, double damping_ratio, double tolerance);
 

@@ -23,7 +23,7 @@
  *           at most mu times this component. Static friction gives v = V exactly.
  * Order     2 with leapfrog, also across impacts and with sliding friction; see docs/evidence.md.
  * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
- *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983). tests/test_scene_contacts.c has the closed forms.
+ *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983). tests/scene/test_contacts.c has the closed forms.
  */
 #ifndef SPRINGSTEP_CONTACTS_H
 #define SPRINGSTEP_CONTACTS_H

@@ -6,7 +6,7 @@
  * Order     1. Undamped error after time T: about (w h T/2) times the amplitude.
  * Limit     (1 + h r) over the roots r of the spring must lie in the unit circle: h < g/w for complex roots,
  *           h < 2/(fast root) for real ones. Never stable without damping: a step multiplies the energy E by 1 + w h^2.
- * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/spring/test_iterate.c)
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section I.7
  */
 #ifndef SPRINGSTEP_EULER_H

@@ -10,7 +10,7 @@
  * Order     2. Undamped phase error after time T: w^(3/2) h^2 T/24; energy error at most z^2/4 of E,
  *           z^2 = w h^2, from a start at rest, and z^2/4/(1 - z^2/4) of E from any.
  * Limit     h sqrt(w) < 2 at every damping: the step has trace 2 (1 - w h^2/2)/(1 + q), determinant (1 - q)/(1 + q).
- * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/spring/test_iterate.c)
  * Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  */
 #ifndef SPRINGSTEP_LEAPFROG_H

@@ -19,7 +19,7 @@
  * Order     4. Undamped phase error after time T: w^(5/2) h^4 T/120; relative energy loss (w h^2)^3/72 per step.
  * Limit     |R(h r)| = 1 over the roots r of the spring, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: h omega = 2 sqrt 2
  *           without damping, h = 2.785.../(fast root) for real roots, Newton's method on |R|^2 = 1 in between.
- * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/spring/test_iterate.c)
  * Source    Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.1
  */
 #ifndef SPRINGSTEP_RK4_H

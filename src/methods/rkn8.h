@@ -14,7 +14,7 @@
  *           z = h omega.
  * Limit     z = 3.1402 without drag, larger with drag. (Steps are unstable from there to 3.1417, and again from 3.29.)
  *           E overflows from g h = 1400, in single precision from 176.
- * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step (tests/test_rkn8.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step (tests/spring/test_rkn8.c)
  * Source    Dormand, El-Mikkawy, Prince, High-order embedded Runge-Kutta-Nystrom formulae, IMA J. Numer. Anal. 7
  *           (1987)
  */

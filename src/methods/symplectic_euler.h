@@ -10,7 +10,7 @@
  *           z = h sqrt(w), and the phase error is the same as with leapfrog.
  * Limit     trace 1 + (1 - h^2 w)/(1 + q), determinant 1/(1 + q): stable for h^2 w < 4 + 2 h g, that is
  *           h < (g + sqrt(g^2 + 4 w))/w.
- * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/test_iterate.c)
+ * Accuracy  rounding at most 2 eps (1 + z^2)^2 |(x, v/omega)| a step, z = h max(omega, g) (tests/spring/test_iterate.c)
  * Source    Hairer, Lubich, Wanner, Geometric Numerical Integration (2006), section I.1
  */
 #ifndef SPRINGSTEP_SYMPLECTIC_EULER_H

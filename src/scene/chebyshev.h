@@ -15,7 +15,7 @@
  * Limit     |T_k(y)| <= 1 for |y| <= 1, and all c_k are positive. So |P(z)| <= P(0) = 1 for -2 rho <= z <= 0, and
  *           damping never adds kinetic energy if this interval contains the spectrum of Z. The spectrum lies between
  *           -t G and 0, where G is scene_bounds.link_damping.
- * Accuracy  |P(z) - e^z| < 0.15 in the interval, and P(z) - e^z = O(z^3) for small t: tests/test_scene_damping.c
+ * Accuracy  |P(z) - e^z| < 0.15 in the interval, and P(z) - e^z = O(z^3) for small t: tests/scene/test_damping.c
  * Source    Abramowitz, Stegun, Handbook of Mathematical Functions (1964), 9.6.34 and 9.12; Tal-Ezer, Kosloff, An
  *           accurate and efficient scheme for propagating the time dependent Schroedinger equation, J. Chem. Phys. 81
  *           (1984)

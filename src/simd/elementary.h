@@ -10,7 +10,7 @@
  *           known, and it needs one or two terms more than the best polynomial.
  * Special   NaN and infinite angles give NaN. e^x of an infinite x is 0, or infinite.
  * Accuracy  e^x 1.1 ulp, 1 - e^x 1.6 ulp, sine and cosine 1.5 ulp and, of angles beyond 10^8, half an eps of the angle
- *           (tests/test_elementary.c)
+ *           (tests/spring/test_elementary.c)
  * Source    Dekker, A floating-point technique for extending the available precision, Numer. Math. 18 (1971): products;
  *           Cody, Waite, Software Manual for the Elementary Functions (1980): reductions
  */

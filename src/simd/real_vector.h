@@ -273,7 +273,7 @@ SPRING_NOINLINE void vec_inverse_sqrt_of_any(real *a, int many)
 #endif
 
 /* 1/sqrt(a) for a > 0, and 0 for 0, of several vectors at once. Lanes outside of `where` have any result. The error is
-   1 ulp with a seed, and 1.5 ulp with a quotient, as in float (tests/test_inverse_sqrt.c).
+   1 ulp with a seed, and 1.5 ulp with a quotient, as in float (tests/batch/test_inverse_sqrt.c).
 
    In double, the seed y comes from a square root and a quotient in float, which are several times as fast. The result
    is y (1 + r/2 + 3/8 r^2), r = 1 - a y^2. y has 24 bits, so its square is exact. |r| < 2^-20, so the omitted terms are

@@ -21,7 +21,7 @@
  *           time where the power law does not hold.
  * Rounding  n steps add about sqrt(n) eps. More than 2^53 steps are never accurate enough.
  * Accuracy  E within 0.999 ... 1.05 of the largest error of a run in multiple precision while it is below 0.5
- *           (tests/test_accurate_step.c)
+ *           (tests/spring/test_accurate_step.c)
  * Source    Golub, Van Loan, Matrix Computations (2013), section 9.3 (the exponential by scaling and squaring);
  *           Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.3 (how errors add up)
  */

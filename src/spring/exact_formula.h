@@ -16,7 +16,7 @@
  *           series of t^2 times a divided difference of the exponential at 0 and the roots. Powers of two of E are
  *           applied in two halves, so that a large state times a tiny factor does not overflow or underflow early.
  * Special   w = 0 is a free particle. A t that is not finite gives NaN.
- * Accuracy  see spring.h; tests/test_exact.c prints the largest error found. Without the rounding errors of w and b^2
+ * Accuracy  see spring.h; tests/spring/test_exact.c prints the largest error found. Without the rounding errors of w and b^2
  *           it would be hundreds of times the bound near critical damping.
  * Source    textbook; divided differences: Higham, Functions of Matrices (2008), section B.16
  */

@@ -8,7 +8,7 @@
 #include <springstep/spring.h>
 
 /* Adding 0 turns -0 into 0, here and in the coefficients of methods. A zero then has one sign, so that a step with a
-   damping or load of zero gives the same bits as a step without it (tests/test_shapes.c). */
+   damping or load of zero gives the same bits as a step without it (tests/spring/test_shapes.c). */
 typedef struct spring_rates {
     real omega2; /* [1/s^2] stiffness/mass */
     real gamma;  /* [1/s]   damping/mass   */

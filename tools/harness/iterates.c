@@ -292,7 +292,7 @@ static void rkn8_scene(const iterate_scene *s, double t, double h, double *x, do
 
 /* ------------------------------------------------------------------------------------------------------- SRKN6 */
 
-/* The coefficients of the paper, to full precision by tests/srkn6_coefficients.py. The middle ones follow from sums. */
+/* The coefficients of the paper, to full precision by tests/spring/srkn6_coefficients.py. The middle ones follow from sums. */
 enum { SRKN_STAGES = 11, SRKN_GIVEN = 5 };
 static const char *const srkn_kick[SRKN_GIVEN] = {
     "0.04146499851826284329877813391470493672394", "0.1981286719180665411367264731814969606125",

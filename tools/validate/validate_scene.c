@@ -17,7 +17,7 @@
  * plus rounding. They are independent of any reference. The second holds only if the error falls by R, and the third
  * limits the deviation from R: a method of order p - 1 would exceed it by factors of 3.5 (leapfrog) and 2.2 (RK4).
  * Steps are so small that the second is at most 1.5/R of the first, but not so small that rounding matters
- * (tests/test_validate.c).
+ * (tests/cli/test_validate.c).
  */
 #include <math.h>
 #include <stdio.h>

@@ -248,7 +248,7 @@ static void lands(void)
 }
 
 #ifdef SPRING_FLOAT
-/* Where steps are so short that rounding error may stop a spring before it lands. In double, tests/test_follow.c tests
+/* Where steps are so short that rounding error may stop a spring before it lands. In double, tests/spring/test_follow.c tests
    this. */
 static void stops_near_the_target(void)
 {
@@ -295,7 +295,7 @@ static double bound_of_step(const spring_params *p, double rest, spring_state be
 }
 
 /* Steps of any lengths agree with one step of spring_follow() over the same time, to within the sum of the bounds of the
-   steps: see tests/test_follow.c. */
+   steps: see tests/spring/test_follow.c. */
 static void any_partition(void)
 {
     static place p, before;

@@ -759,7 +759,7 @@ static void stable_step(void)
 /* ------------------------------------------------------------------------------------------ how near to double it
    is */
 
-/* Each step of a stepper rounds by 2 eps (1 + z^2)^2 of (x, v/omega) at most, as in double (tests/test_iterate.c). No
+/* Each step of a stepper rounds by 2 eps (1 + z^2)^2 of (x, v/omega) at most, as in double (tests/spring/test_iterate.c). No
    step of exp(hM) makes that longer, and what a stepper differs by is at most (hM)^2/2, 2 z^2 of the length. */
 static void near_double(void)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Kernels compiled without vectors, for compilers without vector extensions, are bit-identical to vector kernels.
-   test_scene_*.c test them for scenes as well; see kernels_of(). */
+   The tests of scenes test them for scenes as well; see kernels_of(). */
 #include "kernels/batch_kernels.h"
 #include "test_methods.h"
 #include "test_scene.h"

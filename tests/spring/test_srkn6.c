@@ -344,7 +344,7 @@ static void reversible(void)
         }
 }
 
-/* The bound of scenes, which tests/test_scene_limits.c compares with what is stable. */
+/* The bound of scenes, which tests/scene/test_limits.c compares with what is stable. */
 static void bound_of_scenes(void)
 {
     static model m;

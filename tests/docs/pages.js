@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Measures the open page. Its value is a list of problems: lines of "kind, picture, what", separated by tabs. The last
-// line lists the measurements. Called by tests/pages.
+// line lists the measurements. Called by tests/docs/pages.
 "use strict";
 
 const LEAST_CONTRAST = 4.5; // what WCAG 2.2 asks of text, 1.4.3

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Contacts compared with exact solutions: bounces, friction, time of impact, order, wedges, energy. The rules of the
-   functions are tested in tests/test_scene_colliders.c. */
+   functions are tested in tests/scene/test_colliders.c. */
 #include "test_scene.h"
 
 #define PI 3.14159265358979323846
