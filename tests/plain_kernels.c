@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The kernels as compiled by compilers without the vector extensions of GNU C: `real` is one number
- * (simd/real_number.h). System and library headers are included first, since they depend on the actual compiler.
+ * (simd/real_number_tmpl.h). System and library headers are included first, since they depend on the actual compiler.
  */
 #include <float.h>
 #include <math.h>
@@ -27,4 +27,8 @@
 #define SPRING_COMMON_TABLE plain_common
 #define SPRING_EXACT_KERNEL plain_exact /* one, in double, for both precisions */
 extern exact_kernel plain_exact;
-#include "kernels/kernels.h"
+#include "kernels/batch_tmpl.h"
+#include "kernels/scene_tmpl.h"
+#ifndef SPRING_FLOAT
+#include "kernels/exact_tmpl.h"
+#endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The functions of src/simd/elementary.h that the exact solution needs, with the same operations in the same order. Only
+// The functions of src/simd/elementary_tmpl.h that the exact solution needs, with the same operations in the same order. Only
 // + - * / and Math.sqrt are used, which ECMAScript defines to the last bit. Math.exp and Math.sin differ between engines.
 
 const bits = new Float64Array(1);

@@ -32,6 +32,8 @@
  *    its user data are copied unchanged.
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
+ *  - No function needs more than 16 KiB of the stack, compiled by gcc 12 or clang 14 with optimisation
+ *    (tests/scene/test_stack.c). A callback runs on top of at most as much.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
  *    callback are.
  *  - Particles collide with colliders: planes, spheres, capsules and boxes. They do not collide with each other. Links
@@ -535,15 +537,15 @@ SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, s
  * @param[in]  stretch  a link is cut if length > stretch rest; >= 0. INFINITY cuts no link. Ignored unless limit is
  *                      NULL
  * @param[in]  limit    [links] a value of `stretch` for each link; NULL: `stretch` for all links
- * @param[out] torn     [room] the indices of the links that this call cuts, at most the first `room` of them; may be
- *                      NULL if room is 0
- * @param[in]  room     number of elements of torn
- * @param[out] count    number of links that this call cuts, which may be larger than room; may be NULL
+ * @param[out] torn     [capacity] the indices of the links that this call cuts, at most the first `capacity` of them;
+ *                      may be NULL if capacity is 0
+ * @param[in]  capacity number of elements of torn
+ * @param[out] count    number of links that this call cuts, which may be larger than capacity; may be NULL
  * @return SPRING_OK; SPRING_EINVAL: NULL, or a stretch or limit that is negative or NaN; SPRING_EDISABLED: the scene is
  *         not editable. torn and count are written only with SPRING_OK
  */
 SPRING_API spring_status spring_scene_tear(spring_scene *s, double stretch, const double *limit, uint32_t *torn,
-                                           size_t room, size_t *count);
+                                           size_t capacity, size_t *count);
 
 /**
  * Transforms all particles, including pinned particles, by an affine map: x1 = A x + b, v1 = A v.
@@ -680,7 +682,7 @@ SPRING_API spring_status spring_scenef_drive(spring_scenef *s, size_t particle, 
 SPRING_API double spring_scenef_tension(const spring_scenef *s, size_t index);
 SPRING_API spring_status spring_scenef_set_links(spring_scenef *s, size_t first, size_t count, const spring_link *link);
 SPRING_API spring_status spring_scenef_tear(spring_scenef *s, double stretch, const double *limit, uint32_t *torn,
-                                            size_t room, size_t *count);
+                                            size_t capacity, size_t *count);
 SPRING_API spring_status spring_scenef_transform(spring_scenef *s, const double matrix[12]);
 SPRING_API spring_status spring_scenef_set_colliders(spring_scenef *s, const spring_collider *c, uint32_t count);
 SPRING_API spring_status spring_scenef_check_colliders(const spring_scenef *s, const spring_collider *c, uint32_t count,

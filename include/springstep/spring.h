@@ -191,7 +191,7 @@ SPRING_API void spring_step_rk4(spring_state *s, const spring_params *p, double 
  *                The bound holds at critical damping too. A load adds a term to x. The error of this term is at most
  *                8 eps (1 + omega t) times the term, or times accel/omega2 for an oscillating spring
  *                (tests/spring/test_exact.c).
- * @par Source    src/spring/exact_formula.h derives the formula
+ * @par Source    src/spring/exact_formula_tmpl.h derives the formula
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
 SPRING_API void spring_step_exact(spring_state *s, const spring_params *p, double dt);
@@ -256,7 +256,7 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  *                the error is at most the bound of spring_step_exact() for (x, u), plus 2 eps (|x| + |T' dt| + |T'|).
  *                For dt > 0 errors do not grow. Steps of any lengths therefore agree with one step over the same time
  *                to within the sum of their bounds.
- * @par Source    src/spring/follow_formula.h derives the condition
+ * @par Source    src/spring/follow_formula_tmpl.h derives the condition
  * @par Threads   re-entrant; allocates nothing and keeps no state
  */
 SPRING_API spring_status spring_follow(spring_state *s, const spring_params *p, double target, double target_velocity,
@@ -278,7 +278,7 @@ SPRING_API double spring_energy(const spring_state *s, const spring_params *p);
  * @return limit [s], accurate to 8 ulp. 0: never stable (Euler without damping). INFINITY: always stable (the exact
  *         solution; a spring without stiffness and damping; leapfrog without stiffness). NaN for invalid parameters, an
  *         unknown method and a method that is not offered for one spring.
- * @par Source    the header of each method, such as src/methods/rk4.h, derives its limit
+ * @par Source    the header of each method, such as src/methods/rk4_tmpl.h, derives its limit
  */
 SPRING_API double spring_stable_step(const spring_params *p, spring_method m);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The force law of a link, for single numbers. bands.h and unbanded.h have it for SIMD vectors. */
+/* The force law of a link, for single numbers. bands_tmpl.h and unbanded_tmpl.h have it for SIMD vectors. */
 #ifndef SPRINGSTEP_LINK_LAW_H
 #define SPRINGSTEP_LINK_LAW_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The kernels of scenes (loops over links and over particles): their arguments, their formulas and the type of their
-   table. kernels.h defines the tables: the field kick_drift is move_kick_drift() of particles.h, and so on; band_forces
-   is compute_band_forces() of bands.h. */
+   table. scene_tmpl.h defines the tables: the field kick_drift is move_kick_drift() of particles_tmpl.h, and so on;
+   band_forces is compute_band_forces() of bands_tmpl.h. */
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
@@ -69,7 +69,7 @@ typedef struct scene_links {
 typedef struct scene_forces {
     scalar *force;   /* [N] on all particles */
     scalar *rings;   /* [N] for each band, the forces on lower ends in its last slots; the first tile is repeated */
-    scalar *records; /* see unbanded.h; NULL: the scene has none */
+    scalar *records; /* see unbanded_tmpl.h; NULL: the scene has none */
 } scene_forces;
 
 /* Compute forces from positions, and from velocities if `terms` has damping. A band_kernel computes the forces of all
@@ -97,6 +97,13 @@ typedef struct scene_particles {
     size_t held_stride;         /* from particle to particle: 1, or 0: one vector of -0 for all particles */
 } scene_particles;
 
+/* Further arguments of the stages of Euler and RK4. */
+typedef struct scene_stage {
+    const scalar *v;       /* [m/s] velocities of the stage that the force belongs to */
+    scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
+    scalar weight;         /* of this stage */
+} scene_stage;
+
 /* Further arguments of the stages of a Runge-Kutta-Nystrom method. */
 typedef struct scene_nystrom {
     size_t number;                       /* 1 to nystrom_stages */
@@ -114,6 +121,12 @@ typedef struct scene_chebyshev {
     const scalar *before, *second_before; /* [m/s] the two previous terms */
     scalar coefficient, before_weight, second_weight;
 } scene_chebyshev;
+
+/* Further arguments of a drift with drag, by mass. */
+typedef struct scene_damped_drift {
+    const scalar *span; /* [s] (1 - e^(-drag drift))/drag */
+    const scalar *loss; /* e^(-drag drift) - 1 */
+} scene_damped_drift;
 
 /* A collider during a step, or during one of its drifts. Radius and offset include the radius of particles. */
 typedef struct scene_collider {
@@ -144,22 +157,22 @@ typedef struct scene_contacts {
     uint32_t *touched;      /* written: the same for this step; may be `before` */
 } scene_contacts;
 
-/* A motion of all particles, from x0 and v0 to x and v. The table below shows which fields a kernel uses. */
+/* A motion of all particles, from x0 and v0 to x and v. */
 typedef struct scene_motion {
     scalar kick, drift;    /* [s] factors of the acceleration and of the velocity */
     const scalar *force;   /* [N] */
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
-    bool ends_step;        /* begin with the implicit kick that ends the previous step */
     scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
-    scalar *predicted;     /* written: velocities at the end of the step; may be `force`. NULL: none */
-    const scalar *stage_v; /* [m/s] velocities of the stage that the force belongs to; v0 at the first */
-    scalar *sum_x, *sum_v; /* weighted sums of the velocities and accelerations of the stages */
-    scalar weight;         /* of this stage */
-    const scene_nystrom *nystrom;
-    const scene_chebyshev *chebyshev;
     const scene_contacts *contacts; /* NULL: no colliders */
-    const scalar *span, *loss;      /* by mass, of a drift with drag: (1 - e^(-drag drift))/drag, e^(-drag drift) - 1 */
+    /* kick_drift */
+    bool ends_step;    /* begin with the implicit kick that ends the previous step */
+    scalar *predicted; /* written: velocities at the end of the step; may be `force`. NULL: none */
+    /* Further arguments of kernels that are named so in the table below. */
+    const scene_stage *stage;
+    const scene_nystrom *nystrom;
+    const scene_chebyshev *damping_term;
+    const scene_damped_drift *damped_drift;
 } scene_motion;
 
 /* Advances particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN,
@@ -176,11 +189,11 @@ typedef struct common_kernels {
     particle_kernel *kick_drift;
     particle_kernel *implicit_kick;       /* v = v0 + kick a(v) */
     particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */
-    particle_kernel *stage;               /* v = v0 + kick a(stage_v);  x = x0 + drift stage_v */
-    particle_kernel *first_stage;         /* the same, and the sums become stage_v and a(stage_v) */
+    particle_kernel *stage;               /* v = v0 + kick a(stage.v);  x = x0 + drift stage.v */
+    particle_kernel *first_stage;         /* the same, and the sums become stage.v and a(stage.v) */
     particle_kernel *next_stage;          /* the same, and weight times these is added to the sums */
-    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage_v));
-                                             x = x0 + drift (sum_x + weight stage_v) */
+    particle_kernel *last_stage;          /* v = v0 + kick (sum_v + weight a(stage.v));
+                                             x = x0 + drift (sum_x + weight stage.v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
     particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before

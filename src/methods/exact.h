@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact (closed-form) solution as a method. Its formula is in spring/exact_formula.h. */
+/* The exact (closed-form) solution as a method. Its formula is in spring/exact_formula_tmpl.h. */
 #ifndef SPRINGSTEP_EXACT_H
 #define SPRINGSTEP_EXACT_H
 
-#include "method.h"
+#include "method_tmpl.h"
 
 #ifndef SPRING_VECTOR
 static double exact_stable_step(const spring_roots *r)

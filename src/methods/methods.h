@@ -3,13 +3,13 @@
 #ifndef SPRINGSTEP_METHODS_H
 #define SPRINGSTEP_METHODS_H
 
-#include "euler.h"
+#include "euler_tmpl.h"
 #include "exact.h"
-#include "leapfrog.h"
-#include "rk4.h"
+#include "leapfrog_tmpl.h"
+#include "rk4_tmpl.h"
 #include "rkn8.h"
 #include "srkn6.h"
-#include "symplectic_euler.h"
+#include "symplectic_euler_tmpl.h"
 
 /* ROW(value, its entry in the table) */
 #define METHODS(ROW)                                      \

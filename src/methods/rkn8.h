@@ -21,7 +21,7 @@
 #ifndef SPRINGSTEP_RKN8_H
 #define SPRINGSTEP_RKN8_H
 
-#include "method.h"
+#include "method_tmpl.h"
 
 #ifndef SPRING_VECTOR
 static const method_row rkn8_method = {

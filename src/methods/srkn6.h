@@ -13,15 +13,16 @@
  *           kick, this would not hold.) With drag as the only force the step is exact.
  * Order     6. Undamped phase error per step: 8.04e-8 z^7, z = h omega; the energy error of an oscillator
  *           is at most 2.84e-7 z^6 (1 + 0.3 z^2) at any time.
- * Limit     z = 9.0734 without drag. With drag, h^2 omega^2 < 82.3 and g h < 20 are sufficient (tests/spring/test_srkn6.c).
- *           Some a_i are negative, so velocities grow by e^(0.25 g h) within a step under heavy drag.
+ * Limit     z = 9.0734 without drag. With drag, h^2 omega^2 < 82.3 and g h < 20 are sufficient
+ *           (tests/spring/test_srkn6.c). Some a_i are negative, so velocities grow by e^(0.25 g h) within a step under
+ *           heavy drag.
  * Source    Blanes, Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, J. Comput.
  *           Appl. Math. 142 (2002)
  */
 #ifndef SPRINGSTEP_SRKN6_H
 #define SPRINGSTEP_SRKN6_H
 
-#include "method.h"
+#include "method_tmpl.h"
 
 #ifndef SPRING_VECTOR
 static const method_row srkn6_method = {

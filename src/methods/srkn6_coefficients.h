@@ -4,9 +4,9 @@
  *
  * Source    The paper gives 15 digits of b1 ... b5 and a1 ... a5; b6 = 1/2 - (b1 + ... + b5),
  *           a6 = 1 - 2 (a1 + ... + a5).
- *           tests/spring/srkn6_coefficients.py solves the order conditions to full precision. They have rank 6 in these ten
- *           numbers, so Newton's method takes the shortest step to a solution. It changes no coefficient by more than
- *           6.2e-16.
+ *           tests/spring/srkn6_coefficients.py solves the order conditions to full precision. They have rank 6 in these
+ *           ten numbers, so Newton's method takes the shortest step to a solution. It changes no coefficient by more
+ *           than 6.2e-16.
  */
 #ifndef SPRINGSTEP_SRKN6_COEFFICIENTS_H
 #define SPRINGSTEP_SRKN6_COEFFICIENTS_H

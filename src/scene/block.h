@@ -24,7 +24,7 @@ typedef enum scene_array {
     ARRAY_FREE_MASS,      /* [1/kg] inverse mass of a particle when it is not pinned; 0: its mass is not valid */
     ARRAY_MASS_FACTORS,   /* numbers that RKN8 and SRKN6 store for each mass, with drag */
     ARRAY_OCCUPIED,       /* bands: by slot, -1 where a link acts, else 0 */
-    ARRAY_RINGS,          /* [N] bands: ring buffers of forces; see kernels/bands.h */
+    ARRAY_RINGS,          /* [N] bands: ring buffers of forces; see kernels/bands_tmpl.h */
     ARRAY_BAND_STIFFNESS, /* [N/m] by slot, or one vector for all slots of a band */
     ARRAY_BAND_REST,      /* [m] */
     ARRAY_BAND_DAMPING,   /* [N s/m] */
@@ -34,7 +34,7 @@ typedef enum scene_array {
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
-    ARRAY_RECORDS, /* see kernels/unbanded.h */
+    ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
     ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
     ARRAY_LINK_DIRECTIONS,
     ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
@@ -128,7 +128,8 @@ SPRING_INTERNAL spring_status spring_scene_advance_with(const scene_kernels *ker
 
 /* spring_scene_tear() with a given instruction set, for tests. */
 SPRING_INTERNAL spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch,
-                                                     const double *limit, uint32_t *torn, size_t room, size_t *count);
+                                                     const double *limit, uint32_t *torn, size_t capacity,
+                                                     size_t *count);
 
 /* ------------------------------------------------------------------------------------------------- access to arrays */
 

@@ -130,7 +130,7 @@ static inline bool damp_links(scene_step *s, const scalar *x, scalar *v)
     const double last = p->last + p->more;
     /* b_s = c_s v is not stored: the terms that follow from it use v. */
     scene_chebyshev term = {.before = v, .second_before = v};
-    scene_motion m = {.v0 = v, .force = damping_storage(s, 0), .chebyshev = &term};
+    scene_motion m = {.v0 = v, .force = damping_storage(s, 0), .damping_term = &term};
     freeze_directions(s, x);
     bool finite = true;
     for (unsigned k = p->terms; k > 0 && finite; k--) {

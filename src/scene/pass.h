@@ -90,7 +90,6 @@ static inline void prepare_step(scene_step *s, uint32_t from, uint32_t to)
         .v0 = v_at(s, from),
         .x = x_at(s, to),
         .v = v_at(s, to),
-        .stage_v = v_at(s, from),
         .max_speed = s->scene->max_speed,
         .contacts = s->contacts.count > 0 ? &s->contacts : NULL,
     };

@@ -8,8 +8,8 @@
 #include "../methods/srkn6_coefficients.h"
 #include "../spring/propagator.h"
 
-/* Advances all particles, then evaluates the forces. Two passes: for a sheet that exceeds the cache, a fused pass is 4 %
-   slower. */
+/* Advances all particles, then evaluates the forces. Two passes: for a sheet that exceeds the cache, a fused pass is 4
+   % slower. */
 static bool rk4_stage(scene_step *s, particle_kernel *kernel, const scene_motion *m, double fraction)
 {
     if (!move(s, kernel, m))
@@ -23,24 +23,23 @@ static scene_outcome scene_rk4(scene_step *s)
 {
     find_start_force(s);
     scene_motion end = s->whole, stage = s->whole;
+    scene_stage sums = {.v = end.v0, .sum_x = stage_storage(s, 2), .sum_v = stage_storage(s, 3), .weight = 2};
+    end.stage = stage.stage = &sums;
     stage.x = stage_storage(s, 0);
     stage.v = stage_storage(s, 1);
-    stage.sum_x = end.sum_x = stage_storage(s, 2);
-    stage.sum_v = end.sum_v = stage_storage(s, 3);
     stage.kick = stage.drift = s->h / 2;
-    stage.weight = 2;
     if (!rk4_stage(s, s->kernels->common->first_stage, &stage, 0.5))
         return (scene_outcome){.finite = false};
-    stage.stage_v = end.stage_v = stage.v;
+    sums.v = stage.v;
     stage.force = end.force = s->forces.force;
-    for (int k = 1; k < 3; k++) {
-        const double fraction = k == 1 ? 0.5 : 1;
+    for (int i = 1; i < 3; i++) {
+        const double fraction = i == 1 ? 0.5 : 1;
         stage.kick = stage.drift = (scalar)fraction * s->h;
         if (!rk4_stage(s, s->kernels->common->next_stage, &stage, fraction))
             return (scene_outcome){.finite = false};
     }
     end.kick = end.drift = s->h / 6;
-    end.weight = 1;
+    sums.weight = 1;
     return (scene_outcome){.finite = move(s, s->kernels->common->last_stage, &end)};
 }
 
@@ -99,7 +98,7 @@ static scene_outcome scene_rkn8(scene_step *s)
 }
 
 /* Indices of the factors that SRKN6 stores for each mass, with drag, for each of its different drifts; see
-   scene_motion. */
+   scene_damped_drift. */
 enum { SRKN6_SPAN, SRKN6_LOSS = srkn6_different, SRKN6_FACTORS = 2 * srkn6_different };
 
 static void compute_srkn6_factors(const scene_step *s)
@@ -130,6 +129,8 @@ static scene_outcome scene_srkn6(scene_step *s)
     s->particles.drag = 0;
     particle_kernel *const kick_drift = dragged ? s->kernels->common->kick_damped_drift : s->kernels->kick_drift;
     scene_motion m = s->whole, last_kick = s->whole;
+    scene_damped_drift drift;
+    m.damped_drift = &drift;
     last_kick.v0 = last_kick.v;
     last_kick.force = s->forces.force;
     last_kick.kick = (scalar)srkn6_b[0] * s->h;
@@ -138,8 +139,8 @@ static scene_outcome scene_srkn6(scene_step *s)
         m.kick = (scalar)srkn6_b[srkn6_index(i, srkn6_stages + 1)] * s->h;
         m.drift = (scalar)srkn6_a[k] * s->h;
         m.ends_step = i == 0 && !s->first;
-        m.span = dragged ? mass_factor(s, SRKN6_SPAN + k) : NULL;
-        m.loss = dragged ? mass_factor(s, SRKN6_LOSS + k) : NULL;
+        if (dragged)
+            drift = (scene_damped_drift){mass_factor(s, SRKN6_SPAN + k), mass_factor(s, SRKN6_LOSS + k)};
         if (!move_and_evaluate(s, kick_drift, &m, m.v, srkn6_c[i]))
             return (scene_outcome){.finite = false};
         m.x0 = m.x;

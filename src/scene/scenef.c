@@ -2,7 +2,7 @@
 /* Scenes in single precision; see kernels/single_precision.h. */
 #define SPRING_FLOAT
 #include "check.c"
-#include "contact.c"
+#include "colliders.c"
 #include "edit.c"
 #include "layout.c"
 #include "soften.c"

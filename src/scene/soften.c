@@ -63,7 +63,7 @@ spring_status spring_links_soften(const spring_scene_def *def, double dt, double
             add_end(def, &sums, first, link[j].a, link[j].b, link[j].stiffness);
             add_end(def, &sums, first, link[j].b, link[j].a, link[j].stiffness);
         }
-        double factor[soften_block];
+        double *const factor = sums.stiffness; /* in the same place */
         for (size_t i = 0; i < soften_block && first + i < def->particles; i++)
             factor[i] = factor_of(def, first + i, sums.stiffness[i], sums.links[i], most_rate2);
         for (size_t j = 0; j < def->links; j++) {

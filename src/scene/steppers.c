@@ -13,7 +13,9 @@
 static scene_outcome scene_euler(scene_step *s)
 {
     find_start_force(s);
-    const scene_motion m = s->whole;
+    const scene_stage start = {.v = s->whole.v0};
+    scene_motion m = s->whole;
+    m.stage = &start;
     return (scene_outcome){.finite = move(s, s->kernels->common->stage, &m)};
 }
 
@@ -97,14 +99,15 @@ static scene_outcome scene_leapfrog(scene_step *s)
     if (s->damping.terms > 0)
         return scene_leapfrog_with_heavy_damping(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    const bool previous_kick_is_left = keeps && !s->first, leaves_last_kick = keeps && !s->last;
     find_start_force(s);
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 2;
-    kick_drift.ends_step = keeps && !s->first;
+    kick_drift.ends_step = previous_kick_is_left;
     kick_drift.predicted = predicts ? predicted_velocities(s) : NULL;
     last_kick.v0 = kick_drift.v;
     last_kick.force = s->forces.force;
-    particle_kernel *const implicit_kick = keeps && !s->last ? NULL : s->kernels->implicit_kick;
+    particle_kernel *const implicit_kick = leaves_last_kick ? NULL : s->kernels->implicit_kick;
     const scalar *const v = predicts ? kick_drift.predicted : kick_drift.v;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1, implicit_kick, &last_kick),

@@ -2,8 +2,8 @@
 /*
  * Cutting the links of a scene that are longer than a limit.
  *
- * Method    Usually no link tears. So kernels/stretch.h first tests whether any link of a band is beyond the least of
- *           all limits. Only if a link may be, all links are tested in double, in the order of their indices.
+ * Method    Usually no link tears. So kernels/stretch_tmpl.h first tests whether any link of a band is beyond the least
+ *           of all limits. Only if a link may be, all links are tested in double, in the order of their indices.
  */
 #include "pass.h"
 #include "stored_links.h"
@@ -78,9 +78,9 @@ static bool any_longer(const scene_kernels *kernels, const spring_scene *s, doub
 }
 
 spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch, const double *limit,
-                                     uint32_t *torn, size_t room, size_t *count)
+                                     uint32_t *torn, size_t capacity, size_t *count)
 {
-    if (s == NULL || (torn == NULL && room > 0))
+    if (s == NULL || (torn == NULL && capacity > 0))
         return SPRING_EINVAL;
     if ((s->layout.flags & SPRING_SCENE_EDITABLE) == 0)
         return SPRING_EDISABLED;
@@ -96,7 +96,7 @@ spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene 
             continue;
         link.stiffness = link.damping = 0;
         scene_replace_link(s, i, &link);
-        if (found < room)
+        if (found < capacity)
             torn[found] = (uint32_t)i;
         found++;
     }
@@ -105,9 +105,9 @@ spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene 
     return SPRING_OK;
 }
 
-spring_status spring_scene_tear(spring_scene *s, double stretch, const double *limit, uint32_t *torn, size_t room,
+spring_status spring_scene_tear(spring_scene *s, double stretch, const double *limit, uint32_t *torn, size_t capacity,
                                 size_t *count)
 {
     return spring_scene_tear_with(SPRING_BEST_KERNELS(&spring_scene_v128, &spring_scene_v256, &spring_scene_v512), s,
-                                  stretch, limit, torn, room, count);
+                                  stretch, limit, torn, capacity, count);
 }

@@ -24,6 +24,6 @@ static inline bool scalar_finite(scalar a)
     return a - a == 0;
 }
 
-enum { quad_size = 4 }; /* numbers of a quad, see quad.h */
+enum { quad_size = 4 }; /* numbers of a quad, see quad_tmpl.h */
 
 #endif

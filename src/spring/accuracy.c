@@ -217,8 +217,8 @@ static void error_peak_add(error_peak *p, double t, double value)
     p->value[0] = value;
 }
 
-/* resolved_periods: sampled at least 51 times each; a parabola through three samples has an error of 1e-5. first_periods:
-   of longer runs; the largest error of a decay from the start is at a phase, not in its envelope. */
+/* resolved_periods: sampled at least 51 times each; a parabola through three samples has an error of 1e-5.
+   first_periods: of longer runs; the largest error of a decay from the start is at a phase, not in its envelope. */
 static const double most_samples = 1024, resolved_periods = 20, first_periods = 10;
 
 enum { MOST_DOUBLINGS = 53 }; /* of the number of steps: 2^53 take a year */

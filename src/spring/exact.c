@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The exact solution of one spring: exact_formula.h for one number instead of a SIMD vector. */
-#include "exact_formula.h"
+/* The exact solution of one spring: exact_formula_tmpl.h for one number instead of a SIMD vector. */
+#include "exact_formula_tmpl.h"
 
 spring_propagator spring_propagator_of(const spring_quotients *r, double t, bool loaded)
 {

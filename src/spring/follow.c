@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* One spring that follows a target: follow_formula.h for one number instead of a SIMD vector. */
-#include "follow_formula.h"
-#include "rates.h"
+/* One spring that follows a target: follow_formula_tmpl.h for one number instead of a SIMD vector. */
+#include "follow_formula_tmpl.h"
+#include "rates_tmpl.h"
 
 spring_status spring_follow(spring_state *s, const spring_params *p, double target, double target_velocity, double dt)
 {

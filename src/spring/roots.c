@@ -10,7 +10,7 @@
  *           Ogita, Rump, Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005) (error-free products)
  */
 #include "roots.h"
-#include "split.h"
+#include "split_tmpl.h"
 
 /* n - q d, where q is n/d rounded; exact */
 static double remainder_of(double n, double d, double q)

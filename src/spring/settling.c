@@ -14,7 +14,7 @@
  */
 #include <stddef.h>
 
-#include "exact_formula.h"
+#include "exact_formula_tmpl.h"
 #include "propagator.h"
 
 #include "../simd/size_begin.h"

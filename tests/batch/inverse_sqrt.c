@@ -13,7 +13,7 @@
 
 #include "simd/target_begin.h"
 
-#include "simd/real.h"
+#include "simd/real_tmpl.h"
 
 void INVERSE_SQRT(scalar *a, const int8_t *where, size_t count); /* in place; count: a multiple of 64 */
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The functions of src/simd/elementary.h, and powers that do not fit into a double, compared with multiple precision.
+/* The functions of src/simd/elementary_tmpl.h, and powers that do not fit into a double, compared with multiple precision.
    Only for single numbers; tests of batches check that vectors are bit-identical. */
 #include <math.h>
 #include <stdio.h>
 
 #include <mpfr.h>
 
-#include "spring/exact_formula.h"
+#include "spring/exact_formula_tmpl.h"
 
 #include "check.h"
 

@@ -26,7 +26,7 @@ static void leapfrog_steps(compensated_state *s, double w, double h, uint64_t n)
         }
 }
 
-/* src/methods/rk4.h without damping: E = 1/2 - W/24, F = -W/6. */
+/* src/methods/rk4_tmpl.h without damping: E = 1/2 - W/24, F = -W/6. */
 static void rk4_steps(compensated_state *s, double w, double h, uint64_t n)
 {
     const double hw = h * w, W = h * hw, same = -W * (12 - W) / 24, cross = -W / 6;

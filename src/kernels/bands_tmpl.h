@@ -1,0 +1,391 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The forces of bands: links with a constant index offset between their ends, as in a rope, a sheet or a block.
+ *
+ * Method    For each tile of slots, the forces of every band on the lower ends are computed and stored. The force on a
+ *           particle is the sum of the forces of the links whose lower end it is, minus the forces of the links whose
+ *           upper end it is. The latter are `offset` slots back, so a band has a ring buffer of its last offset + tile
+ *           forces. Each link is computed once, and no force is scattered. Both ends get the same bits, so momentum is
+ *           conserved to rounding error. The order of additions does not depend on the vector width. A tile reads no
+ *           position and no velocity of earlier tiles.
+ * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2), or 0 if both ends are at one point.
+ *           On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force unless it is longer
+ *           than its rest length and pulls.
+ * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
+ */
+#ifndef SPRINGSTEP_BANDS_TMPL_H
+#define SPRINGSTEP_BANDS_TMPL_H
+
+#include "../simd/quad_tmpl.h"
+#include "scene_kernels.h"
+
+/* Vectors of links per iteration, at most: their square roots overlap. A link on one axis has no root and few
+   operations, so more vectors amortise the loop (measured for vectors of 16 and 64 bytes). */
+enum { most_together = 4 };
+
+SPRING_INLINE size_t links_together(uint32_t axes)
+{
+    return axes == 1 && SPRING_VECTOR != 32 ? 4 : 2;
+}
+
+/* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
+   to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
+SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                             const real *rest, const real *c, bool damped, bool tension_only)
+{
+    const size_t together = links_together(axes);
+    real scale[most_together]; /* the squared length, then 1/length, then force/length */
+    real rate[most_together];
+    mask acts[most_together]; /* lanes whose link has a force */
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        real square = delta[m][0] * delta[m][0];
+        rate[m] = damped ? delta[m][0] * relative[m][0] : splat(0);
+        SPRING_UNROLL
+        for (uint32_t a = 1; a < axes; a++) {
+            square += delta[m][a] * delta[m][a];
+            if (damped)
+                rate[m] += delta[m][a] * relative[m][a];
+        }
+        scale[m] = square;
+    }
+    vec_inverse_sqrt(scale, joined, (int)together);
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        const real inverse = scale[m];
+        const real stretch = 1 - rest[m] * inverse;
+        scale[m] = k[m] * stretch;
+        if (damped)
+            scale[m] += c[m] * (rate[m] * inverse * inverse);
+        acts[m] = joined[m];
+        if (tension_only) /* NaN remains, so that it is detected */
+            scale[m] = vec_not_negative(scale[m]);
+        if (tension_only && damped)
+            acts[m] &= not_mask(stretch <= 0);
+    }
+    SPRING_UNROLL
+    for (size_t m = 0; m < together; m++) {
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(acts[m], scale[m] * delta[m][a], splat(0));
+    }
+}
+
+/* On one axis a link is a linear spring. */
+SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+                                    const real *rest, const real *c, bool damped)
+{
+    SPRING_UNROLL
+    for (size_t m = 0; m < links_together(1); m++) {
+        const real pull = k[m] * (delta[m][0] - rest[m]);
+        delta[m][0] = select_real(joined[m], damped ? pull + c[m] * relative[m][0] : pull, splat(0));
+    }
+}
+
+SPRING_NOINLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < slots; j += lanes)
+            vec_store(force + a * axis + j, splat(0));
+}
+
+/* Computes the forces of a band in `slots` slots from t on. Forces along axis a are stored at force + a * axis. */
+typedef void tile_kernel(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v, ptrdiff_t t,
+                         size_t slots, scalar *force, size_t axis);
+
+/* See tile_kernel. shared: all slots have the same coefficients; a constant, so that the compiler keeps them in
+   registers. */
+SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                               ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes, bool damped,
+                               bool shared)
+{
+    const size_t stride = s->stride;
+    const bool tension_only = axes > 1 && s->tension_only;
+    const ptrdiff_t offset = band->offset, slot = t - band->start;
+    const int8_t *const occupied = band->occupied + slot;
+    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
+    const scalar *const stiffness = band->stiffness + slot * stride_c,
+                        *const rest_length = band->rest + slot * stride_c,
+                        *const damping = damped ? band->damping + slot * stride_c : NULL;
+    SPRING_PREFETCH(occupied + tile); /* too few cache lines for the hardware prefetcher to detect a stream */
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        real delta[most_together][3], relative[most_together][3];
+        real k[most_together], rest[most_together], c[most_together];
+        mask joined[most_together];
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            const ptrdiff_t number = (ptrdiff_t)i * stride_c;
+            k[m] = vec_load(stiffness + number);
+            rest[m] = vec_load(rest_length + number);
+            c[m] = damped ? vec_load(damping + number) : splat(0);
+            joined[m] = vec_load_mask(occupied + i);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
+                delta[m][a] = vec_load(at + offset) - vec_load(at);
+                relative[m][a] = damped ? vec_load(with + offset) - vec_load(with) : splat(0);
+            }
+        }
+        if (axes == 1)
+            to_linear_forces(delta, relative, joined, k, rest, c, damped);
+        else
+            to_forces(axes, delta, relative, joined, k, rest, c, damped, tension_only);
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + j + m * lanes, delta[m][a]);
+        }
+    }
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
+}
+
+/* On one axis a link has few operations, so that a call, or loads of equal coefficients, would matter. */
+SPRING_INLINE void linear_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                               ptrdiff_t t, size_t slots, scalar *force, size_t axis, bool damped)
+{
+    if (band->coefficient_stride == 0 && !SPRING_COMPACT)
+        tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, true);
+    else
+        tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, false);
+}
+
+SPRING_INLINE void tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                  ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    linear_tile(s, band, x, v, t, slots, force, axis, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM);
+}
+
+SPRING_INLINE void damped_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                         ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    linear_tile(s, band, x, v, t, slots, force, axis, true);
+}
+
+SPRING_NOINLINE void tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(s, band, x, v, t, slots, force, axis, 2, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM,
+                false);
+}
+
+SPRING_NOINLINE void damped_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(s, band, x, v, t, slots, force, axis, 2, true, false);
+}
+
+SPRING_NOINLINE void tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(s, band, x, v, t, slots, force, axis, 3, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM,
+                false);
+}
+
+SPRING_NOINLINE void damped_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_forces(s, band, x, v, t, slots, force, axis, 3, true, false);
+}
+
+/* Like tile_forces(), for damping alone along frozen directions d: the force is d (d . relative velocity). */
+SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *v, ptrdiff_t t,
+                                       size_t slots, scalar *force, size_t axis, uint32_t axes)
+{
+    const size_t stride = s->stride;
+    const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
+                        *const upper = lower + band->offset;
+    const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            const size_t i = j + m * lanes;
+            real d[3], rate;
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                d[a] = vec_load(direction + a * stride_d + i);
+                const real along = d[a] * (vec_load(upper + a * stride + i) - vec_load(lower + a * stride + i));
+                rate = a == 0 ? along : rate + along;
+            }
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + i, d[a] * rate);
+        }
+    }
+    if (j < slots)
+        clear_slots(force + j, axis, slots - j, axes);
+}
+
+SPRING_NOINLINE void damping_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 1);
+}
+
+SPRING_NOINLINE void damping_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 2);
+}
+
+SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                            const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    (void)x;
+    tile_damping_forces(s, band, v, t, slots, force, axis, 3);
+}
+
+/* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
+typedef struct kept_forces {
+    const scalar *force;
+    size_t axis;
+} kept_forces;
+
+/* Sets `to` to the sum of the forces of all bands on `count` particles. */
+typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                           const kept_forces *minus, size_t minuses);
+
+SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                          const kept_forces *minus, size_t minuses, uint32_t axes)
+{
+    enum { most = 4 };
+    const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors per iteration */
+    for (size_t j = 0; j < count; j += some * lanes) {
+        real force[most][3];
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                force[m][a] = splat(0);
+        }
+        for (const kept_forces *k = plus; k < plus + pluses; k++) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
+            }
+        }
+        for (const kept_forces *k = minus; k < minus + minuses; k++) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+            }
+        }
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(to + a * stride + j + m * lanes, force[m][a]);
+        }
+    }
+}
+
+SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                    const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 1);
+}
+
+SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 2);
+}
+
+SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
+{
+    gather(to, stride, count, plus, pluses, minus, minuses, 3);
+}
+
+/* Copies the first tile of a ring behind its last tile, so that any `tile` consecutive slots are contiguous. */
+SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, size_t axis, uint32_t axes)
+{
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < slots; j += lanes)
+            vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
+}
+
+/* Computes the forces of all bands on particles from ... to - 1. The rings contain the forces of earlier links. In the
+   loop, `t` is the first slot of a tile, and `axis` is the stride between the axes of a ring. */
+SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                             size_t to, uint32_t axes, tile_kernel *forces, gather_kernel *sum)
+{
+    ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
+    for (size_t r = 0; r < s->bands; r++) {
+        const scene_band *band = &s->band[r];
+        slot[r] = (ptrdiff_t)from % band->ring;
+        if (from == 0) { /* no link has a lower end before the first particle */
+            const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
+            clear_slots(out->rings + band->ring_start + band->ring - before, (size_t)(band->ring + tile), before, axes);
+        }
+    }
+    for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
+        kept_forces plus[most_bands], minus[most_bands];
+        size_t pluses = 0, minuses = 0;
+        const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
+        for (size_t r = 0; r < s->bands; r++) {
+            const scene_band *band = &s->band[r];
+            const ptrdiff_t ring = band->ring, other = slot[r] - band->back;
+            const size_t axis = (size_t)(ring + tile);
+            scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
+            if (t >= band->start && t < band->end) {
+                forces(s, band, x, v, t, count, force, axis);
+                plus[pluses++] = (kept_forces){force, axis};
+            } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
+                clear_slots(force, axis, count, axes);
+            }
+            if (slot[r] == 0)
+                repeat_tile(force, ring, count, axis, axes);
+            if (t < band->end + band->offset && t + tile > band->start + band->offset)
+                minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
+            slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
+        }
+        sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
+    }
+}
+
+SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           size_t from, size_t to)
+{
+    if (s->terms == DAMPING_TERM)
+        all_bands(s, x, v, out, from, to, 1, damping_tile_on_1_axis, gather_on_1_axis);
+    else if (s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT)
+        all_bands(s, x, v, out, from, to, 1, damped_tile_on_1_axis, gather_on_1_axis);
+    else
+        all_bands(s, x, v, out, from, to, 1, tile_on_1_axis, gather_on_1_axis);
+}
+
+static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                                size_t to)
+{
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT, alone = s->terms == DAMPING_TERM;
+    if (s->axes == 1)
+        band_forces_on_1_axis(s, x, v, out, from, to);
+    else if (s->axes == 2)
+        all_bands(s, x, v, out, from, to, 2,
+                  alone    ? damping_tile_on_2_axes
+                  : damped ? damped_tile_on_2_axes
+                           : tile_on_2_axes,
+                  gather_on_2_axes);
+    else
+        all_bands(s, x, v, out, from, to, 3,
+                  alone    ? damping_tile_on_3_axes
+                  : damped ? damped_tile_on_3_axes
+                           : tile_on_3_axes,
+                  gather_on_3_axes);
+}
+
+#endif

@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: MIT */
+/* The exact solution of springs with different parameters, with SIMD vectors of 16 bytes: SSE2 on x86-64, and all other
+   processors. */
+#include "../simd/targets.h"
+#if SPRING_HAS_V128
+#define SPRING_VECTOR       16
+#define SPRING_EXACT_KERNEL spring_exact_v128
+#include "exact_tmpl.h"
+#endif

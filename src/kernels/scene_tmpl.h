@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* The kernels of scenes for one vector width (SPRING_VECTOR bytes) and one precision (double, or float with
+   SPRING_FLOAT), and their tables SPRING_SCENE_TABLE and SPRING_COMMON_TABLE. Included by the sources scene*.c of this
+   folder. */
+#ifndef SPRINGSTEP_SCENE_TMPL_H
+#define SPRINGSTEP_SCENE_TMPL_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "../simd/target_begin.h"
+
+#include "bands_tmpl.h"
+#include "leapfrog_particles_tmpl.h"
+
+#if SPRING_VECTOR < 64
+#include "contact_loops_tmpl.h"
+#include "directions_tmpl.h"
+#include "particles_tmpl.h"
+#include "stretch_tmpl.h"
+#include "unbanded_tmpl.h"
+
+SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
+    .unbanded_forces = compute_unbanded_forces,
+    .record_forces = compute_record_forces,
+    .band_directions = compute_band_directions,
+    .kick_drift = move_kick_drift,
+    .implicit_kick = move_implicit_kick,
+    .implicit_kick_drift = move_implicit_kick_drift,
+    .stage = move_stage,
+    .first_stage = move_first_stage,
+    .next_stage = move_next_stage,
+    .last_stage = move_last_stage,
+    .nystrom_stage = move_nystrom_stage,
+    .nystrom_end = move_nystrom_end,
+    .damping_term = move_damping_term,
+    .last_damping_term = move_last_damping_term,
+    .kick_damped_drift = move_kick_damped_drift,
+    .stretched = any_stretched,
+    .contact_normal = find_contact_normal,
+};
+
+SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
+    .common = &SPRING_COMMON_TABLE,
+    .band_forces = compute_band_forces,
+    .kick_drift = move_kick_drift,
+    .implicit_kick = move_implicit_kick,
+};
+#else
+static bool wide_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+}
+
+static bool wide_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_implicit_kick_free(p, m, from, to) : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
+}
+
+SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
+    .common = &SPRING_COMMON_TABLE,
+    .band_forces = compute_band_forces,
+    .kick_drift = wide_kick_drift,
+    .implicit_kick = wide_implicit_kick,
+};
+#endif
+
+#include "../simd/target_end.h"
+#endif

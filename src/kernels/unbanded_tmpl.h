@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The forces of unbanded links, one after another in their order. The axes of a particle are side by side in a quad.
+ *
+ * Law       see bands_tmpl.h
+ * Accuracy  the square root and the quotient rest/length are correctly rounded
+ */
+#ifndef SPRINGSTEP_UNBANDED_TMPL_H
+#define SPRINGSTEP_UNBANDED_TMPL_H
+
+#include "../simd/quad_tmpl.h"
+#include "bands_tmpl.h"
+
+/* The force of a link divided by the vector between its ends. rate: relative velocity . delta */
+SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped,
+                                bool tension_only)
+{
+    const scalar stretch = 1 - l->rest[j] / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
+    const scalar scale = damped ? pull + l->damping[j] * (rate / square) : pull;
+    return tension_only && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is detected */
+}
+
+/* A cut link has no force, however far apart its ends are. */
+SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
+{
+    return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
+}
+
+/* Quantities have an array for each axis. */
+SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                uint32_t axes, bool damped, bool tension_only)
+{
+    const unbanded_links *const l = &s->unbanded;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        scalar delta[3], scale = 1, square = 0, rate = 0;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
+            square += delta[a] * delta[a];
+            if (damped)
+                rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
+        }
+        if (!link_acts(l, j, damped) || (axes > 1 && !(square > 0)))
+            continue;
+        if (axes == 1) {
+            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
+            if (damped)
+                delta[0] += l->damping[j] * (v[to] - v[from]);
+        } else {
+            scale = link_scale(l, j, square, rate, damped, tension_only);
+        }
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            out->force[a * s->stride + from] += scale * delta[a];
+            out->force[a * s->stride + to] -= scale * delta[a];
+        }
+    }
+}
+
+/* Not inlined, since it is called for few links. */
+SPRING_NOINLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
+                                   size_t stride, bool damped, bool tension_only)
+{
+    const size_t a = stride * l->a[j], b = stride * l->b[j];
+    const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+    const scalar square = quad_dot(delta, delta);
+    if (!link_acts(l, j, damped) || !(square > 0))
+        return;
+    const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
+    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped, tension_only)), delta);
+    quad_store(force + a, quad_plus(quad_load(force + a), pull));
+    quad_store(force + b, quad_minus(quad_load(force + b), pull));
+}
+
+/* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient.
+   */
+SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
+                              size_t stride, bool damped, bool tension_only)
+{
+    const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
+    const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
+    const size_t some = quad_size, fours = l->count / some * some;
+    for (size_t j = 0; j < fours; j += some) {
+        if (j + ahead < fours) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_PREFETCH(x + stride * l->a[j + ahead + m]);
+                SPRING_PREFETCH(x + stride * l->b[j + ahead + m]);
+            }
+        }
+        quad delta[4];
+        scalar squares[4], rates[4] = {0};
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
+            delta[m] = quad_minus(quad_load(x + b), quad_load(x + a));
+            squares[m] = quad_dot(delta[m], delta[m]);
+            if (damped)
+                rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
+        }
+        const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
+        const quad stretch = quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square)));
+        quad scale = quad_times(quad_load(l->stiffness + j), stretch);
+        if (damped)
+            scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
+                                                quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
+        if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
+            for (size_t m = 0; m < some; m++)
+                one_quad_link(l, j + m, x, v, force, stride, damped, tension_only);
+            continue;
+        }
+        if (tension_only)
+            scale = quad_where_positive(scale, scale);
+        if (tension_only && damped)
+            scale = quad_where_positive(scale, stretch);
+        SPRING_UNROLL
+        for (size_t m = 0; m < some; m++) {
+            const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
+            const quad pull = quad_times(quad_all(quad_at(scale, (int)m)), delta[m]);
+            quad_store(force + a, quad_plus(quad_load(force + a), pull));
+            quad_store(force + b, quad_minus(quad_load(force + b), pull));
+        }
+    }
+    for (size_t j = fours; j < l->count; j++)
+        one_quad_link(l, j, x, v, force, stride, damped, tension_only);
+}
+
+/* --------------------------------------------------------------------------- damping alone, along frozen directions */
+
+/* The force on the first end; the force on the second end is opposite. */
+SPRING_INLINE quad damping_pull(const unbanded_links *l, size_t j, quad relative)
+{
+    const quad d = quad_load(l->direction + quad_size * j);
+    return quad_times(quad_all(quad_dot(d, relative)), d);
+}
+
+/* Quantities have an array for each axis. */
+SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *v, scene_forces *out, uint32_t axes)
+{
+    const unbanded_links *const l = &s->unbanded;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        scalar relative[quad_size] = {0};
+        for (uint32_t a = 0; a < axes; a++)
+            relative[a] = v[a * s->stride + to] - v[a * s->stride + from];
+        const quad pull = damping_pull(l, j, quad_load(relative));
+        for (uint32_t a = 0; a < axes; a++) {
+            out->force[a * s->stride + from] += quad_at(pull, (int)a);
+            out->force[a * s->stride + to] -= quad_at(pull, (int)a);
+        }
+    }
+}
+
+/* Quantities are quads, as in quad_links(). */
+SPRING_INLINE void quad_damping(const unbanded_links *links, const scalar *v, scalar *force, size_t stride)
+{
+    const unbanded_links own = *links, *const l = &own;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t a = stride * l->a[j], b = stride * l->b[j];
+        const quad pull = damping_pull(l, j, quad_minus(quad_load(v + b), quad_load(v + a)));
+        quad_store(force + a, quad_plus(quad_load(force + a), pull));
+        quad_store(force + b, quad_minus(quad_load(force + b), pull));
+    }
+}
+
+/* A record has the position, the velocity (if links are damped) and the force of a particle side by side, for scenes
+   with many unbanded links. */
+SPRING_INLINE size_t force_in_record(bool damped)
+{
+    return (damped ? 2 : 1) * quad_size;
+}
+
+SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    for (size_t i = 0; i < s->particles; i++) {
+        scalar *record = out->records + stride * i;
+        for (size_t k = 0; k < stride; k += quad_size) /* unused numbers are 0 */
+            quad_store(record + k, quad_all(0));
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            record[a] = x[a * s->stride + i];
+            if (damped)
+                record[quad_size + a] = v[a * s->stride + i];
+            record[at_force + a] = s->bands > 0 ? out->force[a * s->stride + i] : 0;
+        }
+    }
+}
+
+SPRING_INLINE void forces_of_records(const scene_links *s, scene_forces *out, uint32_t axes, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    for (size_t i = 0; i < s->particles; i++) {
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            out->force[a * s->stride + i] = out->records[stride * i + at_force + a];
+    }
+}
+
+SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, bool damped)
+{
+    const size_t at_force = force_in_record(damped), stride = at_force + quad_size;
+    scalar *const records = out->records;
+    if (s->axes == 3)
+        fill_records(s, x, v, out, 3, damped);
+    else
+        fill_records(s, x, v, out, 2, damped);
+    if (s->terms == DAMPING_TERM)
+        quad_damping(&s->unbanded, records + quad_size, records + at_force, stride);
+    else
+        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, s->tension_only);
+    if (s->axes == 3)
+        forces_of_records(s, out, 3, damped);
+    else
+        forces_of_records(s, out, 2, damped);
+}
+
+static void compute_record_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    if (SPRING_COMPACT)
+        all_records(s, x, v, out, s->terms != STIFFNESS_TERM);
+    else if (s->terms == STIFFNESS_TERM)
+        all_records(s, x, v, out, false);
+    else
+        all_records(s, x, v, out, true);
+}
+
+/* function(..., axes, damped, false) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                              \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true, false) : function(__VA_ARGS__, 1, false, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true, false) : function(__VA_ARGS__, 2, false, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
+                   : function(__VA_ARGS__, 3, false, false))
+
+/* Neither `damped` nor `tension_only` is a constant. */
+SPRING_NOINLINE void any_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
+    if (s->axes == 3)
+        all_unbanded(s, x, v, out, 3, damped, s->tension_only);
+    else if (s->axes == 2)
+        all_unbanded(s, x, v, out, 2, damped, s->tension_only);
+    else
+        all_unbanded(s, x, v, out, 1, damped, false);
+}
+
+static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
+{
+    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
+    if (s->bands == 0)
+        for (uint32_t a = 0; a < s->axes; a++)
+            memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
+    if (s->terms == DAMPING_TERM)
+        all_unbanded_damping(s, v, out, s->axes);
+    else if (s->tension_only || SPRING_COMPACT)
+        any_unbanded(s, x, v, out);
+    else
+        SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
+}
+
+#endif
