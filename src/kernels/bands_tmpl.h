@@ -145,7 +145,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
         clear_slots(force + j, axis, slots - j, axes);
 }
 
-/* On one axis a link has few operations, so that a call, or loads of equal coefficients, would matter. */
+/* On one axis a link has few operations, so that loads of equal coefficients would matter. */
 SPRING_INLINE void linear_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
                                ptrdiff_t t, size_t slots, scalar *force, size_t axis, bool damped)
 {
@@ -155,14 +155,14 @@ SPRING_INLINE void linear_tile(const scene_links *s, const scene_band *band, con
         tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, false);
 }
 
-SPRING_INLINE void tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
-                                  ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
     linear_tile(s, band, x, v, t, slots, force, axis, SPRING_COMPACT && s->terms == STIFFNESS_AND_DAMPING_TERM);
 }
 
-SPRING_INLINE void damped_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
-                                         ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+SPRING_NOINLINE void damped_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
     linear_tile(s, band, x, v, t, slots, force, axis, true);
 }
@@ -292,8 +292,8 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
     }
 }
 
-SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                                    const kept_forces *minus, size_t minuses)
+SPRING_NOINLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
 {
     gather(to, stride, count, plus, pluses, minus, minuses, 1);
 }
@@ -318,11 +318,20 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
             vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
 }
 
-/* Computes the forces of all bands on particles from ... to - 1. The rings contain the forces of earlier links. In the
-   loop, `t` is the first slot of a tile, and `axis` is the stride between the axes of a ring. */
-SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                             size_t to, uint32_t axes, tile_kernel *forces, gather_kernel *sum)
+/* See band_kernel. The rings contain the forces of earlier links. In the loop, `t` is the first slot of a tile, and
+   `axis` is the stride between the axes of a ring. */
+static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
+                                size_t to)
 {
+    static tile_kernel *const undamped[] = {tile_on_1_axis, tile_on_2_axes, tile_on_3_axes};
+    static tile_kernel *const damped[] = {damped_tile_on_1_axis, damped_tile_on_2_axes, damped_tile_on_3_axes};
+    static tile_kernel *const damping[] = {damping_tile_on_1_axis, damping_tile_on_2_axes, damping_tile_on_3_axes};
+    static gather_kernel *const gathers[] = {gather_on_1_axis, gather_on_2_axes, gather_on_3_axes};
+    const uint32_t axes = s->axes;
+    tile_kernel *const forces = s->terms == DAMPING_TERM                                    ? damping[axes - 1]
+                                : s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT ? damped[axes - 1]
+                                                                                            : undamped[axes - 1];
+    gather_kernel *const sum = gathers[axes - 1];
     ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
         const scene_band *band = &s->band[r];
@@ -355,37 +364,6 @@ SPRING_INLINE void all_bands(const scene_links *s, const scalar *x, const scalar
         }
         sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
     }
-}
-
-SPRING_NOINLINE void band_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                           size_t from, size_t to)
-{
-    if (s->terms == DAMPING_TERM)
-        all_bands(s, x, v, out, from, to, 1, damping_tile_on_1_axis, gather_on_1_axis);
-    else if (s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT)
-        all_bands(s, x, v, out, from, to, 1, damped_tile_on_1_axis, gather_on_1_axis);
-    else
-        all_bands(s, x, v, out, from, to, 1, tile_on_1_axis, gather_on_1_axis);
-}
-
-static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
-                                size_t to)
-{
-    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT, alone = s->terms == DAMPING_TERM;
-    if (s->axes == 1)
-        band_forces_on_1_axis(s, x, v, out, from, to);
-    else if (s->axes == 2)
-        all_bands(s, x, v, out, from, to, 2,
-                  alone    ? damping_tile_on_2_axes
-                  : damped ? damped_tile_on_2_axes
-                           : tile_on_2_axes,
-                  gather_on_2_axes);
-    else
-        all_bands(s, x, v, out, from, to, 3,
-                  alone    ? damping_tile_on_3_axes
-                  : damped ? damped_tile_on_3_axes
-                           : tile_on_3_axes,
-                  gather_on_3_axes);
 }
 
 #endif

@@ -43,6 +43,9 @@ static scene_outcome scene_rk4(scene_step *s)
     return (scene_outcome){.finite = move(s, s->kernels->common->last_stage, &end)};
 }
 
+/* The time of the following steps is that of their many kernels. */
+#include "../simd/size_begin.h"
+
 _Static_assert((int)rkn8_stages == (int)nystrom_stages, "the kernels compute the stages of RKN8");
 
 /* Indices of the factors that RKN8 stores for each mass, with drag: growth e^(g c h/2) and decay e^(-g c h/2) for each
@@ -149,5 +152,7 @@ static scene_outcome scene_srkn6(scene_step *s)
     }
     return (scene_outcome){.finite = !s->last || move(s, s->kernels->implicit_kick, &last_kick), .cached = FORCE};
 }
+
+#include "../simd/size_end.h"
 
 #endif
