@@ -7,7 +7,7 @@
  *           upper end it is. The latter are `offset` slots back, so a band has a ring buffer of its last offset + tile
  *           forces. Each link is computed once, and no force is scattered. Both ends get the same bits, so momentum is
  *           conserved to rounding error. The order of additions does not depend on the vector width. A tile reads no
- *           position and no velocity of earlier tiles.
+ *           position and no velocity of earlier tiles, which a fused pass may have advanced already.
  * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2), or 0 if both ends are at one point.
  *           On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force unless it is longer
  *           than its rest length and pulls.
@@ -16,7 +16,7 @@
 #ifndef SPRINGSTEP_BANDS_TMPL_H
 #define SPRINGSTEP_BANDS_TMPL_H
 
-#include "../simd/quad_tmpl.h"
+#include "../simd/real_tmpl.h"
 #include "scene_kernels.h"
 
 /* Vectors of links per iteration, at most: their square roots overlap. A link on one axis has no root and few
@@ -89,7 +89,8 @@ SPRING_NOINLINE void clear_slots(scalar *force, size_t axis, size_t slots, uint3
             vec_store(force + a * axis + j, splat(0));
 }
 
-/* Computes the forces of a band in `slots` slots from t on. Forces along axis a are stored at force + a * axis. */
+/* Computes the forces of a band on `slots` particles from t on, the lower ends of its links. Forces along axis a are
+   stored at force + a * axis. */
 typedef void tile_kernel(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v, ptrdiff_t t,
                          size_t slots, scalar *force, size_t axis);
 
@@ -155,6 +156,7 @@ SPRING_INLINE void linear_tile(const scene_links *s, const scene_band *band, con
         tile_forces(s, band, x, v, t, slots, force, axis, 1, damped, false);
 }
 
+/* Undamped, except in compact kernels, which test it in the loop. */
 SPRING_NOINLINE void tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
                                     ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
@@ -318,8 +320,8 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
             vec_store(force + a * axis + ring + j, vec_load(force + a * axis + j));
 }
 
-/* See band_kernel. The rings contain the forces of earlier links. In the loop, `t` is the first slot of a tile, and
-   `axis` is the stride between the axes of a ring. */
+/* See band_kernel. The rings contain the forces of earlier links. In the loop, `t` is the first particle of a tile,
+   place[r] its place in ring r, and `axis` the stride between the axes of a ring. */
 static void compute_band_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
                                 size_t to)
 {
@@ -332,10 +334,10 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
                                 : s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT ? damped[axes - 1]
                                                                                             : undamped[axes - 1];
     gather_kernel *const sum = gathers[axes - 1];
-    ptrdiff_t slot[most_bands]; /* of the tile, in each ring */
+    ptrdiff_t place[most_bands]; /* of the tile, in each ring */
     for (size_t r = 0; r < s->bands; r++) {
         const scene_band *band = &s->band[r];
-        slot[r] = (ptrdiff_t)from % band->ring;
+        place[r] = (ptrdiff_t)from % band->ring;
         if (from == 0) { /* no link has a lower end before the first particle */
             const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
             clear_slots(out->rings + band->ring_start + band->ring - before, (size_t)(band->ring + tile), before, axes);
@@ -347,20 +349,20 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const ptrdiff_t ring = band->ring, other = slot[r] - band->back;
+            const ptrdiff_t ring = band->ring, other = place[r] - band->back;
             const size_t axis = (size_t)(ring + tile);
-            scalar *const kept = out->rings + band->ring_start, *const force = kept + slot[r];
+            scalar *const kept = out->rings + band->ring_start, *const force = kept + place[r];
             if (t >= band->start && t < band->end) {
                 forces(s, band, x, v, t, count, force, axis);
                 plus[pluses++] = (kept_forces){force, axis};
             } else if (t >= band->start - tile && t < band->end + tile) { /* upper ends of links may read these */
                 clear_slots(force, axis, count, axes);
             }
-            if (slot[r] == 0)
+            if (place[r] == 0)
                 repeat_tile(force, ring, count, axis, axes);
             if (t < band->end + band->offset && t + tile > band->start + band->offset)
                 minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
-            slot[r] = slot[r] + tile < ring ? slot[r] + tile : 0;
+            place[r] = place[r] + tile < ring ? place[r] + tile : 0;
         }
         sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
     }

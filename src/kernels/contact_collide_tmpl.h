@@ -10,12 +10,14 @@
  *           2. Newton's method on the gap along the path gives the time of impact: theta <- theta + gap/(rate of
  *              approach). The gap to a convex body that does not turn is a convex function of the fraction, so the
  *              method never overshoots.
- *           3. Impact, if n.u < 0 for u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n, with friction
- *              along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has the changed velocity.
- *           4. Pressing, if the rest of the path still ends inside. In the first half of the step: the impulse is
- *              lambda n, with the lambda for which the path ends on the surface, and friction is at most mu lambda.
- *              Static friction holds a particle exactly: w = V, d = h V. In the second half, or at a second contact in
- *              the step: the path is projected to the tangent plane, and w loses its component into the collider.
+ *           3. Impact, if n.u < 0 for u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n per mass, with
+ *              friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has the changed
+ *              velocity.
+ *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
+ *              is lambda n, with the lambda for which the path ends on the surface, and friction is at most mu lambda.
+ *              Static friction holds a particle exactly: w = V, d = h V. Late, in the second half of the step, at a
+ *              second contact in the step, or after 1: the path is projected to the tangent plane, and w loses its
+ *              component into the collider.
  *           5. All colliders before the last one that a particle touched are tested again, with its new path. A
  *              particle that is still inside at the end (corners, turning capsules) is moved to the surface, and w
  *              loses its component into the collider.
@@ -30,7 +32,13 @@
 
 #include "contact_distance_tmpl.h"
 
-enum { impact_iterations = 8, friction_passes = 2, surface_iterations = 2, corner_passes = 2, stop_rounds = 32 };
+enum {
+    impact_iterations = 8,  /* of step 2 */
+    friction_passes = 2,    /* of step 4: friction changes where the path ends, and so the impulse */
+    surface_iterations = 2, /* of step 4, in its last pass */
+    corner_passes = 2,      /* of step 5 */
+    stop_rounds = 32        /* of the last kick */
+};
 enum { most_kept = 4 }; /* contacts */
 
 /* Fractions of a step up to this size are rounding errors. */
@@ -101,11 +109,12 @@ SPRING_INLINE real3 clipped(const scene_collider *c, real3 normal, real3 surface
     return minus3(plus_scaled3(w, lost, normal), *slip);
 }
 
-/* Steps 1 and 2 with collider i in the lanes `nearby`. Returns the lanes with a contact, which the outputs describe. */
+/* Steps 1 and 2 with collider i in the lanes `nearby`. Returns the lanes with a contact. *at: the contact at its time,
+   except at->gap, the gap at the start. *gap: at the time of the contact. */
 SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifting *p, mask nearby, contact_point *at,
                                real *gap, real *fraction, mask *pushed)
 {
-    recall_contact(&p->start, c, i, STEP_START, &p->x0, at);
+    recall_contact(&p->start, c, i, DRIFT_START, &p->x0, at);
     const real slop = contact_slop(c, p->x0);
     mask hit = nearby;
     *pushed = hit & (at->gap < -slop);
@@ -123,7 +132,7 @@ SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifti
         *fraction = select_real(on, *fraction + step, *fraction);
         const real3 x = plus_scaled3(p->x0, *fraction, p->d);
         contact_point next;
-        find_contact(c, WITHIN_STEP, *fraction, &x, &next);
+        find_contact(c, WITHIN_DRIFT, *fraction, &x, &next);
         *gap = select_real(on, vec_not_negative(next.gap), *gap);
         at->normal = select3(on, next.normal, at->normal);
         at->arm = select3(on, next.arm, at->arm);
@@ -131,7 +140,7 @@ SPRING_INLINE mask find_impact(const scene_collider *c, unsigned i, const drifti
     }
 }
 
-/* Step 4 in the first half of the step: moves the end of the path to the surface. inward: [m] gap between the end of
+/* Step 4, early: moves the end of the path to the surface. inward: [m] gap between the end of
    the path and the tangent plane, negative; left: [s] rest of the step. Returns the lanes whose path is known to end
    outside. */
 SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask where, const contact_point *at,
@@ -158,7 +167,7 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
         for (int i = 0; i < iterations; i++) {
             const real3 guess = plus_scaled3(x, lambda * duration, n);
             contact_point there;
-            find_contact(c, STEP_END, splat(0), &guess, &there);
+            find_contact(c, DRIFT_END, splat(0), &guess, &there);
             const real cosine = dot3(n, there.normal), next = lambda - there.gap * inverse_duration * (2 - cosine);
             const mask ahead = (cosine > (scalar)0.1) & not_mask(settled);
             lambda = select_real(ahead, vec_not_negative(next), lambda);
@@ -189,7 +198,7 @@ SPRING_NOINLINE mask press_from_start(const scene_collider *c, drifting *p, mask
     return where & ((settled & not_mask(stuck)) | keeps);
 }
 
-/* Step 4 later in the step, or at a second contact. */
+/* Step 4, late. */
 SPRING_NOINLINE void press_late(const scene_collider *c, drifting *p, mask where, const contact_point *at,
                                 const real3 *surface, real inward, real left)
 {
@@ -198,7 +207,7 @@ SPRING_NOINLINE void press_late(const scene_collider *c, drifting *p, mask where
     const real3 to_plane = plus_scaled3(p->d, vec_not_negative(-inward), at->normal);
     const real3 d = plus_scaled3(to_plane, -left, slip), x = plus3(p->x0, d);
     contact_point there;
-    find_contact(c, STEP_END, splat(0), &x, &there);
+    find_contact(c, DRIFT_END, splat(0), &x, &there);
     p->w = select3(where, w, p->w);
     p->d = select3(where, plus_scaled3(d, vec_not_negative(-there.gap), there.normal), p->d);
 }
@@ -234,7 +243,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
     const real rate = dot3(u, n);
     const mask bounces = hit & (rate * p->h < -contact_slop(c, p->x0)) & not_mask(again & (fraction <= 0));
     if (any(bounces)) {
-        const real impulse = -(1 + c->restitution) * rate;
+        const real impulse = -(1 + c->restitution) * rate; /* [m/s] per mass */
         const real3 friction = friction_loss(tangential_to(n, u), c->friction * vec_abs(impulse));
         const real3 change = minus3(times3(impulse, n), friction);
         p->w = select3(bounces, plus3(p->w, change), p->w);
@@ -249,7 +258,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
     if (any(ends_above)) {
         const real3 x = plus3(p->x0, p->d);
         contact_point there;
-        find_contact(c, STEP_END, splat(0), &x, &there);
+        find_contact(c, DRIFT_END, splat(0), &x, &there);
         outside = ends_above & (there.gap >= 0);
     }
     const mask presses = hit & not_mask(outside) & (fraction < 1);
@@ -267,7 +276,7 @@ SPRING_NOINLINE mask leave_collider(const scene_collider *c, unsigned i, driftin
 {
     const real3 x = plus3(p->x0, p->d);
     contact_point there;
-    find_contact(c, STEP_END, splat(0), &x, &there);
+    find_contact(c, DRIFT_END, splat(0), &x, &there);
     const mask inside = where & (there.gap < -contact_slop(c, p->x0));
     if (!any(inside))
         return inside;
@@ -367,7 +376,7 @@ SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, lane_bits touche
 static void find_contact_normal(const scene_collider *c, const scalar x[3], scalar normal[3])
 {
     contact_point p;
-    find_contact(c, STEP_START, splat(0), &(const real3){splat(x[0]), splat(x[1]), splat(x[2])}, &p);
+    find_contact(c, DRIFT_START, splat(0), &(const real3){splat(x[0]), splat(x[1]), splat(x[2])}, &p);
     scalar each[3][lanes];
     vec_store(each[0], p.normal.x);
     vec_store(each[1], p.normal.y);

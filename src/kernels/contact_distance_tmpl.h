@@ -16,18 +16,14 @@
 #include "../simd/real3_tmpl.h"
 #include "scene_kernels.h"
 
-/* The time of a pose. */
-typedef enum pose_time {
-    STEP_START,
-    STEP_END,
-    WITHIN_STEP /* at a fraction of the step */
-} pose_time;
+/* The time of a pose: the start or the end of a drift, or a fraction of it. */
+typedef enum pose_time { DRIFT_START, DRIFT_END, WITHIN_DRIFT } pose_time;
 
 SPRING_INLINE real3 place_of(pose_time when, real fraction, const scalar start[3], const scalar end[3],
                              const scalar shift[3])
 {
-    return when == WITHIN_STEP ? plus_scaled3(splat3(start), fraction, splat3(shift))
-                               : splat3(when == STEP_END ? end : start);
+    return when == WITHIN_DRIFT ? plus_scaled3(splat3(start), fraction, splat3(shift))
+                                : splat3(when == DRIFT_END ? end : start);
 }
 
 /* The point on a collider that is nearest to a particle. */
@@ -91,7 +87,7 @@ SPRING_INLINE void set_box(contact_point *p, const scene_collider *c)
     p->gap = select_real(in_core, depth - c->radius, p->gap);
 }
 
-/* fraction: of the step, for WITHIN_STEP */
+/* fraction: of the drift, for WITHIN_DRIFT */
 SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real fraction, const real3 *x,
                                   contact_point *p)
 {
@@ -100,8 +96,8 @@ SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real 
     p->arm = minus3(*x, at);
     switch (c->shape) {
     case SPRING_PLANE: {
-        const real offset = when == WITHIN_STEP ? c->offset + fraction * c->offset_shift
-                                                : splat(when == STEP_END ? c->offset_end : c->offset);
+        const real offset = when == WITHIN_DRIFT ? c->offset + fraction * c->offset_shift
+                                                 : splat(when == DRIFT_END ? c->offset_end : c->offset);
         p->normal = splat3(c->axis[0]);
         p->gap = dot3(*x, p->normal) - offset;
         break;
@@ -116,7 +112,7 @@ SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real 
     case SPRING_BOX:
         set_box(p, c);
         break;
-    default:
+    default: /* SPRING_SPHERE */
         set_round(p, p->arm, c->radius);
     }
 }
@@ -154,7 +150,7 @@ SPRING_INLINE real3 surface_velocity(const scene_collider *c, const contact_poin
 /* Lanes whose particle may touch the collider on its path from x to x + d. The test is conservative: if R is the radius
    plus the displacement of the collider, (R + |d|)^2 <= (1 + e) R^2 + (1 + 1/e) d^2 for every e > 0. The bound with
    e = 1/16 is close for fast particles, the bound with e = 1/256 for slow ones; reach_fast and reach_slow are their
-   first terms. */
+   first terms. All factors are rounded up, for rounding errors. */
 SPRING_INLINE mask may_touch(const scene_collider *c, real3 x, real3 d, real d_squared)
 {
     if (c->shape == SPRING_PLANE) {

@@ -63,7 +63,8 @@ SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x
     return not_finite(x) | too_fast(m, c, v);
 }
 
-/* Advances one vector of coordinates. Returns the lanes whose result is infinite or NaN. variant is a constant. */
+/* Advances one vector of coordinates. Returns the lanes whose result is infinite, NaN or too fast. variant is a
+   constant. */
 typedef mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
 
 /* The loop of all kernels. holds is a constant; if true, a scene without held forces adds -0, which changes no bit. */
@@ -105,17 +106,17 @@ SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c
     return c->dragged ? implicit_velocity(u, &c->damping) : u;
 }
 
-enum { ENDS_STEP = 1, PREDICTS = 2 };
+enum { ENDS_PREVIOUS = 1, PREDICTS = 2 };
 
 SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
-    const real v0 = (variant & ENDS_STEP) != 0 ? kicked_implicitly(m, c, start, free) : start;
+    const real v0 = (variant & ENDS_PREVIOUS) != 0 ? kicked_implicitly(m, c, start, free) : start;
     const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free), x = vec_load(m->x0 + c->at) + m->drift * v;
     store_state(m, c, x, v);
     mask wrong = not_finite(x); /* also if v0 or v is not finite */
-    if ((variant & ENDS_STEP) != 0)
-        wrong |= (vec_abs(v0) > m->max_speed) & (c->inverse_mass > 0);
+    if ((variant & ENDS_PREVIOUS) != 0)
+        wrong |= (vec_abs(v0) > m->max_speed) & (c->inverse_mass > 0); /* not NaN, see above */
     if ((variant & PREDICTS) == 0)
         return wrong;
     const real predicted = kicked_implicitly(m, c, v, free);
@@ -127,10 +128,10 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
 static bool move_kick_drift_free(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     if (m->predicted == NULL)
-        return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP, false)
-                            : for_each_vector(p, m, from, to, update_kick_drift, 0, false);
-    return m->ends_step ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_STEP | PREDICTS, false)
-                        : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS, false);
+        return m->ends_previous ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_PREVIOUS, false)
+                                : for_each_vector(p, m, from, to, update_kick_drift, 0, false);
+    return m->ends_previous ? for_each_vector(p, m, from, to, update_kick_drift, ENDS_PREVIOUS | PREDICTS, false)
+                            : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS, false);
 }
 
 SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates *c, unsigned variant)
@@ -146,5 +147,57 @@ static bool move_implicit_kick_free(const scene_particles *p, const scene_motion
 {
     return for_each_vector(p, m, from, to, update_implicit_kick, 0, false);
 }
+
+/* --------------------------------------------------------------------------------------------------------- kernels */
+
+#if SPRING_VECTOR < 64
+
+/* Defined in contact_loops_tmpl.h, with all axes of a particle at once. */
+static particle_kernel move_kick_drift_contact, move_implicit_kick_contact;
+
+/* Leapfrog has separate loops for held forces, so that they cost other scenes nothing. */
+SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const unsigned ends = m->ends_previous ? ENDS_PREVIOUS : 0, predicts = m->predicted != NULL ? PREDICTS : 0;
+    return for_each_vector(p, m, from, to, update_kick_drift, ends | predicts, true);
+}
+
+static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    if (m->contacts != NULL)
+        return move_kick_drift_contact(p, m, from, to);
+    return p->held_stride != 0 || SPRING_COMPACT ? move_kick_drift_held(p, m, from, to)
+                                                 : move_kick_drift_free(p, m, from, to);
+}
+
+SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_implicit_kick, 0, true);
+}
+
+static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    if (m->contacts != NULL)
+        return move_implicit_kick_contact(p, m, from, to);
+    return p->held_stride != 0 || SPRING_COMPACT ? move_implicit_kick_held(p, m, from, to)
+                                                 : move_implicit_kick_free(p, m, from, to);
+}
+
+#else
+
+/* With colliders or held forces: the kernels for shorter vectors. */
+static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+}
+
+static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    const bool here = m->contacts == NULL && p->held_stride == 0;
+    return here ? move_implicit_kick_free(p, m, from, to) : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
+}
+
+#endif
 
 #endif

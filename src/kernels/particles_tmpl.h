@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The motion of the particles of a scene with all methods, colliders and held forces. scene_kernels.h gives the formula
- * of each kernel.
+ * The motion of the particles of a scene with all methods except leapfrog, for which see leapfrog_particles_tmpl.h.
+ * scene_kernels.h gives the formula of each kernel.
  */
 #ifndef SPRINGSTEP_PARTICLES_TMPL_H
 #define SPRINGSTEP_PARTICLES_TMPL_H
@@ -9,36 +9,7 @@
 #include "leapfrog_particles_tmpl.h"
 
 /* Defined in contact_loops_tmpl.h, with all axes of a particle at once. */
-static particle_kernel move_kick_drift_contact, move_implicit_kick_contact, move_implicit_kick_drift_contact,
-    move_last_stage_contact;
-
-/* Leapfrog has separate loops for held forces, so that they cost other scenes nothing. */
-SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    const unsigned ends = m->ends_step ? ENDS_STEP : 0, predicts = m->predicted != NULL ? PREDICTS : 0;
-    return for_each_vector(p, m, from, to, update_kick_drift, ends | predicts, true);
-}
-
-static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    if (m->contacts != NULL)
-        return move_kick_drift_contact(p, m, from, to);
-    return p->held_stride != 0 || SPRING_COMPACT ? move_kick_drift_held(p, m, from, to)
-                                                 : move_kick_drift_free(p, m, from, to);
-}
-
-SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return for_each_vector(p, m, from, to, update_implicit_kick, 0, true);
-}
-
-static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    if (m->contacts != NULL)
-        return move_implicit_kick_contact(p, m, from, to);
-    return p->held_stride != 0 || SPRING_COMPACT ? move_implicit_kick_held(p, m, from, to)
-                                                 : move_implicit_kick_free(p, m, from, to);
-}
+static particle_kernel move_implicit_kick_drift_contact, move_last_stage_contact;
 
 SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
@@ -203,15 +174,15 @@ static bool move_last_damping_term(const scene_particles *p, const scene_motion 
 SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
-    const real v0 = (variant & ENDS_STEP) != 0 ? start + m->kick * free : start;
+    const real v0 = (variant & ENDS_PREVIOUS) != 0 ? start + m->kick * free : start;
     const real v = v0 + m->kick * free, x = vec_load(m->x0 + c->at) + vec_load(m->damped_drift->span + c->mass) * v;
     store_state(m, c, x, v + vec_load(m->damped_drift->loss + c->mass) * v);
-    return (variant & ENDS_STEP) != 0 ? not_finite(x) | too_fast(m, c, v0) : not_finite(x);
+    return (variant & ENDS_PREVIOUS) != 0 ? not_finite(x) | too_fast(m, c, v0) : not_finite(x);
 }
 
 static bool move_kick_damped_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_kick_damped_drift, m->ends_step ? ENDS_STEP : 0, true);
+    return for_each_vector(p, m, from, to, update_kick_damped_drift, m->ends_previous ? ENDS_PREVIOUS : 0, true);
 }
 
 #endif

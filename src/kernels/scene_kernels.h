@@ -166,8 +166,8 @@ typedef struct scene_motion {
     scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
     const scene_contacts *contacts; /* NULL: no colliders */
     /* kick_drift */
-    bool ends_step;    /* begin with the implicit kick that ends the previous step */
-    scalar *predicted; /* written: velocities at the end of the step; may be `force`. NULL: none */
+    bool ends_previous; /* begin with the implicit kick that ends the previous step */
+    scalar *predicted;  /* written: velocities at the end of the step; may be `force`. NULL: none */
     /* Further arguments of kernels that are named so in the table below. */
     const scene_stage *stage;
     const scene_nystrom *nystrom;
@@ -184,8 +184,8 @@ typedef struct common_kernels {
     unbanded_kernel *unbanded_forces; /* the forces of unbanded links, added to those of bands if the scene has any */
     unbanded_kernel *record_forces;   /* the same for many unbanded links, on two or three axes */
     direction_kernel *band_directions;
-    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_step, v0 is first replaced
-       by the solution u of u = v0 + kick a(u). */
+    /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_previous, v0 is first
+       replaced by the solution u of u = v0 + kick a(u). */
     particle_kernel *kick_drift;
     particle_kernel *implicit_kick;       /* v = v0 + kick a(v) */
     particle_kernel *implicit_kick_drift; /* v = v0 + kick a(v);  x = x0 + drift v */

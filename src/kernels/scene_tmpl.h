@@ -42,6 +42,7 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .stretched = any_stretched,
     .contact_normal = find_contact_normal,
 };
+#endif
 
 SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .common = &SPRING_COMMON_TABLE,
@@ -49,26 +50,6 @@ SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
 };
-#else
-static bool wide_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    const bool here = m->contacts == NULL && p->held_stride == 0;
-    return here ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
-}
-
-static bool wide_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    const bool here = m->contacts == NULL && p->held_stride == 0;
-    return here ? move_implicit_kick_free(p, m, from, to) : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
-}
-
-SPRING_TABLE const scene_kernels SPRING_SCENE_TABLE = {
-    .common = &SPRING_COMMON_TABLE,
-    .band_forces = compute_band_forces,
-    .kick_drift = wide_kick_drift,
-    .implicit_kick = wide_implicit_kick,
-};
-#endif
 
 #include "../simd/target_end.h"
 #endif

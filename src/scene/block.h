@@ -111,7 +111,7 @@ struct spring_scene {
     scene_bounds bounds;
 };
 
-/* Places the colliders for a step from t0 to t1, into ARRAY_PLACED. */
+/* Places the colliders for a drift from t0 to t1, into ARRAY_PLACED. */
 SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
 
 /* Adds the accelerations by the touched colliders to the acceleration of a particle. Returns the size of the rest that

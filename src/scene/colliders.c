@@ -174,6 +174,7 @@ static void place_collider(scene_collider *to, const spring_collider *c, double 
     if (c->shape == SPRING_CAPSULE && length_of_shift(to->shift_to) > shift)
         shift = length_of_shift(to->shift_to);
     const scalar reach = to->radius + shift + rounding_error_at(to, axes);
+    /* 1 + e with the two e of may_touch(), rounded up for rounding errors */
     to->reach_fast = (scalar)1.07 * reach * reach;
     to->reach_slow = (scalar)1.006 * reach * reach;
 }

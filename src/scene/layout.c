@@ -141,8 +141,9 @@ static storage_needs needs_of(uint32_t methods)
     return most;
 }
 
-/* Whether a scene has so few particles and links that it has neither bands, which are computed in whole SIMD vectors, nor
-   records. The results of bands and of unbanded links differ in rounding errors, so this limit is part of the results. */
+/* Whether a scene has so few particles and links that it has neither bands, which are computed in whole SIMD vectors,
+   nor records. The results of bands and of unbanded links differ in rounding errors, so this limit is part of the
+   results. */
 static bool has_few_links(const spring_scene_def *def)
 {
     const size_t few = 12;

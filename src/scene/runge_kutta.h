@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_RUNGE_KUTTA_H
 #define SPRINGSTEP_RUNGE_KUTTA_H
 
-#include "fused_pass.h"
+#include "pass.h"
 #include "../methods/rkn8_tableau.h"
 #include "../methods/srkn6_coefficients.h"
 #include "../spring/propagator.h"
@@ -141,7 +141,7 @@ static scene_outcome scene_srkn6(scene_step *s)
         const unsigned k = (unsigned)srkn6_index(i, srkn6_stages);
         m.kick = (scalar)srkn6_b[srkn6_index(i, srkn6_stages + 1)] * s->h;
         m.drift = (scalar)srkn6_a[k] * s->h;
-        m.ends_step = i == 0 && !s->first;
+        m.ends_previous = i == 0 && !s->first;
         if (dragged)
             drift = (scene_damped_drift){mass_factor(s, SRKN6_SPAN + k), mass_factor(s, SRKN6_LOSS + k)};
         if (!move_and_evaluate(s, kick_drift, &m, m.v, srkn6_c[i]))

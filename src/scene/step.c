@@ -71,7 +71,7 @@ static cached_force take_scene_steps(scene_step *step, step_function *take, uint
         step->last = i + 1 == n;
         if (i == 1)
             prepare_step(step, step->to, step->to);
-        place_colliders(step, 0, 1);
+        prepare_contacts(step, 0, 1);
         const scene_outcome outcome = take(step);
         *finite = outcome.finite;
         if (!outcome.finite)

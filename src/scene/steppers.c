@@ -61,24 +61,24 @@ SPRING_NOINLINE scene_outcome scene_leapfrog_with_heavy_damping(scene_step *s)
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 4;
     kick_drift.drift = s->h / 2;
-    kick_drift.ends_step = keeps && !s->first;
+    kick_drift.ends_previous = keeps && !s->first;
     kick_drift.predicted = keeps ? NULL : predicted_velocities(s);
     last_kick.v0 = kick_drift.v;
     last_kick.force = s->forces.force;
     last_kick.max_speed = SCALAR_MAX; /* not yet the end of the step */
     const scalar *const v = keeps ? kick_drift.v : kick_drift.predicted;
     particle_kernel *const implicit_kick = s->kernels->implicit_kick;
-    place_colliders(s, 0, 0.5);
+    prepare_contacts(s, 0, 0.5);
     if (!move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 0.5, implicit_kick, &last_kick) ||
         !damp_links(s, kick_drift.x, kick_drift.v) || !stop_at_contacts(s, &last_kick))
         return (scene_outcome){.finite = false};
-    place_colliders(s, 0.5, 1);
+    prepare_contacts(s, 0.5, 1);
     if (!keeps)
         evaluate(s, kick_drift.x, kick_drift.v, 0.5);
     kick_drift.x0 = kick_drift.x;
     kick_drift.v0 = kick_drift.v;
     kick_drift.force = last_kick.force;
-    kick_drift.ends_step = false;
+    kick_drift.ends_previous = false;
     last_kick.max_speed = s->scene->max_speed;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1,
@@ -98,22 +98,22 @@ static scene_outcome scene_leapfrog(scene_step *s)
 {
     if (s->damping.terms > 0)
         return scene_leapfrog_with_heavy_damping(s);
-    const bool keeps = !scene_callback_uses_velocity(s->scene), predicts = scene_forces_use_velocity(s->scene);
+    const bool keeps = !scene_callback_uses_velocity(s->scene), uses_velocity = scene_forces_use_velocity(s->scene);
     const bool previous_kick_is_left = keeps && !s->first, leaves_last_kick = keeps && !s->last;
     find_start_force(s);
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 2;
-    kick_drift.ends_step = previous_kick_is_left;
-    kick_drift.predicted = predicts ? predicted_velocities(s) : NULL;
+    kick_drift.ends_previous = previous_kick_is_left;
+    kick_drift.predicted = uses_velocity ? predicted_velocities(s) : NULL;
     last_kick.v0 = kick_drift.v;
     last_kick.force = s->forces.force;
     particle_kernel *const implicit_kick = leaves_last_kick ? NULL : s->kernels->implicit_kick;
-    const scalar *const v = predicts ? kick_drift.predicted : kick_drift.v;
+    const scalar *const v = uses_velocity ? kick_drift.predicted : kick_drift.v;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1, implicit_kick, &last_kick),
-        .cached = !keeps     ? NO_FORCE
-                  : predicts ? PREDICTED_FORCE
-                             : FORCE,
+        .cached = !keeps          ? NO_FORCE
+                  : uses_velocity ? PREDICTED_FORCE
+                                  : FORCE,
     };
 }
 

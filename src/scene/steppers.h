@@ -18,11 +18,10 @@ typedef scene_outcome step_function(scene_step *); /* takes a step of a method *
 typedef struct scene_stepper {
     step_function *step; /* NULL: the method is not for scenes */
     double (*stable_step)(const scene_bounds *b);
-    bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities. Beyond
-                      explicit_limit, links are damped by a Chebyshev series (chebyshev.h) */
-    double (*explicit_limit)(const scene_bounds *b);
-    unsigned stages;       /* quantities of all particles that it stores for its stages */
-    unsigned mass_factors; /* numbers that it stores for each mass, with drag */
+    bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities */
+    double (*explicit_limit)(const scene_bounds *b); /* beyond, a Chebyshev series damps links (chebyshev.h) */
+    unsigned stages;                                 /* quantities of all particles that it stores for its stages */
+    unsigned mass_factors;                           /* numbers that it stores for each mass, with drag */
 } scene_stepper;
 
 SPRING_INTERNAL const scene_stepper spring_scene_steppers[SPRING_METHOD_COUNT];
