@@ -17,8 +17,7 @@ import { check, checkFinite, isNumber } from "./options.js";
 
 export { methods } from "./definition.js";
 export { components, grid, soften } from "./grid.js";
-export { ready } from "./module.js";
-export { hasSimd } from "./simd.js";
+export { hasSimd, ready } from "./module.js";
 
 const quantities = ["position", "velocity", "force"];
 const notFinite = 2;

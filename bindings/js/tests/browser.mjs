@@ -48,7 +48,6 @@ const pages = {
     "/worker": page(`const worker = new Worker("/worker.js", { type: "module" });
         worker.onmessage = ({ data }) => answer(data);
         worker.onerror = ({ message }) => answer(message);`),
-    "/scalar": page("WebAssembly.validate = () => false; answer(falls(scenes, springs))"),
 };
 const scripts = { "/program.js": program, "/worker.js": worker };
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Scenes: the bits of spring-scene, with and without SIMD; what a scene offers; errors; memory.
-//     node scenes.mjs SPRING-SCENE [scalar]
+// Scenes: the bits of spring-scene; what a scene offers; errors; memory.
+//     node scenes.mjs SPRING-SCENE
 import assert from "node:assert/strict";
-import { execFile } from "node:child_process";
+import { execFile, spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { hashOf, preset, presetNames, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
 import { chance, logarithmic, uniform } from "./random.mjs";
 import { done, note, test } from "./tap.mjs";
 
-const [program, scalar] = process.argv.slice(2);
-const { validate } = WebAssembly;
+const [program] = process.argv.slice(2);
 let compiled = 0;
-if (scalar) WebAssembly.validate = () => false;
 for (const name of ["Module", "instantiate"]) {
     const plain = WebAssembly[name];
     WebAssembly[name] = function (...values) {
@@ -53,13 +51,25 @@ function rope(more = {}) {
 
 await test("nothing is compiled by an import", () => assert.equal(compiled, 0));
 await test("the first use compiles, ready() once more does not", async () => {
-    assert.equal(hasSimd(), !scalar);
+    assert.equal(hasSimd(), true);
     rope().free();
     assert.equal(compiled, 1);
     await ready();
     assert.equal(compiled, 1);
 });
-if (scalar) WebAssembly.validate = validate;
+await test("an engine without SIMD for WebAssembly is told what is needed", () => {
+    const use = (without) => {
+        const load = `import(${JSON.stringify(new URL("../scenes.js", import.meta.url))})`;
+        const program = `${without}; ${load}.then(({ Scene }) => new Scene({ position: [0, 0, 0] }));`;
+        return spawnSync(process.execPath, ["--eval", program], { encoding: "utf8" });
+    };
+    assert.equal(use("").status, 0);
+    for (const without of ["WebAssembly.validate = () => false", "delete globalThis.WebAssembly"]) {
+        const { status, stderr } = use(without);
+        assert.equal(status, 1);
+        assert.match(stderr, /Error: springstep\/scenes needs SIMD for WebAssembly: .*Node 16.4 or later/);
+    }
+});
 
 const steps = { rope: 7, cloth: 19, jelly: 9, chain: 5, water: 13 };
 const usual = presetNames.flatMap((scene) => methods.map((method) => [{ scene }, method]));

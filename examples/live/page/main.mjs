@@ -235,7 +235,6 @@ window.springstepLab = {
     tornLinks: () => physics.ask("tornLinks"),
     command: () => actions.command(),
     times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),
-    simd: physics.simd,
 };
 
 remake();

@@ -154,8 +154,8 @@ const questions = {
 };
 
 const orders = {
-    async start({ simd }) {
-        await ready({ simd });
+    async start() {
+        await ready();
         listMethods();
         postMessage({ kind: "ready" });
     },

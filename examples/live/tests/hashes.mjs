@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Checks that the labs of the live page are bit-identical to spring-scene: each scene with each method, 600 frames with
-// a scripted poke, and scenes with settings of the controls. tests/js compares the package without SIMD.
+// a scripted poke, and scenes with settings of the controls.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
 

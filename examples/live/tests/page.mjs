@@ -515,16 +515,6 @@ async function testWindows(cases, page, browser, url, tool) {
             assert.equal(await ask(attacked, "hash"), wanted);
             await attacked.context().close();
         });
-    await cases.case("without SIMD: the same bits", async () => {
-        const plain = await open(browser, url, {}, () => (WebAssembly.validate = () => false));
-        assert.equal(await plain.evaluate(() => window.springstepLab.simd), false);
-        await choose(plain, "cloth", "leapfrog");
-        await ask(plain, "step", 60);
-        const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
-        assert.equal(await ask(plain, "hash"), wanted);
-        assert.deepEqual(plain.complaints, []);
-        await plain.context().close();
-    });
     await cases.case(
         "it runs by itself, unless less motion is asked for; and is dark where that is asked for",
         async () => {
