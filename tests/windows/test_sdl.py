@@ -1,22 +1,137 @@
 # SPDX-License-Identifier: MIT
-"""examples/sdl: run by scripts with fixed frames, and once with a real pointer."""
+"""examples/sdl: run by scripts with fixed frames, and once with a real pointer, under a separate X server. To run it by hand:
+
+    SPRINGS=$PWD/build/examples/springs PATH=$PWD/build/tools:$PATH /usr/bin/python3 -m pytest tests/windows
+"""
 import os
+import pathlib
 import re
 import shlex
+import shutil
+import struct
 import subprocess
+import time
 
 import pytest
-
-from windows import read_bmp
 
 SPRINGS = os.environ.get('SPRINGS')
 SCENES = 'cloth', 'rope', 'water', 'drape', 'cape'
 BELOW_TEXT = 0, 200, 1000, 660  # of the window: neither settings nor help
 SETTINGS, TROUBLE = (8, 8, 374, 190), (0, 560, 1000, 640)
 AMBER, RED = (255, 190, 70), (255, 104, 88)
+RING = (255, 214, 64)  # around what the hand holds
 NOT_FINITE, NOT_SUPPORTED = 'the state would become infinite or not a number', 'not supported'
 
 pytestmark = pytest.mark.skipif(SPRINGS is None, reason='examples/sdl was not built: no SDL2 2.0.18 or later')
+
+
+class Picture:
+    """Rows of pixels, each blue, green, red, and maybe a byte more."""
+
+    def __init__(self, rows, width, depth):
+        self.rows, self.width, self.height, self.depth = rows, width, len(rows), depth
+
+    def lines(self, box):
+        """Lines of (blue, green, red): of all of it, or of a box (left, top, right, bottom)."""
+        left, top, right, bottom = box or (0, 0, self.width, self.height)
+        for row in self.rows[top:bottom]:
+            row = row[left * self.depth:right * self.depth]
+            yield list(zip(row[0::self.depth], row[1::self.depth], row[2::self.depth]))
+
+    def colors(self, box=None):
+        """All (red, green, blue) that there are."""
+        return {color[::-1] for line in self.lines(box) for color in set(line)}
+
+    def changed(self, other, box=None):
+        """How many pixels differ."""
+        lines = zip(self.lines(box), other.lines(box), strict=True)
+        return sum(sum(map(tuple.__ne__, *pair)) for pair in lines if pair[0] != pair[1])
+
+    def ring(self, box=None):
+        """The middle of the ring that marks the hand, or None."""
+        left, top = box[:2] if box else (0, 0)
+        bgr = RING[::-1]
+        lines = [(y, line) for y, line in enumerate(self.lines(box), top) if bgr in line]
+        found = [(x, y) for y, line in lines for x, color in enumerate(line, left) if color == bgr]
+        if not found:
+            return None
+        x, y = zip(*found)
+        return (min(x) + max(x)) / 2, (min(y) + max(y)) / 2
+
+
+def read_bmp(path):
+    """24 bits a pixel, the lowest row first, each padded to 4 bytes."""
+    data = pathlib.Path(path).read_bytes()
+    offset, = struct.unpack_from('<I', data, 10)
+    width, height = struct.unpack_from('<ii', data, 18)
+    assert data[:2] == b'BM' and struct.unpack_from('<H', data, 28) == (24,)
+    stride = (3 * width + 3) // 4 * 4
+    rows = [data[offset + y * stride:offset + y * stride + 3 * width] for y in range(height)]
+    return Picture(rows[::-1], width, 3)
+
+
+class Screen:
+    def __init__(self, display, picture):
+        self.environment = {**os.environ, 'DISPLAY': display, 'SDL_VIDEODRIVER': 'x11', 'SDL_RENDER_DRIVER': 'software',
+                            'SDL_FRAMEBUFFER_ACCELERATION': '0'}  # pixels straight to the server
+        self.file = picture
+
+    def picture(self, window):
+        """What is in the window now, from the server's XWD file."""
+        data = self.file.read_bytes()
+        header = struct.unpack_from('>25I', data)
+        assert header[11] == 32 and header[7] == 0, 'not 32 bits a pixel, lowest byte first'
+        start, stride = header[0] + 12 * header[19], header[12]
+        _, left, top, width, height = window
+        rows = [data[start + y * stride:start + (y + 1) * stride] for y in range(top, top + height)]
+        return Picture([row[4 * left:4 * (left + width)] for row in rows], width, 4)
+
+    def do(self, *words):
+        return subprocess.run(['xdotool', *map(str, words)], env=self.environment, check=True, stdout=subprocess.PIPE,
+                              text=True, timeout=30).stdout
+
+    def window(self, name):
+        """Wait for a window: its number, left, top, width, height."""
+        number = self.do('search', '--sync', '--onlyvisible', '--name', name).split()[0]
+        words = dict(line.split('=') for line in self.do('getwindowgeometry', '--shell', number).splitlines())
+        return number, int(words['X']), int(words['Y']), int(words['WIDTH']), int(words['HEIGHT'])
+
+    def key(self, window, name):
+        """Down alone: a window that it closes would not be there to hear the rest."""
+        self.do('keydown', '--window', window[0], name)
+
+    def move(self, window, x, y):
+        self.do('mousemove', window[1] + x, window[2] + y)
+
+    def wait_for(self, window, what):
+        """The first picture of which that is true; after half a minute the last."""
+        end = time.monotonic() + 30
+        while True:
+            picture = self.picture(window)
+            if what(picture) or time.monotonic() > end:
+                return picture
+            time.sleep(0.05)
+
+
+@pytest.fixture(name='screen')
+def fixture_screen(tmp_path):
+    """An X server without a window manager, whose picture lies in a file. Each test has its own: a server starts anew when
+    its last window closes, and refuses whoever comes meanwhile."""
+    for command in 'Xvfb', 'xdotool':
+        if shutil.which(command) is None:
+            pytest.skip(f'no {command}')
+    folder = tmp_path / 'screen'
+    folder.mkdir()
+    read, write = os.pipe()
+    with subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1024x768x24', '-fbdir', folder,
+                           '-nolisten', 'tcp'],
+                          pass_fds=[write], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as server:
+        os.close(write)
+        with os.fdopen(read) as number:
+            display = number.readline().strip()
+        assert display, 'Xvfb has not started'
+        yield Screen(f':{display}', folder / 'Xvfb_screen0')
+        server.terminate()
 
 
 def springs(*options, env=None):
@@ -230,9 +345,9 @@ def test_by_hand(screen):
 def test_the_command_in_the_first_comment():
     """It names all files and what they include; the library need not be installed, since nothing is linked, of which clang
     warns."""
-    root = os.path.dirname(os.path.dirname(os.environ['GAME']))
-    with open(f'{root}/examples/sdl/main.c', encoding='utf-8') as file:
-        command, = re.findall(r'^ \* +cc (-std=.*)$', file.read(), re.MULTILINE)
+    root = pathlib.Path(__file__).parents[2]
+    text = (root / 'examples/sdl/main.c').read_text(encoding='utf-8')
+    command, = re.findall(r'^ \* +cc (-std=.*)$', text, re.MULTILINE)
     command = f'{os.environ.get("CC", "cc")} -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only '\
               f'-Wno-unused-command-line-argument {command}'
     subprocess.run(['bash', '-c', command], cwd=f'{root}/examples/sdl', env={**os.environ, 'CPATH': f'{root}/include'},
