@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { execFile, spawnSync } from "node:child_process";
 import { readFileSync } from "node:fs";
-import { hashOf, preset, presetNames, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
+import { hashOf, preset, Pushes, readPresets, takeSteps } from "../../../tools/scenes/presets.mjs";
 import { chance, logarithmic, uniform } from "./random.mjs";
 import { done, note, test } from "./tap.mjs";
 
@@ -72,7 +72,8 @@ await test("an engine without SIMD for WebAssembly is told what is needed", () =
 });
 
 const steps = { rope: 7, cloth: 19, jelly: 9, chain: 5, water: 13 };
-const usual = presetNames.flatMap((scene) => methods.map((method) => [{ scene }, method]));
+const presets = readFileSync(new URL("../../../tools/scenes/presets.c", import.meta.url), "utf8");
+const usual = readPresets(presets).flatMap((scene) => methods.map((method) => [{ scene }, method]));
 const further = [
     [{ scene: "rope", mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 }, "leapfrog"],
     [{ scene: "cloth", size: 12, damping: 0.01, drag: 0.02 }, "leapfrog"],

@@ -173,30 +173,16 @@ physics.onframe = (frame) => {
     fresh = true;
 };
 
-// Times of the last frames [ms]: intervals between frames, and drawing only.
-const intervals = [];
-const drawings = [];
-
-function keep(list, value) {
-    list.push(value);
-    if (list.length > 600) list.shift();
-}
-
 let last = performance.now();
-let shown = last;
 let drawn = last;
 function animate(now) {
     requestAnimationFrame(animate);
-    keep(intervals, now - shown);
-    shown = now;
     if (state.paused) last = now;
     else if (physics.tick(((now - last) / 1000) * state.speed)) last = now;
     if (fresh) {
         if (!state.paused) stage.pace(now - drawn);
         drawn = now;
-        const start = performance.now();
         stage.draw();
-        keep(drawings, performance.now() - start);
         fresh = false;
     }
     controls.draw();
@@ -234,7 +220,6 @@ window.springstepLab = {
     sphere: () => physics.ask("sphere"),
     tornLinks: () => physics.ask("tornLinks"),
     command: () => actions.command(),
-    times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),
 };
 
 remake();

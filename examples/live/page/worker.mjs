@@ -2,6 +2,7 @@
 // The simulation, in a worker so that it and drawing do not wait for each other. The page requests one tick at a time.
 // A tick advances every pane by the time due and returns the positions to draw.
 import { ready } from "springstep/scenes";
+import { readPresets } from "../../../tools/scenes/presets.mjs";
 import { Lab, listMethods, methodTable } from "./lab.mjs";
 import { presets } from "./presets.mjs";
 
@@ -9,6 +10,9 @@ const longestTick = 0.1; // [s]; with longer ticks the scene runs slower than re
 const tooFar = 15; // lengths of the scene; beyond, it counts as exploded although the numbers are still finite
 const tearing = 2.2; // length over rest length at which links tear while a particle is held
 const frail = 1.25; // the same for links of a curtain
+
+/* global PRESETS */ // the text of tools/scenes/presets.c, defined by bundle.mjs
+readPresets(PRESETS);
 
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}

@@ -3,11 +3,14 @@
 // a scripted poke, and scenes with settings of the controls.
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
+import { readFileSync } from "node:fs";
 
+import { readPresets } from "../../../tools/scenes/presets.mjs";
 import { Lab, methodTable } from "../page/lab.mjs";
 import { commandOf, heavyEnd, heavySteps, presets } from "../page/presets.mjs";
 import { Cases } from "./harness.mjs";
 
+readPresets(readFileSync(new URL("../../../tools/scenes/presets.c", import.meta.url), "utf8"));
 const frames = 600;
 const pokeAt = 37; // frames
 
