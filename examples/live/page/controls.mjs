@@ -45,46 +45,25 @@ export class Controls {
 
     connect() {
         const { state, actions } = this;
-        const offered = (what, value, values, usual) =>
-            this.checked(what, value, values.includes(value), usual);
-        const speeds = Array.from($("speed").options, ({ value }) => Number(value));
-        const limiter = (id, what) => {
-            const [least, most] = [Number($(id).min), Number($(id).max)]; // the range in the page
-            return (value, usual) => {
-                const nearest = Math.max(least, Math.min(most, value));
-                return this.checked(what, value, value === nearest, Number.isNaN(nearest) ? usual : nearest);
-            };
-        };
-        const limitedSteps = limiter("steps", "number of steps");
-        const limitedDamping = limiter("damping", "damping");
-        const limitedWind = limiter("wind", "wind");
-        $("scene").onchange = ({ target }) =>
-            actions.scene(offered("scene", target.value, Object.keys(presets), "water"));
-        $("method").onchange = ({ target }) =>
-            actions.method(0, offered("method", target.value, this.taken(), "leapfrog"));
-        $("other").onchange = ({ target }) =>
-            actions.method(1, offered("method", target.value, ["", ...this.taken()], ""));
+        $("scene").onchange = ({ target }) => actions.scene(target.value);
+        $("method").onchange = ({ target }) => actions.method(0, target.value);
+        $("other").onchange = ({ target }) => actions.method(1, target.value);
         $("pause").onclick = () => actions.pause();
         $("once").onclick = () => actions.once();
-        $("reset").onclick = () => {
-            this.remark = "";
-            actions.reset();
-        };
-        const steps = (n) => actions.steps(limitedSteps(Math.round(n), presets[state.scene].steps));
+        $("reset").onclick = () => actions.reset();
+        const steps = (n) => actions.steps(this.limited(Math.round(n)));
         $("steps").onchange = ({ target }) => steps(target.valueAsNumber);
         $("steps").oninput = ({ target }) =>
             target.validity.valid && target.value && steps(target.valueAsNumber);
         $("fewer").onclick = () => steps(state.steps - 1);
         $("more").onclick = () => steps(state.steps + 1);
-        $("speed").onchange = ({ target }) =>
-            actions.set("speed", offered("speed", Number(target.value), speeds, presets[state.scene].speed));
-        $("size").onchange = ({ target }) =>
-            actions.remakeWith("size", offered("size", Number(target.value), presets[state.scene].sizes, 0));
+        $("speed").onchange = ({ target }) => actions.set("speed", Number(target.value));
+        $("size").onchange = ({ target }) => actions.remakeWith("size", Number(target.value));
         $("damping").onchange = ({ target }) => {
-            const notch = limitedDamping(Number(target.value), 0);
-            actions.remakeWith("damping", Number((notch * dampingUnit[state.scene]).toPrecision(3)));
+            const damping = target.valueAsNumber * dampingUnit[state.scene];
+            actions.remakeWith("damping", Number(damping.toPrecision(3)));
         };
-        $("wind").oninput = ({ target }) => actions.wind(limitedWind(Number(target.value), 0));
+        $("wind").oninput = ({ target }) => actions.wind(target.valueAsNumber);
         $("reference").onchange = (event) => actions.remakeWith("reference", event.target.checked);
         $("hash").onclick = async () => {
             actions.pause(true);
@@ -93,12 +72,14 @@ export class Controls {
         };
     }
 
-    /** Returns the value if it is valid, otherwise shows an error and returns the usual value. Scripts can set any. */
-    checked(what, value, good, usual) {
-        this.remark = good
-            ? ""
-            : `The ${what} ${value} is not offered. The page uses ${usual || "its default"}.`;
-        return good ? value : usual;
+    /** The nearest number of steps that the page offers, or the usual one if there is no number. */
+    limited(steps) {
+        const { min, max } = $("steps");
+        const nearest = Math.max(Number(min), Math.min(Number(max), steps));
+        const used = Number.isNaN(steps) ? presets[this.state.scene].steps : nearest;
+        this.remark =
+            steps === used ? "" : `The number of steps ${steps} is not offered. The page uses ${used}.`;
+        return used;
     }
 
     taken() {
@@ -111,7 +92,7 @@ export class Controls {
         const { state } = this;
         this.info = info;
         this.time = 0;
-        this.trouble = "";
+        this.trouble = this.remark = "";
         this.micros = [];
         const options = () => info.methods.map(({ name, taken }) => option(name, this.label(name), !taken));
         $("method").replaceChildren(...options());
