@@ -308,17 +308,8 @@ export class Controls {
 
     numbers() {
         const chosen = this.state.other ? [this.state.method, this.state.other] : [this.state.method];
-        const row = (title, values, bad = () => false) =>
-            element(
-                "tr",
-                {},
-                element("th", { scope: "row", textContent: title }),
-                ...values.map((value, i) =>
-                    element("td", { textContent: value, className: bad(i) ? "bad" : "" }),
-                ),
-            );
         const of = (method) => this.info.methods.find(({ name }) => name === method);
-        const unstable = (i) => !(this.stepNow() < this.stable(chosen[i]));
+        const unstable = (method) => !(this.stepNow() < this.stable(method));
         const head = chosen.map((method, i) =>
             element("th", {
                 scope: "col",
@@ -326,34 +317,22 @@ export class Controls {
                 className: "ab"[i],
             }),
         );
+        const computing = (i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–");
+        const error = (i) => (this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–");
         const rows = [
-            row(
-                "Step",
-                chosen.map(() => seconds(this.stepNow())),
-                unstable,
-            ),
-            row(
-                "Stable step",
-                chosen.map((method) => seconds(this.stable(method))),
-            ),
-            row(
-                "Evaluations a frame",
-                chosen.map((method) => `${of(method).forces * this.state.steps}`),
-            ),
-            row(
-                "Computing a frame",
-                chosen.map((_, i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–")),
-            ),
+            ["Step", () => seconds(this.stepNow())],
+            ["Stable step", (method) => seconds(this.stable(method))],
+            ["Evaluations a frame", (method) => `${of(method).forces * this.state.steps}`],
+            ["Computing a frame", (_, i) => computing(i)],
         ];
-        if (this.state.reference)
-            rows.push(
-                row(
-                    "Error now",
-                    chosen.map((_, i) =>
-                        this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–",
-                    ),
-                ),
-            );
+        if (this.state.reference) rows.push(["Error now", (_, i) => error(i)]);
+        const lines = rows.map(([title, text], line) => {
+            const cells = chosen.map((method, i) => {
+                const className = line === 0 && unstable(method) ? "bad" : "";
+                return element("td", { textContent: text(method, i), className });
+            });
+            return element("tr", {}, element("th", { scope: "row", textContent: title }), ...cells);
+        });
         const part = Math.min(1, this.stepNow() / this.stable(chosen[0]) / 2);
         const meter = element("meter", { min: 0, max: 1, low: 0.45, high: 0.5, optimum: 0, value: part });
         meter.title = "step over twice the stable step";
@@ -363,7 +342,7 @@ export class Controls {
                 "table",
                 {},
                 element("thead", {}, element("tr", {}, element("th"), ...head)),
-                element("tbody", {}, ...rows),
+                element("tbody", {}, ...lines),
             ),
             meter,
         );

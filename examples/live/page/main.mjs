@@ -40,9 +40,9 @@ const state = {
 };
 let touched = false; // since the scene began, so that no command reproduces it
 
-function touch(kind, how) {
+function touch(call, ...values) {
     touched = true;
-    physics.order(kind, how);
+    physics.touch(call, ...values);
     controls.command();
 }
 
@@ -122,20 +122,20 @@ const actions = {
         return physics.ask("step", 1);
     },
     reset: remake,
-    poke: (x, y, force, area) => touch("poke", { x, y, force, area }),
+    poke: (x, y, force, area) => touch("poke", x, y, force, area),
     wind(speed) {
         state.wind = speed;
-        touch("wind", { speed });
+        touch("wind", speed);
         controls.show();
     },
     rain(rate) {
         state.rain = rate;
-        touch("rain", { rate });
+        touch("rain", rate);
         controls.show();
     },
-    push: (x, z) => touch("push", { x, z }),
-    letGo: () => physics.order("letGo"),
-    ball: (x, y, height) => touch("ball", { x, y, height }),
+    push: (x, z) => touch("push", x, z),
+    letGo: () => physics.touch("letGo"),
+    ball: (x, y, height) => touch("dropBall", x, y, height),
     hash: () => physics.ask("hash"),
     /** The command that prints the hash of the first pane; "": there is none. */
     command() {
@@ -152,10 +152,10 @@ const hand = new Hand(
         poke: (x, y) => actions.poke(x, y, 4e4, (stage.info.length ** 2 / 64) * 0.7),
         push: actions.push,
         letGo: actions.letGo,
-        grab: (particle) => touch("grab", { particle }),
-        drag: (to) => physics.order("drag", { to }),
-        release: () => physics.order("release"),
-        snip: (particle) => touch("snip", { particle }),
+        grab: (particle) => touch("grab", particle),
+        drag: (to) => physics.touch("drag", ...to),
+        release: () => physics.touch("release"),
+        snip: (particle) => touch("snip", particle),
     },
     () => state.scene === "cloth" && state.scissors,
 );

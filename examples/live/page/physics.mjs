@@ -35,6 +35,11 @@ export class Physics {
         this.ready.then(() => worker.postMessage({ kind, ...more }));
     }
 
+    /** Calls a function of every lab. */
+    touch(call, ...values) {
+        this.order("touch", { call, values });
+    }
+
     /** Advances by a time [s]. Returns false if the last tick is still pending. */
     tick(elapsed) {
         if (this.underWay || this.failed) return false;

@@ -415,7 +415,7 @@ await test("it runs by itself, unless less motion is asked for; and is dark wher
 const frames = 600;
 const pokeAt = 37;
 for (const scene of Object.keys(presets).filter((each) => !presets[each].own)) {
-    await page.selectOption("#scene", scene);
+    await choose(page, scene);
     for (const method of await methodsOf(page))
         await test(`the bits of spring-scene: ${scene}, ${method}`, async () => {
             const { steps } = presets[scene];
