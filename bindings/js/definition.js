@@ -150,13 +150,9 @@ const fields = [
 ];
 const shapes = ["plane", "sphere", "capsule", "box"];
 // Fields that only some shapes have, and those that these shapes require.
-const own = {
-    normal: ["plane"],
-    radius: ["sphere", "capsule", "box"],
-    to: ["capsule"],
-    velocityTo: ["capsule"],
-};
-Object.assign(own, { half: ["box"], axes: ["box"] });
+const own = { plane: ["normal"], sphere: ["radius"], capsule: ["radius", "to", "velocityTo"] };
+own.box = ["radius", "half", "axes"];
+const special = new Set(Object.values(own).flat());
 const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
 const colliderBytes = 8 * 31;
 
@@ -169,8 +165,8 @@ export function lendColliders(take, colliders) {
         checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
-        for (const field of Object.keys(own))
-            if (collider[field] !== undefined && !own[field].includes(collider.shape))
+        for (const field of special)
+            if (collider[field] !== undefined && !own[collider.shape].includes(field))
                 throw new TypeError(`${name}: the option ${field} does not go with ${collider.shape}`);
         for (const field of required[collider.shape])
             if (collider[field] === undefined) throw new TypeError(`${name}.${field} is required`);
@@ -188,13 +184,8 @@ export function lendColliders(take, colliders) {
                 const normal = collider.normal ?? [0, 1, 0];
                 checkArray(`${name}.normal`, normal);
                 const size = Math.hypot(...normal);
-                check(
-                    size > 0 && size < Infinity,
-                    `${name}.normal`,
-                    "a direction",
-                    String(normal),
-                    RangeError,
-                );
+                const good = size > 0 && size < Infinity;
+                check(good, `${name}.normal`, "a direction", String(normal), RangeError);
                 for (let k = 0; k < 3; k++) numbers[6 + k] = (normal[k] ?? 0) / size;
             }
         }
