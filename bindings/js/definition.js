@@ -14,6 +14,14 @@ const names = [
 export const checkCount = (name, value, least = 0) =>
     check(Number.isSafeInteger(value) && value >= least, name, `an integer >= ${least}`, value);
 
+const checkUpTo = (name, value, most) =>
+    check(
+        value >= 0 && value <= most && Number.isInteger(value),
+        name,
+        `an integer from 0 to ${most}`,
+        value,
+    );
+
 export function checkKnown(options, known) {
     check(typeof options === "object" && options !== null, "definition", "an object", options, TypeError);
     for (const name of Object.keys(options))
@@ -237,13 +245,9 @@ export function define(take, definition) {
     const { colliders = 0, particleRadius = 0 } = definition;
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     checkArray("position", position);
-    check(
-        position.length > 0 && position.length % axes === 0,
-        "position.length",
-        `a multiple of ${axes}`,
-        position.length,
-    );
-    const particles = position.length / axes;
+    const { length } = position;
+    check(length > 0 && length % axes === 0, "position.length", `a multiple of ${axes}`, length);
+    const particles = length / axes;
     if (velocity) checkArray("velocity", velocity, position.length);
     if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
@@ -251,12 +255,7 @@ export function define(take, definition) {
     checkArray("gravity", gravity);
     checkArray("methods", methods);
     if (base) checkArray("base", base, 3 * particles);
-    check(
-        component >= 0 && component + axes <= 3 && Number.isInteger(component),
-        "component",
-        `an integer from 0 to ${3 - axes}`,
-        component,
-    );
+    checkUpTo("component", component, 3 - axes);
     check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
     let set = forceUsesVelocity ? 0 : forceIgnoresVelocity;
     for (const [name, flag] of Object.entries(flags)) if (definition[name]) set |= flag;
@@ -276,16 +275,10 @@ export function define(take, definition) {
         typeof mass === "number" ? mass : 0,
         optional(pins, "uint8", 1),
     );
-    def_links(linkCount, linkPointer);
     for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius })) checkFinite(name, value);
-    check(
-        colliders >= 0 && colliders <= 32 && Number.isInteger(colliders),
-        "colliders",
-        "an integer from 0 to 32",
-        colliders,
-    );
+    checkUpTo("colliders", colliders, 32);
     check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
-    library().def_contacts(colliders, particleRadius);
+    def_links(linkCount, linkPointer, colliders, particleRadius);
     const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);
     if (def_check() !== 0) refuse({ ...definition, mass }, axes);

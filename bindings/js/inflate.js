@@ -57,13 +57,7 @@ export function inflated(text) {
         let first = 0;
         let index = 0;
         for (let length = 1; ; length++) {
-            if (holds === 0) {
-                held = input[at++];
-                holds = 8;
-            }
-            code |= held & 1;
-            held >>>= 1;
-            holds--;
+            code |= take(1);
             const count = counts[length];
             if (code - count < first) return symbols[index + code - first];
             index += count;

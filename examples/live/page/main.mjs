@@ -23,20 +23,18 @@ const stage = newStage();
 const physics = new Physics(WORKER);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
+/** The settings of a new scene; size 0 is that of the preset. */
+function newScene(scene) {
+    const { steps, speed } = presets[scene];
+    return { scene, steps, speed, size: 0, damping: 0, heavy: false, wind: 0, rain: 0, scissors: false };
+}
+
 const state = {
-    scene: "water",
+    ...newScene("water"),
     method: "leapfrog",
     other: "",
-    steps: presets.water.steps,
-    speed: presets.water.speed,
     paused: still.matches,
-    size: 0, // 0: as in the preset
-    damping: 0,
-    heavy: false,
     reference: false,
-    wind: 0,
-    rain: 0,
-    scissors: false,
 };
 let touched = false; // since the scene began, so that no command reproduces it
 
@@ -77,18 +75,7 @@ function remake() {
 
 const actions = {
     scene(scene) {
-        const { steps, speed } = presets[scene];
-        Object.assign(state, {
-            scene,
-            steps,
-            speed,
-            size: 0,
-            damping: 0,
-            heavy: false,
-            wind: 0,
-            rain: 0,
-            scissors: false,
-        });
+        Object.assign(state, newScene(scene));
         remake();
     },
     method(pane, name) {

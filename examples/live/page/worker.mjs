@@ -54,7 +54,7 @@ function describe() {
         order,
         forces: forcesPerStep,
         taken: lab.takes(name),
-        stable: lab.takes(name) ? lab.stableStep(name) : NaN,
+        stable: lab.takes(name) ? lab.scene.stableStep(name) : NaN,
     }));
     return { run, particles, links, count, length, massRatio, ends, pinned, methods };
 }
@@ -111,7 +111,8 @@ function picture(pane) {
     const error = reference && !exploded ? lab.distance(reference.lab) : NaN;
     const tears = run.scene === "cloth" || run.scene === "curtain";
     const torn = tears ? lab.cut.slice() : new Uint8Array(0);
-    return { positions, torn, ball, method, time: lab.time, energy: lab.energies, exploded, micros, error };
+    const { time, scene } = lab;
+    return { positions, torn, ball, method, time, energy: scene.energy, exploded, micros, error };
 }
 
 function show(kind, more) {
@@ -139,7 +140,7 @@ const questions = {
     },
     hash: () => panes[0].lab.hash(),
     time: () => panes[0].lab.time,
-    energy: () => panes[0].lab.energies.total,
+    energy: () => panes[0].lab.scene.energy.total,
     position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
     difference: () => (reference ? panes[0].lab.distance(reference.lab) : NaN),
     sphere: () => panes[0].lab.sphere?.place ?? null,

@@ -52,17 +52,8 @@ export function pokeOf(scene, length) {
     return [0.4 * length, along, scene === "water" ? 5e4 : 2, (length * length) / 20];
 }
 
-const flags = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--enable-unsafe-swiftshader",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-];
+const flags = `--headless --no-sandbox --disable-gpu --enable-unsafe-swiftshader --disable-quic --no-first-run
+    --disable-background-networking --disable-component-update --disable-sync`.split(/\s+/);
 
 export function launch() {
     return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: flags });

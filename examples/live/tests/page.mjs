@@ -284,13 +284,23 @@ await test("side by side one explodes, and the other goes on", async () => {
 
 // --- windows and failures
 
-await test("every scene is drawn", async () => {
-    for (const scene of Object.keys(presets)) {
-        await choose(page, scene, "leapfrog");
-        await ask(page, "step", 5);
-        await page.waitForTimeout(150);
-        const many = await colours(page);
-        assert.ok(many > 1500, `${scene} has ${many} colours`);
+await test("every scene is drawn, also in a narrow window, which has no room to scroll sideways", async () => {
+    for (const [width, height, least] of [
+        [390, 844, 800],
+        [1280, 860, 1500],
+    ]) {
+        await page.setViewportSize({ width, height });
+        for (const scene of Object.keys(presets)) {
+            await choose(page, scene, "leapfrog");
+            await ask(page, "step", 5);
+            await page.waitForTimeout(150);
+            const wide = await page.evaluate(() => document.scrollingElement.scrollWidth);
+            assert.ok(wide <= width, `${scene} is ${wide} px wide`);
+            const many = await colours(page);
+            assert.ok(many > least, `${scene} has ${many} colours`);
+        }
+        const [css, drawn] = await page.$eval("#canvas", (canvas) => [canvas.clientWidth, canvas.width]);
+        assert.ok(drawn >= 0.5 * css && drawn <= 2 * css, `${drawn} pixels for ${css}`);
     }
 });
 await test("a lost context comes back", async () => {
@@ -311,19 +321,6 @@ await test("a lost context comes back", async () => {
     await page.waitForTimeout(150);
     const many = await colours(page);
     assert.ok(many > 1500 && blank < many / 2, `${blank} colours without, ${many} with a context`);
-});
-await test("a narrow window has no room to scroll sideways, and a picture", async () => {
-    await page.setViewportSize({ width: 390, height: 844 });
-    for (const scene of Object.keys(presets)) {
-        await choose(page, scene, "leapfrog");
-        await page.waitForTimeout(150);
-        const width = await page.evaluate(() => document.scrollingElement.scrollWidth);
-        assert.ok(width <= 390, `${scene} is ${width} px wide`);
-        assert.ok((await colours(page)) > 800, scene);
-    }
-    const [css, drawn] = await page.$eval("#canvas", (canvas) => [canvas.clientWidth, canvas.width]);
-    assert.ok(drawn >= 0.5 * css && drawn <= 2 * css, `${drawn} pixels for ${css}`);
-    await page.setViewportSize({ width: 1280, height: 860 });
 });
 await test("fingers poke and pull", async () => {
     const phone = await open(browser, url, {
