@@ -132,7 +132,6 @@ const wanted = {
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
     particleRadius: "a finite number >= 0",
-    colliders: "a number of colliders up to 32",
     position: "a finite number",
     velocity: "a finite number",
     mass: "a finite number > 0 with a finite reciprocal",

@@ -255,16 +255,10 @@ export class Controls {
         this.micros = panes.map((pane) => pane.micros);
         const exploded = panes.map((pane) => pane.exploded !== null);
         const time = Math.max(...panes.map((pane) => pane.time));
-        this.energy.add(
-            time,
-            panes.map((pane) => (pane.exploded ? NaN : pane.energy.total)),
-            exploded,
-        );
-        this.error.add(
-            time,
-            panes.map((pane) => pane.error),
-            exploded,
-        );
+        const energies = panes.map((pane) => (pane.exploded ? NaN : pane.energy.total));
+        const errors = panes.map((pane) => pane.error);
+        this.energy.add(time, energies, exploded);
+        this.error.add(time, errors, exploded);
         panes.forEach(({ exploded: how, method }, i) => {
             const { boom, words } = this.panes[i];
             if (how && boom.hidden) {
@@ -273,12 +267,8 @@ export class Controls {
                     this.stepNow() < stable
                         ? ""
                         : ` Its step of ${seconds(this.stepNow())} is not below the stable step, ${seconds(stable)}.`;
-                words.replaceChildren(
-                    element("strong", {
-                        textContent: `${this.label(method)} exploded after ${how.time.toFixed(2)} s.`,
-                    }),
-                    why,
-                );
+                const textContent = `${this.label(method)} exploded after ${how.time.toFixed(2)} s.`;
+                words.replaceChildren(element("strong", { textContent }), why);
             }
             boom.hidden = !how;
         });
@@ -310,13 +300,10 @@ export class Controls {
         const chosen = this.state.other ? [this.state.method, this.state.other] : [this.state.method];
         const of = (method) => this.info.methods.find(({ name }) => name === method);
         const unstable = (method) => !(this.stepNow() < this.stable(method));
-        const head = chosen.map((method, i) =>
-            element("th", {
-                scope: "col",
-                textContent: chosen.length > 1 ? this.label(method) : "",
-                className: "ab"[i],
-            }),
-        );
+        const head = chosen.map((method, i) => {
+            const textContent = chosen.length > 1 ? this.label(method) : "";
+            return element("th", { scope: "col", textContent, className: "ab"[i] });
+        });
         const computing = (i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–");
         const error = (i) => (this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–");
         const rows = [

@@ -27,10 +27,10 @@ function takes(definition, method) {
 }
 
 export class Lab {
-    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene are optional. */
+    /** A run is {scene, size, damping, drag, mass, endMass, stiffness}; all except the scene are optional. */
     constructor(run) {
         if (methodTable.size === 0) listMethods();
-        const asked = { ...run, calm: undefined, size: run.size || undefined };
+        const asked = { ...run, size: run.size || undefined };
         this.preset = run.scene === "curtain" ? curtain(grid, asked) : preset(grid, asked);
         const { definition, count, settings } = this.preset;
         this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
@@ -51,7 +51,7 @@ export class Lab {
         this.random = random(1);
         this.now = this.xyz();
         this.before = this.now;
-        if (run.scene === "water" && !run.calm) this.pushes.pokeWater();
+        if (run.scene === "water") this.pushes.pokeWater();
         this.feel();
     }
 
