@@ -14,13 +14,10 @@ const names = [
 export const checkCount = (name, value, least = 0) =>
     check(Number.isSafeInteger(value) && value >= least, name, `an integer >= ${least}`, value);
 
-const checkUpTo = (name, value, most) =>
-    check(
-        value >= 0 && value <= most && Number.isInteger(value),
-        name,
-        `an integer from 0 to ${most}`,
-        value,
-    );
+function checkUpTo(name, value, most) {
+    const good = value >= 0 && value <= most && Number.isInteger(value);
+    check(good, name, `an integer from 0 to ${most}`, value);
+}
 
 export function checkKnown(options, known) {
     check(typeof options === "object" && options !== null, "definition", "an object", options, TypeError);

@@ -306,10 +306,8 @@ await test("every scene is drawn, also in a narrow window, which has no room to 
 await test("a lost context comes back", async () => {
     await choose(page, "water", "leapfrog");
     await page.evaluate(() => {
-        window.loser = document
-            .getElementById("canvas")
-            .getContext("webgl2")
-            .getExtension("WEBGL_lose_context");
+        const context = document.getElementById("canvas").getContext("webgl2");
+        window.loser = context.getExtension("WEBGL_lose_context");
         window.loser.loseContext();
     });
     await page.waitForTimeout(200);
@@ -323,11 +321,8 @@ await test("a lost context comes back", async () => {
     assert.ok(many > 1500 && blank < many / 2, `${blank} colours without, ${many} with a context`);
 });
 await test("fingers poke and pull", async () => {
-    const phone = await open(browser, url, {
-        viewport: { width: 390, height: 844 },
-        hasTouch: true,
-        isMobile: true,
-    });
+    const how = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+    const phone = await open(browser, url, how);
     const box = await phone.locator("#canvas").boundingBox();
     await begin(phone);
     const calm = await energyAfter(phone, 20);
@@ -393,10 +388,8 @@ await test("it runs by itself, unless less motion is asked for; and is dark wher
     const run = await open(browser, url, { colorScheme: "dark" });
     await until("it runs", async () => (await ask(run, "time")) > 0.01);
     const back = await run.evaluate(() => getComputedStyle(document.body).backgroundColor);
-    assert.ok(
-        back.match(/\d+/g).every((part) => part < 60),
-        back,
-    );
+    const dark = back.match(/\d+/g).every((part) => part < 60);
+    assert.ok(dark, back);
     await run.context().close();
     const still = await open(browser, url, { reducedMotion: "reduce" });
     await still.waitForTimeout(500);
@@ -448,14 +441,8 @@ await test("the bits of spring-scene: damped links, a poke while it runs", async
     const poke = ["--poke", [await ask(page, "time"), ...pokeOf("jelly", 0.7)].join(",")];
     await ask(page, "poke", ...pokeOf("jelly", 0.7));
     await ask(page, "step", 30);
-    const wanted = await native(
-        tool,
-        { scene: "jelly", damping: 0.03 },
-        "leapfrog",
-        presets.jelly.steps,
-        1,
-        poke,
-    );
+    const run = { scene: "jelly", damping: 0.03 };
+    const wanted = await native(tool, run, "leapfrog", presets.jelly.steps, 1, poke);
     assert.equal(await ask(page, "hash"), wanted);
 });
 await test("the command that the page shows, with other settings", async () => {
