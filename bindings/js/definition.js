@@ -14,6 +14,11 @@ const names = [
 export const checkCount = (name, value, least = 0) =>
     check(Number.isSafeInteger(value) && value >= least, name, `an integer >= ${least}`, value);
 
+function checkUpTo(name, value, most) {
+    const good = value >= 0 && value <= most && Number.isInteger(value);
+    check(good, name, `an integer from 0 to ${most}`, value);
+}
+
 export function checkKnown(options, known) {
     check(typeof options === "object" && options !== null, "definition", "an object", options, TypeError);
     for (const name of Object.keys(options))
@@ -124,7 +129,6 @@ const wanted = {
     drag: "a finite number >= 0, also when it is divided by a mass",
     maxSpeed: "a finite number >= 0",
     particleRadius: "a finite number >= 0",
-    colliders: "a number of colliders up to 32",
     position: "a finite number",
     velocity: "a finite number",
     mass: "a finite number > 0 with a finite reciprocal",
@@ -150,13 +154,9 @@ const fields = [
 ];
 const shapes = ["plane", "sphere", "capsule", "box"];
 // Fields that only some shapes have, and those that these shapes require.
-const own = {
-    normal: ["plane"],
-    radius: ["sphere", "capsule", "box"],
-    to: ["capsule"],
-    velocityTo: ["capsule"],
-};
-Object.assign(own, { half: ["box"], axes: ["box"] });
+const own = { plane: ["normal"], sphere: ["radius"], capsule: ["radius", "to", "velocityTo"] };
+own.box = ["radius", "half", "axes"];
+const special = new Set(Object.values(own).flat());
 const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
 const colliderBytes = 8 * 31;
 
@@ -169,8 +169,8 @@ export function lendColliders(take, colliders) {
         checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
-        for (const field of Object.keys(own))
-            if (collider[field] !== undefined && !own[field].includes(collider.shape))
+        for (const field of special)
+            if (collider[field] !== undefined && !own[collider.shape].includes(field))
                 throw new TypeError(`${name}: the option ${field} does not go with ${collider.shape}`);
         for (const field of required[collider.shape])
             if (collider[field] === undefined) throw new TypeError(`${name}.${field} is required`);
@@ -188,13 +188,8 @@ export function lendColliders(take, colliders) {
                 const normal = collider.normal ?? [0, 1, 0];
                 checkArray(`${name}.normal`, normal);
                 const size = Math.hypot(...normal);
-                check(
-                    size > 0 && size < Infinity,
-                    `${name}.normal`,
-                    "a direction",
-                    String(normal),
-                    RangeError,
-                );
+                const good = size > 0 && size < Infinity;
+                check(good, `${name}.normal`, "a direction", String(normal), RangeError);
                 for (let k = 0; k < 3; k++) numbers[6 + k] = (normal[k] ?? 0) / size;
             }
         }
@@ -246,13 +241,9 @@ export function define(take, definition) {
     const { colliders = 0, particleRadius = 0 } = definition;
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     checkArray("position", position);
-    check(
-        position.length > 0 && position.length % axes === 0,
-        "position.length",
-        `a multiple of ${axes}`,
-        position.length,
-    );
-    const particles = position.length / axes;
+    const { length } = position;
+    check(length > 0 && length % axes === 0, "position.length", `a multiple of ${axes}`, length);
+    const particles = length / axes;
     if (velocity) checkArray("velocity", velocity, position.length);
     if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
@@ -260,12 +251,7 @@ export function define(take, definition) {
     checkArray("gravity", gravity);
     checkArray("methods", methods);
     if (base) checkArray("base", base, 3 * particles);
-    check(
-        component >= 0 && component + axes <= 3 && Number.isInteger(component),
-        "component",
-        `an integer from 0 to ${3 - axes}`,
-        component,
-    );
+    checkUpTo("component", component, 3 - axes);
     check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
     let set = forceUsesVelocity ? 0 : forceIgnoresVelocity;
     for (const [name, flag] of Object.entries(flags)) if (definition[name]) set |= flag;
@@ -285,16 +271,10 @@ export function define(take, definition) {
         typeof mass === "number" ? mass : 0,
         optional(pins, "uint8", 1),
     );
-    def_links(linkCount, linkPointer);
     for (const [name, value] of Object.entries({ drag, maxSpeed, particleRadius })) checkFinite(name, value);
-    check(
-        colliders >= 0 && colliders <= 32 && Number.isInteger(colliders),
-        "colliders",
-        "an integer from 0 to 32",
-        colliders,
-    );
+    checkUpTo("colliders", colliders, 32);
     check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
-    library().def_contacts(colliders, particleRadius);
+    def_links(linkCount, linkPointer, colliders, particleRadius);
     const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);
     if (def_check() !== 0) refuse({ ...definition, mass }, axes);

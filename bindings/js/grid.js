@@ -10,14 +10,9 @@ const faces = { firstX: 1, lastX: 2, firstY: 4, lastY: 8, firstZ: 16, lastZ: 32 
 function bitsOf(name, list, known) {
     checkArray(name, list);
     let bits = 0;
+    const words = `a list of ${Object.keys(known).join(", ")}`;
     for (const word of list) {
-        check(
-            Object.hasOwn(known, word),
-            name,
-            `a list of ${Object.keys(known).join(", ")}`,
-            word,
-            TypeError,
-        );
+        check(Object.hasOwn(known, word), name, words, word, TypeError);
         bits |= known[word];
     }
     return bits;

@@ -57,13 +57,7 @@ export function inflated(text) {
         let first = 0;
         let index = 0;
         for (let length = 1; ; length++) {
-            if (holds === 0) {
-                held = input[at++];
-                holds = 8;
-            }
-            code |= held & 1;
-            held >>>= 1;
-            holds--;
+            code |= take(1);
             const count = counts[length];
             if (code - count < first) return symbols[index + code - first];
             index += count;
@@ -107,28 +101,4 @@ export function inflated(text) {
         }
     }
     return output;
-}
-
-/** What wasm/embed.mjs has written as changes of `from`. */
-export function applied(changes, from) {
-    const numbers = [];
-    let at = 0;
-    const next = () => {
-        let value = 0;
-        for (let scale = 1; ; scale *= 128) {
-            const byte = changes[at++];
-            value += (byte & 127) * scale;
-            if (byte < 128) return value % 2 ? -(value + 1) / 2 : value / 2;
-        }
-    };
-    do numbers.push([next(), next(), next()]);
-    while (numbers.at(-1)[1] > 0);
-    const output = [];
-    let last = 0;
-    for (const [fresh, length, shift] of numbers) {
-        for (let i = 0; i < fresh; i++) output.push(changes[at++]);
-        last += shift;
-        for (let i = 0; i < length; i++) output.push(from[last++]);
-    }
-    return Uint8Array.from(output);
 }

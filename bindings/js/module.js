@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: MIT
 // The one instance of the WebAssembly module, which all scenes share, and memory in it. Nothing is compiled before first use.
-import { scalar, simd } from "./binary.js";
-import { applied, inflated } from "./inflate.js";
-import { hasSimd } from "./simd.js";
+import { binary } from "./binary.js";
+import { inflated } from "./inflate.js";
 
 let calls; // exports of the instance
 let forceOf; // what the callback of the scene that is being called does
 
 const imports = { springstep: { force: (...pointers) => forceOf(...pointers) } };
 
-function bytes(withSimd = hasSimd()) {
-    const known = inflated(simd);
-    return withSimd ? known : applied(inflated(scalar), known);
+// A function that returns a SIMD vector.
+const probe = Uint8Array.of(
+    ...[0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15],
+    ...[253, 98, 11],
+);
+
+/** Whether the engine has SIMD for WebAssembly. */
+export const hasSimd = () => typeof WebAssembly === "object" && WebAssembly.validate(probe);
+
+const needed =
+    "springstep/scenes needs SIMD for WebAssembly: Chrome 91, Firefox 89, Safari 16.4, Node 16.4 or later";
+// Without any WebAssembly, as where pages are rendered on a server, only the first use fails.
+if (typeof WebAssembly === "object" && !hasSimd()) throw new Error(needed);
+
+function bytes() {
+    if (!hasSimd()) throw new Error(needed);
+    return inflated(binary);
 }
 
 function start(instance) {
@@ -21,13 +34,18 @@ function start(instance) {
 }
 
 /** Compiles in the background. */
-export async function ready(options = {}) {
-    if (!calls) start((await WebAssembly.instantiate(bytes(options.simd), imports)).instance);
+export async function ready() {
+    if (calls) return;
+    const code = bytes();
+    start((await WebAssembly.instantiate(code, imports)).instance);
 }
 
 /** The functions of the module. */
 export function library() {
-    if (!calls) start(new WebAssembly.Instance(new WebAssembly.Module(bytes()), imports));
+    if (!calls) {
+        const code = bytes();
+        start(new WebAssembly.Instance(new WebAssembly.Module(code), imports));
+    }
     return calls;
 }
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// <reference lib="esnext.disposable" />
 
-/**
- * Compiles the WebAssembly in the background. Without it, the first use compiles and waits. `simd` chooses the version, by
- * default that with SIMD if the engine has it; results are the same.
- */
-export declare function ready(options?: { simd?: boolean }): Promise<void>;
+/** Compiles the WebAssembly in the background. Without it, the first use compiles and waits. */
+export declare function ready(): Promise<void>;
 
-/** Whether the engine has SIMD for WebAssembly. Compiles nothing. */
+/** Whether the engine has SIMD for WebAssembly, which scenes require. Compiles nothing. */
 export declare function hasSimd(): boolean;
 
 export type Method = "euler" | "symplectic-euler" | "leapfrog" | "rk4" | "rkn8" | "srkn6";

@@ -17,8 +17,7 @@ import { check, checkFinite, isNumber } from "./options.js";
 
 export { methods } from "./definition.js";
 export { components, grid, soften } from "./grid.js";
-export { ready } from "./module.js";
-export { hasSimd } from "./simd.js";
+export { hasSimd, ready } from "./module.js";
 
 const quantities = ["position", "velocity", "force"];
 const notFinite = 2;
@@ -26,6 +25,10 @@ const disabled = 7;
 const outOfRange = 5;
 const unsupported = 6;
 const unstable = 12;
+const stepFailures = {
+    [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
+    [unstable]: ["a particle would be faster than maxSpeed", "SPRING_EUNSTABLE"],
+};
 
 const lost = new FinalizationRegistry((pointer) => library().scene_free(pointer));
 const snapshots = new WeakMap(); // of a snapshot: { scene, bytes, force }
@@ -90,12 +93,8 @@ export class Scene {
         if (typeof options === "number") options = { mostSteps: options };
         checkKnown(options, ["mostSteps", "move"]);
         const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
-        check(
-            Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32,
-            "mostSteps",
-            "an integer >= 1 and < 2^32",
-            mostSteps,
-        );
+        const few = Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32;
+        check(few, "mostSteps", "an integer >= 1 and < 2^32", mostSteps);
         check(move === null || typeof move === "function", "move", "a function or null", move, TypeError);
         if (this.#moving) throw new TypeError("move must not call frame() of its own scene");
         const seconds = Math.max(elapsed, 0); // the time of a frame may be earlier than that of the event that starts it
@@ -448,17 +447,10 @@ export class Scene {
                     ? "the method euler does not support colliders"
                     : `the method ${method} requires forces that do not depend on velocities`,
             );
-        if (dt === undefined) throw new RangeError("a position or velocity would not be finite");
-        const what =
-            status === unstable
-                ? "a particle would be faster than maxSpeed"
-                : status === notFinite
-                  ? "a position or velocity would not be finite"
-                  : "the step is not valid";
+        if (dt === undefined) throw new RangeError(stepFailures[notFinite][0]);
+        const [what, code] = stepFailures[status] ?? ["the step is not valid"];
         const stable = this.stableStep(method);
         const error = new RangeError(`${what}; dt is ${dt}, the stable step of ${method} is ${stable}`);
-        if (status === unstable) error.code = "SPRING_EUNSTABLE";
-        if (status === notFinite) error.code = "SPRING_ENONFINITE";
-        throw error;
+        throw code ? Object.assign(error, { code }) : error;
     }
 }

@@ -357,4 +357,15 @@ holds("no library: it says where it was looked for", function()
   assert(said:find("The springstep library is missing", 1, true) and said:find("/nonexistent/library.so", 1, true), said)
 end)
 
+holds("in LÖVE the library may be in a folder of the game", function()
+  local file = package.searchpath("springstep", package.path)
+  local function folder(path)
+    return function() return path end
+  end
+  love = {filesystem = {getSource = folder "/nonexistent", getSourceBaseDirectory = folder(file:match("^(.*)/"))}}
+  local again = loadstring(io.open(file):read("*a"), "=without a folder of its own")()
+  love = nil
+  again.must(again.SPRING_OK)
+end)
+
 print("1.." .. count)

@@ -33,7 +33,9 @@ function bundled(entry, format, values = {}) {
     );
 }
 
-const script = bundled("main.mjs", "esm", { WORKER: JSON.stringify(bundled("worker.mjs", "iife")) });
+const presets = readFileSync(join(page, "../../../tools/scenes/presets.c"), "utf8");
+const worker = bundled("worker.mjs", "iife", { PRESETS: JSON.stringify(presets) });
+const script = bundled("main.mjs", "esm", { WORKER: JSON.stringify(worker) });
 const styles = [join(page, "../node_modules/uplot/dist/uPlot.min.css"), join(page, "style.css")];
 // Escapes text that would end the element or the template. Replaced by functions, since strings would interpret "$&".
 const safe = script.replaceAll("</script", "<\\/script");

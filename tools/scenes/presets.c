@@ -10,6 +10,7 @@ const char *const preset_names[] = {"rope", "cloth", "jelly", "chain", "water", 
 
 enum { all_families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND };
 
+/* presets.mjs reads the rows of these two tables. */
 static const preset_settings defaults[] = {
     /* size, axes, families, length [m], mass, end mass [kg], stiffness [N/m], damping, drag [N s/m], gravity,
        stretch */
@@ -18,6 +19,18 @@ static const preset_settings defaults[] = {
     [PRESET_JELLY] = {PRESET_JELLY, 8, 3, all_families, 0.7, 0.01, NAN, 40, 0, 0.005, 9.81, 1},
     [PRESET_CHAIN] = {PRESET_CHAIN, 50, 1, SPRING_GRID_STRUCTURAL, 5, 0.1, NAN, 100, 0, 0, NAN, 1},
     [PRESET_WATER] = {PRESET_WATER, 25, 1, all_families, 4, 1, NAN, 25000, 0, 0.5, NAN, 0},
+};
+
+/* Two corners of the cloth are pinned later. */
+static const struct {
+    uint32_t dimensions, ends; /* ends: fixed particles along an edge that the size does not count */
+    uint32_t pinned;
+} shapes[] = {
+    [PRESET_ROPE] = {1, 0, SPRING_GRID_FIRST_X},
+    [PRESET_CLOTH] = {2, 0, 0},
+    [PRESET_JELLY] = {3, 0, SPRING_GRID_FIRST_Z},
+    [PRESET_CHAIN] = {1, 2, SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X},
+    [PRESET_WATER] = {2, 0, SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y},
 };
 
 preset_settings preset_defaults(preset_kind kind)
@@ -62,39 +75,20 @@ preset_settings preset_chosen(const preset_settings *chosen)
 
 static spring_grid grid_of(const preset_settings *s)
 {
-    const uint32_t n = (uint32_t)s->size;
-    const uint32_t all_edges = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X | SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y;
+    const uint32_t n = (uint32_t)s->size + shapes[s->kind].ends;
     spring_grid g = {.axes = (uint32_t)s->axes,
                      .stiffness = s->stiffness,
                      .damping = s->damping,
                      .stretch = s->stretch,
                      .spacing = s->length / (n - 1),
-                     .families = s->families};
-    switch (s->kind) {
-    case PRESET_ROPE:
-        g.count[0] = n;
-        g.pinned = SPRING_GRID_FIRST_X;
-        break;
-    case PRESET_CLOTH: /* two of its corners are pinned later */
-        g.count[0] = g.count[1] = n;
-        break;
-    case PRESET_JELLY:
-        g.count[0] = g.count[1] = g.count[2] = n;
-        g.pinned = SPRING_GRID_FIRST_Z;
-        break;
-    case PRESET_CHAIN:
-        g.count[0] = n + 2;
-        g.spacing = s->length / (n + 1);
-        g.pinned = SPRING_GRID_FIRST_X | SPRING_GRID_LAST_X;
-        break;
-    default:
-        g.count[0] = g.count[1] = n;
-        g.pinned = all_edges;
-        if (s->axes == 1) {
-            g.height = true;
-            g.stretch = 1;
-            g.stiffness *= s->stretch > 0 ? 1 - 1 / s->stretch : 1;
-        }
+                     .families = s->families,
+                     .pinned = shapes[s->kind].pinned};
+    for (uint32_t i = 0; i < shapes[s->kind].dimensions; i++)
+        g.count[i] = n;
+    if (s->kind == PRESET_WATER && s->axes == 1) {
+        g.height = true;
+        g.stretch = 1;
+        g.stiffness *= s->stretch > 0 ? 1 - 1 / s->stretch : 1;
     }
     return g;
 }

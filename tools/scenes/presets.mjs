@@ -2,67 +2,59 @@
 // The scenes of presets.h and the disturbances of disturbances.h in JavaScript, with springstep/scenes. Results are
 // bit-identical to spring-scene; tests/js and tools/live --test check this.
 
-/** The defaults of each scene, as in presets.c; null: the scene has no such parameter. */
-const defaults = {
-    rope: {
-        size: 20,
-        axes: 2,
-        length: 2,
-        mass: 0.05,
-        endMass: 0.05,
-        stiffness: 2000,
-        drag: 0.01,
-        gravity: 9.81,
-    },
-    cloth: { size: 25, axes: 3, length: 2, mass: 0.01, stiffness: 500, drag: 0.01, gravity: 9.81 },
-    jelly: { size: 8, axes: 3, length: 0.7, mass: 0.01, stiffness: 40, drag: 0.005, gravity: 9.81 },
-    chain: { size: 50, axes: 1, length: 5, mass: 0.1, stiffness: 100, drag: 0, gravity: 0 },
-    water: { size: 25, axes: 1, length: 4, mass: 1, stiffness: 25000, drag: 0.5, gravity: 0 },
-};
+const usual = new Map(); // defaults of each scene; undefined: the scene has no such parameter
+const fields = [
+    "kind",
+    "size",
+    "axes",
+    "families",
+    "length",
+    "mass",
+    "endMass",
+    "stiffness",
+    "damping",
+    "drag",
+    "gravity",
+];
+const shapes = new Map(); // { dimensions, ends, pinned } of each scene
 
-export const presetNames = Object.keys(defaults);
-
-const given = (values) =>
-    Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));
-
-/** {scene, size, damping, drag, mass, endMass, stiffness}: all except the scene are optional. */
-export function chosen(settings) {
-    if (!Object.hasOwn(defaults, settings.scene)) throw new RangeError(`no scene "${settings.scene}"`);
-    const usual = { damping: 0, ...defaults[settings.scene] };
-    const all = { ...usual, ...given(settings) };
-    if (settings.scene === "rope") all.endMass = settings.endMass ?? settings.mass ?? usual.endMass;
-    return all;
+/** Reads the tables in the text of presets.c, which has to come first. Returns the names of the scenes. */
+export function readPresets(source) {
+    for (const [, kind, row] of source.matchAll(/ \[PRESET_(\w+)\] = \{(.*)\},/g)) {
+        const scene = kind.toLowerCase();
+        const words = row.split(", ");
+        if (words.length > fields.length) {
+            const numbers = fields.map((field, i) => [field, Number(words[i])]);
+            const all = Object.fromEntries(numbers.filter(([, number]) => !Number.isNaN(number)));
+            all.families = words[3] === "all_families" ? ["structural", "shear", "bend"] : ["structural"];
+            usual.set(scene, all);
+        } else {
+            const faces = Array.from(
+                row.matchAll(/(FIRST|LAST)_(.)/g),
+                ([, end, axis]) => end.toLowerCase() + axis,
+            );
+            shapes.set(scene, { dimensions: Number(words[0]), ends: Number(words[1]), pinned: faces });
+        }
+    }
+    if (usual.size === 0 || usual.size !== shapes.size)
+        throw new Error("presets.c has no tables of this form");
+    return [...usual.keys()];
 }
 
-/** [definition for Scene, particles along x y z, positions at the start as x y z with z up, settings] of a scene. */
+/** [definition for Scene, particles along x y z, positions at the start as x y z with z up, settings] of a scene. Settings
+    are {scene, size, damping, drag, mass, endMass, stiffness}; all except the scene are optional. */
 export function preset(grid, settings) {
-    const all = chosen(settings);
-    const { scene, size: n, axes, length, mass, stiffness, damping, drag, gravity } = all;
-    const families = ["structural", "shear", "bend"];
-    const spacing = scene === "chain" ? length / (n + 1) : length / (n - 1);
-    const common = { axes, spacing, stiffness, damping };
-    const made = grid(
-        {
-            rope: () => ({ ...common, count: [n], pinned: ["firstX"] }),
-            cloth: () => ({ ...common, count: [n, n], families }),
-            jelly: () => ({ ...common, count: [n, n, n], families, pinned: ["firstZ"] }),
-            chain: () => ({ ...common, count: [n + 2], pinned: ["firstX", "lastX"] }),
-            water: () => ({
-                ...common,
-                count: [n, n],
-                height: true,
-                families,
-                pinned: ["firstX", "lastX", "firstY", "lastY"],
-            }),
-        }[scene](),
-    );
-    const count = {
-        rope: [n, 1, 1],
-        cloth: [n, n, 1],
-        jelly: [n, n, n],
-        chain: [n + 2, 1, 1],
-        water: [n, n, 1],
-    }[scene];
+    if (!usual.has(settings.scene)) throw new RangeError(`no scene "${settings.scene}"`);
+    const all = { ...usual.get(settings.scene) };
+    for (const [name, value] of Object.entries(settings)) if (value !== undefined) all[name] = value;
+    if (settings.scene === "rope") all.endMass = settings.endMass ?? settings.mass ?? all.endMass;
+    const { scene, axes, length, families, mass, stiffness, damping, drag, gravity = 0 } = all;
+    const { dimensions, ends, pinned } = shapes.get(scene);
+    const n = all.size + ends;
+    const spacing = length / (n - 1);
+    const count = Array.from({ length: 3 }, (_, i) => (i < dimensions ? n : 1));
+    const height = scene === "water";
+    const made = grid({ axes, count, spacing, families, stiffness, damping, pinned, height });
     const start = new Float64Array(3 * count[0] * count[1] * count[2]);
     for (let k = 0, at = 0; k < count[2]; k++)
         for (let j = 0; j < count[1]; j++)

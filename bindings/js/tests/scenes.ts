@@ -3,7 +3,7 @@
 import { components, grid, hasSimd, methods, ready, Scene, soften } from "springstep/scenes";
 import type { Collider, Force, GridDefinition, Links, SceneDefinition } from "springstep/scenes";
 
-await ready({ simd: hasSimd() });
+if (hasSimd()) await ready();
 const sheet: GridDefinition = {
     count: [9, 9],
     spacing: 0.1,

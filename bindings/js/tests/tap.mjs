@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Test points of the Test Anything Protocol.
+import assert from "node:assert/strict";
 
 let count = 0;
 
@@ -20,3 +21,12 @@ export function skip(name, reason) {
 export const note = (text) => console.log(`# ${text}`);
 
 export const done = () => console.log(`1..${count}`);
+
+/** Checks that `run` throws an error that reads `wanted`; "..." at its end stands for any text. */
+export function refused(run, wanted) {
+    const [start, open] = wanted.split("...");
+    assert.throws(
+        run,
+        (error) => assert.equal(open === "" ? `${error}`.slice(0, start.length) : `${error}`, start) ?? true,
+    );
+}

@@ -101,12 +101,6 @@ void def_begin(uint32_t axes, uint32_t flags, uint32_t methods, size_t particles
                              .pinned = pinned};
 }
 
-EXPORT(def_links) void def_links(size_t links, const spring_link *link)
-{
-    def.links = links;
-    def.link = link;
-}
-
 EXPORT(def_forces)
 void def_forces(double x, double y, double z, double drag, double max_speed, bool called)
 {
@@ -118,8 +112,11 @@ void def_forces(double x, double y, double z, double drag, double max_speed, boo
     def.force = called ? force_of_javascript : NULL;
 }
 
-EXPORT(def_contacts) void def_contacts(uint32_t colliders, double particle_radius)
+EXPORT(def_links)
+void def_links(size_t links, const spring_link *link, uint32_t colliders, double particle_radius)
 {
+    def.links = links;
+    def.link = link;
     def.colliders = colliders;
     def.particle_radius = particle_radius;
 }

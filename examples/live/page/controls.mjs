@@ -45,46 +45,25 @@ export class Controls {
 
     connect() {
         const { state, actions } = this;
-        const offered = (what, value, values, usual) =>
-            this.checked(what, value, values.includes(value), usual);
-        const speeds = Array.from($("speed").options, ({ value }) => Number(value));
-        const limiter = (id, what) => {
-            const [least, most] = [Number($(id).min), Number($(id).max)]; // the range in the page
-            return (value, usual) => {
-                const nearest = Math.max(least, Math.min(most, value));
-                return this.checked(what, value, value === nearest, Number.isNaN(nearest) ? usual : nearest);
-            };
-        };
-        const limitedSteps = limiter("steps", "number of steps");
-        const limitedDamping = limiter("damping", "damping");
-        const limitedWind = limiter("wind", "wind");
-        $("scene").onchange = ({ target }) =>
-            actions.scene(offered("scene", target.value, Object.keys(presets), "water"));
-        $("method").onchange = ({ target }) =>
-            actions.method(0, offered("method", target.value, this.taken(), "leapfrog"));
-        $("other").onchange = ({ target }) =>
-            actions.method(1, offered("method", target.value, ["", ...this.taken()], ""));
+        $("scene").onchange = ({ target }) => actions.scene(target.value);
+        $("method").onchange = ({ target }) => actions.method(0, target.value);
+        $("other").onchange = ({ target }) => actions.method(1, target.value);
         $("pause").onclick = () => actions.pause();
         $("once").onclick = () => actions.once();
-        $("reset").onclick = () => {
-            this.remark = "";
-            actions.reset();
-        };
-        const steps = (n) => actions.steps(limitedSteps(Math.round(n), presets[state.scene].steps));
+        $("reset").onclick = () => actions.reset();
+        const steps = (n) => actions.steps(this.limited(Math.round(n)));
         $("steps").onchange = ({ target }) => steps(target.valueAsNumber);
         $("steps").oninput = ({ target }) =>
             target.validity.valid && target.value && steps(target.valueAsNumber);
         $("fewer").onclick = () => steps(state.steps - 1);
         $("more").onclick = () => steps(state.steps + 1);
-        $("speed").onchange = ({ target }) =>
-            actions.set("speed", offered("speed", Number(target.value), speeds, presets[state.scene].speed));
-        $("size").onchange = ({ target }) =>
-            actions.remakeWith("size", offered("size", Number(target.value), presets[state.scene].sizes, 0));
+        $("speed").onchange = ({ target }) => actions.set("speed", Number(target.value));
+        $("size").onchange = ({ target }) => actions.remakeWith("size", Number(target.value));
         $("damping").onchange = ({ target }) => {
-            const notch = limitedDamping(Number(target.value), 0);
-            actions.remakeWith("damping", Number((notch * dampingUnit[state.scene]).toPrecision(3)));
+            const damping = target.valueAsNumber * dampingUnit[state.scene];
+            actions.remakeWith("damping", Number(damping.toPrecision(3)));
         };
-        $("wind").oninput = ({ target }) => actions.wind(limitedWind(Number(target.value), 0));
+        $("wind").oninput = ({ target }) => actions.wind(target.valueAsNumber);
         $("reference").onchange = (event) => actions.remakeWith("reference", event.target.checked);
         $("hash").onclick = async () => {
             actions.pause(true);
@@ -93,12 +72,14 @@ export class Controls {
         };
     }
 
-    /** Returns the value if it is valid, otherwise shows an error and returns the usual value. Scripts can set any. */
-    checked(what, value, good, usual) {
-        this.remark = good
-            ? ""
-            : `The ${what} ${value} is not offered. The page uses ${usual || "its default"}.`;
-        return good ? value : usual;
+    /** The nearest number of steps that the page offers, or the usual one if there is no number. */
+    limited(steps) {
+        const { min, max } = $("steps");
+        const nearest = Math.max(Number(min), Math.min(Number(max), steps));
+        const used = Number.isNaN(steps) ? presets[this.state.scene].steps : nearest;
+        this.remark =
+            steps === used ? "" : `The number of steps ${steps} is not offered. The page uses ${used}.`;
+        return used;
     }
 
     taken() {
@@ -111,7 +92,7 @@ export class Controls {
         const { state } = this;
         this.info = info;
         this.time = 0;
-        this.trouble = "";
+        this.trouble = this.remark = "";
         this.micros = [];
         const options = () => info.methods.map(({ name, taken }) => option(name, this.label(name), !taken));
         $("method").replaceChildren(...options());
@@ -274,16 +255,10 @@ export class Controls {
         this.micros = panes.map((pane) => pane.micros);
         const exploded = panes.map((pane) => pane.exploded !== null);
         const time = Math.max(...panes.map((pane) => pane.time));
-        this.energy.add(
-            time,
-            panes.map((pane) => (pane.exploded ? NaN : pane.energy.total)),
-            exploded,
-        );
-        this.error.add(
-            time,
-            panes.map((pane) => pane.error),
-            exploded,
-        );
+        const energies = panes.map((pane) => (pane.exploded ? NaN : pane.energy.total));
+        const errors = panes.map((pane) => pane.error);
+        this.energy.add(time, energies, exploded);
+        this.error.add(time, errors, exploded);
         panes.forEach(({ exploded: how, method }, i) => {
             const { boom, words } = this.panes[i];
             if (how && boom.hidden) {
@@ -292,12 +267,8 @@ export class Controls {
                     this.stepNow() < stable
                         ? ""
                         : ` Its step of ${seconds(this.stepNow())} is not below the stable step, ${seconds(stable)}.`;
-                words.replaceChildren(
-                    element("strong", {
-                        textContent: `${this.label(method)} exploded after ${how.time.toFixed(2)} s.`,
-                    }),
-                    why,
-                );
+                const textContent = `${this.label(method)} exploded after ${how.time.toFixed(2)} s.`;
+                words.replaceChildren(element("strong", { textContent }), why);
             }
             boom.hidden = !how;
         });
@@ -327,52 +298,28 @@ export class Controls {
 
     numbers() {
         const chosen = this.state.other ? [this.state.method, this.state.other] : [this.state.method];
-        const row = (title, values, bad = () => false) =>
-            element(
-                "tr",
-                {},
-                element("th", { scope: "row", textContent: title }),
-                ...values.map((value, i) =>
-                    element("td", { textContent: value, className: bad(i) ? "bad" : "" }),
-                ),
-            );
         const of = (method) => this.info.methods.find(({ name }) => name === method);
-        const unstable = (i) => !(this.stepNow() < this.stable(chosen[i]));
-        const head = chosen.map((method, i) =>
-            element("th", {
-                scope: "col",
-                textContent: chosen.length > 1 ? this.label(method) : "",
-                className: "ab"[i],
-            }),
-        );
+        const unstable = (method) => !(this.stepNow() < this.stable(method));
+        const head = chosen.map((method, i) => {
+            const textContent = chosen.length > 1 ? this.label(method) : "";
+            return element("th", { scope: "col", textContent, className: "ab"[i] });
+        });
+        const computing = (i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–");
+        const error = (i) => (this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–");
         const rows = [
-            row(
-                "Step",
-                chosen.map(() => seconds(this.stepNow())),
-                unstable,
-            ),
-            row(
-                "Stable step",
-                chosen.map((method) => seconds(this.stable(method))),
-            ),
-            row(
-                "Evaluations a frame",
-                chosen.map((method) => `${of(method).forces * this.state.steps}`),
-            ),
-            row(
-                "Computing a frame",
-                chosen.map((_, i) => (this.micros[i] > 0 ? `${Math.round(this.micros[i])} µs` : "–")),
-            ),
+            ["Step", () => seconds(this.stepNow())],
+            ["Stable step", (method) => seconds(this.stable(method))],
+            ["Evaluations a frame", (method) => `${of(method).forces * this.state.steps}`],
+            ["Computing a frame", (_, i) => computing(i)],
         ];
-        if (this.state.reference)
-            rows.push(
-                row(
-                    "Error now",
-                    chosen.map((_, i) =>
-                        this.last?.[i]?.error >= 0 ? `${this.last[i].error.toExponential(1)} m` : "–",
-                    ),
-                ),
-            );
+        if (this.state.reference) rows.push(["Error now", (_, i) => error(i)]);
+        const lines = rows.map(([title, text], line) => {
+            const cells = chosen.map((method, i) => {
+                const className = line === 0 && unstable(method) ? "bad" : "";
+                return element("td", { textContent: text(method, i), className });
+            });
+            return element("tr", {}, element("th", { scope: "row", textContent: title }), ...cells);
+        });
         const part = Math.min(1, this.stepNow() / this.stable(chosen[0]) / 2);
         const meter = element("meter", { min: 0, max: 1, low: 0.45, high: 0.5, optimum: 0, value: part });
         meter.title = "step over twice the stable step";
@@ -382,7 +329,7 @@ export class Controls {
                 "table",
                 {},
                 element("thead", {}, element("tr", {}, element("th"), ...head)),
-                element("tbody", {}, ...rows),
+                element("tbody", {}, ...lines),
             ),
             meter,
         );

@@ -27,10 +27,10 @@ function takes(definition, method) {
 }
 
 export class Lab {
-    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, calm}; all except the scene are optional. */
+    /** A run is {scene, size, damping, drag, mass, endMass, stiffness}; all except the scene are optional. */
     constructor(run) {
         if (methodTable.size === 0) listMethods();
-        const asked = { ...run, calm: undefined, size: run.size || undefined };
+        const asked = { ...run, size: run.size || undefined };
         this.preset = run.scene === "curtain" ? curtain(grid, asked) : preset(grid, asked);
         const { definition, count, settings } = this.preset;
         this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
@@ -51,7 +51,7 @@ export class Lab {
         this.random = random(1);
         this.now = this.xyz();
         this.before = this.now;
-        if (run.scene === "water" && !run.calm) this.pushes.pokeWater();
+        if (run.scene === "water") this.pushes.pokeWater();
         this.feel();
     }
 
@@ -97,7 +97,7 @@ export class Lab {
             this.scene.advance(method, dt, n - 1);
             this.before = this.xyz();
             this.scene.advance(method, dt, 1);
-            if (Number.isFinite(this.energies.total)) return true;
+            if (Number.isFinite(this.scene.energy.total)) return true;
         } catch (error) {
             if (!error.code) throw error;
         }
@@ -148,28 +148,13 @@ export class Lab {
         return this.scene.time;
     }
 
-    get energies() {
-        return this.scene.energy;
-    }
-
     /** The largest distance of a particle from its start [m]. */
     get farthest() {
         const { start } = this.preset;
         let most = 0;
         for (let i = 0; i < start.length; i += 3)
-            most = Math.max(
-                most,
-                Math.hypot(
-                    this.now[i] - start[i],
-                    this.now[i + 1] - start[i + 1],
-                    this.now[i + 2] - start[i + 2],
-                ),
-            );
+            most = Math.max(most, Math.hypot(...[0, 1, 2].map((k) => this.now[i + k] - start[i + k])));
         return most;
-    }
-
-    stableStep(method) {
-        return this.scene.stableStep(method);
     }
 
     hash() {

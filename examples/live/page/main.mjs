@@ -23,26 +23,24 @@ const stage = newStage();
 const physics = new Physics(WORKER);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 
+/** The settings of a new scene; size 0 is that of the preset. */
+function newScene(scene) {
+    const { steps, speed } = presets[scene];
+    return { scene, steps, speed, size: 0, damping: 0, heavy: false, wind: 0, rain: 0, scissors: false };
+}
+
 const state = {
-    scene: "water",
+    ...newScene("water"),
     method: "leapfrog",
     other: "",
-    steps: presets.water.steps,
-    speed: presets.water.speed,
     paused: still.matches,
-    size: 0, // 0: as in the preset
-    damping: 0,
-    heavy: false,
     reference: false,
-    wind: 0,
-    rain: 0,
-    scissors: false,
 };
 let touched = false; // since the scene began, so that no command reproduces it
 
-function touch(kind, how) {
+function touch(call, ...values) {
     touched = true;
-    physics.order(kind, how);
+    physics.touch(call, ...values);
     controls.command();
 }
 
@@ -77,18 +75,7 @@ function remake() {
 
 const actions = {
     scene(scene) {
-        const { steps, speed } = presets[scene];
-        Object.assign(state, {
-            scene,
-            steps,
-            speed,
-            size: 0,
-            damping: 0,
-            heavy: false,
-            wind: 0,
-            rain: 0,
-            scissors: false,
-        });
+        Object.assign(state, newScene(scene));
         remake();
     },
     method(pane, name) {
@@ -122,20 +109,20 @@ const actions = {
         return physics.ask("step", 1);
     },
     reset: remake,
-    poke: (x, y, force, area) => touch("poke", { x, y, force, area }),
+    poke: (x, y, force, area) => touch("poke", x, y, force, area),
     wind(speed) {
         state.wind = speed;
-        touch("wind", { speed });
+        touch("wind", speed);
         controls.show();
     },
     rain(rate) {
         state.rain = rate;
-        touch("rain", { rate });
+        touch("rain", rate);
         controls.show();
     },
-    push: (x, z) => touch("push", { x, z }),
-    letGo: () => physics.order("letGo"),
-    ball: (x, y, height) => touch("ball", { x, y, height }),
+    push: (x, z) => touch("push", x, z),
+    letGo: () => physics.touch("letGo"),
+    ball: (x, y, height) => touch("dropBall", x, y, height),
     hash: () => physics.ask("hash"),
     /** The command that prints the hash of the first pane; "": there is none. */
     command() {
@@ -152,10 +139,10 @@ const hand = new Hand(
         poke: (x, y) => actions.poke(x, y, 4e4, (stage.info.length ** 2 / 64) * 0.7),
         push: actions.push,
         letGo: actions.letGo,
-        grab: (particle) => touch("grab", { particle }),
-        drag: (to) => physics.order("drag", { to }),
-        release: () => physics.order("release"),
-        snip: (particle) => touch("snip", { particle }),
+        grab: (particle) => touch("grab", particle),
+        drag: (to) => physics.touch("drag", ...to),
+        release: () => physics.touch("release"),
+        snip: (particle) => touch("snip", particle),
     },
     () => state.scene === "cloth" && state.scissors,
 );
@@ -173,30 +160,16 @@ physics.onframe = (frame) => {
     fresh = true;
 };
 
-// Times of the last frames [ms]: intervals between frames, and drawing only.
-const intervals = [];
-const drawings = [];
-
-function keep(list, value) {
-    list.push(value);
-    if (list.length > 600) list.shift();
-}
-
 let last = performance.now();
-let shown = last;
 let drawn = last;
 function animate(now) {
     requestAnimationFrame(animate);
-    keep(intervals, now - shown);
-    shown = now;
     if (state.paused) last = now;
     else if (physics.tick(((now - last) / 1000) * state.speed)) last = now;
     if (fresh) {
         if (!state.paused) stage.pace(now - drawn);
         drawn = now;
-        const start = performance.now();
         stage.draw();
-        keep(drawings, performance.now() - start);
         fresh = false;
     }
     controls.draw();
@@ -234,8 +207,6 @@ window.springstepLab = {
     sphere: () => physics.ask("sphere"),
     tornLinks: () => physics.ask("tornLinks"),
     command: () => actions.command(),
-    times: () => ({ intervals, drawings, micros: controls.micros, sharpness: stage.sharpness }),
-    simd: physics.simd,
 };
 
 remake();

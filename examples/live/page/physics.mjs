@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The interface of the page to the worker. Commands are sent when the worker is ready, one tick is pending at a time,
 // and questions return a Promise. After an exception in the worker, nothing is sent until start().
-import { hasSimd } from "springstep/scenes";
 
 export class Physics {
     /** source: source text of the worker */
     constructor(source) {
         this.source = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
-        this.simd = hasSimd();
         this.asked = 0;
         this.onmade = this.onframe = this.onfailed = () => {};
         this.start();
@@ -22,7 +20,7 @@ export class Physics {
         this.waiting = new Map();
         this.underWay = this.failed = false;
         this.ready = new Promise((resolve) => (this.isReady = resolve));
-        this.worker.postMessage({ kind: "start", simd: this.simd });
+        this.worker.postMessage({ kind: "start" });
     }
 
     fail(message) {
@@ -35,6 +33,11 @@ export class Physics {
     order(kind, more = {}) {
         const { worker } = this;
         this.ready.then(() => worker.postMessage({ kind, ...more }));
+    }
+
+    /** Calls a function of every lab. */
+    touch(call, ...values) {
+        this.order("touch", { call, values });
     }
 
     /** Advances by a time [s]. Returns false if the last tick is still pending. */

@@ -12,23 +12,14 @@ export const presets = {
 };
 
 /** A rope with an end 10^4 times as heavy as its other particles, which requires stiff links and many steps. */
-export const heavyEnd = { mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
+export const heavyEnd = { drag: 0, mass: 0.01, endMass: 100, stiffness: 2e5 };
 export const heavySteps = 150;
-
-const options = {
-    size: "--size",
-    damping: "--damping",
-    drag: "--drag",
-    mass: "--mass",
-    endMass: "--end-mass",
-    stiffness: "--stiffness",
-};
 
 export function commandOf(run, method, steps, duration) {
     const words = ["spring-scene", "--scene", run.scene, "--method", method, "--frame-rate", "60"];
     words.push("--steps-per-frame", `${steps}`, "--duration", `${duration}`, "--hash");
-    for (const [name, option] of Object.entries(options))
-        if (run[name] !== undefined) words.push(option, `${run[name]}`);
+    for (const [name, value] of Object.entries(run))
+        if (name !== "scene") words.push(name === "endMass" ? "--end-mass" : `--${name}`, `${value}`);
     return words;
 }
 

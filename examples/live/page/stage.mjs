@@ -23,15 +23,11 @@ const views = { water: Water, cloth: Cloth, rope: Rope, jelly: Jelly, curtain: C
 function themeOf(element) {
     const style = getComputedStyle(element);
     const colour = (name) => {
-        const c = new Color(style.getPropertyValue(name).trim()).convertLinearToSRGB(); // shaders work in sRGB
+        const c = new Color(style.getPropertyValue(`--${name}`).trim()).convertLinearToSRGB(); // shaders work in sRGB
         return new Vector3(c.r, c.g, c.b);
     };
-    return {
-        skyLow: colour("--sky-low"),
-        skyHigh: colour("--sky-high"),
-        ground: colour("--ground"),
-        coping: colour("--coping"),
-    };
+    const [skyLow, skyHigh, ground, coping] = ["sky-low", "sky-high", "ground", "coping"].map(colour);
+    return { skyLow, skyHigh, ground, coping };
 }
 
 // Returns true for software rendering, in which antialiasing costs more than the rest of the picture.

@@ -44,8 +44,8 @@ export class Upsampler {
         this.rows = new Float32Array(this.fine * n);
     }
 
-    /** get(i, j) → number; out[stride (i + fine j) + offset] */
-    run(get, out, stride = 1, offset = 0) {
+    /** get(i, j) → number; out[i + fine j] */
+    run(get, out) {
         const { n, fine, table, rows } = this;
         for (let j = 0; j < n; j++)
             for (let i = 0; i < fine; i++) {
@@ -57,7 +57,7 @@ export class Upsampler {
             const { first, w } = table[j];
             const f = first * fine;
             for (let i = 0; i < fine; i++)
-                out[stride * (i + fine * j) + offset] =
+                out[i + fine * j] =
                     w[0] * rows[f + i] +
                     w[1] * rows[f + fine + i] +
                     w[2] * rows[f + 2 * fine + i] +

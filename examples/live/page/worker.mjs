@@ -2,6 +2,7 @@
 // The simulation, in a worker so that it and drawing do not wait for each other. The page requests one tick at a time.
 // A tick advances every pane by the time due and returns the positions to draw.
 import { ready } from "springstep/scenes";
+import { readPresets } from "../../../tools/scenes/presets.mjs";
 import { Lab, listMethods, methodTable } from "./lab.mjs";
 import { presets } from "./presets.mjs";
 
@@ -9,6 +10,9 @@ const longestTick = 0.1; // [s]; with longer ticks the scene runs slower than re
 const tooFar = 15; // lengths of the scene; beyond, it counts as exploded although the numbers are still finite
 const tearing = 2.2; // length over rest length at which links tear while a particle is held
 const frail = 1.25; // the same for links of a curtain
+
+/* global PRESETS */ // the text of tools/scenes/presets.c, defined by bundle.mjs
+readPresets(PRESETS);
 
 let run;
 let panes = []; // {lab, method, exploded, busy, taken, micros}
@@ -26,7 +30,7 @@ function dropAll() {
 }
 
 function newPane(method) {
-    return { lab: new Lab(run), method, exploded: null, busy: 0, taken: 0, micros: NaN, largest: 0 };
+    return { lab: new Lab(run), method, exploded: null, busy: 0, taken: 0, micros: NaN };
 }
 
 // The reference uses the most accurate method. Its steps divide the steps of the panes, so that all have common times.
@@ -50,7 +54,7 @@ function describe() {
         order,
         forces: forcesPerStep,
         taken: lab.takes(name),
-        stable: lab.takes(name) ? lab.stableStep(name) : NaN,
+        stable: lab.takes(name) ? lab.scene.stableStep(name) : NaN,
     }));
     return { run, particles, links, count, length, massRatio, ends, pinned, methods };
 }
@@ -77,7 +81,7 @@ function advance(pane, n, late) {
     pane.taken += taken;
     const far = pane.lab.farthest;
     if (!pane.exploded && (taken < n || !(far <= tooFar * pane.lab.length)))
-        pane.exploded = { time: pane.lab.time, overflow: taken < n };
+        pane.exploded = { time: pane.lab.time };
     if (pane.busy > 20 || pane.taken > 60 * steps) {
         pane.micros = ((1000 * pane.busy) / pane.taken) * steps;
         pane.busy = pane.taken = 0;
@@ -96,29 +100,19 @@ function advanceAll(n, evenExploded, late = 0) {
 function tear() {
     if (run.scene === "curtain") for (const lab of everyLab()) lab.tear(frail);
     if (run.scene === "cloth")
-        for (const pane of panes) if (pane.held && !pane.exploded) pane.lab.tear(tearing);
+        for (const { lab, exploded } of panes) if (lab.hand.particle !== null && !exploded) lab.tear(tearing);
 }
 
 function picture(pane) {
     const { lab } = pane;
     const ball = lab.ball?.place ?? lab.sphere?.place ?? null;
     const positions = lab.positions(steps);
-    const { method, exploded, micros, held } = pane;
+    const { method, exploded, micros } = pane;
     const error = reference && !exploded ? lab.distance(reference.lab) : NaN;
     const tears = run.scene === "cloth" || run.scene === "curtain";
     const torn = tears ? lab.cut.slice() : new Uint8Array(0);
-    return {
-        positions,
-        torn,
-        ball,
-        method,
-        time: lab.time,
-        energy: lab.energies,
-        exploded,
-        micros,
-        error,
-        held,
-    };
+    const { time, scene } = lab;
+    return { positions, torn, ball, method, time, energy: scene.energy, exploded, micros, error };
 }
 
 function show(kind, more) {
@@ -146,7 +140,7 @@ const questions = {
     },
     hash: () => panes[0].lab.hash(),
     time: () => panes[0].lab.time,
-    energy: () => panes[0].lab.energies.total,
+    energy: () => panes[0].lab.scene.energy.total,
     position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
     difference: () => (reference ? panes[0].lab.distance(reference.lab) : NaN),
     sphere: () => panes[0].lab.sphere?.place ?? null,
@@ -154,35 +148,18 @@ const questions = {
 };
 
 const orders = {
-    async start({ simd }) {
-        await ready({ simd });
+    async start() {
+        await ready();
         listMethods();
         postMessage({ kind: "ready" });
     },
     make,
     tick: ({ elapsed }) => tick(elapsed),
-    steps: (message) => {
-        steps = message.steps;
-    },
+    steps: (message) => (steps = message.steps),
     method: ({ pane, method }) => {
         if (panes[pane]) Object.assign(panes[pane], { method, busy: 0, taken: 0 });
     },
-    poke: ({ x, y, force, area }) => everyLab().forEach((lab) => lab.poke(x, y, force, area)),
-    rain: ({ rate }) => everyLab().forEach((lab) => lab.rain(rate)),
-    wind: ({ speed }) => everyLab().forEach((lab) => lab.wind(speed)),
-    ball: ({ x, y, height }) => everyLab().forEach((lab) => lab.dropBall(x, y, height)),
-    push: ({ x, z }) => everyLab().forEach((lab) => lab.push(x, z)),
-    letGo: () => everyLab().forEach((lab) => lab.letGo()),
-    grab: ({ particle }) => {
-        for (const pane of panes) pane.held = true;
-        everyLab().forEach((lab) => lab.grab(particle));
-    },
-    drag: ({ to }) => everyLab().forEach((lab) => lab.drag(...to)),
-    release: () => {
-        for (const pane of panes) pane.held = false;
-        everyLab().forEach((lab) => lab.release());
-    },
-    snip: ({ particle }) => everyLab().forEach((lab) => lab.snip(particle)),
+    touch: ({ call, values }) => everyLab().forEach((lab) => lab[call](...values)),
     ask({ id, question, parameters }) {
         postMessage({ kind: "answer", id, answer: questions[question](...parameters) });
     },

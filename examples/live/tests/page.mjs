@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The live page in Chromium: bit-identical results, methods, dragging, explosions, sizes, error recovery.
+// The live page in Chromium: bit-identical results, methods, dragging, explosions, sizes, error recovery. The last line
+// counts the tests: "N passed, N failed, N skipped".
+//
+// usage: node page.mjs FOLDER SPRING-SCENE     the output folder of tools/live
 import assert from "node:assert/strict";
+import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { join } from "node:path";
 
 import { presets } from "../page/presets.mjs";
-import { launch, open } from "./browser.mjs";
-import { Cases, until } from "./harness.mjs";
-import { native, pokeOf } from "./hashes.mjs";
+import { done, launch, native, open, pokeOf, test, until } from "./harness.mjs";
+
+const [folder, tool] = process.argv.slice(2, 4).map((path) => resolve(path));
+const url = pathToFileURL(join(folder, "index.html")).href;
+const browser = await launch();
+const page = await open(browser, url);
 
 const ask = (page, question, ...parameters) =>
     page.evaluate(([q, p]) => window.springstepLab[q](...p), [question, parameters]);
@@ -48,523 +54,416 @@ const energyAfter = async (page, frames) => {
     return ask(page, "energy");
 };
 
-async function testBits(cases, page, tool) {
-    const frames = 600;
-    const pokeAt = 37;
-    for (const scene of Object.keys(presets).filter((each) => !presets[each].own)) {
-        await page.selectOption("#scene", scene);
-        for (const method of await methodsOf(page))
-            await cases.case(`the bits of spring-scene: ${scene}, ${method}`, async () => {
-                const { steps } = presets[scene];
-                await choose(page, scene, method, steps);
-                const poke = [];
-                if (scene !== "water") {
-                    // water already has its default poke
-                    await ask(page, "step", pokeAt);
-                    const length = { cloth: 2, rope: 2, jelly: 0.7 }[scene];
-                    const at = await ask(page, "time");
-                    await ask(page, "poke", ...pokeOf(scene, length));
-                    poke.push("--poke", [at, ...pokeOf(scene, length)].join(","));
-                }
-                await ask(page, "step", scene === "water" ? frames : frames - pokeAt);
-                const wanted = await native(tool, { scene }, method, steps, frames / 60, poke);
-                assert.match(wanted, /^[0-9a-f]{16}$/);
-                assert.equal(await ask(page, "hash"), wanted);
-            });
-    }
-    await cases.case(
-        "the bits of spring-scene: a scene that runs begins again when it is stepped",
-        async () => {
-            await choose(page, "cloth", "rk4");
-            await page.click("#pause");
-            await until("it runs", async () => (await ask(page, "time")) > 0);
-            await ask(page, "step", 30);
-            const wanted = await native(tool, { scene: "cloth" }, "rk4", presets.cloth.steps, 0.5);
-            assert.equal(await ask(page, "hash"), wanted);
-        },
-    );
-    await cases.case("the bits of spring-scene: damped links, a poke while it runs", async () => {
-        await choose(page, "jelly", "leapfrog");
-        await page.fill("#damping", "3");
-        await begin(page);
-        await ask(page, "step", 30);
-        const poke = ["--poke", [await ask(page, "time"), ...pokeOf("jelly", 0.7)].join(",")];
-        await ask(page, "poke", ...pokeOf("jelly", 0.7));
-        await ask(page, "step", 30);
-        const wanted = await native(
-            tool,
-            { scene: "jelly", damping: 0.03 },
-            "leapfrog",
-            presets.jelly.steps,
-            1,
-            poke,
-        );
-        assert.equal(await ask(page, "hash"), wanted);
-    });
-    await cases.case("the command that the page shows, with other settings", async () => {
-        await choose(page, "rope", "rk4");
-        await page.click("#heavy");
-        await page.selectOption("#size", "10");
-        await begin(page);
+// --- methods
+
+await test("the switch changes the motion, while it runs", async () => {
+    const ends = new Set();
+    for (const second of ["leapfrog", "euler", "rk4"]) {
+        await choose(page, "cloth", "leapfrog");
         await ask(page, "step", 20);
-        await page.click("summary");
-        await page.click("#hash");
-        await until("the hash", async () => /^[0-9a-f]{16}$/.test(await page.textContent("#hash-out")));
-        await page.click("summary");
-        const words = (await page.textContent("#command")).split(" ");
-        const value = (name) => Number(words[words.indexOf(name) + 1]);
-        const run = { scene: "rope", size: 10, mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
-        assert.equal(value("--end-mass"), 100);
-        const wanted = await native(tool, run, "rk4", value("--steps-per-frame"), value("--duration"));
-        assert.equal(await page.textContent("#hash-out"), wanted);
+        await page.selectOption("#method", second);
+        assert.ok((await ask(page, "time")) > 0.3, "it goes on from where it was");
+        await ask(page, "step", 20);
+        ends.add(await ask(page, "hash"));
+    }
+    assert.equal(ends.size, 3);
+});
+for (const [method, order, steps] of [
+    ["euler", 1, 400],
+    ["symplectic-euler", 1, 100],
+    ["leapfrog", 2, 40],
+    ["rk4", 4, 20],
+])
+    await test(`order ${order} of ${method} against the reference`, async () => {
+        await page.selectOption("#scene", "rope");
+        await page.check("#reference");
+        const errors = [];
+        for (const n of [steps, 2 * steps]) {
+            await choose(page, "rope", method, n);
+            await ask(page, "step", 6);
+            errors.push(await ask(page, "difference"));
+        }
+        const slope = Math.log2(errors[0] / errors[1]);
+        await page.uncheck("#reference");
+        assert.ok(Math.abs(slope - order) <= 0.15, `slope ${slope}, errors ${errors}`);
     });
-}
 
-async function testCommand(cases, page) {
-    const shown = () => page.$eval("#no-command", (none) => none.hidden);
-    const changes = {
-        "a poke": () => page.click("#poke"),
-        "another method": () => page.selectOption("#method", "rk4"),
-        "other steps": () => page.click("#more"),
-    };
-    for (const [name, change] of Object.entries(changes))
-        await cases.case(`no command is shown after ${name} on the way`, async () => {
-            await choose(page, "cloth", "leapfrog", presets.cloth.steps);
-            await ask(page, "step", 5);
-            assert.ok((await shown()) && (await ask(page, "command")));
-            await change();
-            assert.ok(!(await shown()) && !(await page.textContent("#command")));
-            await begin(page);
-            assert.ok(await shown());
-        });
-    await cases.case("no command is shown where wind blows from the start", async () => {
-        await choose(page, "cloth", "leapfrog");
-        await page.fill("#wind", "6");
+// --- the command
+
+const shown = () => page.$eval("#no-command", (none) => none.hidden);
+const changes = {
+    "a poke": () => page.click("#poke"),
+    "another method": () => page.selectOption("#method", "rk4"),
+    "other steps": () => page.click("#more"),
+};
+for (const [name, change] of Object.entries(changes))
+    await test(`no command is shown after ${name} on the way`, async () => {
+        await choose(page, "cloth", "leapfrog", presets.cloth.steps);
+        await ask(page, "step", 5);
+        assert.ok((await shown()) && (await ask(page, "command")));
+        await change();
+        assert.ok(!(await shown()) && !(await page.textContent("#command")));
         await begin(page);
-        assert.equal(await shown(), false);
-        await page.fill("#wind", "0");
-        await begin(page);
-        assert.equal(await shown(), true);
+        assert.ok(await shown());
     });
-}
+await test("no command is shown where wind blows from the start", async () => {
+    await choose(page, "cloth", "leapfrog");
+    await page.fill("#wind", "6");
+    await begin(page);
+    assert.equal(await shown(), false);
+    await page.fill("#wind", "0");
+    await begin(page);
+    assert.equal(await shown(), true);
+});
 
-async function testMethods(cases, page) {
-    await cases.case("the switch changes the motion, while it runs", async () => {
-        const ends = new Set();
-        for (const second of ["leapfrog", "euler", "rk4"]) {
-            await choose(page, "cloth", "leapfrog");
-            await ask(page, "step", 20);
-            await page.selectOption("#method", second);
-            assert.ok((await ask(page, "time")) > 0.3, "it goes on from where it was");
-            await ask(page, "step", 20);
-            ends.add(await ask(page, "hash"));
-        }
-        assert.equal(ends.size, 3);
-    });
-    for (const [method, order, steps] of [
-        ["euler", 1, 400],
-        ["symplectic-euler", 1, 100],
-        ["leapfrog", 2, 40],
-        ["rk4", 4, 20],
-    ])
-        await cases.case(`order ${order} of ${method} against the reference`, async () => {
-            await page.selectOption("#scene", "rope");
-            await page.check("#reference");
-            const errors = [];
-            for (const n of [steps, 2 * steps]) {
-                await choose(page, "rope", method, n);
-                await ask(page, "step", 6);
-                errors.push(await ask(page, "difference"));
-            }
-            const slope = Math.log2(errors[0] / errors[1]);
-            await page.uncheck("#reference");
-            assert.ok(Math.abs(slope - order) <= 0.15, `slope ${slope}, errors ${errors}`);
-        });
-}
+// --- hands
 
-async function testHands(cases, page) {
-    const box = await page.locator("#canvas").boundingBox();
-    await cases.case("a pointer grabs the particle under it, pulls it and lets it go", async () => {
-        await choose(page, "rope", "leapfrog");
+const box = await page.locator("#canvas").boundingBox();
+await test("a pointer grabs the particle under it, pulls it and lets it go", async () => {
+    await choose(page, "rope", "leapfrog");
+    await ask(page, "step", 1);
+    const end = 19;
+    const [x, y] = await ask(page, "pixel", end);
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    await page.mouse.move(box.x + x - 90, box.y + y + 40, { steps: 4 });
+    await ask(page, "step", 60);
+    const [heldX, heldY] = await ask(page, "pixel", end);
+    assert.ok(Math.hypot(heldX - x + 90, heldY - y - 40) < 3, `is at ${heldX - x}, ${heldY - y}`);
+    const held = await ask(page, "position", end);
+    await ask(page, "step", 1);
+    assert.deepEqual(await ask(page, "position", end), held);
+    await page.mouse.up();
+    await ask(page, "step", 30);
+    assert.ok((await ask(page, "position", end))[2] < held[2] - 0.1, "it falls");
+});
+await test("beside the scene a pointer turns the view, and touches nothing", async () => {
+    await choose(page, "rope", "leapfrog");
+    const [before] = await ask(page, "pixel", 19);
+    await page.mouse.move(box.x + 30, box.y + box.height - 30);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 130, box.y + box.height - 30, { steps: 3 });
+    await page.mouse.up();
+    const [after] = await ask(page, "pixel", 19);
+    assert.ok(Math.abs(after - before) > 5);
+    assert.equal(await ask(page, "time"), 0);
+});
+await test("a cloth tears where it is pulled hard, and is cut by scissors", async () => {
+    await choose(page, "cloth", "leapfrog");
+    await ask(page, "step", 100);
+    assert.equal(await ask(page, "tornLinks"), 0);
+    const [x, y] = await ask(page, "pixel", 12 * 25 + 12);
+    await page.click("#scissors");
+    await page.mouse.click(box.x + x, box.y + y);
+    const cut = await ask(page, "tornLinks");
+    assert.ok(cut >= 8 && cut <= 12, `${cut} links of one particle`);
+    await page.click("#scissors");
+    const [cx, cy] = await ask(page, "pixel", 24 * 25);
+    await page.mouse.move(box.x + cx, box.y + cy);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 10, box.y + box.height - 10, { steps: 3 });
+    for (let i = 0; i < 60; i++) await ask(page, "step", 1);
+    await page.mouse.up();
+    assert.ok((await ask(page, "tornLinks")) > cut);
+});
+await test("a sphere is pushed through the curtain, which tears", async () => {
+    await choose(page, "curtain", "leapfrog");
+    await ask(page, "step", 60);
+    assert.equal(await ask(page, "tornLinks"), 0);
+    assert.equal(await ask(page, "command"), "");
+    const [x, y] = await ask(page, "pixel", 12 * 25 + 12);
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    let least = Infinity;
+    let deepest = -Infinity;
+    for (let i = 0; i < 45; i++) {
         await ask(page, "step", 1);
-        const end = 19;
-        const [x, y] = await ask(page, "pixel", end);
-        await page.mouse.move(box.x + x, box.y + y);
-        await page.mouse.down();
-        await page.mouse.move(box.x + x - 90, box.y + y + 40, { steps: 4 });
-        await ask(page, "step", 60);
-        const [heldX, heldY] = await ask(page, "pixel", end);
-        assert.ok(Math.hypot(heldX - x + 90, heldY - y - 40) < 3, `is at ${heldX - x}, ${heldY - y}`);
-        const held = await ask(page, "position", end);
-        await ask(page, "step", 1);
-        assert.deepEqual(await ask(page, "position", end), held);
-        await page.mouse.up();
-        await ask(page, "step", 30);
-        assert.ok((await ask(page, "position", end))[2] < held[2] - 0.1, "it falls");
-    });
-    await cases.case("beside the scene a pointer turns the view, and touches nothing", async () => {
-        await choose(page, "rope", "leapfrog");
-        const [before] = await ask(page, "pixel", 19);
-        await page.mouse.move(box.x + 30, box.y + box.height - 30);
-        await page.mouse.down();
-        await page.mouse.move(box.x + 130, box.y + box.height - 30, { steps: 3 });
-        await page.mouse.up();
-        const [after] = await ask(page, "pixel", 19);
-        assert.ok(Math.abs(after - before) > 5);
-        assert.equal(await ask(page, "time"), 0);
-    });
-    await cases.case("a cloth tears where it is pulled hard, and is cut by scissors", async () => {
-        await choose(page, "cloth", "leapfrog");
-        await ask(page, "step", 100);
-        assert.equal(await ask(page, "tornLinks"), 0);
-        const [x, y] = await ask(page, "pixel", 12 * 25 + 12);
-        await page.click("#scissors");
-        await page.mouse.click(box.x + x, box.y + y);
-        const cut = await ask(page, "tornLinks");
-        assert.ok(cut >= 8 && cut <= 12, `${cut} links of one particle`);
-        await page.click("#scissors");
-        const [cx, cy] = await ask(page, "pixel", 24 * 25);
-        await page.mouse.move(box.x + cx, box.y + cy);
-        await page.mouse.down();
-        await page.mouse.move(box.x + 10, box.y + box.height - 10, { steps: 3 });
-        for (let i = 0; i < 60; i++) await ask(page, "step", 1);
-        await page.mouse.up();
-        assert.ok((await ask(page, "tornLinks")) > cut);
-    });
-    await cases.case("a sphere is pushed through the curtain, which tears", async () => {
-        await choose(page, "curtain", "leapfrog");
-        await ask(page, "step", 60);
-        assert.equal(await ask(page, "tornLinks"), 0);
-        assert.equal(await ask(page, "command"), "");
-        const [x, y] = await ask(page, "pixel", 12 * 25 + 12);
-        await page.mouse.move(box.x + x, box.y + y);
-        await page.mouse.down();
-        let least = Infinity;
-        let deepest = -Infinity;
-        for (let i = 0; i < 45; i++) {
-            await ask(page, "step", 1);
-            const at = await ask(page, "position", 12 * 25 + 12);
-            deepest = Math.max(deepest, at[1]);
-            const sphere = await ask(page, "sphere");
-            least = Math.min(least, Math.hypot(...at.map((each, axis) => each - sphere[axis])) - sphere[3]);
+        const at = await ask(page, "position", 12 * 25 + 12);
+        deepest = Math.max(deepest, at[1]);
+        const sphere = await ask(page, "sphere");
+        least = Math.min(least, Math.hypot(...at.map((each, axis) => each - sphere[axis])) - sphere[3]);
+    }
+    await page.mouse.up();
+    assert.ok(deepest > 0.2, `the curtain is pushed by ${deepest} m`);
+    assert.ok(least > -1e-6, `a particle is ${-least} m inside the sphere`);
+    await ask(page, "step", 120);
+    assert.ok((await ask(page, "tornLinks")) > 10);
+    assert.equal(await ask(page, "sphere"), null);
+});
+await test("no method without contacts is offered for the curtain", async () => {
+    await choose(page, "curtain", "leapfrog");
+    const offered = await methodsOf(page);
+    assert.deepEqual([...offered].sort(), ["leapfrog", "rk4", "symplectic-euler"]);
+});
+await test("the keyboard pokes", async () => {
+    await choose(page, "water", "leapfrog");
+    await page.focus("#canvas");
+    const calm = await energyAfter(page, 20);
+    for (const key of ["ArrowRight", "ArrowDown", "Enter"]) await page.keyboard.press(key);
+    assert.ok(await page.locator("#cursor").isVisible());
+    assert.ok((await energyAfter(page, 3)) > 1.05 * calm);
+});
+await test("the keyboard grabs, pulls and lets go", async () => {
+    await choose(page, "rope", "leapfrog");
+    await page.evaluate(() => document.activeElement.blur());
+    await page.focus("#canvas");
+    await ask(page, "step", 1);
+    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("Enter");
+    for (let i = 0; i < 6; i++) await page.keyboard.press("ArrowUp");
+    await ask(page, "step", 60);
+    const held = await ask(page, "position", 19);
+    assert.ok(held[2] > 0.2, `pulled up to ${held[2]}`);
+    await page.keyboard.press("Escape");
+    await ask(page, "step", 30);
+    assert.ok((await ask(page, "position", 19))[2] < held[2] - 0.1);
+});
+await test("rain, wind and the ball move the scene", async () => {
+    for (const [scene, touch] of [
+        ["water", () => page.click("#rain")],
+        ["water", () => page.click("#ball")],
+        ["cloth", () => page.fill("#wind", "8")],
+    ]) {
+        const ends = [];
+        for (const doing of [false, true]) {
+            await choose(page, scene, "leapfrog");
+            if (doing) await touch();
+            await ask(page, "step", 60);
+            ends.push(await ask(page, "hash"));
         }
-        await page.mouse.up();
-        assert.ok(deepest > 0.2, `the curtain is pushed by ${deepest} m`);
-        assert.ok(least > -1e-6, `a particle is ${-least} m inside the sphere`);
-        await ask(page, "step", 120);
-        assert.ok((await ask(page, "tornLinks")) > 10);
-        assert.equal(await ask(page, "sphere"), null);
-    });
-    await cases.case("no method without contacts is offered for the curtain", async () => {
-        await choose(page, "curtain", "leapfrog");
-        const offered = await methodsOf(page);
-        assert.deepEqual([...offered].sort(), ["leapfrog", "rk4", "symplectic-euler"]);
-    });
-    await cases.case("the keyboard pokes", async () => {
-        await choose(page, "water", "leapfrog");
-        await page.focus("#canvas");
-        const calm = await energyAfter(page, 20);
-        for (const key of ["ArrowRight", "ArrowDown", "Enter"]) await page.keyboard.press(key);
-        assert.ok(await page.locator("#cursor").isVisible());
-        assert.ok((await energyAfter(page, 3)) > 1.05 * calm);
-    });
-    await cases.case("the keyboard grabs, pulls and lets go", async () => {
-        await choose(page, "rope", "leapfrog");
-        await page.evaluate(() => document.activeElement.blur());
-        await page.focus("#canvas");
-        await ask(page, "step", 1);
-        await page.keyboard.press("ArrowLeft");
-        await page.keyboard.press("Enter");
-        for (let i = 0; i < 6; i++) await page.keyboard.press("ArrowUp");
-        await ask(page, "step", 60);
-        const held = await ask(page, "position", 19);
-        assert.ok(held[2] > 0.2, `pulled up to ${held[2]}`);
-        await page.keyboard.press("Escape");
-        await ask(page, "step", 30);
-        assert.ok((await ask(page, "position", 19))[2] < held[2] - 0.1);
-    });
-    await cases.case("rain, wind and the ball move the scene", async () => {
-        for (const [scene, touch] of [
-            ["water", () => page.click("#rain")],
-            ["water", () => page.click("#ball")],
-            ["cloth", () => page.fill("#wind", "8")],
-        ]) {
-            const ends = [];
-            for (const doing of [false, true]) {
-                await choose(page, scene, "leapfrog");
-                if (doing) await touch();
-                await ask(page, "step", 60);
-                ends.push(await ask(page, "hash"));
-            }
-            assert.notEqual(ends[0], ends[1], `${touch}`);
-        }
-    });
-}
+        assert.notEqual(ends[0], ends[1], `${touch}`);
+    }
+});
 
-/** Sets a control to a value that it does not offer, as only a modified page can. */
-const force = (page, id, value) =>
-    page.$eval(
-        `#${id}`,
-        (control, given) => {
-            if (control.localName === "select") control.append(new Option(given, given));
-            else control.type = "text";
-            control.value = given;
-            for (const kind of ["input", "change"]) control.dispatchEvent(new Event(kind));
-        },
-        value,
-    );
+// --- numbers that are not offered
 
-async function testForced(cases, browser, url) {
-    for (const [id, value, used] of [
-        ["scene", "nonsense", "water"],
-        ["method", "nonsense", "leapfrog"],
-        ["other", "nonsense", ""],
-        ["size", "100000", "25"],
-        ["size", "-1", "25"],
-        ["size", "nonsense", "25"],
-        ["speed", "-1", "1"],
-        ["speed", "1e9", "1"],
-        ["steps", "nonsense", "19"],
-        ["damping", "1e9", "10"],
-        ["damping", "-1", "0"],
-        ["wind", "1e9", "12"],
-        ["wind", "nonsense", "0"],
-    ])
-        await cases.case(`${id} ${value} becomes "${used}", is said, and stops nothing`, async () => {
-            const page = await open(browser, url);
-            await page.selectOption("#scene", "cloth");
-            await until("the cloth", async () => (await page.inputValue("#steps")) === "19");
-            await force(page, id, value);
-            await until("it says so", async () => /not offered/.test(await page.textContent("#notice")));
-            await until("the value", async () => (await page.inputValue(`#${id}`)) === used);
-            const time = await ask(page, "time");
-            await until("it runs", async () => (await ask(page, "time")) > time + 0.05);
-            await page.click("#reset");
-            await until("reset clears it", async () => (await page.textContent("#notice")) === "");
-            assert.deepEqual(page.complaints, []);
-            await page.context().close();
-        });
-    await cases.case("too many steps are limited, and too few", async () => {
-        const page = await open(browser, url);
-        for (const [value, used] of [
-            ["100000", "1000"],
-            ["-1", "1"],
-        ]) {
-            await page.fill("#steps", value);
-            await page.press("#steps", "Enter");
-            assert.equal(await page.inputValue("#steps"), used);
-            assert.match(await page.textContent("#notice"), /not offered/);
-        }
-        await page.context().close();
-    });
-}
+await test("numbers of steps that are not offered are limited, which is said", async () => {
+    await choose(page, "cloth", "leapfrog");
+    for (const [value, used] of [
+        ["100000", 1000],
+        ["-1", 1],
+        ["", presets.cloth.steps],
+    ]) {
+        await page.fill("#steps", value);
+        await page.press("#steps", "Enter");
+        assert.equal(await page.inputValue("#steps"), `${used}`);
+        assert.match(await page.textContent("#notice"), /not offered/);
+    }
+    await page.click("#reset");
+    await until("reset clears it", async () => (await page.textContent("#notice")) === "paused");
+});
 
-async function testExplosions(cases, page) {
-    await cases.case("an explosion is said with its time, and one click starts again", async () => {
-        await choose(page, "water", "euler", 2);
-        await page.selectOption("#speed", "1");
-        await page.click("#pause");
-        await page.locator(".boom").waitFor({ state: "visible", timeout: 20000 });
-        assert.match(await page.textContent(".boom"), /Euler exploded after \d+\.\d\d s\..*stable step/);
-        await page.selectOption("#method", "leapfrog");
-        await page.fill("#steps", "13");
-        await page.click(".again");
-        await page.locator(".boom").waitFor({ state: "hidden" });
-        await until("it runs again", async () => (await ask(page, "time")) > 0.1);
-        assert.ok(!(await page.locator(".boom").isVisible()));
-    });
-    await cases.case("side by side one explodes, and the other goes on", async () => {
-        await choose(page, "water", "leapfrog");
-        await page.selectOption("#other", "euler");
-        await page.selectOption("#speed", "1");
-        await page.click("#pause");
-        await page.locator(".pane:nth-child(2) .boom").waitFor({ state: "visible", timeout: 40000 });
-        assert.deepEqual(await page.locator(".pane .name").allTextContents(), ["Leapfrog", "Euler"]);
-        assert.ok(!(await page.locator(".pane:nth-child(1) .boom").isVisible()));
-        const time = await ask(page, "time");
-        await until("leapfrog goes on", async () => (await ask(page, "time")) > time + 0.1);
-        await page.selectOption("#other", "");
-    });
-}
+// --- explosions
 
-async function testWindows(cases, page, browser, url, tool) {
-    await cases.case("every scene is drawn", async () => {
+await test("an explosion is said with its time, and one click starts again", async () => {
+    await choose(page, "water", "euler", 2);
+    await page.selectOption("#speed", "1");
+    await page.click("#pause");
+    await page.locator(".boom").waitFor({ state: "visible", timeout: 20000 });
+    assert.ok((await ask(page, "pixel", 300)).every(Number.isFinite), "it is drawn as it was last");
+    assert.match(await page.textContent(".boom"), /Euler exploded after \d+\.\d\d s\..*stable step/);
+    await page.selectOption("#method", "leapfrog");
+    await page.fill("#steps", "13");
+    await page.click(".again");
+    await page.locator(".boom").waitFor({ state: "hidden" });
+    await until("it runs again", async () => (await ask(page, "time")) > 0.1);
+    assert.ok(!(await page.locator(".boom").isVisible()));
+});
+await test("side by side one explodes, and the other goes on", async () => {
+    await choose(page, "water", "leapfrog");
+    await page.selectOption("#other", "euler");
+    await page.selectOption("#speed", "1");
+    await page.click("#pause");
+    await page.locator(".pane:nth-child(2) .boom").waitFor({ state: "visible", timeout: 40000 });
+    assert.deepEqual(await page.locator(".pane .name").allTextContents(), ["Leapfrog", "Euler"]);
+    assert.ok(!(await page.locator(".pane:nth-child(1) .boom").isVisible()));
+    const time = await ask(page, "time");
+    await until("leapfrog goes on", async () => (await ask(page, "time")) > time + 0.1);
+    await page.selectOption("#other", "");
+});
+
+// --- windows and failures
+
+await test("every scene is drawn, also in a narrow window, which has no room to scroll sideways", async () => {
+    for (const [width, height, least] of [
+        [390, 844, 800],
+        [1280, 860, 1500],
+    ]) {
+        await page.setViewportSize({ width, height });
         for (const scene of Object.keys(presets)) {
             await choose(page, scene, "leapfrog");
             await ask(page, "step", 5);
             await page.waitForTimeout(150);
+            const wide = await page.evaluate(() => document.scrollingElement.scrollWidth);
+            assert.ok(wide <= width, `${scene} is ${wide} px wide`);
             const many = await colours(page);
-            assert.ok(many > 1500, `${scene} has ${many} colours`);
-        }
-    });
-    await cases.case("a lost context comes back", async () => {
-        await choose(page, "water", "leapfrog");
-        await page.evaluate(() => {
-            window.loser = document
-                .getElementById("canvas")
-                .getContext("webgl2")
-                .getExtension("WEBGL_lose_context");
-            window.loser.loseContext();
-        });
-        await page.waitForTimeout(200);
-        await ask(page, "step", 5);
-        const blank = await colours(page);
-        await page.evaluate(() => window.loser.restoreContext());
-        await page.waitForTimeout(300);
-        await ask(page, "step", 5);
-        await page.waitForTimeout(150);
-        const many = await colours(page);
-        assert.ok(many > 1500 && blank < many / 2, `${blank} colours without, ${many} with a context`);
-    });
-    await cases.case("a narrow window has no room to scroll sideways, and a picture", async () => {
-        await page.setViewportSize({ width: 390, height: 844 });
-        for (const scene of Object.keys(presets)) {
-            await choose(page, scene, "leapfrog");
-            await page.waitForTimeout(150);
-            const width = await page.evaluate(() => document.scrollingElement.scrollWidth);
-            assert.ok(width <= 390, `${scene} is ${width} px wide`);
-            assert.ok((await colours(page)) > 800, scene);
+            assert.ok(many > least, `${scene} has ${many} colours`);
         }
         const [css, drawn] = await page.$eval("#canvas", (canvas) => [canvas.clientWidth, canvas.width]);
         assert.ok(drawn >= 0.5 * css && drawn <= 2 * css, `${drawn} pixels for ${css}`);
-        await page.setViewportSize({ width: 1280, height: 860 });
+    }
+});
+await test("a lost context comes back", async () => {
+    await choose(page, "water", "leapfrog");
+    await page.evaluate(() => {
+        const context = document.getElementById("canvas").getContext("webgl2");
+        window.loser = context.getExtension("WEBGL_lose_context");
+        window.loser.loseContext();
     });
-    await cases.case("fingers poke and pull", async () => {
-        const phone = await open(browser, url, {
-            viewport: { width: 390, height: 844 },
-            hasTouch: true,
-            isMobile: true,
+    await page.waitForTimeout(200);
+    await ask(page, "step", 5);
+    const blank = await colours(page);
+    await page.evaluate(() => window.loser.restoreContext());
+    await page.waitForTimeout(300);
+    await ask(page, "step", 5);
+    await page.waitForTimeout(150);
+    const many = await colours(page);
+    assert.ok(many > 1500 && blank < many / 2, `${blank} colours without, ${many} with a context`);
+});
+await test("fingers poke and pull", async () => {
+    const how = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+    const phone = await open(browser, url, how);
+    const box = await phone.locator("#canvas").boundingBox();
+    await begin(phone);
+    const calm = await energyAfter(phone, 20);
+    await phone.touchscreen.tap(box.x + box.width / 2, box.y + box.height / 2);
+    assert.ok((await energyAfter(phone, 3)) > 1.05 * calm, "poke");
+    await choose(phone, "jelly", "leapfrog");
+    const corner = 511;
+    await ask(phone, "step", 1);
+    const [x, y] = await ask(phone, "pixel", corner);
+    const start = await ask(phone, "position", corner);
+    const devtools = await phone.context().newCDPSession(phone);
+    const touch = (type, dx) =>
+        devtools.send("Input.dispatchTouchEvent", {
+            type,
+            touchPoints: type === "touchEnd" ? [] : [{ x: box.x + x + dx, y: box.y + y }],
         });
-        const box = await phone.locator("#canvas").boundingBox();
-        await begin(phone);
-        const calm = await energyAfter(phone, 20);
-        await phone.touchscreen.tap(box.x + box.width / 2, box.y + box.height / 2);
-        assert.ok((await energyAfter(phone, 3)) > 1.05 * calm, "poke");
-        await choose(phone, "jelly", "leapfrog");
-        const corner = 511;
-        await ask(phone, "step", 1);
-        const [x, y] = await ask(phone, "pixel", corner);
-        const start = await ask(phone, "position", corner);
-        const devtools = await phone.context().newCDPSession(phone);
-        const touch = (type, dx) =>
-            devtools.send("Input.dispatchTouchEvent", {
-                type,
-                touchPoints: type === "touchEnd" ? [] : [{ x: box.x + x + dx, y: box.y + y }],
-            });
-        await touch("touchStart", 0);
-        await touch("touchMove", 30);
-        await touch("touchMove", 60);
-        await ask(phone, "step", 30);
-        const pulled = await ask(phone, "position", corner);
-        assert.ok(Math.hypot(...pulled.map((each, k) => each - start[k])) > 0.1, "pull");
-        await touch("touchEnd", 0);
-        await ask(phone, "step", 30);
-        assert.notDeepEqual(await ask(phone, "position", corner), pulled, "let go");
-        assert.deepEqual(phone.complaints, []);
-        await phone.context().close();
-    });
-    await cases.case("a page without WebGL 2 says so", async () => {
-        const context = await browser.newContext();
-        const bare = await context.newPage();
-        await bare.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
-        await bare.goto(url);
-        assert.match(await bare.textContent("#notice"), /WebGL 2/);
-        await context.close();
-    });
-    await cases.case("when its worker fails the page says so, and reset begins anew", async () => {
+    await touch("touchStart", 0);
+    await touch("touchMove", 30);
+    await touch("touchMove", 60);
+    await ask(phone, "step", 30);
+    const pulled = await ask(phone, "position", corner);
+    assert.ok(Math.hypot(...pulled.map((each, k) => each - start[k])) > 0.1, "pull");
+    await touch("touchEnd", 0);
+    await ask(phone, "step", 30);
+    assert.notDeepEqual(await ask(phone, "position", corner), pulled, "let go");
+    assert.deepEqual(phone.complaints, []);
+    await phone.context().close();
+});
+await test("a page without WebGL 2 says so", async () => {
+    const context = await browser.newContext();
+    const bare = await context.newPage();
+    await bare.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+    await bare.goto(url);
+    assert.match(await bare.textContent("#notice"), /WebGL 2/);
+    await context.close();
+});
+const run = { scene: "cloth", size: 20000 };
+for (const [message, said] of [
+    [{ kind: "nonsense" }, /stopped/],
+    [{ kind: "make", run, steps: 19, methods: ["leapfrog"] }, /stopped: .*no memory/],
+])
+    await test(`when its worker fails by "${message.kind}" the page says so, and reset begins anew`, async () => {
         const frail = await open(browser, url, {}, () => {
             const Plain = Worker;
-            window.workers = [];
             window.Worker = function (source) {
-                window.workers.push(new Plain(source));
-                return window.workers.at(-1);
+                return (window.lastWorker = new Plain(source));
             };
         });
         await choose(frail, "cloth", "leapfrog");
         await ask(frail, "step", 10);
-        await frail.evaluate(() => window.workers[0].postMessage({ kind: "nonsense" }));
-        await until("it says so", async () => /stopped/.test(await frail.textContent("#notice")));
+        await frail.evaluate((order) => window.lastWorker.postMessage(order), message);
+        await until("it says so", async () => said.test(await frail.textContent("#notice")));
         await begin(frail);
         await ask(frail, "step", 60);
         const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
         assert.equal(await ask(frail, "hash"), wanted);
         assert.equal(await frail.textContent("#notice"), "paused");
-        assert.equal(await frail.evaluate(() => window.workers.length), 2);
         await frail.click("#pause");
         await until("it runs", async () => (await ask(frail, "time")) > 1);
         await frail.context().close();
     });
-    for (const size of [100000, -1, 20000])
-        await cases.case(`a size of ${size} that reaches the worker ends in a message`, async () => {
-            const attacked = await open(browser, url, {}, () => {
-                const Plain = Worker;
-                window.Worker = function (source) {
-                    return (window.lastWorker = new Plain(source));
-                };
-            });
-            await choose(attacked, "cloth", "leapfrog");
-            await attacked.evaluate((given) => {
-                const run = { scene: "cloth", size: given };
-                window.lastWorker.postMessage({ kind: "make", run, steps: 19, methods: ["leapfrog"] });
-            }, size);
-            const said = () => attacked.textContent("#notice");
-            await until("it says so", async () => /stopped: .*(count|no memory|too many)/.test(await said()));
-            await begin(attacked);
-            await ask(attacked, "step", 60);
-            const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
-            assert.equal(await ask(attacked, "hash"), wanted);
-            await attacked.context().close();
-        });
-    await cases.case("without SIMD: the same bits", async () => {
-        const plain = await open(browser, url, {}, () => (WebAssembly.validate = () => false));
-        assert.equal(await plain.evaluate(() => window.springstepLab.simd), false);
-        await choose(plain, "cloth", "leapfrog");
-        await ask(plain, "step", 60);
-        const wanted = await native(tool, { scene: "cloth" }, "leapfrog", presets.cloth.steps, 1);
-        assert.equal(await ask(plain, "hash"), wanted);
-        assert.deepEqual(plain.complaints, []);
-        await plain.context().close();
-    });
-    await cases.case(
-        "it runs by itself, unless less motion is asked for; and is dark where that is asked for",
-        async () => {
-            const run = await open(browser, url, { colorScheme: "dark" });
-            await until("it runs", async () => (await ask(run, "time")) > 0.01);
-            const back = await run.evaluate(() => getComputedStyle(document.body).backgroundColor);
-            assert.ok(
-                back.match(/\d+/g).every((part) => part < 60),
-                back,
-            );
-            await run.context().close();
-            const still = await open(browser, url, { reducedMotion: "reduce" });
-            await still.waitForTimeout(500);
-            assert.equal(await ask(still, "time"), 0);
-            assert.equal(await still.textContent("#pause"), "Play");
-            await still.click("#pause");
-            await until("it runs when asked", async () => (await ask(still, "time")) > 0);
-            await still.context().close();
-        },
-    );
-}
+await test("it runs by itself, unless less motion is asked for; and is dark where that is asked for", async () => {
+    const run = await open(browser, url, { colorScheme: "dark" });
+    await until("it runs", async () => (await ask(run, "time")) > 0.01);
+    const back = await run.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const dark = back.match(/\d+/g).every((part) => part < 60);
+    assert.ok(dark, back);
+    await run.context().close();
+    const still = await open(browser, url, { reducedMotion: "reduce" });
+    await still.waitForTimeout(500);
+    assert.equal(await ask(still, "time"), 0);
+    assert.equal(await still.textContent("#pause"), "Play");
+    await still.click("#pause");
+    await until("it runs when asked", async () => (await ask(still, "time")) > 0);
+    await still.context().close();
+});
 
-export async function testPage(folder, tool) {
-    const url = pathToFileURL(join(folder, "index.html")).href;
-    const cases = new Cases("page");
-    const browser = await launch();
-    try {
-        const page = await open(browser, url);
-        await testMethods(cases, page);
-        await testCommand(cases, page);
-        await testHands(cases, page);
-        await testForced(cases, browser, url);
-        await testExplosions(cases, page);
-        await testWindows(cases, page, browser, url, tool);
-        await testBits(cases, page, tool);
-        await cases.case("it said nothing on the console, and asked nobody for anything", () =>
-            assert.deepEqual(page.complaints, []),
-        );
-    } finally {
-        await browser.close();
-    }
-    return cases;
+// --- bits
+
+const frames = 600;
+const pokeAt = 37;
+for (const scene of Object.keys(presets).filter((each) => !presets[each].own)) {
+    await choose(page, scene);
+    for (const method of await methodsOf(page))
+        await test(`the bits of spring-scene: ${scene}, ${method}`, async () => {
+            const { steps } = presets[scene];
+            await choose(page, scene, method, steps);
+            const poke = [];
+            if (scene !== "water") {
+                // water already has its default poke
+                await ask(page, "step", pokeAt);
+                const length = { cloth: 2, rope: 2, jelly: 0.7 }[scene];
+                const at = await ask(page, "time");
+                await ask(page, "poke", ...pokeOf(scene, length));
+                poke.push("--poke", [at, ...pokeOf(scene, length)].join(","));
+            }
+            await ask(page, "step", scene === "water" ? frames : frames - pokeAt);
+            const wanted = await native(tool, { scene }, method, steps, frames / 60, poke);
+            assert.match(wanted, /^[0-9a-f]{16}$/);
+            assert.equal(await ask(page, "hash"), wanted);
+        });
 }
+await test("the bits of spring-scene: a scene that runs begins again when it is stepped", async () => {
+    await choose(page, "cloth", "rk4");
+    await page.click("#pause");
+    await until("it runs", async () => (await ask(page, "time")) > 0);
+    await ask(page, "step", 30);
+    const wanted = await native(tool, { scene: "cloth" }, "rk4", presets.cloth.steps, 0.5);
+    assert.equal(await ask(page, "hash"), wanted);
+});
+await test("the bits of spring-scene: damped links, a poke while it runs", async () => {
+    await choose(page, "jelly", "leapfrog");
+    await page.fill("#damping", "3");
+    await begin(page);
+    await ask(page, "step", 30);
+    const poke = ["--poke", [await ask(page, "time"), ...pokeOf("jelly", 0.7)].join(",")];
+    await ask(page, "poke", ...pokeOf("jelly", 0.7));
+    await ask(page, "step", 30);
+    const run = { scene: "jelly", damping: 0.03 };
+    const wanted = await native(tool, run, "leapfrog", presets.jelly.steps, 1, poke);
+    assert.equal(await ask(page, "hash"), wanted);
+});
+await test("the command that the page shows, with other settings", async () => {
+    await choose(page, "rope", "rk4");
+    await page.click("#heavy");
+    await page.selectOption("#size", "10");
+    await begin(page);
+    await ask(page, "step", 20);
+    await page.click("summary");
+    await page.click("#hash");
+    await until("the hash", async () => /^[0-9a-f]{16}$/.test(await page.textContent("#hash-out")));
+    await page.click("summary");
+    const words = (await page.textContent("#command")).split(" ");
+    const value = (name) => Number(words[words.indexOf(name) + 1]);
+    const run = { scene: "rope", size: 10, mass: 0.01, endMass: 100, stiffness: 2e5, drag: 0 };
+    assert.equal(value("--end-mass"), 100);
+    const wanted = await native(tool, run, "rk4", value("--steps-per-frame"), value("--duration"));
+    assert.equal(await page.textContent("#hash-out"), wanted);
+});
+
+await test("it said nothing on the console, and asked nobody for anything", () =>
+    assert.deepEqual(page.complaints, []));
+await browser.close();
+done();

@@ -1,19 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A cloth that hangs on two of its corners. Cells with torn links lose their triangles.
-import {
-    BufferAttribute,
-    BufferGeometry,
-    CylinderGeometry,
-    DoubleSide,
-    DynamicDrawUsage,
-    Group,
-    Mesh,
-    ShaderMaterial,
-    SphereGeometry,
-} from "three";
+import { BufferAttribute, CylinderGeometry, DoubleSide, DynamicDrawUsage, SphereGeometry } from "three";
 
-import { smoothNormals } from "../surface.mjs";
-import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
+import { floorAt, lighting, Lit, plain, shadowOf } from "./light.mjs";
 
 const floor = -3.35; // [m]
 
@@ -57,81 +46,57 @@ function weave(columns, rows, ends) {
     return triangles;
 }
 
-export class Cloth {
+export class Cloth extends Lit {
     static camera = { from: [1.5, -5.0, -0.75], to: [0, 0.2, -1.42], fit: 1.1 };
 
     constructor(info, theme) {
         const [columns, rows] = info.count;
-        const uniforms = uniformsOf(theme);
-        this.uniforms = uniforms;
-        this.triangles = weave(columns, rows, info.ends);
+        const triangles = weave(columns, rows, info.ends);
+        const index = new BufferAttribute(new Uint32Array(3 * triangles.length), 1);
+        super(theme, info.particles, index.setUsage(DynamicDrawUsage));
+        this.triangles = triangles;
         this.torn = 0;
-        const geometry = new BufferGeometry();
-        this.positions = new BufferAttribute(new Float32Array(3 * info.particles), 3).setUsage(
-            DynamicDrawUsage,
-        );
-        this.normals = new BufferAttribute(new Float32Array(3 * info.particles), 3).setUsage(
-            DynamicDrawUsage,
-        );
         const uv = Float32Array.from({ length: 2 * info.particles }, (_, k) => {
             const p = k >> 1;
             return k % 2 ? Math.floor(p / columns) / (rows - 1) : (p % columns) / (columns - 1);
         });
-        this.index = new BufferAttribute(new Uint32Array(3 * this.triangles.length), 1).setUsage(
-            DynamicDrawUsage,
-        );
-        geometry.setAttribute("position", this.positions);
-        geometry.setAttribute("normal", this.normals);
-        geometry.setAttribute("uv", new BufferAttribute(uv, 2));
-        geometry.setIndex(this.index);
-        this.geometry = geometry;
+        this.geometry.setAttribute("uv", new BufferAttribute(uv, 2));
         this.stitch(new Uint8Array(info.links));
 
-        this.group = new Group();
         this.group.position.set(-info.length / 2, 0, 0);
-        const material = (fragmentShader, more) =>
-            new ShaderMaterial({ uniforms, vertexShader: vertex, fragmentShader, ...more });
-        const cloth = new Mesh(geometry, material(fabric, { side: DoubleSide }));
-        cloth.frustumCulled = false;
-        const bar = new Mesh(new CylinderGeometry(0.025, 0.025, info.length + 0.7, 16), material(metal));
-        bar.rotation.z = Math.PI / 2;
-        bar.position.set(info.length / 2, 0, 0.045);
-        this.group.add(cloth, bar, shadowOf(geometry, floor), shadowOf(bar.geometry, floor));
-        this.group.children[3].rotation.copy(bar.rotation);
-        this.group.children[3].position.copy(bar.position);
+        const bar = this.mesh(new CylinderGeometry(0.025, 0.025, info.length + 0.7, 16), metal);
+        const barShadow = shadowOf(bar.geometry, floor);
+        for (const each of [bar, barShadow]) {
+            each.rotation.z = Math.PI / 2;
+            each.position.set(info.length / 2, 0, 0.045);
+        }
+        const cloth = this.mesh(this.geometry, fabric, { side: DoubleSide });
+        this.group.add(cloth, bar, shadowOf(this.geometry, floor), barShadow);
         for (const x of [0, info.length]) {
-            const ring = new Mesh(new SphereGeometry(0.05, 20, 14), material(metal));
+            const ring = this.mesh(new SphereGeometry(0.05, 20, 14), metal);
             ring.position.set(x, 0, 0.02);
             this.group.add(ring);
         }
-        this.floor = floorAt(floor, uniforms);
-        this.floor.position.x = info.length / 2;
-        this.group.add(this.floor);
-    }
-
-    paint(theme) {
-        for (const name of ["skyLow", "skyHigh", "ground"]) this.uniforms[name].value = theme[name];
+        const ground = floorAt(floor, this.uniforms);
+        ground.position.x = info.length / 2;
+        this.group.add(ground);
     }
 
     stitch(cut) {
-        const { array } = this.index;
+        const { index } = this.geometry;
         let at = 0;
         for (const { corners, sides } of this.triangles)
-            if (!sides.some((side) => cut[side])) for (const corner of corners) array[at++] = corner;
+            if (!sides.some((side) => cut[side])) for (const corner of corners) index.array[at++] = corner;
         this.geometry.setDrawRange(0, at);
-        this.drawn = array.subarray(0, at);
-        this.index.needsUpdate = true;
+        this.drawn = index.array.subarray(0, at);
+        index.needsUpdate = true;
     }
 
     update({ positions, torn }) {
         const many = torn.reduce((sum, each) => sum + each, 0);
         if (many !== this.torn) this.stitch(torn);
         this.torn = many;
-        this.positions.array.set(positions);
-        smoothNormals(positions, this.drawn, this.normals.array);
-        this.positions.needsUpdate = this.normals.needsUpdate = true;
+        this.position.array.set(positions);
+        this.moved(this.drawn);
     }
-
-    look() {}
-    dispose() {}
 }

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 // Common parts of cloth, rope and jelly: one sun, a sky, a floor that fades out, and shadows on it.
 import {
+    BufferAttribute,
+    BufferGeometry,
     CircleGeometry,
     DoubleSide,
+    DynamicDrawUsage,
     EqualStencilFunc,
+    Group,
     IncrementStencilOp,
     Mesh,
     ShaderMaterial,
     Vector3,
 } from "three";
+
+import { smoothNormals } from "../surface.mjs";
 
 export const sun = new Vector3(-0.45, -0.55, 0.75).normalize();
 
@@ -50,10 +56,45 @@ export function plain(colour, gloss) {
     void main() { gl_FragColor = vec4(lit(vec3(${colour}), normalize(n), normalize(v), ${gloss.toFixed(2)}), 1.0); }`;
 }
 
-export function uniformsOf(theme, more = {}) {
-    const uniforms = { ...more };
-    for (const name of ["skyLow", "skyHigh", "ground"]) uniforms[name] = { value: theme[name] };
-    return uniforms;
+/** What cloth, rope and jelly have in common: a light, and a surface of moving points. */
+export class Lit {
+    group = new Group();
+    geometry = new BufferGeometry();
+    uniforms = { skyLow: {}, skyHigh: {}, ground: {} };
+
+    /** index: of the triangles, an attribute or a list */
+    constructor(theme, points, index) {
+        this.paint(theme);
+        this.position = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
+        this.normal = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
+        this.geometry.setAttribute("position", this.position);
+        this.geometry.setAttribute("normal", this.normal);
+        this.geometry.setIndex(index);
+    }
+
+    /** A mesh of this light. */
+    mesh(geometry, fragmentShader, more = {}) {
+        const { uniforms } = this;
+        const mesh = new Mesh(
+            geometry,
+            new ShaderMaterial({ uniforms, vertexShader: vertex, fragmentShader, ...more }),
+        );
+        mesh.frustumCulled = geometry !== this.geometry;
+        return mesh;
+    }
+
+    /** Call it when points have moved. */
+    moved(triangles = this.geometry.index.array) {
+        smoothNormals(this.position.array, triangles, this.normal.array);
+        this.position.needsUpdate = this.normal.needsUpdate = true;
+    }
+
+    paint(theme) {
+        for (const name of Object.keys(this.uniforms)) this.uniforms[name].value = theme[name];
+    }
+
+    look() {}
+    dispose() {}
 }
 
 export function floorAt(z, uniforms, radius = 4) {

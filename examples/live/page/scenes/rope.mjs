@@ -1,17 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A rope held at one end, drawn as a tube along a Catmull-Rom curve through its particles. A heavy end is an iron ball.
-import {
-    BufferAttribute,
-    BufferGeometry,
-    DynamicDrawUsage,
-    Group,
-    Mesh,
-    ShaderMaterial,
-    SphereGeometry,
-} from "three";
+import { BufferAttribute, SphereGeometry } from "three";
 
-import { smoothNormals } from "../surface.mjs";
-import { floorAt, lighting, plain, shadowOf, uniformsOf, vertex } from "./light.mjs";
+import { floorAt, lighting, Lit, plain, shadowOf } from "./light.mjs";
 
 const floor = -2.55; // [m]
 const radius = 0.032; // [m]
@@ -32,50 +23,30 @@ const strands = /* glsl */ `
 
 const iron = plain("0.17, 0.18, 0.21", 0.75);
 
-export class Rope {
+export class Rope extends Lit {
     static camera = { from: [0.4, -5.0, -0.55], to: [0.0, 0, -0.92], fit: 1.1 };
 
     constructor(info, theme) {
-        const uniforms = uniformsOf(theme);
-        this.uniforms = uniforms;
-        this.particles = info.particles;
-        this.rings = (info.particles - 1) * along + 1;
-        const points = this.rings * (around + 1);
+        const rings = (info.particles - 1) * along + 1;
         const index = [];
-        for (let r = 0; r + 1 < this.rings; r++)
+        for (let r = 0; r + 1 < rings; r++)
             for (let a = 0; a < around; a++) {
                 const p = r * (around + 1) + a;
                 const q = p + around + 1;
                 index.push(p, q, p + 1, p + 1, q, q + 1);
             }
-        const uv = new Float32Array(2 * points);
-        for (let r = 0; r < this.rings; r++)
+        super(theme, rings * (around + 1), index);
+        Object.assign(this, { particles: info.particles, rings });
+        const uv = new Float32Array(2 * rings * (around + 1));
+        for (let r = 0; r < rings; r++)
             for (let a = 0; a <= around; a++)
-                uv.set([a / around, (r / (this.rings - 1)) * 2], 2 * (r * (around + 1) + a));
-        this.geometry = new BufferGeometry();
-        this.position = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
-        this.normal = new BufferAttribute(new Float32Array(3 * points), 3).setUsage(DynamicDrawUsage);
-        this.geometry.setAttribute("position", this.position);
-        this.geometry.setAttribute("normal", this.normal);
+                uv.set([a / around, (r / (rings - 1)) * 2], 2 * (r * (around + 1) + a));
         this.geometry.setAttribute("uv", new BufferAttribute(uv, 2));
-        this.geometry.setIndex(index);
-        this.index = this.geometry.index.array;
-
-        const material = (fragmentShader) =>
-            new ShaderMaterial({ uniforms, vertexShader: vertex, fragmentShader });
-        const tube = new Mesh(this.geometry, material(strands));
-        tube.frustumCulled = false;
-        const size = info.massRatio > 1 ? 0.26 : 0.06;
-        this.end = new Mesh(new SphereGeometry(size, 32, 22), material(iron));
+        const ball = (size) => this.mesh(new SphereGeometry(size, 32, 22), iron);
+        this.end = ball(info.massRatio > 1 ? 0.26 : 0.06);
         this.endShadow = shadowOf(this.end.geometry, floor);
-        const hook = new Mesh(new SphereGeometry(0.07, 24, 16), material(iron));
-        this.group = new Group();
-        this.floor = floorAt(floor, uniforms);
-        this.group.add(tube, this.end, hook, this.floor, shadowOf(this.geometry, floor), this.endShadow);
-    }
-
-    paint(theme) {
-        for (const name of ["skyLow", "skyHigh", "ground"]) this.uniforms[name].value = theme[name];
+        this.group.add(this.mesh(this.geometry, strands), this.end, ball(0.07));
+        this.group.add(floorAt(floor, this.uniforms), shadowOf(this.geometry, floor), this.endShadow);
     }
 
     update({ positions }) {
@@ -104,18 +75,14 @@ export class Rope {
                 x[at + 2] = c[1][0] + u * across[1];
             }
         }
-        smoothNormals(x, this.index, this.normal.array);
+        this.moved();
         const { array } = this.normal; // the seam: the first and last point of a ring coincide
         for (let r = 0; r < this.rings; r++)
             for (let axis = 0; axis < 3; axis++) {
                 const a = 3 * r * (around + 1) + axis;
                 array[a] = array[a + 3 * around] = array[a] + array[a + 3 * around];
             }
-        this.position.needsUpdate = this.normal.needsUpdate = true;
         this.end.position.fromArray(positions, 3 * (n - 1));
         this.endShadow.position.copy(this.end.position);
     }
-
-    look() {}
-    dispose() {}
 }

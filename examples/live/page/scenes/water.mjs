@@ -153,28 +153,18 @@ const groundFragment = /* glsl */ `
     }`;
 
 function walls(side) {
-    const points = [];
-    for (const [a, b] of [
-        [
-            [0, 0],
-            [side, 0],
-        ],
-        [
-            [side, 0],
-            [side, side],
-        ],
-        [
-            [side, side],
-            [0, side],
-        ],
-        [
-            [0, side],
-            [0, 0],
-        ],
-    ])
-        points.push([...a, -0.4], [...b, -0.4], [...b, rim], [...a, -0.4], [...b, rim], [...a, rim]);
+    const corners = [
+        [0, 0],
+        [side, 0],
+        [side, side],
+        [0, side],
+    ];
+    const points = corners.flatMap((a, i) => {
+        const b = corners[(i + 1) % 4];
+        return [...a, -0.4, ...b, -0.4, ...b, rim, ...a, -0.4, ...b, rim, ...a, rim];
+    });
     const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array(points.flat()), 3));
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
     return geometry;
 }
 
@@ -215,13 +205,9 @@ export class Water {
         this.side = side;
         this.group = new Group();
         this.group.position.set(-side / 2, -side / 2, 0);
+        const { uniforms } = this;
         const add = (geometry, vertexShader, fragmentShader, more = {}) => {
-            const material = new ShaderMaterial({
-                vertexShader,
-                fragmentShader,
-                uniforms: this.uniforms,
-                ...more,
-            });
+            const material = new ShaderMaterial({ vertexShader, fragmentShader, uniforms, ...more });
             const mesh = new Mesh(geometry, material);
             mesh.frustumCulled = false;
             this.group.add(mesh);
