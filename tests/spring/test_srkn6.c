@@ -3,7 +3,17 @@
    reversibility. srkn6_coefficients.py checks the order conditions, and tests of scenes check the properties of all
    methods. */
 
+#include "methods/srkn6_coefficients.h"
 #include "spring_in_scene.h"
+
+static void sums_of_drifts(void)
+{
+    double time = 0;
+    for (int i = 0; i < srkn6_stages; i++) {
+        time += srkn6_a[srkn6_index(i, srkn6_stages)];
+        CHECK_CLOSE(srkn6_c[i], time, 2 * DBL_EPSILON, "the sums of the drifts");
+    }
+}
 
 /* 23 kicks and drifts round where the bound of reference.h counts 4 times. */
 static void against_iterate(void)
@@ -160,6 +170,7 @@ static void reversible(void)
 int main(void)
 {
     static const test tests[] = {
+        {"the times of the kicks", sums_of_drifts},
         {"against the method in exact arithmetic", against_iterate},
         {"order 6, with drag and without", order},
         {"the phase error of a step", phase_error},
