@@ -12,7 +12,6 @@
 #include <springstep/scene.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "draw.h"
@@ -32,10 +31,10 @@ typedef struct app {
     painter painter;
     camera camera;
     world world;
-    vec3 *drawn;      /* [particles] positions for drawing */
-    int method_index; /* for spring_method_at() */
-    uint64_t steps;   /* per frame */
-    int damping;      /* index of dampings[] */
+    vec3 drawn[MOST_PARTICLES]; /* positions for drawing */
+    int method_index;           /* for spring_method_at() */
+    uint64_t steps;             /* per frame */
+    int damping;                /* index of dampings[] */
     bool wind, running, failed;
     spring_clock clock;
     spring_status trouble;  /* SPRING_OK, or the reason why the simulation stopped */
@@ -78,13 +77,10 @@ static bool choose_method(app *a, const char *name)
 /* Starts a world with the current settings. */
 static bool start(app *a, world_kind kind)
 {
-    world_close(&a->world);
-    vec3 *drawn = world_open(&a->world, kind) ? realloc(a->drawn, a->world.particles * sizeof *drawn) : NULL;
-    if (drawn == NULL) {
+    if (!world_open(&a->world, kind)) {
         fprintf(stderr, "springs: no memory for the scene\n");
         return false;
     }
-    a->drawn = drawn;
     world_between(&a->world, 1, a->drawn);
     world_set_damping(&a->world, dampings[a->damping]);
     world_set_wind(&a->world, a->wind);
@@ -360,8 +356,7 @@ static bool draw(app *a)
     if (SDL_GetRendererOutputSize(a->renderer, &width, &height) != 0)
         return false;
     a->camera = camera_for(a->world.kind, width, height);
-    if (!paint_world(&a->painter, &a->camera, &a->world, a->drawn))
-        return false;
+    paint_world(&a->painter, &a->camera, &a->world, a->drawn);
     if (a->world.grabbed != WORLD_NOTHING)
         paint_hand(&a->painter, camera_project(&a->camera, a->drawn[a->world.grabbed]), a->mouse_x, a->mouse_y);
     draw_settings(a);
@@ -465,7 +460,6 @@ static void run(app *a, script *played)
 static void close_all(app *a)
 {
     world_close(&a->world);
-    free(a->drawn);
     painter_close(&a->painter);
     SDL_DestroyRenderer(a->renderer);
     SDL_DestroyWindow(a->window);
@@ -475,7 +469,7 @@ static void close_all(app *a)
 int main(int count, char **word)
 {
     options o = {.world = "cloth", .method = "leapfrog"};
-    app a = {.damping = 2, .wind = true};
+    static app a = {.damping = 2, .wind = true};
     script played = {0};
     world_kind kind;
     if (!parse(&o, count, word))
