@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Pictures, and an X server with a pointer and keys."""
 import os
-import pathlib
 import struct
 import subprocess
 import time
@@ -41,17 +40,6 @@ class Picture:
             return None
         x, y = zip(*found)
         return (min(x) + max(x)) / 2, (min(y) + max(y)) / 2
-
-
-def read_bmp(path):
-    """24 bits a pixel, the lowest row first, each padded to 4 bytes."""
-    data = pathlib.Path(path).read_bytes()
-    offset, = struct.unpack_from('<I', data, 10)
-    width, height = struct.unpack_from('<ii', data, 18)
-    assert data[:2] == b'BM' and struct.unpack_from('<H', data, 28) == (24,)
-    stride = (3 * width + 3) // 4 * 4
-    rows = [data[offset + y * stride:offset + y * stride + 3 * width] for y in range(height)]
-    return Picture(rows[::-1], width, 3)
 
 
 class Screen:
