@@ -170,14 +170,10 @@ static void reversible(void)
 int main(void)
 {
     static const test tests[] = {
-        {"the times of the kicks", sums_of_drifts},
-        {"against the method in exact arithmetic", against_iterate},
-        {"order 6, with drag and without", order},
-        {"the phase error of a step", phase_error},
-        {"the energy is bounded", energy_bounded},
-        {"the stable step", stable_step},
-        {"drag alone is exact", drag_alone},
-        {"order 6 of a pendulum", nonlinear_order},
+        {"the times of the kicks", sums_of_drifts}, {"against the method in exact arithmetic", against_iterate},
+        {"order 6, with drag and without", order},  {"the phase error of a step", phase_error},
+        {"the energy is bounded", energy_bounded},  {"the stable step", stable_step},
+        {"drag alone is exact", drag_alone},        {"order 6 of a pendulum", nonlinear_order},
         {"forward and back", reversible},
     };
     return RUN_TESTS("srkn6", tests);
