@@ -260,36 +260,6 @@ static void follows_without_lag(void)
     }
 }
 
-/* The largest distance, in two seconds at 60 frames per second, of a value from one that follows the same accelerating
-   target in short steps. end: the target velocity is that of the end of each frame, not the mean. */
-static double error_of_frames(const spring_params *p, double acceleration, bool end)
-{
-    enum { frames = 120, parts = 200 };
-    spring_state s = {0, 0}, fine = s;
-    double error = 0;
-    for (int i = 1; i <= frames; i++) {
-        const double dt = 1 / 60.0, t = i * dt, mean = acceleration * (t - dt / 2);
-        spring_follow(&s, p, acceleration * t * t / 2, end ? acceleration * t : mean, dt);
-        for (int j = 1; j <= parts; j++) {
-            const double now = t - dt + j * dt / parts;
-            spring_follow(&fine, p, acceleration * now * now / 2, acceleration * (now - dt / parts / 2), dt / parts);
-        }
-        error = fmax(error, fabs(s.x - fine.x));
-    }
-    return error;
-}
-
-/* docs/ui.md: pass the mean velocity. */
-static void accelerating_targets(void)
-{
-    const spring_params p = spring_params_response(0.5, 0.8);
-    const double acceleration = 1000, dt = 1 / 60.0, lead = acceleration * dt / 2 * p.damping / p.stiffness;
-    CHECK_BELOW(error_of_frames(&p, acceleration, false), acceleration * dt * dt / 8,
-                "the largest distance of a parabola from its chord");
-    CHECK_CLOSE(error_of_frames(&p, acceleration, true), lead, 0.1 * lead,
-                "the lead, and an overshoot of a few percent");
-}
-
 /* Undamped springs and steps backwards never land, not even a step from the target. */
 static void lands_only_if_it_decays(void)
 {
@@ -432,7 +402,6 @@ int main(int argc, char **argv)
         {"any partition", any_partition},
         {"stops near the target", stops_near_the_target},
         {"follows without lag", follows_without_lag},
-        {"targets that accelerate", accelerating_targets},
         {"lands only if it decays", lands_only_if_it_decays},
         {"special springs", special_springs},
         {"bad input", bad_input_changes_nothing},
