@@ -138,17 +138,15 @@ static void set_home(world *w)
         }
 }
 
-/* Gusts that travel across the cloth. The callback runs in each step, so sin(t - phase) is computed as
-   sin(t) cos(phase) - cos(t) sin(phase). It does not use velocities; see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
+/* Gusts that travel across the cloth. The callback does not use velocities; see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
 static void blow(void *user, double t, size_t particles, const double *const position[3],
                  const double *const velocity[3], double *const force[3])
 {
     const world *w = user;
-    const double strength = w->wind * sin(0.7 * t), s = strength * sin(1.9 * t), c = strength * cos(1.9 * t);
     (void)position;
     (void)velocity;
     for (size_t i = 0; i < particles; i++)
-        force[2][i] += 0.4 * w->wind + s * w->gust[i].along - c * w->gust[i].across;
+        force[2][i] += w->wind * (0.4 + sin(0.7 * t) * sin(1.9 * t - 2.5 * w->home[i].x + w->home[i].y));
 }
 
 /* --------------------------------------------------------------------------------------------- between axes and xyz */
@@ -196,8 +194,6 @@ static bool make_scene(world *w, const struct recipe *r)
         to_axes(w, w->home[i], own);
         for (uint32_t axis = 0; axis < w->axes; axis++)
             position[w->axes * i + axis] = own[axis];
-        const double phase = 2.5 * w->home[i].x - w->home[i].y;
-        w->gust[i] = (gust){cos(phase), sin(phase)};
         mass[i] = r->mass;
         w->previous[i] = w->current[i] = w->home[i];
     }

@@ -14,11 +14,6 @@ typedef struct vec3 {
     double x, y, z;
 } vec3;
 
-/* Cosine and sine of the phase of the gusts at a particle. */
-typedef struct gust {
-    double along, across;
-} gust;
-
 typedef enum world_kind { WORLD_CLOTH, WORLD_ROPE, WORLD_WATER, WORLD_DRAPE, WORLD_CAPE, WORLD_KINDS } world_kind;
 
 enum { WORLD_BODIES = 2 }; /* of drape and cape: a sphere or capsule, and the ground */
@@ -37,10 +32,9 @@ typedef struct world {
     spring_scene *scene;
     uint32_t columns, rows, axes;
     size_t particles, links;
-    double spacing, wave; /* [m] between particles at rest; [m/s] speed of waves along them */
-    double damping;       /* [N s/m] of each link */
-    double wind;          /* [N] largest force on a particle; only for cloth and cape */
-    gust gust[MOST_PARTICLES];
+    double spacing, wave;           /* [m] between particles at rest; [m/s] speed of waves along them */
+    double damping;                 /* [N s/m] of each link */
+    double wind;                    /* [N] largest force on a particle; only for cloth and cape */
     spring_link link[MOST_LINKS];   /* initial links */
     uint8_t pinned[MOST_PARTICLES]; /* at the start */
     uint8_t torn[MOST_PARTICLES];   /* bits TORN_... of cut links */
