@@ -3,7 +3,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "spring/accuracy.h"
 #include "check.h"
 #include "harness/reference.h"
 #include "test_methods.h"
@@ -175,37 +174,6 @@ static void least_number_of_steps(void)
         }
 }
 
-static int asked;
-
-static step_terms counted_terms(step_rates r)
-{
-    asked++;
-    return exponential_terms(r, 4);
-}
-
-/* A search takes a guess, the steps that the power law makes of it, and fewer that are not enough: four errors. Where that
-   law does not hold, as near the largest error that there can be, it takes twice as many steps until they are enough, a
-   twentieth fewer from twice the rates on until they are not, and after 12 tries halves what is between, to 2^-13 of it. */
-static void short_searches(void)
-{
-    enum { SEARCHES = 2000 };
-    int short_ones = 0;
-    for (int i = 0; i < SEARCHES; i++)
-        for (int lawful = 0; lawful < 2; lawful++) {
-            const double turns = random_log(1, 30000), G = i % 2 * turns * random_log(1e-4, 2);
-            const double tolerance = lawful ? random_log(1e-9, 0.1) : random_log(0.3, 3);
-            const accuracy of = {counted_terms, 4, {turns, turns, G}};
-            const int guess = 1;
-            const double doublings = 53, back = log(2 * fmax(turns, G)) / log(1.05) + 20;
-            asked = 0;
-            const double n = spring_accurate_steps(&of, tolerance);
-            CHECK(asked <= guess + doublings + back + 12 + 13, "an end");
-            short_ones += lawful && asked <= guess + 4;
-            CHECK(spring_error_of(&of, n, n) <= tolerance, "enough");
-        }
-    CHECK(short_ones > SEARCHES / 2, "short where the power law holds");
-}
-
 /* A few springs whose error can be written down. */
 static void known_errors(void)
 {
@@ -313,7 +281,6 @@ int main(void)
         {"bad input", bad_input},
         {"other units", units},
         {"the least number of steps", least_number_of_steps},
-        {"short searches", short_searches},
         {"maxima between samples", maxima_between_samples},
         {"steps that do not turn", steps_that_do_not_turn},
         {"steps that grow", steps_that_grow},
