@@ -51,6 +51,36 @@ static void random_springs(void)
     }
 }
 
+/* The energies of the numerical solutions, in u = x + i v/omega. */
+static void energy_laws(void)
+{
+    const spring_params p = {.mass = 1.3, .stiffness = 2.7};
+    const double omega = sqrt(p.stiffness / p.mass);
+    const spring_state start = {0.8, -0.9};
+    const uint64_t n = 1000;
+    for (double z = 0.01; z < 0.6; z *= 1.7) {
+        const double dt = z / omega, e0 = spring_energy(&start, &p);
+        spring_state s = start;
+        spring_advance(&s, &p, SPRING_EULER, dt, n);
+        const double euler = e0 * exp((double)n * log1p(z * z));
+        CHECK_CLOSE(spring_energy(&s, &p), euler, 10 * (double)n * DBL_EPSILON * euler, "Euler: E0 (1 + z^2)^n");
+        s = start;
+        spring_advance(&s, &p, SPRING_RK4, dt, n);
+        const double rk4 = e0 * exp((double)n * log1p(pow(z, 8) / 576 - pow(z, 6) / 72));
+        CHECK_CLOSE(spring_energy(&s, &p), rk4, 10 * (double)n * DBL_EPSILON * e0, "RK4: E0 (1 - z^6/72 + z^8/576)^n");
+        s = start;
+        double worst = 0;
+        const double shadow = start.v * start.v + omega * omega * (1 - z * z / 4) * start.x * start.x;
+        for (uint64_t i = 0; i < n; i++) {
+            spring_step_leapfrog(&s, &p, dt);
+            worst = fmax(worst, fabs(s.v * s.v + omega * omega * (1 - z * z / 4) * s.x * s.x - shadow));
+            CHECK(fabs(spring_energy(&s, &p) - e0) <= e0 * z * z / 2,
+                  "E/E0 is within 1 and 1 - z^2/4 of the invariant, at both ends");
+        }
+        CHECK_BELOW(worst, 10 * (double)n * DBL_EPSILON * shadow, "leapfrog conserves v^2 + w (1 - z^2/4) x^2");
+    }
+}
+
 /* A million steps: the biased rounding of a badly chosen form would show. */
 static void long_runs(void)
 {
@@ -78,6 +108,7 @@ int main(void)
 {
     static const test tests[] = {
         {"springs of all sizes", random_springs},
+        {"energy laws of Euler, leapfrog and RK4", energy_laws},
         {"a million steps round without bias", long_runs},
     };
     return RUN_TESTS("iterate", tests);
