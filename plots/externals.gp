@@ -11,3 +11,10 @@ array external_markers[8] = [4, 6, 8, 12, 10, 2, 14, 4]
 
 # For the label of times: what has to be known of them.
 note_on_sundials = system("grep -c '^# sundials: .*unoptimised' ".work."; true") eq "0" ? "" : " (SUNDIALS: unoptimised)"
+
+# The axes of work-precision diagrams
+set logscale xy
+set format xy "10^{%T}"
+set ytics 1e3
+set mxtics 1
+set mytics 1

@@ -9,12 +9,7 @@ is(solver) = strcol("problem") eq "ideal-10000" && strcol("effort") eq "sweep" &
 seconds(solver) = is(solver) ? column("time_s") : NaN
 
 set datafile missing NaN
-set logscale xy
-set format xy "10^{%T}"
 set yrange [1e-13:3]
-set ytics 1e3
-set mxtics 1
-set mytics 1
 set xlabel "run time / s"
 set ylabel "relative energy error"
 entries = methods + 3

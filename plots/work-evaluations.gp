@@ -40,13 +40,8 @@ do for [k = 1:2] {
 }
 
 set samples 400
-set logscale xy
-set format xy "10^{%T}"
 set xrange [8:1e7]
 set yrange [1e-16:3]
-set ytics 1e3
-set mxtics 1
-set mytics 1
 set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 2
 call plots."key.gp" entries

@@ -16,13 +16,8 @@ if (ARGC == 1) {
     call plots."externals.gp"
     call plots."need.gp" work "problem solver effort time_s error"
     set datafile missing NaN
-    set logscale xy
-    set format xy "10^{%T}"
     set yrange [0.3*least:3]
-    set ytics 1e3
     set xtics 10
-    set mxtics 1
-    set mytics 1
     set ylabel "error / size of the motion" offset 1.5,0
     call plots."key.gp" entries
 } else {

@@ -17,12 +17,7 @@ frames = 60*STATS_max
 is(solver) = strcol("problem") eq problem && strcol("effort") eq "sweep" && strcol("solver") eq solver
 microseconds(solver) = is(solver) ? column("time_s")/frames*1e6 : NaN
 
-set logscale xy
-set format xy "10^{%T}"
 set yrange [1e-13:3]
-set ytics 1e3
-set mxtics 1
-set mytics 1
 set xlabel "time per frame / µs".note_on_sundials
 set ylabel "error / size of the motion" offset 1.5,0
 entries = methods + 3

@@ -81,7 +81,7 @@ vec3 camera_pick_height(const camera *c, double y, vec3 above)
 
 bool painter_open(painter *p, SDL_Renderer *renderer)
 {
-    *p = (painter){.renderer = renderer};
+    p->renderer = renderer;
     SDL_Surface *letters =
         SDL_CreateRGBSurfaceWithFormat(0, FONT_COUNT * FONT_WIDTH, FONT_HEIGHT, 32, SDL_PIXELFORMAT_RGBA32);
     if (letters == NULL)
@@ -105,8 +105,6 @@ bool painter_open(painter *p, SDL_Renderer *renderer)
 void painter_close(painter *p)
 {
     SDL_DestroyTexture(p->font);
-    free(p->vertex);
-    *p = (painter){0};
 }
 
 /* Lights a colour, given as red, green, blue from 0 to 1. */
@@ -119,24 +117,17 @@ static SDL_Color shade(vec3 color, double light, double shine)
     return (SDL_Color){byte[0], byte[1], byte[2], 255};
 }
 
-static bool make_room(painter *p)
+static void paint_corners(painter *p)
 {
-    const size_t room = p->room > 0 ? 2 * p->room : 4096;
-    SDL_Vertex *more = realloc(p->vertex, room * sizeof *more);
-    if (more == NULL)
-        return false;
-    p->vertex = more;
-    p->room = room;
-    return true;
+    SDL_RenderGeometry(p->renderer, NULL, p->vertex, p->vertices, NULL, 0);
+    p->vertices = 0;
 }
 
-/* Out of memory, the triangle is omitted, and paint_world() returns false. */
 static void corner(painter *p, double x, double y, SDL_Color color)
 {
-    if (p->vertices == p->room && !make_room(p))
-        p->incomplete = true;
-    else
-        p->vertex[p->vertices++] = (SDL_Vertex){{(float)x, (float)y}, color, {0, 0}};
+    if (p->vertices == sizeof p->vertex / sizeof *p->vertex)
+        paint_corners(p);
+    p->vertex[p->vertices++] = (SDL_Vertex){{(float)x, (float)y}, color, {0, 0}};
 }
 
 /* SDL has int pixels, which the positions of an exploding world can exceed. */
@@ -170,9 +161,9 @@ typedef struct surface {
     const world *w;
     const camera *c;
     const vec3 *at; /* [particles] */
-    spot *seen;     /* [particles] */
-    vec3 *normal;   /* [particles] towards the viewer in the initial orientation */
-    SDL_Color *lit; /* [particles] water only, since cloth has two sides */
+    spot seen[MOST_PARTICLES];
+    vec3 normal[MOST_PARTICLES];   /* towards the viewer in the initial orientation */
+    SDL_Color lit[MOST_PARTICLES]; /* water only, since cloth has two sides */
 } surface;
 
 typedef struct triangle {
@@ -271,37 +262,27 @@ static vec3 middle_of_body(const world *w)
 /* Paints a body over the triangles behind it, and before the triangles in front of it. */
 static void paint_surface(painter *p, const camera *c, const world *w, const vec3 *at)
 {
-    surface s = {.w = w, .c = c, .at = at};
-    triangle *list = calloc(2 * w->particles, sizeof *list);
-    s.seen = calloc(w->particles, sizeof *s.seen);
-    s.normal = calloc(w->particles, sizeof *s.normal);
-    s.lit = calloc(w->particles, sizeof *s.lit);
-    if (list == NULL || s.seen == NULL || s.normal == NULL || s.lit == NULL)
-        p->incomplete = true;
-    else {
-        const size_t n = find_triangles(&s, list);
-        find_normals(&s, list, n);
-        for (size_t i = 0; i < w->particles; i++)
-            s.seen[i] = camera_project(c, at[i]);
-        for (uint32_t i = 0; i < w->particles && w->kind == WORLD_WATER; i++)
+    static surface s;
+    static triangle list[2 * MOST_PARTICLES];
+    s = (surface){.w = w, .c = c, .at = at};
+    const size_t n = find_triangles(&s, list);
+    find_normals(&s, list, n);
+    for (uint32_t i = 0; i < w->particles; i++) {
+        s.seen[i] = camera_project(c, at[i]);
+        if (w->kind == WORLD_WATER)
             s.lit[i] = water_color(&s, i);
-        for (size_t i = 0; i < n; i++)
-            list[i].depth = s.seen[list[i].a].depth + s.seen[list[i].b].depth + s.seen[list[i].c].depth;
-        qsort(list, n, sizeof *list, farthest_first);
-        bool body = world_has_bodies(w);
-        const double depth = body ? camera_project(c, middle_of_body(w)).depth : 0;
-        for (size_t i = 0; i < n; i++) {
-            if (body && list[i].depth < 3 * depth)
-                body = false, paint_body(p, c, w);
-            paint_triangle(p, &s, &list[i]);
-        }
-        if (body)
-            paint_body(p, c, w);
     }
-    free(list);
-    free(s.seen);
-    free(s.normal);
-    free(s.lit);
+    for (size_t i = 0; i < n; i++)
+        list[i].depth = s.seen[list[i].a].depth + s.seen[list[i].b].depth + s.seen[list[i].c].depth;
+    qsort(list, n, sizeof *list, farthest_first);
+    bool body = world_has_bodies(w);
+    const double depth = body ? camera_project(c, middle_of_body(w)).depth : 0;
+    for (size_t i = 0; i <= n; i++) {
+        if (body && (i == n || list[i].depth < 3 * depth))
+            body = false, paint_body(p, c, w);
+        if (i < n)
+            paint_triangle(p, &s, &list[i]);
+    }
 }
 
 /* A flat slab between four corners. */
@@ -323,32 +304,23 @@ static void paint_slab(painter *p, const camera *c, const vec3 corners[4], vec3 
 static void paint_rim(painter *p, const camera *c, bool near_side)
 {
     static const vec3 stone = {0.74, 0.70, 0.64};
-    const double in = 0, out = 4, wide = 0.28, low = -0.35, top = 0.06;
-    if (near_side) {
-        const vec3 lid[4] = {
-            {in - wide, top, out}, {out + wide, top, out}, {in - wide, top, out + wide}, {out + wide, top, out + wide}};
-        const vec3 front[4] = {{in - wide, top, out + wide},
-                               {out + wide, top, out + wide},
-                               {in - wide, low, out + wide},
-                               {out + wide, low, out + wide}};
-        paint_slab(p, c, lid, stone, 0.95, 1.0);
-        paint_slab(p, c, front, stone, 0.62, 0.4);
-        return;
-    }
-    const vec3 back[4] = {{in, top, in}, {out, top, in}, {in, low, in}, {out, low, in}};
-    const vec3 flank[2][4] = {{{in, top, in}, {in, top, out}, {in, low, in}, {in, low, out}},
-                              {{out, top, in}, {out, top, out}, {out, low, in}, {out, low, out}}};
-    const vec3 far[4] = {
-        {in - wide, top, in - wide}, {out + wide, top, in - wide}, {in - wide, top, in}, {out + wide, top, in}};
-    const vec3 left[4] = {{in - wide, top, in - wide}, {in, top, in - wide}, {in - wide, top, out}, {in, top, out}};
-    const vec3 right[4] = {
-        {out, top, in - wide}, {out + wide, top, in - wide}, {out, top, out}, {out + wide, top, out}};
-    paint_slab(p, c, back, stone, 0.5, 0.4);
-    paint_slab(p, c, flank[0], stone, 0.42, 0.35);
-    paint_slab(p, c, flank[1], stone, 0.6, 0.45);
-    paint_slab(p, c, far, stone, 0.78, 0.82);
-    paint_slab(p, c, left, stone, 0.80, 0.95);
-    paint_slab(p, c, right, stone, 0.80, 0.95);
+    enum { FAR_SIDE = 6, ALL = 8 };
+    const double in = 0, out = 4, low = -0.35, top = 0.06, left = in - 0.28, right = out + 0.28;
+    const struct slab {
+        vec3 corner[4];
+        double from, to; /* light */
+    } slabs[ALL] = {
+        {{{in, top, in}, {out, top, in}, {in, low, in}, {out, low, in}}, 0.5, 0.4},
+        {{{in, top, in}, {in, top, out}, {in, low, in}, {in, low, out}}, 0.42, 0.35},
+        {{{out, top, in}, {out, top, out}, {out, low, in}, {out, low, out}}, 0.6, 0.45},
+        {{{left, top, left}, {right, top, left}, {left, top, in}, {right, top, in}}, 0.78, 0.82},
+        {{{left, top, left}, {in, top, left}, {left, top, out}, {in, top, out}}, 0.80, 0.95},
+        {{{out, top, left}, {right, top, left}, {out, top, out}, {right, top, out}}, 0.80, 0.95},
+        {{{left, top, out}, {right, top, out}, {left, top, right}, {right, top, right}}, 0.95, 1.0},
+        {{{left, top, right}, {right, top, right}, {left, low, right}, {right, low, right}}, 0.62, 0.4},
+    };
+    for (int i = near_side ? FAR_SIDE : 0; i < (near_side ? ALL : FAR_SIDE); i++)
+        paint_slab(p, c, slabs[i].corner, stone, slabs[i].from, slabs[i].to);
 }
 
 /* The rod of the curtain. */
@@ -364,73 +336,32 @@ static void paint_rod(painter *p, const camera *c, const world *w)
 
 /* ------------------------------------------------------------------------------------------------------------- rope */
 
-/* A point of the Catmull-Rom curve from b = q[1] to c = q[2], at the fraction t. */
-static vec3 on_curve(const vec3 q[4], double t)
-{
-    const double u = t * t, v = t * u;
-    const double weight[4] = {-0.5 * t + u - 0.5 * v, 1 - 2.5 * u + 1.5 * v, 0.5 * t + 2 * u - 1.5 * v,
-                              -0.5 * u + 0.5 * v};
-    vec3 sum = {0};
-    for (int i = 0; i < 4; i++)
-        sum = add(sum, weight[i], q[i]);
-    return sum;
-}
-
-enum { ROPE_PIECES = 5, ROPE_STRIPS = 6 }; /* strips along and across a link; the outermost fade into the background */
-
-typedef struct rib {
-    double x, y, across_x, across_y; /* [pixels] position on the screen; vector across the whole thickness */
-} rib;
-
-/* The light on a cylinder with strands wound around it. side: -1 to 1; along: in units of the thickness. */
-static SDL_Color rope_color(double side, double along)
+/* The link from particle i to the next, as wide as a cylinder of this thickness [m]: light along its middle. */
+static void paint_link(painter *p, const camera *c, const vec3 *at, uint32_t i, double thick)
 {
     static const vec3 hemp = {0.80, 0.66, 0.43};
-    const double round = sqrt(fmax(0, 1 - side * side)), lit = 0.35 + 0.55 * round - 0.25 * side;
-    const double strand = 0.5 + 0.5 * sin(6.28318530717958648 * (0.45 * along + 0.4 * side));
-    return shade(hemp, lit * (0.72 + 0.4 * strand), 0);
-}
-
-static void paint_ribs(painter *p, const rib *a, const rib *b, double along_a, double along_b)
-{
-    for (int k = 0; k < ROPE_STRIPS; k++) {
+    const spot ends[2] = {camera_project(c, at[i]), camera_project(c, at[i + 1])};
+    if (!near_the_window(c, &ends[0]) || !near_the_window(c, &ends[1]))
+        return;
+    const double dx = ends[1].x - ends[0].x, dy = ends[1].y - ends[0].y, length = fmax(hypot(dx, dy), 1e-9);
+    const SDL_Color edge = shade(hemp, 0.4, 0), middle = shade(hemp, i % 2 ? 0.85 : 1, 0);
+    for (int side = -1; side <= 1; side += 2) {
         double x[4], y[4];
-        SDL_Color color[4];
-        for (int i = 0; i < 4; i++) {
-            const rib *r = i < 2 ? a : b;
-            const int edge = k + i % 2;
-            const double side = 2.0 * edge / ROPE_STRIPS - 1;
-            x[i] = r->x + 0.5 * side * r->across_x;
-            y[i] = r->y + 0.5 * side * r->across_y;
-            color[i] = rope_color(0.9 * side, i < 2 ? along_a : along_b);
-            if (edge == 0 || edge == ROPE_STRIPS)
-                color[i].a = 0;
+        for (int k = 0; k < 4; k++) {
+            const spot *s = &ends[k / 2];
+            const double across = k % 2 * side * 0.5 * thick * c->focal / s->depth;
+            x[k] = s->x - across * dy / length;
+            y[k] = s->y + across * dx / length;
         }
-        quad(p, x, y, color);
+        quad(p, x, y, (const SDL_Color[4]){middle, edge, middle, edge});
     }
 }
 
-/* The link from particle i to the next. */
-static void paint_link(painter *p, const camera *c, const world *w, const vec3 *at, uint32_t i, double thick)
+/* A ball, or a side of a capsule, in light from the upper left. */
+static SDL_Color shade_round(vec3 color, vec3 normal)
 {
-    const bool before = i > 0 && !(w->torn[i - 1] & TORN_RIGHT);
-    const bool after = i + 2 < w->particles && !(w->torn[i + 1] & TORN_RIGHT);
-    const vec3 q[4] = {before ? at[i - 1] : at[i], at[i], at[i + 1], after ? at[i + 2] : at[i + 1]};
-    rib last = {0};
-    for (int k = 0; k <= ROPE_PIECES; k++) {
-        const double t = (double)k / ROPE_PIECES, step = 0.01;
-        const spot here = camera_project(c, on_curve(q, t));
-        const spot a = camera_project(c, on_curve(q, t - step)), b = camera_project(c, on_curve(q, t + step));
-        if (!near_the_window(c, &here))
-            return;
-        const double x = b.x - a.x, y = b.y - a.y, length = fmax(hypot(x, y), 1e-9),
-                     wide = thick * c->focal / here.depth;
-        const rib now = {here.x, here.y, -y / length * wide, x / length * wide};
-        const double along = (i + t) * w->spacing / thick;
-        if (k > 0)
-            paint_ribs(p, &last, &now, along - w->spacing / thick / ROPE_PIECES, along);
-        last = now;
-    }
+    const double facing = fmax(0, dot(normal, (vec3){-0.45, 0.6, 0.66}));
+    return shade(color, 0.25 + 0.8 * facing, 0.6 * pow(facing, 40));
 }
 
 /* A disc, shaded as a ball lit from the upper left. */
@@ -449,10 +380,9 @@ static void paint_ball(painter *p, const camera *c, vec3 at, double radius, vec3
                 const double r = (double)(ring + i / 2) / RINGS,
                              angle = 6.28318530717958648 * (sector + i % 2) / SECTORS;
                 const vec3 normal = {r * cos(angle), -r * sin(angle), sqrt(fmax(0, 1 - r * r))};
-                const double facing = fmax(0, dot(normal, (vec3){-0.45, 0.6, 0.66}));
                 x[i] = s.x + pixels * normal.x;
                 y[i] = s.y - pixels * normal.y;
-                colors[i] = shade(color, 0.25 + 0.8 * facing, 0.6 * pow(facing, 40));
+                colors[i] = shade_round(color, normal);
             }
             quad(p, x, y, colors);
         }
@@ -486,10 +416,9 @@ static void paint_body(painter *p, const camera *c, const world *w)
             const double *end = i < 2 ? b->to : b->at, side = 2.0 * (k + i % 2) / STRIPS - 1;
             const spot s = camera_project(c, (vec3){end[0], end[1], end[2]});
             const vec3 normal = {side, 0, sqrt(fmax(0, 1 - side * side))};
-            const double facing = fmax(0, dot(normal, (vec3){-0.45, 0.6, 0.66}));
             x[i] = s.x + side * b->radius * c->focal / s.depth;
             y[i] = s.y;
-            colors[i] = shade(blue, 0.25 + 0.8 * facing, 0.6 * pow(facing, 40));
+            colors[i] = shade_round(blue, normal);
         }
         quad(p, x, y, colors);
     }
@@ -511,16 +440,15 @@ static void paint_rope(painter *p, const camera *c, const world *w, const vec3 *
     paint_slab(p, c, beam, wood, 1.1, 0.75);
     for (uint32_t i = 0; i + 1 < w->particles; i++)
         if (!(w->torn[i] & TORN_RIGHT))
-            paint_link(p, c, w, at, i, thick);
+            paint_link(p, c, at, i, thick);
     paint_ball(p, c, at[0], 0.04, iron);
     paint_ball(p, c, at[w->particles - 1], 0.10, steel);
 }
 
 /* ------------------------------------------------------------------------------------------------------- all of it */
 
-bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at)
+void paint_world(painter *p, const camera *c, const world *w, const vec3 *at)
 {
-    p->incomplete = false;
     background(p, c);
     switch (w->kind) {
     case WORLD_ROPE:
@@ -540,9 +468,7 @@ bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at)
         paint_rod(p, c, w);
         paint_surface(p, c, w, at);
     }
-    SDL_RenderGeometry(p->renderer, NULL, p->vertex, (int)p->vertices, NULL, 0);
-    p->vertices = 0;
-    return !p->incomplete;
+    paint_corners(p);
 }
 
 void paint_hand(painter *p, spot held, double mouse_x, double mouse_y)

@@ -22,9 +22,8 @@ typedef struct spot {
 typedef struct painter {
     SDL_Renderer *renderer;
     SDL_Texture *font;
-    SDL_Vertex *vertex; /* [room] corners of triangles, three by three */
-    size_t vertices, room;
-    bool incomplete; /* out of memory for a triangle */
+    SDL_Vertex vertex[3 * 1024]; /* corners of triangles that are not painted yet, three by three */
+    int vertices;
 } painter;
 
 /** Opens a painter. On failure it returns false with a message in SDL_GetError(), and the painter is empty. */
@@ -40,8 +39,8 @@ spot camera_project(const camera *c, vec3 at);
 vec3 camera_pick(const camera *c, double x, double y, double depth);
 vec3 camera_pick_height(const camera *c, double y, vec3 above);
 
-/** Paints a world with its particles at the positions at[particles]. Returns false if out of memory. */
-bool paint_world(painter *p, const camera *c, const world *w, const vec3 *at);
+/** Paints a world with its particles at the positions at[particles]. */
+void paint_world(painter *p, const camera *c, const world *w, const vec3 *at);
 
 /** Paints a ring around the held particle and a line to its target. */
 void paint_hand(painter *p, spot held, double mouse_x, double mouse_y);

@@ -2,7 +2,7 @@
 /*
  * Cloth, rope, water, drape and cape in a window, to drag, cut and poke.
  *
- *     cc -std=c11 -O2 main.c world.c draw.c script.c $(sdl2-config --cflags --libs) -lspringstep -lm -o springs
+ *     cc -std=c11 -O2 main.c world.c draw.c $(sdl2-config --cflags --libs) -lspringstep -lm -o springs
  *
  * world.c uses the library: scenes, dragging, cuts, pokes, and two states for interpolation. This file has the window,
  * keys, mouse, and fixed steps with variable frame times. draw.c draws.
@@ -12,11 +12,9 @@
 #include <springstep/scene.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "draw.h"
-#include "script.h"
 #include "world.h"
 
 enum { HISTORY = 600, MOST_STEPS = 64, LINE = 13 + 4 };
@@ -32,10 +30,10 @@ typedef struct app {
     painter painter;
     camera camera;
     world world;
-    vec3 *drawn;      /* [particles] positions for drawing */
-    int method_index; /* for spring_method_at() */
-    uint64_t steps;   /* per frame */
-    int damping;      /* index of dampings[] */
+    vec3 drawn[MOST_PARTICLES]; /* positions for drawing */
+    int method_index;           /* for spring_method_at() */
+    uint64_t steps;             /* per frame */
+    int damping;                /* index of dampings[] */
     bool wind, running, failed;
     spring_clock clock;
     spring_status trouble;  /* SPRING_OK, or the reason why the simulation stopped */
@@ -78,13 +76,10 @@ static bool choose_method(app *a, const char *name)
 /* Starts a world with the current settings. */
 static bool start(app *a, world_kind kind)
 {
-    world_close(&a->world);
-    vec3 *drawn = world_open(&a->world, kind) ? realloc(a->drawn, a->world.particles * sizeof *drawn) : NULL;
-    if (drawn == NULL) {
+    if (!world_open(&a->world, kind)) {
         fprintf(stderr, "springs: no memory for the scene\n");
         return false;
     }
-    a->drawn = drawn;
     world_between(&a->world, 1, a->drawn);
     world_set_damping(&a->world, dampings[a->damping]);
     world_set_wind(&a->world, a->wind);
@@ -360,8 +355,7 @@ static bool draw(app *a)
     if (SDL_GetRendererOutputSize(a->renderer, &width, &height) != 0)
         return false;
     a->camera = camera_for(a->world.kind, width, height);
-    if (!paint_world(&a->painter, &a->camera, &a->world, a->drawn))
-        return false;
+    paint_world(&a->painter, &a->camera, &a->world, a->drawn);
     if (a->world.grabbed != WORLD_NOTHING)
         paint_hand(&a->painter, camera_project(&a->camera, a->drawn[a->world.grabbed]), a->mouse_x, a->mouse_y);
     draw_settings(a);
@@ -371,26 +365,10 @@ static bool draw(app *a)
     return true;
 }
 
-/* Writes names and values in one line, for a script. */
-static void describe(app *a, char *text, size_t size)
-{
-    const world *w = &a->world;
-    const uint32_t shown = w->grabbed != WORLD_NOTHING ? w->grabbed : (uint32_t)(w->particles - 1);
-    const spot s = camera_project(&a->camera, a->drawn[shown]);
-    snprintf(text, size,
-             "scene=%s method=%s steps=%d damping=%.3f time=%.6f energy=%.17g cost=%.3e stable=%.6f status=\"%s\" "
-             "grabbed=%d "
-             "particle=%u x=%.2f y=%.2f",
-             world_names[w->kind], spring_method_name(method(a)), (int)a->steps, dampings[a->damping],
-             spring_scene_time(w->scene), a->energy[HISTORY - 1], a->step_cost,
-             spring_scene_stable_step(w->scene, method(a)), spring_status_string(a->trouble),
-             w->grabbed != WORLD_NOTHING, shown, s.x, s.y);
-}
-
 /* ------------------------------------------------------------------------------------------------------ the program */
 
 typedef struct options {
-    const char *world, *method, *script;
+    const char *world, *method;
 } options;
 
 static bool parse(options *o, int count, char **word)
@@ -398,12 +376,9 @@ static bool parse(options *o, int count, char **word)
     for (int i = 1; i < count; i += 2) {
         const char **value = strcmp(word[i], "--scene") == 0    ? &o->world
                              : strcmp(word[i], "--method") == 0 ? &o->method
-                             : strcmp(word[i], "--script") == 0 ? &o->script
                                                                 : NULL;
         if (value == NULL || i + 1 == count) {
-            fprintf(stderr,
-                    "springs: %s %s; usage: springs [--scene cloth|rope|water|drape|cape] [--method NAME] [--script "
-                    "FILE]\n",
+            fprintf(stderr, "springs: %s %s; usage: springs [--scene cloth|rope|water|drape|cape] [--method NAME]\n",
                     word[i], value == NULL ? "is not an option" : "should be followed by its value");
             return false;
         }
@@ -422,8 +397,8 @@ static bool find_world(const char *name, world_kind *kind)
     return false;
 }
 
-/* Frames are synchronised to the screen, except in a script. */
-static bool open_window(app *a, Uint32 renderer_flags)
+/* Frames are synchronised to the screen. */
+static bool open_window(app *a)
 {
     if (SDL_Init(SDL_INIT_VIDEO) != 0)
         return false;
@@ -431,12 +406,11 @@ static bool open_window(app *a, Uint32 renderer_flags)
         SDL_CreateWindow("springstep", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, 1000, 720, SDL_WINDOW_RESIZABLE);
     if (a->window == NULL)
         return false;
-    a->renderer = SDL_CreateRenderer(a->window, -1, renderer_flags);
+    a->renderer = SDL_CreateRenderer(a->window, -1, SDL_RENDERER_PRESENTVSYNC);
     return a->renderer != NULL && painter_open(&a->painter, a->renderer);
 }
 
-/* Runs until the user quits or the script ends. */
-static void run(app *a, script *played)
+static void run(app *a)
 {
     Uint64 before = SDL_GetPerformanceCounter();
     for (a->running = true; a->running;) {
@@ -448,15 +422,10 @@ static void run(app *a, script *played)
         const Uint64 now = SDL_GetPerformanceCounter();
         const double seconds = (double)(now - before) / (double)SDL_GetPerformanceFrequency();
         before = now;
-        advance(a, played != NULL ? played->frame_time : seconds);
+        advance(a, seconds);
         if (!draw(a)) {
             fprintf(stderr, "springs: no picture: %s\n", SDL_GetError());
             quit(a, true);
-        } else if (played != NULL) {
-            char state[512];
-            describe(a, state, sizeof state);
-            if (!script_play(played, a->renderer, state))
-                quit(a, played->failed);
         }
         SDL_RenderPresent(a->renderer);
     }
@@ -465,7 +434,6 @@ static void run(app *a, script *played)
 static void close_all(app *a)
 {
     world_close(&a->world);
-    free(a->drawn);
     painter_close(&a->painter);
     SDL_DestroyRenderer(a->renderer);
     SDL_DestroyWindow(a->window);
@@ -475,8 +443,7 @@ static void close_all(app *a)
 int main(int count, char **word)
 {
     options o = {.world = "cloth", .method = "leapfrog"};
-    app a = {.damping = 2, .wind = true};
-    script played = {0};
+    static app a = {.damping = 2, .wind = true};
     world_kind kind;
     if (!parse(&o, count, word))
         return 2;
@@ -484,16 +451,13 @@ int main(int count, char **word)
         fprintf(stderr, "springs: no scene \"%s\" with method \"%s\"\n", o.world, o.method);
         return 2;
     }
-    if (o.script != NULL && !script_open(&played, o.script))
-        return 2;
-    if (!open_window(&a, o.script == NULL ? SDL_RENDERER_PRESENTVSYNC : 0)) {
+    if (!open_window(&a)) {
         fprintf(stderr, "springs: no window: %s\n", SDL_GetError());
         a.failed = true;
     } else if (!choose_world(&a, kind))
         a.failed = true;
     else
-        run(&a, o.script != NULL ? &played : NULL);
+        run(&a);
     close_all(&a);
-    script_close(&played);
     return a.failed;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const world_names[WORLD_KINDS] = {"cloth", "rope", "water", "drape", "cape"};
 
@@ -137,17 +138,15 @@ static void set_home(world *w)
         }
 }
 
-/* Gusts that travel across the cloth. The callback runs in each step, so sin(t - phase) is computed as
-   sin(t) cos(phase) - cos(t) sin(phase). It does not use velocities; see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
+/* Gusts that travel across the cloth. The callback does not use velocities; see SPRING_SCENE_FORCE_IGNORES_VELOCITY. */
 static void blow(void *user, double t, size_t particles, const double *const position[3],
                  const double *const velocity[3], double *const force[3])
 {
     const world *w = user;
-    const double strength = w->wind * sin(0.7 * t), s = strength * sin(1.9 * t), c = strength * cos(1.9 * t);
     (void)position;
     (void)velocity;
     for (size_t i = 0; i < particles; i++)
-        force[2][i] += 0.4 * w->wind + s * w->gust[i].along - c * w->gust[i].across;
+        force[2][i] += w->wind * (0.4 + sin(0.7 * t) * sin(1.9 * t - 2.5 * w->home[i].x + w->home[i].y));
 }
 
 /* --------------------------------------------------------------------------------------------- between axes and xyz */
@@ -185,18 +184,16 @@ static uint32_t all_methods(const world *w)
     return methods;
 }
 
-static bool make_scene(world *w, const struct recipe *r, double *position, double *mass)
+static bool make_scene(world *w, const struct recipe *r)
 {
-    if (spring_grid_fill(&r->grid, position, w->pinned, w->link) != SPRING_OK)
-        return false;
+    static double position[3 * MOST_PARTICLES], mass[MOST_PARTICLES];
+    must(spring_grid_fill(&r->grid, position, w->pinned, w->link), "grid");
     set_home(w);
     for (size_t i = 0; i < w->particles; i++) {
         double own[3];
         to_axes(w, w->home[i], own);
         for (uint32_t axis = 0; axis < w->axes; axis++)
             position[w->axes * i + axis] = own[axis];
-        const double phase = 2.5 * w->home[i].x - w->home[i].y;
-        w->gust[i] = (gust){cos(phase), sin(phase)};
         mass[i] = r->mass;
         w->previous[i] = w->current[i] = w->home[i];
     }
@@ -205,30 +202,26 @@ static bool make_scene(world *w, const struct recipe *r, double *position, doubl
     if (w->kind == WORLD_CLOTH)
         for (uint32_t column = 0; column < w->columns; column += hook_every)
             w->pinned[column] = 1;
-    spring_scene_def def = {.axes = w->axes,
-                            .flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
-                            .methods = all_methods(w),
-                            .particles = w->particles,
-                            .links = w->links,
-                            .position = position,
-                            .mass = mass,
-                            .pinned = w->pinned,
-                            .link = w->link,
-                            .drag = r->drag,
-                            .colliders = world_has_bodies(w) ? WORLD_BODIES : 0,
-                            .particle_radius = world_has_bodies(w) ? skin : 0};
-    if (w->axes > 1)
-        def.gravity[1] = -r->gravity;
+    const bool bodies = world_has_bodies(w);
+    const spring_scene_def def = {.axes = w->axes,
+                                  .flags = SPRING_SCENE_EDITABLE | SPRING_SCENE_FORCE_IGNORES_VELOCITY,
+                                  .methods = all_methods(w),
+                                  .particles = w->particles,
+                                  .links = w->links,
+                                  .position = position,
+                                  .mass = mass,
+                                  .pinned = w->pinned,
+                                  .link = w->link,
+                                  .gravity = {0, -r->gravity},
+                                  .drag = r->drag,
+                                  .colliders = bodies ? WORLD_BODIES : 0,
+                                  .particle_radius = bodies ? skin : 0};
     size_t bytes;
-    if (spring_scene_bytes(&def, &bytes) != SPRING_OK)
-        return false;
+    must(spring_scene_bytes(&def, &bytes), "definition");
     void *memory = malloc(bytes);
-    if (memory == NULL)
-        return false;
-    const bool made = spring_scene_init(memory, bytes, &def, &w->scene) == SPRING_OK;
-    if (!made) /* otherwise the scene is freed with its memory */
-        free(memory);
-    return made;
+    if (memory != NULL)
+        must(spring_scene_init(memory, bytes, &def, &w->scene), "scene"); /* freed with its memory */
+    return memory != NULL;
 }
 
 static void set_bodies(world *w)
@@ -270,52 +263,31 @@ bool world_open(world *w, world_kind kind)
 {
     const struct recipe *r = &recipes[kind];
     const spring_grid *g = &r->grid;
-    *w = (world){.kind = kind,
-                 .columns = g->count[0],
-                 .rows = g->count[1] > 0 ? g->count[1] : 1,
-                 .axes = g->axes,
-                 .spacing = g->spacing,
-                 .wave = g->spacing * sqrt(g->stiffness / r->mass),
-                 .grabbed = WORLD_NOTHING};
-    if (spring_grid_size(g, &w->particles, &w->links) != SPRING_OK)
+    world_close(w);
+    w->kind = kind;
+    w->columns = g->count[0];
+    w->rows = g->count[1] > 0 ? g->count[1] : 1;
+    w->axes = g->axes;
+    w->spacing = g->spacing;
+    w->wave = g->spacing * sqrt(g->stiffness / r->mass);
+    w->grabbed = WORLD_NOTHING;
+    must(spring_grid_size(g, &w->particles, &w->links), "size");
+    if (!make_scene(w, r))
         return false;
-    w->link = calloc(w->links, sizeof *w->link);
-    w->pinned = calloc(w->particles, sizeof *w->pinned);
-    w->gust = calloc(w->particles, sizeof *w->gust);
-    w->torn = calloc(w->particles, sizeof *w->torn);
-    w->home = calloc(w->particles, sizeof *w->home);
-    w->previous = calloc(w->particles, sizeof *w->previous);
-    w->current = calloc(w->particles, sizeof *w->current);
-    w->spare = calloc(w->particles, sizeof *w->spare);
-    double *position = calloc(w->particles, 3 * sizeof *position), *mass = calloc(w->particles, sizeof *mass);
-    const bool room = w->link && w->pinned && w->gust && w->torn && w->home && w->previous && w->current && w->spare;
-    const bool made = room && position && mass && make_scene(w, r, position, mass);
-    free(position);
-    free(mass);
-    if (!made)
-        world_close(w);
-    else if (kind == WORLD_DRAPE) {
+    if (kind == WORLD_DRAPE) {
         w->body[0] = (spring_collider){.shape = SPRING_SPHERE, .at = {0, sphere}, .radius = sphere, .friction = 0.4};
         set_bodies(w);
     } else if (kind == WORLD_CAPE)
         move_body(w, 1);
     else if (kind == WORLD_WATER)
         world_poke(w, w->columns / 3 + w->columns * (w->rows / 2)); /* starts with a wave */
-    return made;
+    return true;
 }
 
 void world_close(world *w)
 {
     free(w->scene);
-    free(w->link);
-    free(w->pinned);
-    free(w->gust);
-    free(w->torn);
-    free(w->home);
-    free(w->previous);
-    free(w->current);
-    free(w->spare);
-    *w = (world){0};
+    memset(w, 0, sizeof *w);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
@@ -345,15 +317,14 @@ spring_status world_advance(world *w, spring_method method, double dt, uint64_t 
     spring_status status = spring_scene_advance(w->scene, method, dt, n - 1);
     if (status != SPRING_OK)
         return status;
-    vec3 *before = w->spare;
+    static vec3 before[MOST_PARTICLES];
     get_positions(w, before);
     status = spring_scene_advance(w->scene, method, dt, 1);
     if (status != SPRING_OK)
         return status;
     if (!(world_energy(w) < most_energy)) /* about to overflow */
         return SPRING_ENONFINITE;
-    w->spare = w->previous;
-    w->previous = before;
+    memcpy(w->previous, before, sizeof before);
     get_positions(w, w->current);
     for (int axis = 0; axis < 3; axis++) { /* for drawing */
         w->body[0].at[axis] += (double)n * dt * w->body[0].velocity[axis];

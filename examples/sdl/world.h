@@ -14,14 +14,10 @@ typedef struct vec3 {
     double x, y, z;
 } vec3;
 
-/* Cosine and sine of the phase of the gusts at a particle. */
-typedef struct gust {
-    double along, across;
-} gust;
-
 typedef enum world_kind { WORLD_CLOTH, WORLD_ROPE, WORLD_WATER, WORLD_DRAPE, WORLD_CAPE, WORLD_KINDS } world_kind;
 
 enum { WORLD_BODIES = 2 }; /* of drape and cape: a sphere or capsule, and the ground */
+enum { MOST_PARTICLES = 61 * 61, MOST_LINKS = 4 * MOST_PARTICLES };
 
 extern const char *const world_names[WORLD_KINDS];
 
@@ -36,17 +32,15 @@ typedef struct world {
     spring_scene *scene;
     uint32_t columns, rows, axes;
     size_t particles, links;
-    double spacing, wave; /* [m] between particles at rest; [m/s] speed of waves along them */
-    double damping;       /* [N s/m] of each link */
-    double wind;          /* [N] largest force on a particle; only for cloth and cape */
-    gust *gust;           /* [particles] */
-    spring_link *link;    /* [links] initial links */
-    uint8_t *pinned;      /* [particles] at the start */
-    uint8_t *torn;        /* [particles] bits TORN_... of cut links */
-    vec3 *home;           /* [particles] at the start */
-    vec3 *previous;       /* [particles] before the last step */
-    vec3 *current;        /* [particles] after it; drawing interpolates between both */
-    vec3 *spare;          /* [particles] */
+    double spacing, wave;           /* [m] between particles at rest; [m/s] speed of waves along them */
+    double damping;                 /* [N s/m] of each link */
+    double wind;                    /* [N] largest force on a particle; only for cloth and cape */
+    spring_link link[MOST_LINKS];   /* initial links */
+    uint8_t pinned[MOST_PARTICLES]; /* at the start */
+    uint8_t torn[MOST_PARTICLES];   /* bits TORN_... of cut links */
+    vec3 home[MOST_PARTICLES];      /* at the start */
+    vec3 previous[MOST_PARTICLES];  /* before the last step */
+    vec3 current[MOST_PARTICLES];   /* after it; drawing interpolates between both */
     spring_collider body[WORLD_BODIES];
     double step, late; /* [s] the last step; how long before its end the world is drawn */
     double away;       /* [m] total distance by which the body was teleported back */
@@ -54,10 +48,9 @@ typedef struct world {
     vec3 hand, goal;   /* position of the drag, and its target at the mouse */
 } world;
 
-/** Creates a world. Returns false if out of memory, or if the definition is rejected; the world is then empty. */
+/** Creates a world, and frees the one before. Returns false if out of memory. */
 bool world_open(world *w, world_kind kind);
 
-/** Frees a world; an empty world is allowed. */
 void world_close(world *w);
 
 /** Takes n steps of dt [s], after which the time of the frame is `pending` [s] ahead of the scene, and moves the drag. After

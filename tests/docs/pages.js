@@ -45,53 +45,6 @@ const overlap = (a, b) => Math.min(
 );
 const holds = (box, x, y) => box.left <= x && x <= box.right && box.top <= y && y <= box.bottom;
 
-// Does the line or the area of a shape of gnuplot pass through a box of the screen? Its lines are polygons: "M x,y L x,y".
-function passes(shape, box) {
-    const style = getComputedStyle(shape);
-    const toShape = shape.getScreenCTM().inverse();
-    const [from, to] = [[box.left, box.top], [box.right, box.bottom]].map(([x, y]) => new DOMPoint(x, y).matrixTransform(toShape));
-    if (style.fill !== "none") {
-        for (let x = from.x; x <= to.x; x += 2) {
-            for (let y = from.y; y <= to.y; y += 2) {
-                if (shape.isPointInFill(new DOMPoint(x, y))) {
-                    return true;
-                }
-            }
-        }
-    }
-    if (style.stroke === "none") {
-        return false;
-    }
-    const numbers = (text) => text.match(/-?[\d.]+/g).map(Number);
-    for (const line of (shape.getAttribute("d") ?? "").split("M").slice(1)) {
-        const at = numbers(line);
-        for (let i = 0; i + 3 < at.length; i += 2) {
-            if (meets(at[i], at[i + 1], at[i + 2], at[i + 3], from, to)) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-// Does the line from (x0, y0) to (x1, y1) meet the box? It is cut by one pair of sides after the other (Liang and Barsky).
-function meets(x0, y0, x1, y1, from, to) {
-    let begin = 0;
-    let end = 1;
-    for (const [start, length, least, most] of [[x0, x1 - x0, from.x, to.x], [y0, y1 - y0, from.y, to.y]]) {
-        if (length === 0) {
-            if (start < least || start > most) {
-                return false;
-            }
-            continue;
-        }
-        const cuts = [(least - start) / length, (most - start) / length];
-        begin = Math.max(begin, Math.min(...cuts));
-        end = Math.min(end, Math.max(...cuts));
-    }
-    return begin < end;
-}
-
 function colour(text) {
     const numbers = text.match(/[\d.]+/g)?.map(Number);
     return numbers && { rgb: numbers.slice(0, 3), opacity: numbers.length > 3 ? numbers[3] : 1 };
@@ -157,8 +110,6 @@ function measureDrawing(drawing, name) {
         words: element.textContent,
         boxes: inkOf(element),
     }));
-    const marks = [...drawing.querySelectorAll("[id*='gnuplot_plot_'] :is(use, path, circle)")].filter(seen);
-    const near = marks.map((mark) => mark.getBoundingClientRect());
     const areas = [...drawing.querySelectorAll("rect, path, polygon, image")].filter((shape) => !shape.closest("defs, clipPath"))
         .map((shape) => ({ shape, bounds: shape.getBoundingClientRect() }));
     texts.forEach((text, i) => {
@@ -172,11 +123,6 @@ function measureDrawing(drawing, name) {
             if (most > OVERLAP) {
                 fault("overlap", name, `"${text.words}" and "${other.words}", by ${most.toFixed(1)} px`);
             }
-        }
-        const covered = marks.some((mark, m) => text.boxes.some((box) => mark.localName === "use"
-            ? overlap(near[m], box) > 1 : overlap(near[m], box) > -2 && passes(mark, box))); // a level line has no height
-        if (covered) {
-            fault("covered", name, `a mark lies under "${text.words}"`);
         }
         for (const box of text.boxes) {
             checkContrast(name, text.words, colour(getComputedStyle(text.element).fill).rgb, paintedBehind(drawing, areas, text.element, box));

@@ -153,37 +153,6 @@ static void check_batch(const input *in, spring_method m)
         must(in->dt == 0 || status == (failed ? SPRING_EPARTIAL : SPRING_OK), "a spring that fails is reported");
 }
 
-/* In float: the same bits in one batch and in two. */
-static void check_float_batch(const input *in, spring_method m)
-{
-    static double start[arrays][most_springs];
-    static float whole[arrays][most_springs], parts[arrays][most_springs];
-    const size_t count = in->count % (most_springs + 1), first = count > 0 ? in->first_part % count : 0;
-    const uint64_t n = 1 + in->n % 60;
-    fill(start, in);
-    for (size_t i = 0; i < arrays; i++)
-        for (size_t j = 0; j < most_springs; j++) {
-            const bool fits = fabs(start[i][j]) <= (double)FLT_MAX; /* else the conversion is not defined */
-            whole[i][j] = parts[i][j] = fits ? (float)start[i][j] : (float)INFINITY;
-        }
-    const spring_batchf b = {count, whole[0], whole[1], whole[2], whole[3], whole[4], 0};
-    const spring_batchf left = {first, parts[0], parts[1], parts[2], parts[3], parts[4], 0}, right = {count - first,
-                                                                                                      parts[0] + first,
-                                                                                                      parts[1] + first,
-                                                                                                      parts[2] + first,
-                                                                                                      parts[3] + first,
-                                                                                                      parts[4] + first,
-                                                                                                      0};
-    const spring_status status = spring_batchf_advance(&b, m, in->dt, n),
-                        status_left = spring_batchf_advance(&left, m, in->dt, n),
-                        status_right = spring_batchf_advance(&right, m, in->dt, n);
-    must(memcmp(whole, parts, sizeof whole) == 0, "a batch may be split, to the bit");
-    must((status == SPRING_OK) == (status_left == SPRING_OK && status_right == SPRING_OK),
-         "the whole is well if its parts are");
-    must((status == SPRING_EINVAL) == (status_left == SPRING_EINVAL && status_right == SPRING_EINVAL),
-         "a bad call is bad for each part");
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     input in = {.p = {.mass = 1}};
@@ -193,6 +162,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_questions(&in, m);
     check_clock(&in);
     check_batch(&in, m);
-    check_float_batch(&in, m);
     return 0;
 }

@@ -79,29 +79,6 @@ static void check_real(const char *word)
     }
 }
 
-/* A list is accepted exactly where each of its parts is, and there are three. */
-static void check_reals(const char *word)
-{
-    double values[3] = {1, 2, 3}, value = 0;
-    size_t parts = 0;
-    bool good = true;
-    for (const char *part = word, *end; part != NULL; part = *end == ',' ? end + 1 : NULL) {
-        char text[512];
-        end = part + strcspn(part, ",");
-        memcpy(text, part, (size_t)(end - part));
-        text[end - part] = '\0';
-        good = good && parse_real(text, &value);
-        if (good && parts < 3)
-            numbers[parts] = value;
-        parts++;
-    }
-    must(parse_reals(word, values, 3) == (good && parts == 3), "three numbers, or else", word);
-    if (good && parts == 3)
-        must(memcmp(values, numbers, sizeof values) == 0, "the values are others", word);
-    else
-        must(values[0] == 1 && values[1] == 2 && values[2] == 3, "a list that is refused changes nothing", word);
-}
-
 static void check_options(const char *word)
 {
     for (const cli_option *o = options; o->name != NULL; o++) {
@@ -132,7 +109,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     cli_asked.program = &fuzzed;
     check_count(word);
     check_real(word);
-    check_reals(word);
     check_options(word);
     return 0;
 }

@@ -74,6 +74,21 @@ static inline double rounding_of_steps(spring_method m, spring_params p, double 
     return distance / rounded;
 }
 
+/* Against the same method in exact arithmetic: springs of all sizes, steps up to h omega = limit or g h = 20, and back.
+   bound: in units of that of reference.h. */
+static inline void check_against_iterate(spring_method m, double limit, double bound)
+{
+    for (int i = 0; i < 400; i++) {
+        const spring_params p = random_spring(i);
+        const double omega = omega_of(&p), g = p.damping / p.mass;
+        const spring_state start = {random_uniform(-1, 1), omega * random_uniform(-1, 1)};
+        const double z = i % 5 == 0 ? limit : random_log(1e-3, limit);
+        const double forward = fmin(z / omega, 20 / g), back = -fmin(z, 0.01) / (omega + g); /* where drag is growth */
+        const uint64_t n = 1 + random_bits() % 300;
+        CHECK_BELOW(rounding_of_steps(m, p, i % 7 == 0 ? back : forward, n, start), bound, "rounding of n steps");
+    }
+}
+
 /* The distance of n steps from the exact solution. */
 static inline double error_in_scene(spring_method m, spring_params p, double duration, uint64_t n, spring_state start)
 {
@@ -84,6 +99,20 @@ static inline double error_in_scene(spring_method m, spring_params p, double dur
     const double error = reference_distance(&exact, advance_in_scene(m, p, duration / (double)n, n, start));
     reference_clear(&exact);
     return error;
+}
+
+/* The distance in (x, v/omega), with and without drag and load, by steps of z = 0.7 and less. */
+static inline void check_order(spring_method m)
+{
+    static const double dampings[] = {0, 0.02, 0.6}, loads[] = {0, 1.9};
+    for (int i = 0; i < 6; i++) {
+        const spring_params p = {0.5, 2.7, dampings[i % 3], loads[i / 3]};
+        double error[3];
+        for (int j = 0; j < 3; j++)
+            error[j] = error_in_scene(m, p, 14 / omega_of(&p), (uint64_t)20 << j, (spring_state){0.8, -0.9});
+        for (int j = 0; j < 2; j++)
+            CHECK_CLOSE(log2(error[j] / error[j + 1]), spring_method_describe(m)->order, 0.1, "slope");
+    }
 }
 
 /* The matrix of one step in (x, v/omega), of a spring with h omega = z and a damping ratio. */

@@ -77,6 +77,12 @@ static void refuse(spring_state start, spring_params p, spring_method m, double 
 static void refuses_bad_input(void)
 {
     const spring_params good = {1.3, 2.7, 0.6, 0.4};
+    const spring_params bad_params[] = {
+        {NAN, 2.7, 0.6, 0.4},      {INFINITY, 2.7, 0.6, 0.4},  {0, 2.7, 0.6, 0.4},        {-0.0, 2.7, 0.6, 0.4},
+        {-1.3, 2.7, 0.6, 0.4},     {1.3, NAN, 0.6, 0.4},       {1.3, INFINITY, 0.6, 0.4}, {1.3, -2.7, 0.6, 0.4},
+        {1.3, 2.7, NAN, 0.4},      {1.3, 2.7, INFINITY, 0.4},  {1.3, 2.7, -5e-324, 0.4},  {1.3, 2.7, 0.6, NAN},
+        {1.3, 2.7, 0.6, INFINITY}, {1.3, 2.7, 0.6, -INFINITY}, {1e-200, 1e200, 0.6, 0.4}, {1e-200, 2.7, 1e200, 0.4},
+        {1e-200, 2.7, 0.6, -1e200}};
     const spring_state start = {0.3, -0.7};
     for (const spring_method *m = spring_methods(); *m != no_method; m++) {
         spring_state s = start;
@@ -89,19 +95,9 @@ static void refuses_bad_input(void)
             refuse((spring_state){1, bad}, good, *m, 0.1, 1, "v not finite");
             refuse(start, good, *m, bad, 1, "dt not finite");
             refuse(start, good, *m, bad, 0, "dt not finite, even for no steps");
-            refuse(start, (spring_params){bad, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass not finite");
-            refuse(start, (spring_params){1.3, bad, 0.6, 0.4}, *m, 0.1, 1, "stiffness not finite");
-            refuse(start, (spring_params){1.3, 2.7, bad, 0.4}, *m, 0.1, 1, "damping not finite");
-            refuse(start, (spring_params){1.3, 2.7, 0.6, bad}, *m, 0.1, 1, "load not finite");
         }
-        refuse(start, (spring_params){0, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass 0");
-        refuse(start, (spring_params){-0.0, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass -0");
-        refuse(start, (spring_params){-1.3, 2.7, 0.6, 0.4}, *m, 0.1, 1, "mass negative");
-        refuse(start, (spring_params){1.3, -2.7, 0.6, 0.4}, *m, 0.1, 1, "stiffness negative");
-        refuse(start, (spring_params){1.3, 2.7, -5e-324, 0.4}, *m, 0.1, 1, "damping negative");
-        refuse(start, (spring_params){1e-200, 1e200, 0.6, 0.4}, *m, 0.1, 1, "stiffness/mass overflows");
-        refuse(start, (spring_params){1e-200, 2.7, 1e200, 0.4}, *m, 0.1, 1, "damping/mass overflows");
-        refuse(start, (spring_params){1e-200, 2.7, 0.6, -1e200}, *m, 0.1, 1, "load/mass overflows");
+        for (size_t i = 0; i < sizeof bad_params / sizeof bad_params[0]; i++)
+            refuse(start, bad_params[i], *m, 0.1, 1, "a bad parameter, or a quotient that overflows");
     }
     for (int m = -2; m < 100; m++)
         if (m < 0 || m >= SPRING_METHOD_COUNT)
@@ -148,61 +144,6 @@ static void overflow(void)
     CHECK(spring_advance(&s, &growing, SPRING_EXACT, -1e6, 1) == SPRING_ENONFINITE, "backwards damping overflows");
     CHECK(spring_advance(&s, &growing, SPRING_EXACT, 1e300, UINT64_MAX) == SPRING_ENONFINITE, "n dt overflows");
     CHECK_STATE(s, start, "an overflow leaves the state as it was");
-}
-
-/* Trajectories pinned to the bit: the same on every compiler, optimisation level, instruction set and processor. Here
-   some, for every build of the tests; of every method in tests/headers/bits.txt. */
-static void golden_bits(void)
-{
-    static const struct {
-        spring_method method;
-        spring_state end;
-    } pinned[] = {
-        {SPRING_EULER, {-0x1.c22e5860eee3p-6, 0x1.7db45eb12fd5fp-3}},
-        {SPRING_LEAPFROG, {-0x1.03323afb9c126p-6, 0x1.539531f94a59ap-3}},
-        {SPRING_RK4, {-0x1.0368ba1574829p-6, 0x1.53842b8aeac52p-3}},
-    };
-    const spring_params p = {1.3, 2.7, 0.6, 0.4};
-    for (size_t i = 0; i < sizeof pinned / sizeof pinned[0]; i++) {
-        spring_state s = {0.8, -0.9};
-        spring_advance(&s, &p, pinned[i].method, 0.013, 500);
-        CHECK_STATE(s, pinned[i].end, "pinned when the version was released");
-    }
-}
-
-/* The same for damping that takes the other form of the last half kick: q = g dt/2 = 1.35 and -3. */
-static void golden_bits_of_heavy_damping(void)
-{
-    const spring_params heavy = {1.3, 2.7, 270, 0.4}, heavier = {1.3, 2.7, 600, 0.4};
-    spring_state s = {0.8, -0.9};
-    spring_advance(&s, &heavy, SPRING_LEAPFROG, 0.013, 3);
-    CHECK_STATE(s, ((spring_state){0x1.9b49757cb1591p-1, -0x1.d7b4f1c344185p-9}), "pinned");
-    s = (spring_state){0.8, -0.9};
-    spring_advance(&s, &heavier, SPRING_LEAPFROG, -0.013, 3);
-    CHECK_STATE(s, ((spring_state){0x1.e14cfad95d4ecp-1, 0x1.cafd4ca86415bp+2}), "pinned");
-}
-
-/* damping/mass = 1 or load/mass = 1 is like any other: the next double leads to nearly the same state. */
-static void one_is_not_special(void)
-{
-    const spring_state start = {0.8, -0.9};
-    for (const spring_method *m = spring_methods(); *m != no_method; m++) {
-        const spring_params at[] = {{2, 2.7, 2, 0}, {2, 2.7, 0, 2}, {2, 2.7, 2, 2}};
-        for (int i = 0; i < 3; i++) {
-            spring_params changed = at[i];
-            changed.damping *= 1 + DBL_EPSILON;
-            changed.load *= 1 + DBL_EPSILON;
-            spring_state a = start, b = start, kernel = start;
-            spring_advance(&a, &at[i], *m, 0.013, 100);
-            spring_advance(&b, &changed, *m, 0.013, 100);
-            for (int j = 0; j < 100; j++)
-                spring_method_kernel (*m)(&kernel, &at[i], 0.013);
-            CHECK_CLOSE(a.x, b.x, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
-            CHECK_CLOSE(a.v, b.v, 100 * 8 * DBL_EPSILON, "an ulp of the parameters, and rounding of 100 steps");
-            CHECK_CLOSE(kernel.x, b.x, 100 * 8 * DBL_EPSILON, "and by single steps");
-            CHECK_CLOSE(kernel.v, b.v, 100 * 8 * DBL_EPSILON, "and by single steps");
-        }
-    }
 }
 
 /* Among denormal numbers stiffness/mass is rounded by much: every method moves the spring of the rounded quotient. */
@@ -278,9 +219,6 @@ int main(void)
         {"bad input is refused", refuses_bad_input},
         {"zeros, denormals and 2^64 - 1 steps", accepts_the_edges},
         {"overflow", overflow},
-        {"pinned bits", golden_bits},
-        {"pinned bits, heavy damping", golden_bits_of_heavy_damping},
-        {"rates of 1", one_is_not_special},
         {"denormal quotients", denormal_quotients},
         {"the table of methods", table_of_methods},
         {"names", names},

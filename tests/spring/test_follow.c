@@ -3,7 +3,6 @@
    in spring.h. Parameters from other conventions.
        test_follow [SPRINGS]     number of springs that must reach the target, default 2000 */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "check.h"
@@ -54,8 +53,6 @@ static double landing_distance(double ulp, double decay)
 /* Frames until the spring has landed, but not for more than 200 decay times. */
 static void lands(void)
 {
-    unsigned long missed = 0;
-    double longest = 0;
     for (unsigned long i = 0; i < springs; i++) {
         double omega, zeta;
         const spring_params p = any_spring(&omega, &zeta);
@@ -68,13 +65,10 @@ static void lands(void)
                 break;
             frames++;
         }
-        longest = fmax(longest, frames * dt * slow);
-        missed += !(s.x == target && s.v == 0);
         CHECK(s.x == target && s.v == 0, "it lands within 200 decay times");
         spring_follow(&s, &p, target, 0, dt);
         CHECK(s.x == target && s.v == 0, "and stays");
     }
-    printf("# %lu of %lu targets missed; the longest landing took %.1f decay times\n", missed, springs, longest);
 }
 
 /* The rule as spring.h states it, from the motion about the target as spring_step_exact() gives it. Only where rounding
@@ -103,7 +97,6 @@ static void lands_where_stated(void)
         }
         landed += at_rest;
     }
-    printf("# %d of 200000 landed\n", landed);
     CHECK(landed > 50000 && landed < 150000, "both happen");
 }
 
@@ -112,21 +105,18 @@ static void lands_at_zero(void)
     for (int i = 0; i < 300; i++) {
         double omega, zeta;
         const spring_params p = any_spring(&omega, &zeta);
-        const double dt = 0.05 / slow_rate(omega, zeta);
         spring_state s = {1, 0};
-        bool denormal = false;
         for (int j = 0; j < 30000 && (s.x != 0 || s.v != 0); j++) {
-            spring_follow(&s, &p, 0, 0, dt);
-            denormal |= s.x != 0 && hypot(s.x, s.v / omega) < DBL_MIN;
+            spring_follow(&s, &p, 0, 0, 0.05 / slow_rate(omega, zeta));
+            CHECK(s.x == 0 || hypot(s.x, s.v / omega) >= DBL_MIN, "it lands where numbers would become denormal");
         }
-        CHECK(s.x == 0 && s.v == 0 && !denormal, "it lands where numbers would become denormal");
+        CHECK(s.x == 0 && s.v == 0, "it lands");
     }
 }
 
 /* y'' = -omega^2 y - gamma y' in multiple precision, y and u formed there, and then the target and its velocity added. */
 static void against_reference(void)
 {
-    double worst = 0;
     mpfr_t rest, moved;
     mpfr_inits2(mpfr_get_prec(ref.x), rest, moved, (mpfr_ptr)NULL);
     for (int i = 0; i < 40000; i++) {
@@ -166,12 +156,9 @@ static void against_reference(void)
         if (got.x == to && got.v == velocity)
             bound += landing_distance(ulp_of(fmax(fabs(to), fabs(mpfr_get_d(ref.x, MPFR_RNDA)))),
                                       slow_rate(omega, zeta) * dt);
-        const double error = reference_distance(&ref, got);
-        CHECK_BELOW(error, bound, "the bound stated in spring.h");
-        worst = fmax(worst, error / bound);
+        CHECK_BELOW(reference_distance(&ref, got), bound, "the bound stated in spring.h");
     }
     mpfr_clears(rest, moved, (mpfr_ptr)NULL);
-    printf("# largest error %.3f of the bound\n", worst);
 }
 
 /* A step towards a target at rest. Returns the bound of its error, with 6 instead of 4 for the rounding of dt. */
@@ -192,7 +179,6 @@ static double follow(spring_state *s, const spring_params *p, double omega, doub
 static void any_partition(void)
 {
     static const double rates[] = {60, 240, 44100, 48000, 96000};
-    double worst = 0;
     int landed = 0;
     for (int i = 0; i < 7000; i++) {
         double omega, zeta;
@@ -210,29 +196,15 @@ static void any_partition(void)
             bound += follow(&s, &p, omega, zeta, target, end - t);
             t = end;
         }
-        const double error = hypot(s.x - one.x, (s.v - one.v) / omega);
-        CHECK_BELOW(error, bound, "the sum of the bounds of all steps");
-        worst = fmax(worst, error / bound);
+        CHECK_BELOW(hypot(s.x - one.x, (s.v - one.v) / omega), bound, "the sum of the bounds of all steps");
         landed += s.x == target && s.v == 0;
     }
-    printf("# largest difference %.3f of the bound; %d of 7000 landed\n", worst, landed);
     CHECK(landed > 500 && landed < 6500, "both happen");
-
-    const spring_params p = spring_params_bounce(5, 0);
-    spring_state s = {0, 0};
-    double t = 0;
-    for (int i = 0; i < 10; i++, t += 0.1)
-        spring_follow(&s, &p, 1000, 0, 0.1);
-    const double before = s.x;
-    spring_follow(&s, &p, 1000, 0, 1 - t);
-    printf("# a step of %.2g s: from %.17g to %.17g\n", 1 - t, before, s.x);
-    CHECK_CLOSE(s.x, before, 2 * ulp_of(before), "no time, no motion");
 }
 
 /* Where steps are so short that rounding error may stop a spring before it lands. */
 static void stops_near_the_target(void)
 {
-    double farthest = 0;
     for (int i = 0; i < 6; i++) {
         double omega, zeta;
         const spring_params p = any_spring(&omega, &zeta);
@@ -242,9 +214,7 @@ static void stops_near_the_target(void)
         for (double n = 6 / decay; n > 0; n--)
             spring_follow(&s, &p, target, 0, decay / slow_rate(omega, zeta));
         CHECK_BELOW(hypot(s.x - target, s.v / omega), distance, "the distance in spring.h");
-        farthest = fmax(farthest, fabs(s.x - target) / distance);
     }
-    printf("# stopped at up to %.2f of the stated distance\n", farthest);
 }
 
 /* A target at constant velocity, for 2 s, from the same start: frames of several lengths and of random length. */
@@ -279,49 +249,6 @@ static void follows_without_lag(void)
         CHECK_CLOSE(s.x, 5 + velocity * t, 1e-12, "no lag");
         CHECK_CLOSE(s.v, velocity, 1e-12 * fmax(1, omega), "the velocity of the target");
     }
-}
-
-/* The largest distance, in two seconds at 60 frames per second, of a value from one that follows the same accelerating
-   target in short steps. end: the target velocity is that of the end of each frame, not the mean. */
-static double error_of_frames(const spring_params *p, double acceleration, bool end)
-{
-    enum { frames = 120, parts = 200 };
-    spring_state s = {0, 0}, fine = s;
-    double error = 0;
-    for (int i = 1; i <= frames; i++) {
-        const double dt = 1 / 60.0, t = i * dt, mean = acceleration * (t - dt / 2);
-        spring_follow(&s, p, acceleration * t * t / 2, end ? acceleration * t : mean, dt);
-        for (int j = 1; j <= parts; j++) {
-            const double now = t - dt + j * dt / parts;
-            spring_follow(&fine, p, acceleration * now * now / 2, acceleration * (now - dt / parts / 2), dt / parts);
-        }
-        error = fmax(error, fabs(s.x - fine.x));
-    }
-    return error;
-}
-
-/* docs/ui.md: pass the mean velocity. */
-static void accelerating_targets(void)
-{
-    const spring_params p = spring_params_response(0.5, 0.8);
-    const double acceleration = 1000, dt = 1 / 60.0, lead = acceleration * dt / 2 * p.damping / p.stiffness;
-    CHECK_BELOW(error_of_frames(&p, acceleration, false), acceleration * dt * dt / 8,
-                "the largest distance of a parabola from its chord");
-    CHECK_CLOSE(error_of_frames(&p, acceleration, true), lead, 0.1 * lead,
-                "the lead, and an overshoot of a few percent");
-}
-
-static void retargeting_keeps_the_motion(void)
-{
-    const spring_params p = spring_params_response(0.5, 0.75);
-    spring_state s = {0, 0};
-    spring_follow(&s, &p, 100, 0, 0.1);
-    const spring_state before = s;
-    CHECK(spring_follow(&s, &p, -30, 0, 0) == SPRING_OK, "a step of 0");
-    CHECK_STATE(s, before, "changes nothing");
-    spring_follow(&s, &p, -30, 0, 1e-9);
-    CHECK_CLOSE(s.x, before.x, 1e-6, "x does not jump");
-    CHECK_CLOSE(s.v, before.v, 1e-4, "nor does v");
 }
 
 /* Undamped springs and steps backwards never land, not even a step from the target. */
@@ -466,8 +393,6 @@ int main(int argc, char **argv)
         {"any partition", any_partition},
         {"stops near the target", stops_near_the_target},
         {"follows without lag", follows_without_lag},
-        {"targets that accelerate", accelerating_targets},
-        {"a new target keeps the motion", retargeting_keeps_the_motion},
         {"lands only if it decays", lands_only_if_it_decays},
         {"special springs", special_springs},
         {"bad input", bad_input_changes_nothing},

@@ -157,21 +157,6 @@ static void textbook_constants(void)
                     "textbook value; the step of the reference is 2^-30 s");
 }
 
-/* The exact solution has no order: its error does not fall with the step because there is none. */
-static void exact_composes(void)
-{
-    for (size_t i = 0; i < problem_count; i++) {
-        const problem *q = &problems[i];
-        spring_state many = q->start;
-        for (int j = 0; j < 1000; j++)
-            spring_step_exact(&many, &q->p, q->duration / 1000);
-        spring_state one = q->start;
-        spring_step_exact(&one, &q->p, q->duration);
-        CHECK_CLOSE(many.x, one.x, 1000 * 4 * DBL_EPSILON, "a thousand steps, each within its bound");
-        CHECK_CLOSE(many.v, one.v, 1000 * 4 * 2 * DBL_EPSILON, "a thousand steps, each within its bound; omega < 2/s");
-    }
-}
-
 /* A drive cos(2 t) sampled once a step: at the start of the step order 1, in the middle order 2, if the method has
    it. */
 static void sampled_load(void)
@@ -207,7 +192,6 @@ int main(void)
         {"error constants", constants},
         {"slopes", slopes},
         {"textbook constants", textbook_constants},
-        {"the exact solution composes", exact_composes},
         {"a load sampled once a step", sampled_load},
     };
     return RUN_TESTS("order", tests);

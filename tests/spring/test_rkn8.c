@@ -6,26 +6,9 @@
 
 #include "spring_in_scene.h"
 
-static spring_state advanced(spring_params p, double dt, uint64_t n, spring_state from)
-{
-    return advance_in_scene(SPRING_RKN8, p, dt, n, from);
-}
-
-/* Against the same method in exact arithmetic: springs of all sizes, steps up to just below the stable one, and
-   back. */
 static void against_iterate(void)
 {
-    for (int i = 0; i < 400; i++) {
-        const spring_params p = random_spring(i);
-        const double omega = omega_of(&p);
-        const spring_state start = {random_uniform(-1, 1), omega * random_uniform(-1, 1)};
-        const uint64_t n = 1 + random_bits() % 300;
-        const double z = i % 5 == 0 ? 3.13 : random_log(1e-3, 3.1);
-        const double forward = z / omega,
-                     back = -fmin(z, 0.01) / (omega + p.damping / p.mass); /* where drag is growth */
-        const double dt = i % 7 == 0 ? back : forward;
-        CHECK_BELOW(rounding_of_steps(SPRING_RKN8, p, dt, n, start), 1, "rounding of n steps, reference.h");
-    }
+    check_against_iterate(SPRING_RKN8, 3.13, 1);
 }
 
 static double error_of(spring_params p, double duration, uint64_t n, spring_state start)
@@ -33,21 +16,9 @@ static double error_of(spring_params p, double duration, uint64_t n, spring_stat
     return error_in_scene(SPRING_RKN8, p, duration, n, start);
 }
 
-/* With and without drag and load, by steps of z = 0.7 and less. */
 static void order(void)
 {
-    static const double dampings[] = {0, 0.02, 0.3}, loads[] = {0, 1.9};
-    const spring_state start = {0.8, -0.9};
-    for (int d = 0; d < 3; d++)
-        for (int l = 0; l < 2; l++) {
-            const spring_params p = {0.5, 2.7, dampings[d], loads[l]};
-            const double omega = omega_of(&p), duration = 14 / omega;
-            double error[3];
-            for (int i = 0; i < 3; i++)
-                error[i] = error_of(p, duration, (uint64_t)20 << i, start);
-            CHECK_CLOSE(log2(error[0] / error[1]), 8, 0.1, "slope");
-            CHECK_CLOSE(log2(error[1] / error[2]), 8, 0.1, "slope");
-        }
+    check_order(SPRING_RKN8);
 }
 
 /* The phase is off by C omega^9 h^8 T, C = 2.1716e-8 from the trace and the determinant of the step's matrix, and the
@@ -73,7 +44,7 @@ static void energy_law(void)
     const double omega = omega_of(&p), before = spring_energy(&start, &p);
     for (double z = 0.6; z < 1.7; z *= 1.3) {
         const uint64_t n = 20000;
-        const spring_state end = advanced(p, z / omega, n, start);
+        const spring_state end = advance_in_scene(SPRING_RKN8, p, z / omega, n, start);
         const double lost =
             3.743628e-8 * pow(z, 10) - 4.692673e-9 * pow(z, 12) + 1.228181e-10 * pow(z, 14) - 7.815e-13 * pow(z, 16);
         const double want = before * exp((double)n * log1p(-lost));

@@ -43,16 +43,6 @@ static void settling_time_by_sampling(void)
     }
 }
 
-/* exp(-b t) cos: the last turning point beyond the tolerance is known. A long, lightly damped run. */
-static void settling_time_lightly_damped(void)
-{
-    const spring_params p = {1.3, 2.7, 1e-9, 0};
-    const spring_state s = {0.8, 0};
-    const double omega = sqrt(2.7 / 1.3), b = 1e-9 / 2.6;
-    const double want = log(0.8 / 1e-3) / b; /* the envelope; the crossing is within half a period of it */
-    CHECK_CLOSE(spring_settling_time(&s, &p, 1e-3), want, pi / omega, "within half a period of the envelope");
-}
-
 /* Tolerances just above and below an extremum: it counts if it is larger, and not otherwise. A few ulp from it rounding decides,
    and the spring must stay inside all the same. */
 static void settling_time_at_a_swing(void)
@@ -80,19 +70,10 @@ static void settling_time_at_a_swing(void)
 /* Distances that are exactly the tolerance are within it, and numbers that the code compares with are not special. */
 static void settling_time_at_the_tolerance(void)
 {
-    const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0}, thick = {1, 1, 2.5, 0};
-    const spring_params drag = {2, 0, 0.5, 0}, nothing = {2, 0, 0, 0}, b_is_1 = {1, 4, 2, 0};
-    CHECK_BITS(spring_settling_time(&(spring_state){0.5, 0}, &undamped, 0.5), 0, "never beyond it");
+    const spring_params damped = {1.3, 2.7, 0.6, 0}, thick = {1, 1, 2.5, 0};
     CHECK_BITS(spring_settling_time(&(spring_state){0.5, -0.1}, &damped, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_settling_time(&(spring_state){0.5, 0}, &thick, 0.5), 0, "never beyond it");
     CHECK_BITS(spring_settling_time(&(spring_state){0.5, -1.25}, &thick, 0.5), 0, "never beyond it");
-    CHECK_BITS(spring_settling_time(&(spring_state){0, 1}, &nothing, INFINITY), 0, "never beyond it");
-    CHECK_CLOSE(spring_settling_time(&(spring_state){0, -1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30, "4 m to go");
-    CHECK_CLOSE(spring_settling_time(&(spring_state){0, 1}, &drag, 0.01), 4 * log(4 / 0.01), 1e-14 * 30, "4 m to go");
     CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2}, &thick, 0.1), log(10) / 2, 1e-15, "along the fast root");
-    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &damped, 1)), "a tolerance of 1");
-    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &thick, 1)), "a tolerance of 1");
-    CHECK(isfinite(spring_settling_time(&(spring_state){5, 1}, &b_is_1, 0.1)), "damping/2 mass of 1");
     /* omega, b and sqrt(w - b^2) are 13/8, 12/8 and 5/8, to the bit: so are the turning points. In some of these the
        logarithm is rounded to the wrong side. */
     const spring_params p = {1, 169.0 / 64, 3, 0};
@@ -103,19 +84,6 @@ static void settling_time_at_the_tolerance(void)
                      below = spring_settling_time(&start, &p, nextafter(tol, 0));
         CHECK(at > turn - spacing && at < turn, "a swing as large as the tolerance is within it");
         CHECK(below > turn && below < turn + spacing, "a swing an ulp larger is not");
-    }
-}
-
-/* Mirrored, the motion takes the same time, to the bit; however large one of x and v is compared with the other. */
-static void settling_time_mirrored(void)
-{
-    static const double sizes[] = {1e-300, 1e-5, 1, 1e5, 1e300};
-    const spring_params springs[] = {{1.3, 2.7, 0.6, 0}, {1.3, 2.7, 6, 0}};
-    for (int i = 0; i < 100; i++) {
-        const spring_state s = {sizes[i % 5] * (i % 2 ? -1 : 1), sizes[i / 5 % 5]}, mirrored = {-s.x, -s.v};
-        const double T = spring_settling_time(&s, &springs[i / 50], 1e-3);
-        CHECK(isfinite(T), "a damped spring comes to rest");
-        CHECK_BITS(spring_settling_time(&mirrored, &springs[i / 50], 1e-3), T, "mirrored");
     }
 }
 
@@ -175,18 +143,24 @@ static void settling_time_special(void)
     CHECK_CLOSE(spring_settling_time(&(spring_state){1, -2.5}, &thick, 0.5), 0.25999693337078763, 1e-14, "y = 0.5");
 }
 
-/* Linear: from a start 2^k times as far, with 2^k times the tolerance, the same time to the bit. Squares of frequencies
-   times the largest states are beyond the range of a double. */
+/* Linear: mirrored, or from a start 2^k times as far with 2^k times the tolerance, the same time to the bit. However large one
+   of x and v is compared with the other. Squares of frequencies times the largest states are beyond the range of a double. */
 static void settling_time_of_any_size(void)
 {
-    const spring_params stiff = {1, 1e10, 1e4, 0}, thick = {1, 1e18, 1e10, 0};
-    const spring_params *const springs[] = {&stiff, &thick};
-    for (int i = 0; i < 2; i++) {
-        const spring_state s = {1, -1e5}, far = {s.x * 0x1p996, s.v * 0x1p996};
-        const double T = spring_settling_time(&s, springs[i], 0.1);
-        CHECK(T > 0 && isfinite(T), "a damped spring comes to rest");
-        CHECK_BITS(spring_settling_time(&far, springs[i], 0.1 * 0x1p996), T, "length in other units");
+    static const double sizes[] = {1e-300, 1e-5, 1, 1e5, 1e300};
+    const spring_params springs[] = {{1.3, 2.7, 0.6, 0}, {1.3, 2.7, 6, 0}, {1, 1e10, 1e4, 0}, {1, 1e18, 1e10, 0}};
+    for (int i = 0; i < 100; i++) {
+        const spring_params *p = &springs[i % 4];
+        const spring_state s = {sizes[i / 4 % 5] * (i % 2 ? -1 : 1), sizes[i / 20]}, mirrored = {-s.x, -s.v};
+        const double T = spring_settling_time(&s, p, 1e-3), larger = fmax(fabs(s.x), s.v) > 1e290 ? 0x1p-20 : 0x1p20;
+        const spring_state scaled = {s.x * larger, s.v * larger};
+        CHECK(isfinite(T), "a damped spring comes to rest");
+        CHECK_BITS(spring_settling_time(&mirrored, p, 1e-3), T, "mirrored");
+        CHECK_BITS(spring_settling_time(&scaled, p, 1e-3 * larger), T, "length in other units");
     }
+    const spring_state near = {1, -1e5}, far = {0x1p996, -1e5 * 0x1p996};
+    CHECK_BITS(spring_settling_time(&far, &springs[2], 0.1 * 0x1p996), spring_settling_time(&near, &springs[2], 0.1),
+               "far");
 }
 
 static void settling_time_bad_input(void)
@@ -273,41 +247,39 @@ static void params_from_half_life(void)
     }
 }
 
-static void refused(spring_params p, const char *why)
-{
-    spring_state s = {0, 1};
-    CHECK(isnan(p.mass) && isnan(p.stiffness) && isnan(p.damping) && isnan(p.load), why);
-    CHECK(spring_advance(&s, &p, SPRING_LEAPFROG, 0.1, 1) == SPRING_EINVAL, "and spring_advance() refuses it");
-}
-
 static void constructors_refuse(void)
 {
-    refused(spring_params_hertz(-1, 0.5), "negative frequency");
-    refused(spring_params_hertz(NAN, 0.5), "no frequency");
-    refused(spring_params_hertz(INFINITY, 0.5), "infinite frequency");
-    refused(spring_params_hertz(1e160, 0.5), "stiffness overflows");
-    refused(spring_params_hertz(1e-170, 0.5), "stiffness underflows");
-    refused(spring_params_half_life(1e170, 0.5), "stiffness underflows");
-    refused(spring_params_half_life(INFINITY, 0.5), "infinite half-life");
-    refused(spring_params_hertz(1, -0.5), "negative damping ratio");
-    refused(spring_params_hertz(1, NAN), "no damping ratio");
-    refused(spring_params_half_life(0, 0.5), "half-life 0");
-    refused(spring_params_half_life(-1, 0.5), "negative half-life");
-    refused(spring_params_half_life(NAN, 0.5), "no half-life");
-    refused(spring_params_half_life(1, 0), "no damping never halves");
-    refused(spring_params_half_life(1, -0.5), "negative damping ratio");
-    refused(spring_params_half_life(1, NAN), "no damping ratio");
-    refused(spring_params_half_life(1, INFINITY), "infinite damping ratio");
+    const spring_params bad[] = {
+        spring_params_hertz(-1, 0.5),
+        spring_params_hertz(NAN, 0.5),
+        spring_params_hertz(INFINITY, 0.5),
+        spring_params_hertz(1e160, 0.5),
+        spring_params_hertz(1e-170, 0.5),
+        spring_params_hertz(1, -0.5),
+        spring_params_hertz(1, NAN),
+        spring_params_half_life(1e170, 0.5),
+        spring_params_half_life(INFINITY, 0.5),
+        spring_params_half_life(0, 0.5),
+        spring_params_half_life(-1, 0.5),
+        spring_params_half_life(NAN, 0.5),
+        spring_params_half_life(1, 0),
+        spring_params_half_life(1, -0.5),
+        spring_params_half_life(1, NAN),
+        spring_params_half_life(1, INFINITY),
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        spring_state s = {0, 1};
+        CHECK(isnan(bad[i].mass) && isnan(bad[i].stiffness) && isnan(bad[i].damping) && isnan(bad[i].load), "NaN");
+        CHECK(spring_advance(&s, &bad[i], SPRING_LEAPFROG, 0.1, 1) == SPRING_EINVAL, "and spring_advance() refuses it");
+    }
 }
 
 int main(void)
 {
     static const test tests[] = {
         {"settling time against sampling", settling_time_by_sampling},
-        {"settling time, lightly damped", settling_time_lightly_damped},
         {"settling time, tolerance at a swing", settling_time_at_a_swing},
         {"settling time, distances equal to the tolerance", settling_time_at_the_tolerance},
-        {"settling time, mirrored", settling_time_mirrored},
         {"settling time to the last bit", settling_time_is_the_first},
         {"settling time, special springs", settling_time_special},
         {"settling time of states of any size", settling_time_of_any_size},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from typing import Any
 
 from springstep._common import fail, finite, invalid, method_number, springs_method, step_count
 from springstep._native import ffi, lib
@@ -44,44 +45,36 @@ class Spring:
         self._check_parameters()
 
     @classmethod
+    def _made(cls, params: Any, x: float, v: float, *arguments: tuple[str, float, bool]) -> Spring:
+        """The spring of parameters that C has made; if it has refused the arguments, the first that is not good is named."""
+        for field, value, good in arguments if math.isnan(params.mass) else ():
+            if not good:
+                invalid(field, value)
+        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+
+    @classmethod
     def hertz(cls, hertz: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
         """A spring of 1 kg from its undamped frequency >= 0 [Hz] and its damping ratio >= 0; 1 is critical."""
-        params = lib.spring_params_hertz(hertz, damping_ratio)
-        if math.isnan(params.mass):
-            if finite("damping_ratio", damping_ratio) < 0:
-                invalid("damping_ratio", damping_ratio)
-            invalid("hertz", hertz)
-        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+        return cls._made(lib.spring_params_hertz(hertz, damping_ratio), x, v, ("damping_ratio", damping_ratio, 0 <= damping_ratio < math.inf),
+                         ("hertz", hertz, False))
 
     @classmethod
     def half_life(cls, half_life: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
         """A spring of 1 kg from the time in which its envelope halves > 0 [s] and its damping ratio > 0."""
-        params = lib.spring_params_half_life(half_life, damping_ratio)
-        if math.isnan(params.mass):
-            if finite("damping_ratio", damping_ratio) <= 0:
-                invalid("damping_ratio", damping_ratio)
-            invalid("half_life", half_life)
-        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+        return cls._made(lib.spring_params_half_life(half_life, damping_ratio), x, v, ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
+                         ("half_life", half_life, False))
 
     @classmethod
     def response(cls, response: float, damping_fraction: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
         """A spring of 1 kg from a response > 0 [s] and a damping fraction >= 0, as in SwiftUI."""
-        params = lib.spring_params_response(response, damping_fraction)
-        if math.isnan(params.mass):
-            if finite("damping_fraction", damping_fraction) < 0:
-                invalid("damping_fraction", damping_fraction)
-            invalid("response", response)
-        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+        return cls._made(lib.spring_params_response(response, damping_fraction), x, v, ("damping_fraction", damping_fraction, 0 <= damping_fraction < math.inf),
+                         ("response", response, False))
 
     @classmethod
     def bounce(cls, duration: float, bounce: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
         """A spring of 1 kg from a duration > 0 [s] and a bounce, -1 < bounce <= 1, as in SwiftUI."""
-        params = lib.spring_params_bounce(duration, bounce)
-        if math.isnan(params.mass):
-            if not -1 < bounce <= 1:
-                invalid("bounce", bounce)
-            invalid("duration", duration)
-        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+        return cls._made(lib.spring_params_bounce(duration, bounce), x, v, ("bounce", bounce, -1 < bounce <= 1),
+                         ("duration", duration, False))
 
     @classmethod
     def settling(cls, time: float, damping_ratio: float, tolerance: float = 1e-3, *, x: float = 0.0,
@@ -91,14 +84,9 @@ class Spring:
         Released at rest, it stays within tolerance times the initial distance from the target from then on;
         0 < tolerance < 1.
         """
-        params = lib.spring_params_settling(time, damping_ratio, tolerance)
-        if math.isnan(params.mass):
-            if finite("damping_ratio", damping_ratio) <= 0:
-                invalid("damping_ratio", damping_ratio)
-            if not 0 < tolerance < 1:
-                invalid("tolerance", tolerance)
-            invalid("time", time)
-        return cls(params.stiffness, params.mass, params.damping, x=x, v=v)
+        return cls._made(lib.spring_params_settling(time, damping_ratio, tolerance), x, v,
+                         ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
+                         ("tolerance", tolerance, 0 < tolerance < 1), ("time", time, False))
 
     def _check_parameters(self) -> None:
         """Raise InvalidError for the first invalid parameter."""
