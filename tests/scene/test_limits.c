@@ -180,6 +180,57 @@ static void dampers_alone(void)
     free(s);
 }
 
+/* Stiff links between heavy particles do not hide soft ones between light particles, of which the bound is. */
+static void light_and_heavy(void)
+{
+    const double big = EPS < 1e-10 ? 1e300 : 1e30, tiny = EPS < 1e-10 ? 1e-100 : 1e-20, rate = 1e3; /* k/m [1/s^2] */
+    const double position[] = {0, 1, 2, 3}, mass[] = {big, big, tiny, tiny};
+    const spring_link link[] = {{0, 1, 1, big, 0}, {2, 3, 1, rate * tiny, 0}};
+    const spring_scene_def def = {
+        .axes = 1, .particles = 4, .links = 2, .position = position, .mass = mass, .link = link};
+    spring_scene *s = scene_of(&def);
+    CHECK_CLOSE(spring_scene_stable_step(s, SPRING_LEAPFROG), 2 / sqrt(2 * rate), 8 * EPS,
+                "2/sqrt(2 k/m) of the light ones");
+    free(s);
+}
+
+/* A sum of stiffness beyond the largest double: no step is known, with any method and any damping. */
+static void sums_that_overflow(void)
+{
+    const double huge = 8e307, position[] = {0, 1, 2, 3};
+    if (EPS > 1e-10)
+        return; /* floats do not reach it */
+    for (int how = 0; how < 4; how++) {
+        const double damping = how & 1 ? 0.3 : 0, drag = how & 2 ? 0.7 : 0;
+        const spring_link link[] = {{0, 1, 1, huge, damping}, {0, 2, 1, huge, 0}, {0, 3, 1, huge, 0}};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 4, .links = 3, .position = position, .link = link, .drag = drag};
+        spring_scene *s = scene_of(&def);
+        for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+            const spring_method m = spring_method_at(i);
+            if (spring_method_describe(m)->scenes)
+                CHECK(spring_scene_stable_step(s, m) == 0, spring_method_name(m));
+        }
+        free(s);
+    }
+}
+
+/* A kick that is solved for divides by 1 + drag dt/mass: where that is infinite the velocity would be 0, and finite. */
+static void drag_that_overflows(void)
+{
+    const double large = EPS < 1e-10 ? 1e200 : 1e20, position[] = {1}, velocity[] = {5};
+    const spring_scene_def def = {.axes = 1, .particles = 1, .position = position, .velocity = velocity, .drag = large};
+    static const spring_method solved[] = {SPRING_SYMPLECTIC_EULER, SPRING_LEAPFROG};
+    for (size_t i = 0; i < sizeof solved / sizeof solved[0]; i++) {
+        spring_scene *s = scene_of(&def);
+        double v = 0;
+        CHECK(spring_scene_advance(s, solved[i], large, 1) == SPRING_ENONFINITE, spring_method_name(solved[i]));
+        spring_scene_get(s, SPRING_VELOCITY, &v, 0, 0, 1);
+        CHECK_BITS(v, 5.0, "the state is kept");
+        free(s);
+    }
+}
+
 /* -------------------------------------------------------------------------------------- stable, and how far from it */
 
 enum { LINK_DAMPING = 1, WITH_DRAG = 2 };
@@ -728,6 +779,9 @@ int main(void)
         {"a stiff link between pins", stiff_between_pins},
         {"no force", nothing_to_be_unstable_with},
         {"dampers alone", dampers_alone},
+        {"light particles linked to heavy ones", light_and_heavy},
+        {"sums of stiffness that overflow", sums_that_overflow},
+        {"drag that overflows in a solved kick", drag_that_overflows},
         {"stable at 0.95 of the stable step", stable_below},
 #ifndef SPRING_FLOAT
         {"how much larger the limit is", not_much_too_small},

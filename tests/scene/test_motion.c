@@ -379,6 +379,27 @@ static void reversible(void)
         }
 }
 
+/* Light drag over many steps: rounding must not be of the same sign in each, or it adds up to n eps/2. */
+static void drag_without_bias(void)
+{
+    const int n = 200000;
+    const double position[] = {0, 0, 0}, velocity[] = {0.83, -0.59, 0}, h = 1e-3, drag = 0.02;
+    const spring_scene_def def = {
+        .particles = 1, .position = position, .velocity = velocity, .mass_all = 1.3, .drag = drag};
+    spring_scene *s = scene_of(&def);
+    double v[3];
+    spring_scene_advance(s, SPRING_LEAPFROG, h, (uint64_t)n);
+    spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 1);
+    const double q = (double)(scalar)h / 2 * (double)(scalar)drag / 1.3;
+    const double want = exp(n * (log1p(-q) - log1p(q)));
+    /* each step rounds v by at most 4 half eps of it; unbiased, they add up like a walk: six deviations of it. The rest
+       is what rounding q itself, once, does over all steps. */
+    const double bound = 6 * 4 * EPS / 2 * sqrt(n) + 4 * EPS * n * q;
+    CHECK_CLOSE(v[0] / velocity[0], want, bound * want, "a walk of rounding errors");
+    CHECK_CLOSE(v[1] / velocity[1], want, bound * want, "a walk of rounding errors");
+    free(s);
+}
+
 /* ---------------------------------------------------------------------------------------------------------- orders */
 
 #ifndef SPRING_FLOAT
@@ -466,6 +487,7 @@ int main(void)
         {"normal modes of ropes and height fields", normal_modes},
         {"momentum", momentum},
         {"leapfrog is reversible", reversible},
+        {"drag without bias", drag_without_bias},
 #ifndef SPRING_FLOAT
         {"orders", orders},
 #endif
