@@ -1,52 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* The rules of colliders: valid colliders, bit-identical kernels and calls, rollback, touching and rest. */
+/* The rules of colliders: valid colliders, touching and rest. test_random.c tests bits, calls and rollback. */
 #include "test_scene.h"
 
 static const spring_method with_contacts[] = {SPRING_LEAPFROG, SPRING_RK4, SPRING_SYMPLECTIC_EULER};
 enum { method_count = 3 };
-
-static const uint32_t shapes[][3] = {{3, 1, 1}, {11, 1, 1}, {6, 5, 1}, {5, 4, 3}, {70, 4, 1}};
-enum { shape_count = sizeof shapes / sizeof shapes[0] };
-
-/* A model with room for colliders, and one of each shape in its way. */
-typedef struct colliding {
-    model m;
-    spring_collider c[4];
-} colliding;
-
-static void build_colliding(colliding *b, const uint32_t shape[3], uint32_t axes, unsigned features)
-{
-    build(&b->m, shape, axes, features);
-    b->m.def.colliders = 4;
-    b->m.def.particle_radius = 0.05;
-    b->m.def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_SYMPLECTIC_EULER;
-    const spring_collider c[4] = {
-        {.shape = SPRING_PLANE, .at = {0, -0.1, 0}, .axis = {{0.6, 0.8, 0}}, .friction = 0.4, .restitution = 0.3},
-        {.shape = SPRING_SPHERE, .at = {1, 1, 0}, .radius = 0.9, .velocity = {-0.3, 1, 0.2}, .friction = 0.2},
-        {.shape = SPRING_CAPSULE,
-         .at = {3, -1, -1},
-         .to = {3, 3, 1},
-         .radius = 0.5,
-         .velocity_to = {-1, 0, 0},
-         .friction = 0.7},
-        {.shape = SPRING_BOX,
-         .at = {2, 2, 0.5},
-         .axis = {{0.6, 0.8, 0}, {-0.8, 0.6, 0}, {0, 0, 1}},
-         .half = {0.4, 0.6, 0.2},
-         .radius = 0.1,
-         .spin = {0, 0, 4},
-         .friction = 0.5,
-         .restitution = 0.8},
-    };
-    memcpy(b->c, c, sizeof c);
-}
-
-static spring_scene *scene_with(const colliding *b)
-{
-    spring_scene *s = scene_of(&b->m.def);
-    CHECK(spring_scene_set_colliders(s, b->c, 4) == SPRING_OK, "valid colliders");
-    return s;
-}
 
 static size_t count_touching(const spring_scene *s, size_t particles)
 {
@@ -56,14 +13,6 @@ static size_t count_touching(const spring_scene *s, size_t particles)
     for (size_t i = 0; i < particles; i++)
         count += mask[i] != 0;
     return count;
-}
-
-static bool same_touching(const spring_scene *s, const spring_scene *other, size_t particles)
-{
-    uint32_t mask[most], of_other[most];
-    spring_scene_touching(s, mask, 0, particles);
-    spring_scene_touching(other, of_other, 0, particles);
-    return memcmp(mask, of_other, particles * sizeof *mask) == 0;
 }
 
 /* A particle above a floor by less than its rounding error, near a sphere, so that it is computed with particles that hit
@@ -138,51 +87,46 @@ static void check_field(spring_scene *s, spring_collider c, const char *field)
 
 static const spring_collider good_box = {
     .shape = SPRING_BOX, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .half = {1, 1, 1}};
-static const spring_collider good_capsule = {.shape = SPRING_CAPSULE, .to = {1, 0, 0}, .radius = 1};
 
-/* Each field with each bad value, in turn. */
+#define FIELD(name) offsetof(spring_collider, name), sizeof((spring_collider *)NULL)->name / sizeof(double), #name
+
+/* Each number of each shape with each bad value, in turn. */
 static void bad_colliders(void)
 {
-    const double x[] = {0, 5, 0, 1, 5, 0}, bad[] = {NAN, INFINITY, -INFINITY, 1e308 * (sizeof(scalar) == 4 ? 1 : 10)};
-    const spring_scene_def def = {.particles = 2, .position = x, .colliders = 2};
+    enum { plane = 1, sphere = 2, capsule = 4, box = 8, all = 15 };
+    static const struct {
+        size_t offset, numbers;
+        const char *name;
+        unsigned shapes; /* that have it */
+        bool signed_number;
+    } fields[] = {
+        {FIELD(at), all, true},           {FIELD(to), capsule, true},
+        {FIELD(axis[0]), plane, true},    {FIELD(axis[2]), box, true},
+        {FIELD(half), box, false},        {FIELD(radius), sphere | capsule | box, false},
+        {FIELD(velocity), all, true},     {FIELD(velocity_to), capsule, true},
+        {FIELD(spin), all, true},         {FIELD(friction), all, false},
+        {FIELD(restitution), all, false},
+    };
+    const double bad[] = {NAN, INFINITY, -INFINITY, 1e308 * (sizeof(scalar) == 4 ? 1 : 10), -1e-9};
+    const double x[] = {0, 5, 0, 1, 5, 0};
+    spring_scene_def def = {
+        .particles = 2, .position = x, .colliders = 2, .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG};
     spring_scene *s = scene_of(&def);
-    CHECK(spring_scene_set_colliders(s, &good_box, 1) == SPRING_OK, "a box");
-    for (int i = 0; i < 4; i++)
-        for (int a = 0; a < 3; a++) {
-            spring_collider *c = &(spring_collider){0};
-            const spring_collider start[2] = {good_box, good_capsule};
-            for (int k = 0; k < 2; k++) {
-                *c = start[k], c->at[a] = bad[i];
-                check_field(s, *c, "at");
-                *c = start[k], c->velocity[a] = bad[i];
-                check_field(s, *c, "velocity");
-                *c = start[k], c->spin[a] = bad[i];
-                check_field(s, *c, "spin");
-                *c = start[k], c->radius = bad[i];
-                check_field(s, *c, "radius");
-                *c = start[k], c->friction = bad[i];
-                check_field(s, *c, "friction");
-                *c = start[k], c->restitution = bad[i];
-                check_field(s, *c, "restitution");
-            }
-            *c = good_capsule, c->to[a] = bad[i];
-            check_field(s, *c, "to");
-            *c = good_capsule, c->velocity_to[a] = bad[i];
-            check_field(s, *c, "velocity_to");
-            *c = good_box, c->half[a] = bad[i];
-            check_field(s, *c, "half");
-            *c = good_box, c->axis[2][a] = bad[i];
-            check_field(s, *c, "axis");
-            *c = good_box, c->to[a] = c->velocity_to[a] = bad[i];
-            check_field(s, *c, NULL); /* a box has no second end */
-            *c = good_capsule, c->half[a] = c->axis[a][a] = bad[i];
-            check_field(s, *c, NULL); /* a capsule has no axes */
-        }
+    for (int shape = 0; shape < 4; shape++)
+        for (size_t f = 0; f < sizeof fields / sizeof fields[0]; f++)
+            for (size_t i = 0; i < fields[f].numbers; i++)
+                for (int k = 0; k < (fields[f].signed_number ? 4 : 5); k++) {
+                    spring_collider c = good_box;
+                    c.shape = (spring_shape)shape;
+                    c.to[0] = c.radius = 1;
+                    memcpy((char *)&c + fields[f].offset + i * sizeof(double), &bad[k], sizeof(double));
+                    const bool is_axis = strncmp(fields[f].name, "axis", 4) == 0, has = fields[f].shapes >> shape & 1;
+                    if (has || !is_axis || shape == SPRING_SPHERE || shape == SPRING_CAPSULE)
+                        check_field(s, c, !has ? NULL : is_axis ? "axis" : fields[f].name);
+                }
     spring_collider c = good_box;
     c.restitution = 1.001;
     check_field(s, c, "restitution");
-    c = good_box, c.half[1] = -1e-9;
-    check_field(s, c, "half");
     c = good_box, c.axis[1][0] = 1.01e-3;
     check_field(s, c, "axis");
     c = good_box, c.axis[1][0] = 0.99e-3;
@@ -194,8 +138,12 @@ static void bad_colliders(void)
     c = (spring_collider){
         .shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}, .at = {(double)SCALAR_MAX, (double)SCALAR_MAX, 0}};
     check_field(s, c, "at"); /* its distance from the origin is infinite */
-    c = (spring_collider){.shape = SPRING_SPHERE, .radius = -1};
-    check_field(s, c, "radius");
+    CHECK(spring_scene_set_colliders(s, (spring_collider[3]){good_box, good_box, good_box}, 3) == SPRING_ERANGE,
+          "room for two");
+    CHECK(spring_scene_advance(s, SPRING_EULER, 0.01, 1) == SPRING_EUNSUPPORTED, "Euler has no drift");
+    CHECK(spring_scene_set_colliders(s, NULL, 0) == SPRING_OK &&
+              spring_scene_advance(s, SPRING_EULER, 0.01, 1) == SPRING_OK,
+          "no colliders");
     free(s);
 }
 

@@ -381,6 +381,9 @@ static void beyond_the_largest_number_of_terms(void)
 static void too_fast_scene(model *m, unsigned features, spring_method method, double max_speed)
 {
     build(m, grids[features % grid_count], 2, features & ~(unsigned)(DAMPED | DRAG));
+    for (size_t i = 0; i < m->def.particles; i++)
+        m->velocity[2 * i] =
+            pinned_in(&m->def, i) ? 2 * max_speed : m->velocity[2 * i]; /* pinned particles may be fast */
     m->def.methods = 1u << method;
     m->def.max_speed = max_speed;
 }
@@ -494,6 +497,23 @@ static void soften(void)
     }
 }
 
+/* Bad input: nothing is written. */
+static void soften_bad_input(void)
+{
+    static model m, before;
+    build(&m, grids[2], 3, 0);
+    before = m;
+    const double bad[][2] = {{0, 0.5}, {-1, 0.5}, {NAN, 0.5}, {INFINITY, 0.5}, {0.1, 0}, {0.1, 1.1}, {0.1, NAN}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        CHECK(spring_links_soften(&m.def, bad[i][0], bad[i][1], m.link) == SPRING_EINVAL, "a step, or a fraction");
+    CHECK(spring_links_soften(&m.def, 0.1, 0.5, NULL) == SPRING_EINVAL &&
+              spring_links_soften(NULL, 0.1, 0.5, m.link) == SPRING_EINVAL,
+          "NULL");
+    m.def.particles = 0;
+    CHECK(spring_links_soften(&m.def, 0.1, 0.5, m.link) == SPRING_EINVAL, "a bad definition");
+    CHECK(memcmp(m.link, before.link, sizeof m.link) == 0, "nothing is written");
+}
+
 /* How far 200 random softened scenes get from the places of their pins, which teleport, in 60 frames of 17 and 100 ms, in
    radii of the sphere that holds these places. Nothing is damped, so what the pins do to a scene stays in it. */
 static double farthest_of_softened(double fraction)
@@ -552,6 +572,7 @@ int main(void)
         {"max_speed", too_fast},
         {"max_speed at the ends of steps", speed_at_the_ends_of_steps},
         {"soften", soften},
+        {"soften: bad input", soften_bad_input},
         {"softened scenes", softened_scenes_stay},
         {"energy falls", energy_falls},
         {"stable at any damping", stable_at_any_damping},

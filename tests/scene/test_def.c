@@ -50,6 +50,12 @@ static void refused(void)
     const double too_large = sizeof(scalar) == 4 ? 1e39 : INFINITY;
 
     REFUSED(d->axes, 4, SPRING_EINVAL, "axes", 0);
+    const double no_radius[] = {-1, NAN, too_large};
+    for (int i = 0; i < 3; i++) {
+        REFUSED(d->particle_radius, no_radius[i], SPRING_EINVAL, "particle_radius", 0);
+        REFUSED(d->max_speed, no_radius[i], SPRING_EINVAL, "max_speed", 0);
+    }
+    REFUSED(d->colliders, 33, SPRING_ERANGE, "colliders", 0);
     REFUSED(d->flags, 32, SPRING_EINVAL, "flags", 0);
     REFUSED(d->methods, 1u << SPRING_EXACT | 1, SPRING_EUNSUPPORTED, "methods", 0);
     REFUSED(d->methods, 1u << SPRING_METHOD_COUNT, SPRING_EINVAL, "methods", 0);
@@ -99,6 +105,52 @@ static void refused(void)
     for (size_t i = 0; i < sizeof masses / sizeof masses[0]; i++)
         if (masses[i] != 0)
             REFUSED(d->mass_all, masses[i], SPRING_EINVAL, "mass_all", 0);
+}
+
+/* Tension-only links, colliders and methods for smooth forces: valid in some scenes. Links that just fit, or just do not. */
+static void combinations(void)
+{
+    const double x[] = {0, 1, 2, 3, 4, 5}, largest = (double)SCALAR_MAX, mass[] = {1.5, 2, 3};
+    spring_link link = {0, 1, 0.7, 0, 0};
+    good.def = (spring_scene_def){.axes = 1, .flags = SPRING_SCENE_TENSION_ONLY, .particles = 2, .position = x};
+    spring_scene_def *d = &good.def;
+    check_refused(SPRING_EUNSUPPORTED, "flags", 0);
+    d->flags = 0, d->colliders = 32;
+    check_refused(SPRING_EUNSUPPORTED, "colliders", 0);
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        d->methods = 1u << spring_method_at(i);
+        for (int kind = 0; kind < 2; kind++) {
+            d->axes = 2;
+            d->flags = kind ? SPRING_SCENE_TENSION_ONLY : 0;
+            d->colliders = kind ? 0 : 32; /* a bit for each */
+            if (spring_method_describe(spring_method_at(i))->positions_only)
+                check_refused(SPRING_EUNSUPPORTED, "methods", 0);
+            else if (spring_method_describe(spring_method_at(i))->scenes)
+                CHECK(spring_scene_check(d, NULL, NULL) == SPRING_OK, "forces need not be smooth");
+        }
+    }
+    for (int damping = 0; damping < 2; damping++) {
+        *d = (spring_scene_def){.particles = 2, .links = 1, .position = x, .mass = mass, .link = &link};
+        (damping ? &link.damping : &link.stiffness)[0] = largest / 2.5 * 1.5;
+        CHECK(spring_scene_check(d, NULL, NULL) == SPRING_OK, "2/mass of it is finite");
+        (damping ? &link.damping : &link.stiffness)[0] = largest / 1.9 * 1.5;
+        check_refused(SPRING_EINVAL, damping ? "link.damping" : "link.stiffness", 0);
+        link.stiffness = link.damping = 0;
+    }
+    *d = (spring_scene_def){.particles = 2, .links = 1, .position = x, .mass_all = 1.4 / largest, .link = &link};
+    CHECK(spring_scene_check(d, NULL, NULL) == SPRING_OK, "twice the inverse mass overflows; the link does not pull");
+    for (uint32_t axes = 1; axes < 3; axes++) {
+        *d = (spring_scene_def){
+            .axes = axes,
+            .particles = 1,
+            .position = x,
+        };
+        d->gravity[axes - 1] = NAN;
+        check_refused(SPRING_EINVAL, "gravity", axes - 1);
+        *d = (spring_scene_def){.axes = axes, .particles = 1, .position = x};
+        d->gravity[axes] = NAN;
+        CHECK(spring_scene_check(d, NULL, NULL) == SPRING_OK, "elements beyond the axes are ignored");
+    }
 }
 
 /* What looks wrong, but is not looked at or means something. */
@@ -597,6 +649,7 @@ int main(void)
 {
     static const test tests[] = {
         {"invalid definitions, and the fields that are named", refused},
+        {"valid combinations", combinations},
         {"valid definitions", accepted},
         {"memory too small or misaligned", bad_memory},
         {"bytes of a particle", bytes_of_a_particle},

@@ -158,18 +158,9 @@ static void add_nothing(void *user, double t, size_t particles, const scalar *co
 
 static spring_collider any_collider(uint32_t axes)
 {
-    spring_collider c = {.shape = (spring_shape)below(4),
-                         .radius = random_uniform(0.1, 0.6),
-                         .half = {0.3, 0.5, 0.7},
-                         .friction = random_uniform(0, 1),
-                         .restitution = random_uniform(0, 1)};
-    for (uint32_t a = 0; a < 3; a++) {
-        c.axis[a][a] = 1;
-        c.at[a] = random_uniform(-2, 2);
-        c.to[a] = random_uniform(-2, 2);
-        c.velocity[a] = c.velocity_to[a] = random_uniform(-1, 1);
-        c.spin[a] = a >= axes ? 0 : random_uniform(-1, 1);
-    }
+    spring_collider c = random_collider(axes);
+    for (uint32_t a = 0; a < axes; a++)
+        c.at[a] += random_uniform(-2, 2);
     return c;
 }
 
@@ -469,6 +460,19 @@ static void check_none(size_t number, const char *differs)
     CHECK(differs == NULL, "the same bits");
 }
 
+static void set_colliders(spring_scene *const s[2], const model *m)
+{
+    spring_collider c[3], with_others[3];
+    const uint32_t count = 1 + (uint32_t)below(3);
+    for (uint32_t i = 0; i < count; i++) {
+        c[i] = any_collider(m->def.axes);
+        with_others[i] = with_unused_numbers(c[i], m->def.axes);
+    }
+    CHECK(spring_scene_set_colliders(s[0], c, count) == SPRING_OK &&
+              spring_scene_set_colliders(s[1], with_others, count) == SPRING_OK,
+          "valid colliders");
+}
+
 /* A change of both scenes, with the same arguments. */
 static void change(spring_scene *const s[2], const model *m, push *p)
 {
@@ -476,7 +480,6 @@ static void change(spring_scene *const s[2], const model *m, push *p)
     const double v[3] = {random_uniform(-1, 1), random_uniform(-1, 1), random_uniform(-1, 1)};
     const uint8_t pinned = one_in(2);
     const size_t which = below(8);
-    const spring_collider c = any_collider(m->def.axes), both[2] = {c, with_unused_numbers(c, m->def.axes)};
     spring_link link = m->link[k];
     link.damping *= pinned;
     link.stiffness *= 0.7;
@@ -508,10 +511,11 @@ static void change(spring_scene *const s[2], const model *m, push *p)
             spring_scene_set_force(s[j], m->def.force, p);
             break;
         default:
-            if (m->def.colliders > 0)
-                spring_scene_set_colliders(s[j], &both[j], 1);
+            break;
         }
     }
+    if (which > 5 && m->def.colliders > 0)
+        set_colliders(s, m);
 }
 
 /* The stable steps of two scenes, which may store masses in different precisions. */
@@ -525,20 +529,26 @@ static const char *step_difference(spring_scene *s, spring_scene *other)
     return NULL;
 }
 
+static size_t contacts;
+
 /* What differs between two scenes, or NULL. */
 static const char *difference(const spring_scene *s, const spring_scene *other, const model *m)
 {
     static uint32_t mask[2][most];
-    memset(mask, 0, sizeof mask); /* a scene without colliders touches nothing */
-    spring_scene_touching(s, mask[0], 0, m->def.particles);
-    spring_scene_touching(other, mask[1], 0, m->def.particles);
+    const size_t n = m->def.particles;
+    memset(mask[0], 0, n * sizeof mask[0][0]); /* a scene without colliders touches nothing */
+    memset(mask[1], 0, n * sizeof mask[1][0]);
+    spring_scene_touching(s, mask[0], 0, n);
+    spring_scene_touching(other, mask[1], 0, n);
+    for (size_t i = 0; i < n; i++)
+        contacts += mask[0][i] != 0;
     const size_t link = below(m->def.links + 1);
     const double tension = spring_scene_tension(s, link), of_other = spring_scene_tension(other, link);
-    return !same_bits(s, other, m->def.particles, m->def.axes) ? "the state"
-           : !(tension == of_other || isnan(of_other))         ? "the tension of a link"
-           : memcmp(mask[0], mask[1], sizeof mask[0]) != 0     ? "the colliders that are touched"
-           : spring_scene_time(s) != spring_scene_time(other)  ? "the time"
-                                                               : NULL;
+    return !same_bits(s, other, m->def.particles, m->def.axes)    ? "the state"
+           : !(tension == of_other || isnan(of_other))            ? "the tension of a link"
+           : memcmp(mask[0], mask[1], n * sizeof mask[0][0]) != 0 ? "the colliders that are touched"
+           : spring_scene_time(s) != spring_scene_time(other)     ? "the time"
+                                                                  : NULL;
 }
 
 /* After a call that failed, a scene is as it was. Without rollback it is lost, until all of it is set again. */
@@ -622,6 +632,8 @@ static const char *run_both(const model *m, push *p)
     }
     memset(more.position, 0xff, sizeof more.position); /* nothing is read from there any more */
     memset(more.link, 0xff, sizeof more.link);
+    if (m->def.colliders > 0)
+        set_colliders((spring_scene *[]){one.s, other.s}, m);
     spring_method method = any_method(&m->def);
     double dt = random_log(0.003, 0.1);
     const char *differs = NULL;
@@ -655,6 +667,8 @@ static void equal_runs(void)
         check_none(i, run_both(&m, &p));
         CHECK(p.good, "the callback sees finite numbers, on the axes that there are");
     }
+    printf("# %zu contacts\n", contacts);
+    CHECK(contacts > scenes / 10, "contacts took place");
 }
 
 /* ----------------------------------------------------------------------------------------------------------- forces */

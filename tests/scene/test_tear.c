@@ -190,7 +190,10 @@ static void bad_components(void)
 int main(void)
 {
     static const test tests[] = {
-        {"torn links", tearing},    {"at the limit", at_the_limit},        {"components", components}, {"bad components", bad_components},
+        {"torn links", tearing},
+        {"at the limit", at_the_limit},
+        {"components", components},
+        {"bad components", bad_components},
     };
     return RUN_TESTS("scene-tear", tests);
 }
