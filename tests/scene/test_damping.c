@@ -100,12 +100,6 @@ static void build_stiff(model *m, uint32_t side, bool rope, double stiff, double
     }
 }
 
-static double total_energy(const spring_scene *s)
-{
-    const spring_scene_energies e = spring_scene_energy(s);
-    return e.kinetic + e.elastic + e.gravity;
-}
-
 #ifndef SPRING_FLOAT
 
 static double distance_between(const spring_scene *s, const spring_scene *other, size_t particles, spring_quantity q)
@@ -290,47 +284,8 @@ static void stable_at_any_damping(void)
 
 /* ----------------------------------------------------------------------------------------------------------- bits */
 
-/* Beyond the limit of explicit damping, and below the stable step. */
-static spring_scene *heavy_scene(model *m, const uint32_t grid[3], uint32_t axes, unsigned features, double *dt)
-{
-    build(m, grid, axes, features | DAMPED);
-    for (size_t i = 0; i < m->def.links; i++)
-        m->link[i].damping *= 40;
-    m->def.methods = 1u << SPRING_LEAPFROG;
-    spring_scene *s = scene_of(&m->def);
-    *dt = fmin(0.4 * spring_scene_stable_step(s, SPRING_LEAPFROG), 1);
-    return s;
-}
-
 static const uint32_t grids[][3] = {{3, 1, 1}, {2, 2, 1}, {9, 7, 1}, {4, 3, 3}, {70, 1, 1}};
 enum { grid_count = sizeof grids / sizeof grids[0] };
-
-static void momentum(void)
-{
-    static model m;
-    for (unsigned features = 0; features < feature_masks; features += 19) {
-        double dt, p[2][3] = {{0}}, size = 0;
-        const unsigned without = PINNED | DRAG | GRAVITY;
-        const uint32_t axes = 1 + features % 3;
-        spring_scene *s = heavy_scene(&m, grids[features % grid_count], axes, features & ~without, &dt);
-        static state y;
-        const int steps = 20;
-        for (int end = 0; end < 2; end++) {
-            get_state(s, m.def.particles, &y);
-            for (size_t i = 0; i < m.def.particles * axes; i++) {
-                p[end][i % axes] += mass_in(&m.def, i / axes) * y.v[i];
-                size += mass_in(&m.def, i / axes) * (fabs(y.v[i]) + 2);
-            }
-            spring_scene_advance(s, SPRING_LEAPFROG, dt, (uint64_t)steps);
-        }
-        const chebyshev_series series = chebyshev_for(dt, s->bounds.link_damping);
-        CHECK(series.terms >= 3, "the series");
-        for (uint32_t a = 0; a < axes; a++)
-            CHECK_CLOSE(p[1][a], p[0][a], steps * (20 + series.terms * sqrt(series.terms)) * EPS * size,
-                        "rounding errors of the terms, which the recurrence adds up, each as large as those after it");
-        free(s);
-    }
-}
 
 /* Tension-only links that are slack: heavy dampers do nothing, in bands and in small scenes. */
 static void slack_links(void)
@@ -566,7 +521,6 @@ int main(void)
     static const test tests[] = {
         {"the series", series},
         {"order of the series", series_order},
-        {"momentum", momentum},
         {"slack links", slack_links},
         {"more damping than terms", beyond_the_largest_number_of_terms},
         {"max_speed", too_fast},

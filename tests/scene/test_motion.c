@@ -361,6 +361,10 @@ static void momentum(void)
         for (const spring_method *method = all.at; *method != no_method; method++)
             check_momentum(&m, *method);
     }
+    build_free(&m, DAMPED);
+    for (size_t i = 0; i < m.def.links; i++)
+        m.link[i].damping *= 300; /* a Chebyshev series */
+    check_momentum(&m, SPRING_LEAPFROG);
 }
 
 static void reversible(void)

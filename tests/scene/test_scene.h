@@ -164,6 +164,12 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     }
     if (features & SHUFFLED)
         shuffle(m->link, links);
+    for (size_t i = particles * axes; i < (particles + 20) * axes && i < 3 * most; i++)
+        m->position[i] = m->velocity[i] = NAN; /* nothing behind the arrays is read */
+    for (size_t i = particles; i < particles + 20 && i < most; i++)
+        m->mass[i] = NAN;
+    for (size_t i = links; i < links + 20 && i < most_links; i++)
+        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
     m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
@@ -231,8 +237,13 @@ SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t 
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- a plain
-   loop */
+SPRING_INLINE double total_energy(const spring_scene *s)
+{
+    const spring_scene_energies e = spring_scene_energy(s);
+    return e.kinetic + e.elastic + e.gravity;
+}
+
+/* ---------------------------------------------------------------------------------------------------- a plain loop */
 
 /* The parameters of a link are those that the scene stores: rounded to float in single precision. */
 SPRING_INLINE link_force evaluate_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
