@@ -728,6 +728,33 @@ static spring_link any_coefficients(const model *m, size_t i)
     return link;
 }
 
+/* Cuts the links that are longer than a limit, and compares them with those of the state y. */
+static bool tear(spring_scene *s, model *m, const state *y)
+{
+    static uint32_t want[most_links], torn[most_links];
+    static double limit[most_links];
+    const double stretch = random_log(0.5, 4);
+    const bool limits = one_in(2);
+    size_t count = 0, found = 0;
+    for (size_t i = 0; i < m->def.links; i++) {
+        spring_link *const link = &m->link[i];
+        limit[i] = one_in(4) ? INFINITY : random_log(0.8, 3);
+        const double length = evaluate_link(link, m->def.axes, y->x, y->v).length;
+        if (((scalar)link->stiffness > 0 || (scalar)link->damping > 0) && link->rest > 0 &&
+            length > (limits ? limit[i] : stretch) * (double)(scalar)link->rest) {
+            link->stiffness = link->damping = 0;
+            want[count++] = (uint32_t)i;
+        }
+    }
+    CHECK(spring_scene_tear_with(any_kernels(), s, stretch, limits ? limit : NULL, torn, most_links, &found) ==
+                  SPRING_OK &&
+              found == count && memcmp(torn, want, count * sizeof *torn) == 0,
+          "those that are longer, in their order");
+    CHECK(spring_scene_tear(s, stretch, limits ? limit : NULL, NULL, 0, &found) == SPRING_OK && found == 0,
+          "and none again");
+    return count > 0;
+}
+
 /* Changes a scene and its definition alike, its state y too, except for transforms, which round. Returns whether the
    scene then evaluates its forces again. */
 static bool edit(spring_scene *s, model *m, state *y)
@@ -769,18 +796,8 @@ static bool edit(spring_scene *s, model *m, state *y)
             return false;
         transform_state(numbers, m, y);
         return true;
-    case 5: { /* torn links */
-        uint32_t torn[1];
-        size_t count = 0;
-        CHECK(spring_scene_tear(s, random_log(1, 4), NULL, torn, 1, &count) == SPRING_OK, "editable");
-        for (size_t k = 0; k < m->def.links; k++) {
-            spring_link link;
-            spring_scene_get_link(s, k, &link);
-            if (link.stiffness == 0 && link.damping == 0)
-                m->link[k].stiffness = m->link[k].damping = 0;
-        }
-        return count > 0;
-    }
+    case 5:
+        return tear(s, m, y);
     case 6: /* gravity, which is not part of the forces */
         memcpy(m->def.gravity, numbers, sizeof m->def.gravity);
         CHECK(spring_scene_set_gravity(s, numbers) == SPRING_OK, "finite");
@@ -837,14 +854,21 @@ static const char *edit_and_define(model *m, push *p)
     }
     spring_scene *s = scene_of(&m->def);
     const spring_method method = any_method(&m->def);
-    const double dt = random_log(0.003, 0.02);
+    double dt = random_log(0.003, 0.02), next_dt = dt;
+    const scene_bounds *const b = spring_scene_find_bounds(s);
+    const bool crosses = method == SPRING_LEAPFROG && b->link_damping > 0 && one_in(3); /* from or to a series */
+    if (crosses) {
+        const double limit = 2 / (b->damping + hypot(b->damping, sqrt(b->stiffness))); /* of explicit damping */
+        dt = one_in(2) ? limit / 2 : limit * 2;
+        next_dt = limit * limit / dt;
+    }
     spring_scene_advance(s, method, dt, 1 + below(5));
     get_state(s, m->def.particles, &y);
     if (!all_finite(s, m->def.particles, m->def.axes)) {
         free(s);
         return NULL;
     }
-    const bool evaluates = edit(s, m, &y);
+    const bool evaluates = crosses || edit(s, m, &y);
     get_state(s, m->def.particles, &now);
     for (size_t i = 0; i < size; i++) {
         CHECK_CLOSE(now.x[i], y.x[i], EPS * fabs(y.x[i]) + 1e-14, "as expected; transforms round");
@@ -869,11 +893,11 @@ static const char *edit_and_define(model *m, push *p)
     if (differs == NULL)
         differs = step_difference(s, fresh);
     check_energies(s, fresh, m, &now);
-    const spring_method next = one_in(2) ? method : any_method(&m->def);
+    const spring_method next = crosses || one_in(2) ? method : any_method(&m->def);
     for (uint64_t n = 1; n < 3 && differs == NULL; n++) {
-        const spring_status status = spring_scene_advance_with(any_kernels(), s, next, dt, n);
-        differs = spring_scene_advance_with(any_kernels(), fresh, next, dt, n) != status ? "the status"
-                                                                                         : difference(s, fresh, m);
+        const spring_status status = spring_scene_advance_with(any_kernels(), s, next, next_dt, n);
+        differs = spring_scene_advance_with(any_kernels(), fresh, next, next_dt, n) != status ? "the status"
+                                                                                              : difference(s, fresh, m);
     }
     free(s);
     free(fresh);

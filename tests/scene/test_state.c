@@ -458,7 +458,7 @@ static void refused_calls(void)
         if (i < 2)
             REFUSES(SPRING_EINVAL, spring_scene_advance(s, SPRING_LEAPFROG, bad[i], 1));
         for (int k = 0; k < 4 && i < 3; k++) {
-            spring_link last[] = {link[links - 2], link[links - 1]};
+            spring_link last[] = {{links - 2, links - 1, 0.3, 2, 0}, link[links - 1]}; /* the first is valid */
             double *const number[] = {&last[1].rest, &last[1].stiffness, &last[1].damping,
                                       &limit[k % 2 ? 0 : links - 1]};
             *number[k] = bad[i];

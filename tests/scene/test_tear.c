@@ -1,109 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Links that tear, setting many links at once, and connected components. */
+/* Links at the limit of tearing, and connected components. test_random.c compares torn links with their definition. */
 #include "test_scene.h"
-
-/* ------------------------------------------------------------------------------------------------------------ tearing */
-
-/* With links that are cut, and links without rest length. */
-static void build_torn(model *m, const uint32_t count[3], uint32_t axes, unsigned features)
-{
-    build(m, count, axes, features | EDITABLE);
-    for (size_t i = 0; i < m->def.links; i++)
-        if (random_bits() % 9 == 0)
-            m->link[i].stiffness = m->link[i].damping = 0;
-        else if (random_bits() % 9 == 0)
-            m->link[i].rest = 0;
-        else if (axes == 1)
-            m->link[i].rest = random_uniform(0.1, 1);
-}
-
-/* The links that are longer than a limit, from their definition. Returns how many. */
-static size_t longer_links(const spring_scene *s, double stretch, const double *limit, uint32_t *longer)
-{
-    static state y;
-    const uint32_t axes = s->layout.axes;
-    size_t count = 0;
-    get_state(s, s->layout.particles, &y);
-    for (size_t i = 0; i < s->layout.links; i++) {
-        spring_link link;
-        spring_scene_get_link(s, i, &link);
-        double square = 0, delta = 0;
-        for (uint32_t a = 0; a < axes; a++) {
-            delta = y.x[link.b * axes + a] - y.x[link.a * axes + a];
-            square += delta * delta;
-        }
-        const double length = axes == 1 ? delta : sqrt(square);
-        if ((link.stiffness > 0 || link.damping > 0) && link.rest > 0 &&
-            length > (limit != NULL ? limit[i] : stretch) * link.rest)
-            longer[count++] = (uint32_t)i;
-    }
-    return count;
-}
-
-static double energy_of(const spring_scene *s, const uint32_t *links, size_t count)
-{
-    static state y;
-    double sum = 0;
-    get_state(s, s->layout.particles, &y);
-    for (size_t i = 0; i < count; i++) {
-        spring_link link;
-        spring_scene_get_link(s, links[i], &link);
-        const double extension = evaluate_link(&link, s->layout.axes, y.x, y.v).length - link.rest;
-        if (extension > 0 || (s->layout.flags & SPRING_SCENE_TENSION_ONLY) == 0)
-            sum += link.stiffness * extension * extension / 2;
-    }
-    return sum;
-}
-
-static void check_tear(const spring_scene *s, size_t bytes, double stretch, const double *limit)
-{
-    static uint32_t want[most_links], got[most_links];
-    const size_t count = longer_links(s, stretch, limit, want);
-    const double elastic = spring_scene_energy(s).elastic, lost = energy_of(s, want, count);
-    spring_scene *copy = aligned_alloc(SPRING_SCENE_ALIGN, bytes);
-    for (int k = 0; k < kernel_count; k++) {
-        if (kernels_of(k) == NULL)
-            continue;
-        memcpy(copy, s, bytes); /* a rollback */
-        size_t torn = 0;
-        CHECK(spring_scene_tear_with(kernels_of(k), copy, stretch, limit, got, most_links, &torn) == SPRING_OK &&
-                  torn == count && memcmp(got, want, count * sizeof *got) == 0,
-              "those that are longer, in their order");
-        CHECK_CLOSE(spring_scene_energy(copy).elastic, elastic - lost, 1e-14 * elastic,
-                    "the energy falls by that of the torn links; sums of the same numbers");
-        CHECK(longer_links(copy, stretch, limit, got) == 0, "none is left");
-        CHECK(spring_scene_tear(copy, stretch, limit, NULL, 0, &torn) == SPRING_OK && torn == 0,
-              "and none tears again");
-        CHECK(same_bits(s, copy, s->layout.particles, s->layout.axes), "no particle moves");
-    }
-    free(copy);
-}
-
-static void tearing(void)
-{
-    static model m;
-    static double limit[most_links];
-    static const uint32_t shapes[][3] = {{6, 1, 1}, {11, 2, 1}, {5, 4, 3}, {70, 4, 1}};
-    for (uint32_t axes = 1; axes <= 3; axes++)
-        for (unsigned features = 0; features < feature_masks; features += 17)
-            for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++) {
-                build_torn(&m, shapes[k], axes, features);
-                if (axes > 1 && features % 2 == 0)
-                    m.def.flags |= SPRING_SCENE_TENSION_ONLY;
-                m.def.methods = 1u << SPRING_LEAPFROG;
-                size_t bytes = 0;
-                spring_scene_bytes(&m.def, &bytes);
-                spring_scene *s = scene_of(&m.def);
-                for (size_t i = 0; i < m.def.links; i++)
-                    limit[i] = random_bits() % 4 == 0 ? INFINITY : random_log(0.8, 3);
-                for (double stretch = 0; stretch < 4; stretch += 0.7)
-                    check_tear(s, bytes, stretch, NULL);
-                check_tear(s, bytes, INFINITY, NULL);
-                check_tear(s, bytes, 1e12, NULL);
-                check_tear(s, bytes, NAN, limit);
-                free(s);
-            }
-}
 
 /* A rope of three links stretched by exactly its limit holds, and by one bit more it tears. */
 static void at_the_limit(void)
@@ -190,7 +87,6 @@ static void bad_components(void)
 int main(void)
 {
     static const test tests[] = {
-        {"torn links", tearing},
         {"at the limit", at_the_limit},
         {"components", components},
         {"bad components", bad_components},
