@@ -23,12 +23,13 @@ static bool one_in(size_t count)
     return below(count) == 0;
 }
 
+/* One random number on every processor, so that all see the same scenes. */
 static const scene_kernels *any_kernels(void)
 {
-    const scene_kernels *kernels = given;
-    while (kernels == NULL)
-        kernels = kernels_of((int)below(kernel_count));
-    return kernels;
+    size_t i = below(kernel_count);
+    while (kernels_of((int)(i % kernel_count)) == NULL)
+        i++;
+    return given != NULL ? given : kernels_of((int)(i % kernel_count));
 }
 
 /* --------------------------------------------------------------------------------------------------------- links */
