@@ -17,6 +17,8 @@ static spring_scene *build_held(model *m, uint32_t axes, unsigned features, stat
     m->def.flags |= SPRING_SCENE_FORCES | (axes > 1 && features % 2 ? SPRING_SCENE_TENSION_ONLY : 0);
     for (size_t i = 0; i < m->def.links && (features & OWN) == 0; i++)
         m->link[i].rest = 0.8;
+    if (m->def.links > 0)
+        m->link[0].rest = -0.0; /* reverses no link */
     if (m->def.particles > 1)
         memcpy(m->position, m->position + axes, axes * sizeof m->position[0]);
     m->def.methods = 1u << SPRING_LEAPFROG;

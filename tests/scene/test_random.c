@@ -188,7 +188,7 @@ static void build_any(model *m, push *p, size_t number, bool all_defined)
 {
     static const uint32_t shapes[][3] = {{2, 1, 1}, {3, 2, 1}, {12, 1, 1}, {30, 1, 1}, {5, 5, 1}, {9, 4, 1}, {3, 3, 3}};
     const uint32_t axes = 1 + (uint32_t)below(3);
-    const bool is_special = number < 3 * special_count; /* on any axes */
+    const bool is_special = number < 6 * special_count; /* on any axes */
     const size_t k = number % special_count;
     const link_layout layout = !is_special       ? (link_layout)below(LONG_BAND)
                                : k < after_grids ? GRID
@@ -304,7 +304,7 @@ static void add_absent(model *m, bool damped)
                            (def->flags & SPRING_SCENE_EDITABLE) != 0 || !damped;
     def->flags |= (one_in(3) ? SPRING_SCENE_NO_UNDO : 0) | (one_in(3) ? SPRING_SCENE_FORCES : 0) |
                   (in_double && one_in(3) ? SPRING_SCENE_EDITABLE : 0);
-    if (def->force == NULL && one_in(3))
+    if (def->force == NULL && (one_in(3) || def->particles > 1000)) /* then no pass is fused */
         def->force = add_nothing, def->flags |= IGNORES;
     if (def->velocity == NULL && one_in(2))
         def->velocity = zeros;
