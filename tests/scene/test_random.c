@@ -34,11 +34,11 @@ static const scene_kernels *any_kernels(void)
 
 /* --------------------------------------------------------------------------------------------------------- links */
 
-typedef enum link_layout { GRID, BANDS, PAIRS, LONG_BAND, link_layouts } link_layout;
+typedef enum link_layout { GRID, BANDS, PAIRS, LONG_BAND } link_layout;
 
-/* Particles and links of which random ones would be rare: the ends of SIMD vectors, tiles and chunks, and the limits of
-   what forms a band. The shapes of grids; then particles and a number of links (pairs) or bands; then particles
-   and the longest offset. */
+/* Numbers of particles and links that random scenes rarely have: at the ends of SIMD vectors, tiles and chunks, and at the
+   limits of what forms a band. First shapes of grids; then particles and the number of links (pairs) or of bands; then
+   particles and the longest offset. */
 static const uint32_t special[][3] = {{1, 1, 1},       {2, 1, 1},       {12, 1, 1},      {13, 1, 1},     {17, 1, 1},
                                       {2, 9, 1},       {17, 2, 3},      {13, 12, 8},     {4, 4, 0},      {12, 12, 0},
                                       {12, 13, 0},     {13, 12, 0},     {16, 64, 0},     {40, 39, 0},    {200, 40, 0},
@@ -83,7 +83,7 @@ static void link_row(model *m, link_layout layout, uint32_t number)
             add_link(m, i, i + offset);
 }
 
-/* Links that are cut, springs alone, dampers alone, no rest length, links that stand twice or elsewhere in the order. */
+/* Cut links, springs alone, dampers alone, links without rest length, links that occur twice or in another order. */
 static void vary_links(model *m, bool damped)
 {
     for (size_t i = 0; i < m->def.links; i++) {
@@ -104,8 +104,9 @@ static void vary_links(model *m, bool damped)
     }
 }
 
-/* Particles at one place, and two that are very near the origin or very far from it, on either side. What joined them is
-   cut, where its force would be infinite. If all_defined, no link is so short or long that its force is not defined. */
+/* Places some particles at the position of others, and two of them very near the origin or very far from it, on either
+   side. The links of these two are cut where forces would be infinite. If all_defined, no link is so short or so long
+   that its force is undefined. */
 static void place_oddly(model *m, bool all_defined)
 {
     enum { infinite = 2, defined = 4 };
@@ -131,7 +132,7 @@ static void place_oddly(model *m, bool all_defined)
 typedef struct push {
     uint32_t axes;
     double strength;
-    bool rubs, good; /* uses velocities; what it was called with */
+    bool rubs, good; /* uses velocities; all arguments were valid */
     size_t calls;
 } push;
 
@@ -847,7 +848,6 @@ static const char *edit_and_define(model *m, push *p)
     static state y, now;
     const size_t size = m->def.particles * m->def.axes;
     m->def.flags |= SPRING_SCENE_EDITABLE;
-    m->def.methods &= ~(1u << SPRING_RKN8 | 1u << SPRING_SRKN6); /* which edits may rule out */
     m->def.user = p;
     for (size_t i = 0; i < m->def.particles; i++) {
         m->mass[i] = mass_in(&m->def, i);
@@ -878,6 +878,9 @@ static const char *edit_and_define(model *m, push *p)
     if (!evaluates)
         set_state(s, m->def.particles, &now);
     spring_scene_def def = m->def;
+    use_all_methods(&def);
+    m->def.methods = def.methods &=
+        m->def.methods; /* an edit may rule out methods that evaluate forces at positions alone */
     def.position = now.x;
     def.velocity = now.v;
     def.mass = m->mass;
@@ -894,7 +897,8 @@ static const char *edit_and_define(model *m, push *p)
     if (differs == NULL)
         differs = step_difference(s, fresh);
     check_energies(s, fresh, m, &now);
-    const spring_method next = crosses || one_in(2) ? method : any_method(&m->def);
+    const bool stays = crosses || (one_in(2) && (m->def.methods & 1u << method) != 0);
+    const spring_method next = stays ? method : any_method(&m->def);
     for (uint64_t n = 1; n < 3 && differs == NULL; n++) {
         const spring_status status = spring_scene_advance_with(any_kernels(), s, next, next_dt, n);
         differs = spring_scene_advance_with(any_kernels(), fresh, next, next_dt, n) != status ? "the status"
