@@ -734,20 +734,25 @@ static spring_link any_coefficients(const model *m, size_t i)
 static bool tear(spring_scene *s, model *m, const state *y)
 {
     static uint32_t want[most_links], torn[most_links];
-    static double limit[most_links];
-    const double stretch = random_log(0.5, 4);
-    const bool limits = one_in(2);
+    static double limit[most_links], length[most_links];
+    double longest = 0; /* in units of the rest length */
     size_t count = 0, found = 0;
     for (size_t i = 0; i < m->def.links; i++) {
-        spring_link *const link = &m->link[i];
+        const spring_link *const link = &m->link[i];
         limit[i] = one_in(4) ? INFINITY : random_log(0.8, 3);
-        const double length = evaluate_link(link, m->def.axes, y->x, y->v).length;
-        if (((scalar)link->stiffness > 0 || (scalar)link->damping > 0) && link->rest > 0 &&
-            length > (limits ? limit[i] : stretch) * (double)(scalar)link->rest) {
-            link->stiffness = link->damping = 0;
+        length[i] = evaluate_link(link, m->def.axes, y->x, y->v).length;
+        if ((link->stiffness > 0 || link->damping > 0) && link->rest > 0)
+            longest = fmax(longest, length[i] / link->rest);
+        else
+            length[i] = 0;
+    }
+    const bool limits = one_in(3);
+    const double stretch = longest < 1e30 && !one_in(4) ? 0.99 * longest : random_log(0.5, 4); /* few links, or many */
+    for (size_t i = 0; i < m->def.links; i++)
+        if (length[i] > (limits ? limit[i] : stretch) * (double)(scalar)m->link[i].rest) {
+            m->link[i].stiffness = m->link[i].damping = 0;
             want[count++] = (uint32_t)i;
         }
-    }
     CHECK(spring_scene_tear_with(any_kernels(), s, stretch, limits ? limit : NULL, torn, most_links, &found) ==
                   SPRING_OK &&
               found == count && memcmp(torn, want, count * sizeof *torn) == 0,
@@ -766,7 +771,7 @@ static bool edit(spring_scene *s, model *m, state *y)
     double numbers[12];
     for (int k = 0; k < 12; k++)
         numbers[k] = random_uniform(-1.5, 1.5);
-    switch (below(9)) {
+    switch (below(11)) {
     case 0: /* links */
         if (m->def.links > 0) {
             const size_t first = below(m->def.links), count = 1 + below(m->def.links - first);
@@ -799,12 +804,14 @@ static bool edit(spring_scene *s, model *m, state *y)
         transform_state(numbers, m, y);
         return true;
     case 5:
+    case 6:
+    case 7:
         return tear(s, m, y);
-    case 6: /* gravity, which is not part of the forces */
+    case 8: /* gravity, which is not part of the forces */
         memcpy(m->def.gravity, numbers, sizeof m->def.gravity);
         CHECK(spring_scene_set_gravity(s, numbers) == SPRING_OK, "finite");
         return false;
-    case 7:
+    case 9:
         m->def.force = m->def.force == NULL ? push_all : NULL;
         CHECK(spring_scene_set_force(s, m->def.force, m->def.user) == SPRING_OK, "a scene");
         return true;
