@@ -41,8 +41,9 @@ static double orthonormality_error(const spring_collider *c, uint32_t count, uin
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j = 0; j <= i; j++) {
             const double error = fabs(dot_of(c->axis[i], c->axis[j], axes) - (i == j));
-            if (!(error <= largest))
-                largest = error;
+            if (!spring_finite(error))
+                return error;
+            largest = fmax(largest, error);
         }
     return largest;
 }

@@ -36,13 +36,15 @@ static bool finite_scene(const spring_scene *s)
 }
 
 /* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
-   finite. */
+   finite. Padding lanes become 0: a NaN there would make later steps fail, and no caller can overwrite it. */
 static void invalidate(spring_scene *s)
 {
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
             x[i] = v[i] = (scalar)NAN;
+        for (size_t i = s->layout.particles; i < s->layout.stride; i++)
+            x[i] = v[i] = 0;
     }
     scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;

@@ -512,56 +512,6 @@ static double least_gap(const spring_scene *s, const spring_collider *c, uint32_
     return least;
 }
 
-static double random_unit(double axis[3], uint32_t axes)
-{
-    double square;
-    do {
-        square = 0;
-        for (uint32_t a = 0; a < 3; a++) {
-            axis[a] = a < axes ? random_uniform(-1, 1) : 0;
-            square += axis[a] * axis[a];
-        }
-    } while (square > 1 || square < 0.01);
-    for (int a = 0; a < 3; a++)
-        axis[a] /= sqrt(square);
-    return square;
-}
-
-/* Of any shape, moving and spinning, about the origin. */
-static spring_collider random_collider(uint32_t axes)
-{
-    spring_collider c = {.shape = (spring_shape)(random_bits() % 4),
-                         .radius = random_uniform(0.2, 0.5),
-                         .friction = random_bits() % 3 ? random_uniform(0, 1) : 0,
-                         .restitution = random_bits() % 3 ? random_uniform(0, 1) : 0};
-    for (uint32_t a = 0; a < axes; a++) {
-        c.at[a] = random_uniform(-0.5, 0.5);
-        c.to[a] = random_uniform(-0.5, 0.5);
-        c.half[a] = random_uniform(0.2, 0.6);
-        c.velocity[a] = random_uniform(-1, 1);
-        c.velocity_to[a] = c.velocity[a] + random_uniform(-0.5, 0.5);
-        c.spin[a] = random_uniform(-3, 3);
-    }
-    random_unit(c.axis[0], axes);
-    const double *const u = c.axis[0];
-    if (axes == 2) {
-        c.axis[1][0] = -u[1];
-        c.axis[1][1] = u[0];
-    } else {
-        double other[3], along;
-        do {
-            random_unit(other, 3);
-            along = u[0] * other[0] + u[1] * other[1] + u[2] * other[2];
-        } while (fabs(along) > 0.9);
-        const double rest = sqrt(1 - along * along);
-        for (int a = 0; a < 3; a++)
-            c.axis[1][a] = (other[a] - along * u[a]) / rest;
-        for (int a = 0; a < 3; a++)
-            c.axis[2][a] = u[(a + 1) % 3] * c.axis[1][(a + 2) % 3] - u[(a + 2) % 3] * c.axis[1][(a + 1) % 3];
-    }
-    return c;
-}
-
 /* With one collider no particle is inside it at the end of any step, beyond rounding errors. */
 static void never_inside(void)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The stable step: its formula; it is stable and not much too small. Corner cases. */
+/* The stable step: its formula; it is stable and not much too small. Large motion, many links. */
 #include <stdio.h>
 
 #include "test_scene.h"
@@ -42,48 +42,38 @@ static largest_sums sums_of(const spring_scene_def *def)
 static void formulas(void)
 {
     static model m;
-    static const uint32_t grids[][3] = {{23, 1, 1}, {7, 5, 1}, {3, 4, 3}};
+    static const uint32_t grids[][3] = {{23, 1, 1}, {7, 5, 1}, {3, 4, 3}, {1, 1, 1}};
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < feature_masks; features++) {
-            build(&m, grids[features % 3], axes, features);
+            build(&m, grids[features % 7 % 4], axes, features);
+            for (size_t i = 0; i < m.def.links && features % 5 == 0; i++)
+                m.link[i].stiffness = 0; /* dampers alone */
+            memset(m.pinned, 1, features % 11 == 0 ? m.def.particles : 0);
             spring_scene *s = scene_of(&m.def);
             const largest_sums all = sums_of(&m.def);
             const double frequency = 2 / sqrt(all.L), damping = 2 / all.G;
-            const double p = all.links - m.def.drag / all.heaviest, root = sqrt(p * p + 4 * all.L);
+            const double p = all.links - (all.heaviest > 0 ? m.def.drag / all.heaviest : 0),
+                         root = sqrt(p * p + 4 * all.L);
             const double want[SPRING_METHOD_COUNT] = {
                 [SPRING_EULER] = all.K > 0 ? fmin(m.def.drag / all.K, damping) : damping,
                 [SPRING_LEAPFROG] = frequency,
                 [SPRING_RK4] = 2.61 / fmax(sqrt(all.L), all.G),
-                [SPRING_SYMPLECTIC_EULER] = p > 0 ? 4 / (p + root) : (root - p) / all.L,
+                [SPRING_SYMPLECTIC_EULER] = p > 0       ? 4 / (p + root)
+                                            : all.L > 0 ? (root - p) / all.L
+                                                        : INFINITY, /* nothing to be unstable with */
                 [SPRING_RKN8] = fmin(3.14 / sqrt(all.L), 20 * damping),
                 [SPRING_SRKN6] = fmin(9.07 / sqrt(all.L), 10 * damping),
             };
             for (int i = 0; i < SPRING_METHOD_COUNT; i++)
                 if (spring_method_describe((spring_method)i)->scenes)
-                    CHECK_CLOSE(spring_scene_stable_step(s, (spring_method)i), want[i], 60 * EPS * want[i],
+                    CHECK_CLOSE(spring_scene_stable_step(s, (spring_method)i), want[i],
+                                want[i] < INFINITY ? 60 * EPS * want[i] : 0,
                                 "a sum of at most 50 links, and ten roundings; a method without a row in want[]: 0");
             CHECK(isnan(spring_scene_stable_step(s, SPRING_EXACT)) && isnan(spring_scene_stable_step(s, no_method)) &&
                       isnan(spring_scene_stable_step(NULL, SPRING_RK4)),
                   "bad input");
             free(s);
         }
-}
-
-/* Twice the stiffness or damping of a link is more than the largest number, but over these masses it is not large. */
-static void stiff_and_heavy(void)
-{
-    const bool single = sizeof(scalar) == 4;
-    const double x[] = {0, 1}, huge = single ? 3e38 : 1.7e308, mass = single ? 1e30 : 1e300, rate = huge / mass;
-    for (int damped = 0; damped < 2; damped++) {
-        const spring_link link = {0, 1, 0.7, huge, damped ? huge : 0};
-        const spring_scene_def def = {
-            .axes = 1, .particles = 2, .links = 1, .position = x, .mass_all = mass, .link = &link};
-        spring_scene *s = scene_of(&def);
-        const double want = damped ? 2.61 / (2 * rate) : 2 / sqrt(2 * rate);
-        CHECK_CLOSE(spring_scene_stable_step(s, damped ? SPRING_RK4 : SPRING_LEAPFROG), want, 8 * EPS * want,
-                    "2.61/G or 2/sqrt(L), a few roundings, none of them an overflow");
-        free(s);
-    }
 }
 
 /* The same scene in a unit of mass that is 2^mass kg and one of time that is 2^time s. */
@@ -145,39 +135,56 @@ static void stiff_between_pins(void)
     free(without);
 }
 
-static void nothing_to_be_unstable_with(void)
+/* Stiff links between heavy particles do not hide soft ones between light particles, of which the bound is. */
+static void light_and_heavy(void)
 {
-    const double x[] = {0, 1};
-    const uint8_t pinned[] = {1, 1};
-    const spring_link link = {0, 1, 0.7, 3.1, 0.4};
-    const spring_scene_def defs[] = {
-        {.axes = 1, .particles = 2, .position = x},
-        {.axes = 1, .particles = 2, .position = x, .links = 1, .link = &link, .pinned = pinned, .drag = 0.3}};
-    for (size_t i = 0; i < 2; i++) {
-        spring_scene *s = scene_of(&defs[i]);
-        const method_list all = methods_of(defs[i]);
-        for (const spring_method *method = all.at; *method != no_method; method++)
-            CHECK(spring_scene_stable_step(s, *method) == INFINITY, "no force on what moves");
+    const double big = EPS < 1e-10 ? 1e300 : 1e30, tiny = EPS < 1e-10 ? 1e-100 : 1e-20, rate = 1e12; /* k/m [1/s^2] */
+    const double huge = EPS < 1e-10 ? 1.7e308 : 3e38; /* twice this is infinite */
+    const double position[] = {0, 1, 2, 3}, mass[] = {big, big, tiny, tiny};
+    const spring_link link[] = {{0, 1, 1, huge, 0}, {2, 3, 1, rate * tiny, 0}};
+    const spring_scene_def def = {
+        .axes = 1, .particles = 4, .links = 2, .position = position, .mass = mass, .link = link};
+    spring_scene *s = scene_of(&def);
+    CHECK_CLOSE(spring_scene_stable_step(s, SPRING_LEAPFROG), 2 / sqrt(2 * rate), 8 * EPS,
+                "2/sqrt(2 k/m) of the light ones");
+    free(s);
+}
+
+/* A sum of stiffness beyond the largest double: no step is known, with any method and any damping. */
+static void sums_that_overflow(void)
+{
+    const double huge = 8e307, position[] = {0, 1, 2, 3};
+    if (EPS > 1e-10)
+        return; /* floats do not reach it */
+    for (int how = 0; how < 4; how++) {
+        const double damping = how & 1 ? 0.3 : 0, drag = how & 2 ? 0.7 : 0;
+        const spring_link link[] = {{0, 1, 1, huge, damping}, {0, 2, 1, huge, 0}, {0, 3, 1, huge, 0}};
+        const spring_scene_def def = {
+            .axes = 1, .particles = 4, .links = 3, .position = position, .link = link, .drag = drag};
+        spring_scene *s = scene_of(&def);
+        for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+            const spring_method m = spring_method_at(i);
+            if (spring_method_describe(m)->scenes)
+                CHECK(spring_scene_stable_step(s, m) == 0, spring_method_name(m));
+        }
         free(s);
     }
 }
 
-/* Without stiffness damped links set the limit, however weak their damping; not that of leapfrog. */
-static void dampers_alone(void)
+/* A kick that is solved for divides by 1 + drag dt/mass: where that is infinite the velocity would be 0, and finite. */
+static void drag_that_overflows(void)
 {
-    const double position[] = {0, 1}, damping = 0.3, mass = 1.3;
-    const spring_link link = {0, 1, 1, 0, damping};
-    const spring_scene_def def = {
-        .axes = 1, .particles = 2, .links = 1, .position = position, .mass_all = mass, .link = &link};
-    spring_scene *s = scene_of(&def);
-    const spring_method methods[] = {SPRING_EULER, SPRING_SYMPLECTIC_EULER};
-    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
-        const double want = mass / damping;
-        CHECK_CLOSE(spring_scene_stable_step(s, methods[i]), want, 8 * EPS * want,
-                    "2/G, G = 2 damping/mass, a few roundings");
+    const double large = EPS < 1e-10 ? 1e200 : 1e20, position[] = {1}, velocity[] = {5};
+    const spring_scene_def def = {.axes = 1, .particles = 1, .position = position, .velocity = velocity, .drag = large};
+    static const spring_method solved[] = {SPRING_SYMPLECTIC_EULER, SPRING_LEAPFROG};
+    for (size_t i = 0; i < sizeof solved / sizeof solved[0]; i++) {
+        spring_scene *s = scene_of(&def);
+        double v = 0;
+        CHECK(spring_scene_advance(s, solved[i], large, 1) == SPRING_ENONFINITE, spring_method_name(solved[i]));
+        spring_scene_get(s, SPRING_VELOCITY, &v, 0, 0, 1);
+        CHECK_BITS(v, 5.0, "the state is kept");
+        free(s);
     }
-    CHECK(spring_scene_stable_step(s, SPRING_LEAPFROG) == INFINITY, "damping alone is stable at any step");
-    free(s);
 }
 
 /* -------------------------------------------------------------------------------------- stable, and how far from it */
@@ -299,26 +306,6 @@ static double measured_limit(const model *m, spring_method method, double stable
     return low;
 }
 
-/* The frequency of the fastest mode of a height field [1/s], by power iteration. */
-static double fastest_mode(const model *m)
-{
-    static double x[most], force[most];
-    static const double still[most];
-    double size = 0;
-    for (size_t i = 0; i < m->def.particles; i++)
-        x[i] = m->pinned[i] ? 0 : random_uniform(-1, 1);
-    for (int k = 0; k < 1000; k++) {
-        memset(force, 0, sizeof force);
-        plain_forces(&m->def, 1, x, still, force, NULL);
-        size = 0;
-        for (size_t i = 0; i < m->def.particles; i++)
-            size = hypot(size, m->pinned[i] ? 0 : force[i] / m->mass[i]);
-        for (size_t i = 0; i < m->def.particles; i++)
-            x[i] = m->pinned[i] ? 0 : force[i] / m->mass[i] / size;
-    }
-    return sqrt(size);
-}
-
 static void not_much_too_small(void)
 {
     static model m;
@@ -339,146 +326,11 @@ static void not_much_too_small(void)
                 if (how == 0 && (w == cloth || w == water))
                     CHECK(limit <= 2 * step, "and not half of what could be");
                 CHECK(growth(&m, *method, 1.1 * limit, 4000) > 100, "beyond the limit it does blow up");
-                if (how == 0 && w == water && spring_method_describe(*method)->springs) {
-                    const spring_params mode = {.mass = 1, .stiffness = pow(fastest_mode(&m), 2)};
-                    const double theory = spring_stable_step(&mode, *method);
-                    CHECK_CLOSE(limit, theory, 0.03 * theory, "growth by 3 in 2000 steps, bisected to 2 %");
-                }
             }
         }
 }
 
 #endif
-
-/* ----------------------------------------------------------------------------------------------------- corner cases */
-
-/* A rope that hangs from its first particle. */
-static void build_rope(model *m, uint32_t n, double stiffness, double damping)
-{
-    const spring_grid g = {
-        .count = {n}, .spacing = 0.1, .stiffness = stiffness, .damping = damping, .pinned = SPRING_GRID_FIRST_X};
-    size_t particles, links;
-    spring_grid_size(&g, &particles, &links);
-    spring_grid_fill(&g, m->position, m->pinned, m->link);
-    memset(m->velocity, 0, sizeof m->velocity);
-    for (size_t i = 0; i < n; i++)
-        m->mass[i] = 0.02;
-    m->def = (spring_scene_def){.particles = particles,
-                                .links = links,
-                                .position = m->position,
-                                .velocity = m->velocity,
-                                .mass = m->mass,
-                                .pinned = m->pinned,
-                                .link = m->link,
-                                .gravity = {0, -9.81, 0}};
-}
-
-static double total_energy(const spring_scene *s)
-{
-    const spring_scene_energies e = spring_scene_energy(s);
-    return e.kinetic + e.elastic + e.gravity;
-}
-
-/* Stable, so its energy stays near what it was: leapfrog errs by a fraction of order (dt omega)^2 of what moves. */
-static void check_energy(const model *m, double duration)
-{
-    spring_scene *s = scene_of(&m->def);
-    const double dt = 0.1 * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
-    double moving = 0, worst = 0;
-    for (double t = 0; t < duration; t += 20 * dt) {
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 20) == SPRING_OK, "stable");
-        const spring_scene_energies e = spring_scene_energy(s);
-        moving = fmax(moving, e.kinetic + e.elastic);
-        worst = fmax(worst, fabs(total_energy(s) - before));
-    }
-    CHECK_BELOW(worst, 0.04 * moving, "(dt omega)^2 = 0.2^2 of the energy that moves");
-    free(s);
-}
-
-static void mass_ratio(void)
-{
-    static model m;
-    build_rope(&m, 30, 4000, 0);
-    m.mass[29] = 200; /* [kg] on a rope of beads of 20 g */
-    check_energy(&m, 0.5);
-}
-
-static void stiffness_ratio(void)
-{
-    static model m;
-    build_rope(&m, 30, 3, 0);
-    for (size_t i = 0; i < m.def.links; i += 2)
-        m.link[i].stiffness = 3e6;
-    for (size_t i = 0; i < m.def.particles; i++)
-        m.mass[i] = 0.7;
-    check_energy(&m, 0.05);
-}
-
-/* Inside out, or in one place: it may start so, and with friction it ends at rest with its links drawn out. */
-static void inverted_and_collapsed(void)
-{
-    static model m;
-    for (int collapsed = 0; collapsed < 2; collapsed++) {
-        build_thing(&m, &things[jelly], LINK_DAMPING | WITH_DRAG);
-        for (size_t j = 0; j < 3 * m.def.particles; j++)
-            m.position[j] =
-                collapsed ? 0.5 + 1e-9 * random_uniform(-1, 1) : -m.position[j] + random_uniform(-0.01, 0.01);
-        spring_scene *s = scene_of(&m.def);
-        const double before = total_energy(s), dt = 0.3 * spring_scene_stable_step(s, SPRING_LEAPFROG);
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 4000) == SPRING_OK, "no NaN");
-        CHECK(all_finite(s, m.def.particles, 3) && total_energy(s) < before, "friction takes energy");
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 60000) == SPRING_OK && spring_scene_at_rest(s, 1e-3, 1e-1),
-              "and ends at rest");
-        free(s);
-    }
-}
-
-static void poke_hard(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
-                      scalar *const force[3])
-{
-    (void)t, (void)particles, (void)x, (void)v;
-    force[2][40] += *(const scalar *)user;
-}
-
-static void poked(void)
-{
-    static model m;
-    build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
-    scalar poke = (scalar)1e6; /* [N] */
-    m.def.force = poke_hard;
-    m.def.user = &poke;
-    m.def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
-    spring_scene *s = scene_of(&m.def);
-    const double dt = 0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG);
-    double v[3], all[3 * most], momentum = 0;
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "finite");
-    spring_scene_get(s, SPRING_VELOCITY, all, 0, 0, m.def.particles);
-    for (size_t i = 0; i < m.def.particles; i++)
-        momentum += 0.7 * all[3 * i + 2];
-    CHECK(momentum > 0.2 * dt * 1e6 && momentum < dt * 1e6, "what drag and the pins leave of force times time");
-    poke = 0;
-    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 30000) == SPRING_OK, "stable");
-    spring_scene_get(s, SPRING_VELOCITY, v, 0, 40, 1);
-    CHECK(all_finite(s, m.def.particles, 3) && fabs(v[2]) < 1e-2 * 1e6 * dt, "it swings out");
-    free(s);
-}
-
-/* A frame that took 2 s: far beyond the stable step the scene may blow up, but says so, and is as it was. */
-static void late_frame(void)
-{
-    static model m;
-    build_thing(&m, &things[cloth], LINK_DAMPING | WITH_DRAG);
-    const method_list all = methods_of(m.def);
-    for (const spring_method *method = all.at; *method != no_method; method++) {
-        spring_scene *s = scene_of(&m.def), *other = scene_of(&m.def);
-        CHECK(spring_scene_advance(s, *method, 2, 100000) == SPRING_ENONFINITE, "it overflows");
-        CHECK(same_bits(s, other, m.def.particles, 3), "and is as it was");
-        const double dt = 0.5 * spring_scene_stable_step(s, *method);
-        CHECK(spring_scene_advance(s, *method, dt, (uint64_t)ceil(2 / dt)) == SPRING_OK, "so do it in small steps");
-        free(s);
-        free(other);
-    }
-}
 
 /* ------------------------------------------------------------------------------------------- at any deformation */
 
@@ -568,54 +420,6 @@ static void any_deformation(void)
     }
     printf("# largest eigenvalue / bound: %.3f, collapsed %.3f\n", largest[0], largest[1]);
     CHECK(largest[0] > 0.95, "the bound is nearly reached");
-}
-
-/* ------------------------------------------------------------------------------------------- a link that spins */
-
-enum { spins = 15 };
-
-/* Two equal masses, their link drawn out by a fifth, the i-th of several rates of rotation up to 1.2 times the rate of
-   the spring. The largest change of the energy in 5000 steps, as a fraction of the energy at the start. */
-static double energy_change(int i, double fraction_of_stable)
-{
-    const double mass = 1.3, rest = 0.8, omega = sqrt(2 * 27.3 / mass), length = 1.2 * rest;
-    const double speed = (i + 1) * 1.2 / spins * omega * length / 2;
-    const double x[] = {0, 0, length, 0}, v[] = {0, -speed, 0, speed};
-    const spring_link link = {0, 1, rest, 27.3, 0};
-    const spring_scene_def def = {
-        .axes = 2, .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = mass, .link = &link};
-    spring_scene *s = scene_of(&def);
-    const double dt = fraction_of_stable * spring_scene_stable_step(s, SPRING_LEAPFROG), before = total_energy(s);
-    double worst = 0;
-    for (int look = 0; look < 1000; look++) {
-        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 5) == SPRING_OK, "it does not overflow");
-        worst = fmax(worst, fabs(total_energy(s) - before) / before);
-    }
-    free(s);
-    return worst;
-}
-
-static double largest_change(double fraction_of_stable)
-{
-    double largest = 0;
-    for (int i = 0; i < spins; i++)
-        largest = fmax(largest, energy_change(i, fraction_of_stable));
-    printf("# spinning link: at %.2f of the stable step its energy changes by up to %.2f of itself\n",
-           fraction_of_stable, largest);
-    return largest;
-}
-
-/* The steps come into resonance with the rotation and the swinging of the length. Measured in 10^5 steps at 200 spins
-   up to 2 omega, drawn out by a fifth and by a half: at 0.5 and 0.55 of the stable step the energy changes by at most
-   0.56 of itself; from 0.575 on it more than triples, there at 1.89 omega and above, at 0.65 from 0.77 omega. Between 2
-   and 6 omega, in 4 10^4 steps, it doubled at one spin, at 0.45 of the stable step.
-   A spring that does not turn has an energy between 1 and 1/(1 - z^2/4) times its least, z = 1 at half the stable step:
-   up to a third more. A link that spins may have more than that, but shall not double what it has. */
-static void spinning(void)
-{
-    CHECK_BELOW(largest_change(0.5), 1, "at half the stable step the energy does not double, at any spin");
-    CHECK(largest_change(0.7) > 2, "beyond 0.6 of it, it more than triples at some");
-    CHECK(largest_change(0.9) > 2, "and nearer to it as well");
 }
 
 /* ------------------------------------------------------------------------------------------- large motion */
@@ -723,22 +527,16 @@ int main(void)
 {
     static const test tests[] = {
         {"formulas of stable steps", formulas},
-        {"stiffness and mass near the largest number", stiff_and_heavy},
         {"units of mass and time", units},
         {"a stiff link between pins", stiff_between_pins},
-        {"no force", nothing_to_be_unstable_with},
-        {"dampers alone", dampers_alone},
+        {"light particles linked to heavy ones", light_and_heavy},
+        {"sums of stiffness that overflow", sums_that_overflow},
+        {"drag that overflows in a solved kick", drag_that_overflows},
         {"stable at 0.95 of the stable step", stable_below},
 #ifndef SPRING_FLOAT
         {"how much larger the limit is", not_much_too_small},
 #endif
         {"the bound at any deformation", any_deformation},
-        {"mass ratio 10^4", mass_ratio},
-        {"stiffness ratio 10^6", stiffness_ratio},
-        {"inverted and collapsed", inverted_and_collapsed},
-        {"a poke of 10^6 N", poked},
-        {"a frame that took 2 s", late_frame},
-        {"a link that spins", spinning},
         {"a minute of large motion", moves_far},
         {"10^6 links", many_links},
     };

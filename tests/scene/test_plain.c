@@ -64,26 +64,10 @@ static void batches(void)
 /* -------------------------------------------------------------------------------------------------------------
    scenes */
 
-static void lost_scenes(void)
-{
-    static model m;
-    const double huge = sizeof(scalar) == 4 ? 1e30 : 1e200;
-    build(&m, (uint32_t[]){7, 4, 1}, 2, DAMPED);
-    const method_list all = methods_of(m.def);
-    for (const spring_method *method = all.at; *method != no_method; method++) {
-        spring_scene *s = scene_of(&m.def), *before = scene_of(&m.def);
-        CHECK(spring_scene_advance_with(&plain_scene, s, *method, huge, 9) == SPRING_ENONFINITE, "overflow is noticed");
-        CHECK(same_bits(s, before, m.def.particles, 2), "and rolled back");
-        free(s);
-        free(before);
-    }
-}
-
 int main(void)
 {
     static const test tests[] = {
         {"batches", batches},
-        {"lost scenes", lost_scenes},
     };
     return RUN_TESTS("plain", tests);
 }

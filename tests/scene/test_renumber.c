@@ -110,67 +110,39 @@ static void odd_lengths(model *m)
         m->link[i].rest = length[i % 5];
 }
 
-static void plain_sheet(model *m)
-{
-    sheet(m, 33, 21, 1, SPRING_GRID_STRUCTURAL, false);
-}
-
-static void sheet_with_shear(model *m)
-{
-    sheet(m, 20, 31, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR, false);
-}
-
-static void cloth(model *m)
-{
-    sheet(m, 35, 35, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
-}
-
-/* So small that levels are tried, too. */
-static void small_cloth(model *m)
-{
-    sheet(m, 5, 5, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
-}
-
-static void water(model *m)
-{
-    sheet(m, 30, 24, 1, SPRING_GRID_STRUCTURAL, true);
-}
-
-static void water_with_shear(model *m)
-{
-    sheet(m, 30, 24, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, true);
-}
-
-static void jelly(model *m)
-{
-    sheet(m, 9, 8, 7, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
-}
-
 /* Bounds: what numbering by rows gives, whichever way the rows run; where the lengths of links do not tell the rows,
    a link joins particles of the same level or of neighbouring ones, and a level is at most two diagonals. */
 typedef struct row {
-    void (*make)(model *m);
-    uint32_t bandwidth; /* at most */
-    size_t offsets;     /* at most; 0: as many as there are */
+    void (*make)(model *m); /* NULL: a grid */
+    uint32_t bandwidth;     /* at most */
+    size_t offsets;         /* at most; 0: as many as there are */
+    uint32_t count[3], families;
+    bool height;
 } row;
 
+enum {
+    structural = SPRING_GRID_STRUCTURAL,
+    sheared = structural | SPRING_GRID_SHEAR,
+    all = sheared | SPRING_GRID_BEND
+};
+
 static const row rows[] = {
-    {nothing, 0, 0},
-    {one, 0, 0},
-    {pair, 1, 1},
-    {rope, 1, 1},
-    {apart, 15, 3}, /* of the ring one half, then the other */
-    {twice, 1, 1},
-    {star, 699, 0},
-    {random_graph, 399, 0},
-    {odd_lengths, 1, 1},
-    {plain_sheet, 33, 2},
-    {sheet_with_shear, 31 + 1, 4},
-    {cloth, 2 * 35, 6},
-    {water, 30, 2},
-    {water_with_shear, 4 * 24, 0},
-    {jelly, 4 * 56, 0},
-    {small_cloth, 2 * 5, 6},
+    {.make = nothing},
+    {.make = one},
+    {pair, 1, 1, {0}, 0, 0},
+    {rope, 1, 1, {0}, 0, 0},
+    {apart, 15, 3, {0}, 0, 0}, /* of the ring one half, then the other */
+    {twice, 1, 1, {0}, 0, 0},
+    {star, 699, 0, {0}, 0, 0},
+    {random_graph, 399, 0, {0}, 0, 0},
+    {odd_lengths, 1, 1, {0}, 0, 0},
+    {NULL, 33, 2, {33, 21, 1}, structural, false},
+    {NULL, 31 + 1, 4, {20, 31, 1}, sheared, false},
+    {NULL, 2 * 35, 6, {35, 35, 1}, all, false},
+    {NULL, 30, 2, {30, 24, 1}, structural, true},
+    {NULL, 4 * 24, 0, {30, 24, 1}, all, true},
+    {NULL, 4 * 56, 0, {9, 8, 7}, all, false},
+    {NULL, 2 * 5, 6, {5, 5, 1}, all, false}, /* so small that levels are tried, too */
 };
 
 enum { row_count = sizeof rows / sizeof rows[0] };
@@ -202,7 +174,10 @@ static model *make(const row *r)
     static model m;
     static uint32_t number[most_particles];
     memset(&m, 0, sizeof m);
-    r->make(&m);
+    if (r->make != NULL)
+        r->make(&m);
+    else
+        sheet(&m, r->count[0], r->count[1], r->count[2], r->families, r->height);
     shuffle(&m, number);
     return &m;
 }
@@ -319,14 +294,13 @@ static void sheets_get_their_rows_back(void)
 {
     static model m, swapped;
     static uint32_t number[most_particles];
-    const uint32_t families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND;
     for (uint32_t x = 2; x < 14; x++)
         for (uint32_t y = 2; y < 14; y++)
-            for (int all = 0; all < 2; all++) {
-                if (all != 0 && x * y < 6 * 6) /* so small a sheet may have fewer offsets than directions of links */
+            for (uint32_t families = structural; families <= all; families += all - structural) {
+                if (families == all && x * y < 6 * 6) /* so small that offsets may be fewer than directions of links */
                     continue;
-                sheet(&swapped, y, x, 1, all != 0 ? families : SPRING_GRID_STRUCTURAL, false);
-                sheet(&m, x, y, 1, all != 0 ? families : SPRING_GRID_STRUCTURAL, false);
+                sheet(&swapped, y, x, 1, families, false);
+                sheet(&m, x, y, 1, families, false);
                 const offsets one_way = offsets_of(m.link, m.links), other = offsets_of(swapped.link, m.links);
                 shuffle(&m, number);
                 const offsets o = renumbered_offsets(&m);
@@ -535,7 +509,7 @@ static void a_scene_moves_as_before(void)
     enum { steps = 4, x = 20, y = 15, particles = x * y };
     const double dt = 0.125;
     static model m;
-    sheet(&m, x, y, 1, SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND, false);
+    sheet(&m, x, y, 1, all, false);
     static uint32_t number[particles];
     static double before[3 * particles], after[3 * particles];
     uint8_t pinned[particles], pinned_after[particles];

@@ -81,7 +81,7 @@ SPRING_INLINE spring_scene *scene_of(const spring_scene_def *def)
 
 /* ---------------------------------------------------------------------------------------------------------- models */
 
-enum { most = 512, most_links = 6000 }; /* particles and links of a model */
+enum { most = 3100, most_links = 20000 }; /* particles and links of a model */
 
 /* features of a model, random numbers where there are numbers */
 enum {
@@ -164,6 +164,12 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     }
     if (features & SHUFFLED)
         shuffle(m->link, links);
+    for (size_t i = particles * axes; i < (particles + 20) * axes && i < 3 * most; i++)
+        m->position[i] = m->velocity[i] = NAN; /* nothing behind the arrays is read */
+    for (size_t i = particles; i < particles + 20 && i < most; i++)
+        m->mass[i] = NAN;
+    for (size_t i = links; i < links + 20 && i < most_links; i++)
+        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
     m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
@@ -231,8 +237,13 @@ SPRING_INLINE bool all_finite(const spring_scene *s, size_t particles, uint32_t 
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- a plain
-   loop */
+SPRING_INLINE double total_energy(const spring_scene *s)
+{
+    const spring_scene_energies e = spring_scene_energy(s);
+    return e.kinetic + e.elastic + e.gravity;
+}
+
+/* ---------------------------------------------------------------------------------------------------- a plain loop */
 
 /* The parameters of a link are those that the scene stores: rounded to float in single precision. */
 SPRING_INLINE link_force evaluate_link(const spring_link *link, uint32_t axes, const double *x, const double *v)
@@ -254,6 +265,8 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         const link_force f = evaluate_link(link, axes, x, v);
+        if (link->stiffness == 0 && link->damping == 0) /* at any distance */
+            continue;
         if ((def->flags & SPRING_SCENE_TENSION_ONLY) != 0 && (f.length <= (double)(scalar)link->rest || f.tension <= 0))
             continue;
         for (uint32_t a = 0; a < axes; a++) {
@@ -299,12 +312,13 @@ SPRING_INLINE void check_forces(const model *m, const scene_kernels *kernels)
     def.methods = 1u << SPRING_EULER;
     def.force = look;
     def.user = &all;
+    def.max_speed = 0;
     spring_scene *s = scene_of(&def);
     get_state(s, particles, &y);
     CHECK(spring_scene_advance_with(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
-    memset(force, 0, sizeof force);
-    memset(size, 0, sizeof size);
-    memset(degree, 0, sizeof degree);
+    memset(force, 0, particles * axes * sizeof force[0]);
+    memset(size, 0, particles * sizeof size[0]);
+    memset(degree, 0, particles * sizeof degree[0]);
     plain_forces(&m->def, axes, y.x, y.v, force, size);
     for (size_t i = 0; i < m->def.links; i++) {
         degree[m->def.link[i].a]++;
@@ -315,6 +329,57 @@ SPRING_INLINE void check_forces(const model *m, const scene_kernels *kernels)
             CHECK_CLOSE(all.force[i * axes + a], force[i * axes + a], (15 + degree[i]) * EPS * size[i],
                         "15 roundings of half an eps in each link here and there, and one for each sum");
     free(s);
+}
+
+/* ------------------------------------------------------------------------------------------------------- colliders */
+
+SPRING_INLINE void random_unit(double axis[3], uint32_t axes)
+{
+    double square;
+    do {
+        square = 0;
+        for (uint32_t a = 0; a < 3; a++) {
+            axis[a] = a < axes ? random_uniform(-1, 1) : 0;
+            square += axis[a] * axis[a];
+        }
+    } while (square > 1 || square < 0.01);
+    for (int a = 0; a < 3; a++)
+        axis[a] /= sqrt(square);
+}
+
+/* Of any shape, moving and spinning, about the origin. */
+SPRING_INLINE spring_collider random_collider(uint32_t axes)
+{
+    spring_collider c = {.shape = (spring_shape)(random_bits() % 4),
+                         .radius = random_uniform(0.2, 0.5),
+                         .friction = random_bits() % 3 ? random_uniform(0, 1) : 0,
+                         .restitution = random_bits() % 3 ? random_uniform(0, 1) : 0};
+    for (uint32_t a = 0; a < axes; a++) {
+        c.at[a] = random_uniform(-0.5, 0.5);
+        c.to[a] = random_uniform(-0.5, 0.5);
+        c.half[a] = random_uniform(0.2, 0.6);
+        c.velocity[a] = random_uniform(-1, 1);
+        c.velocity_to[a] = c.velocity[a] + random_uniform(-0.5, 0.5);
+        c.spin[a] = random_uniform(-3, 3);
+    }
+    random_unit(c.axis[0], axes);
+    const double *const u = c.axis[0];
+    if (axes == 2) {
+        c.axis[1][0] = -u[1];
+        c.axis[1][1] = u[0];
+    } else {
+        double other[3], along;
+        do {
+            random_unit(other, 3);
+            along = u[0] * other[0] + u[1] * other[1] + u[2] * other[2];
+        } while (fabs(along) > 0.9);
+        const double rest = sqrt(1 - along * along);
+        for (int a = 0; a < 3; a++)
+            c.axis[1][a] = (other[a] - along * u[a]) / rest;
+        for (int a = 0; a < 3; a++)
+            c.axis[2][a] = u[(a + 1) % 3] * c.axis[1][(a + 2) % 3] - u[(a + 2) % 3] * c.axis[1][(a + 1) % 3];
+    }
+    return c;
 }
 
 /* ------------------------------------------------------------------------------------------------------- strangers */
