@@ -16,8 +16,8 @@
 #include "common/timing.h"
 #include "plain_loop.h"
 
-static scene_arrays all, shuffled; /* shuffled: copy of `all` before renumbering */
-static double dt;                  /* [s] half the safe step of leapfrog */
+static scene_arrays all;
+static double dt; /* [s] half the safe step of leapfrog */
 
 /* ----------------------------------------------------------------------------------------------------------- scenes */
 
@@ -124,24 +124,24 @@ static void advance(const built *b, spring_method method, uint64_t steps, uint64
 
 /* -------------------------------------------------------------------------------------------------- the plain loop */
 
-static plain_scene plain, plain_shuffled;
+static plain_scene plain;
 
-static void build_plain(plain_scene *p, const scene_arrays *a, const scene_feature *f)
+static void build_plain(const scene_feature *f)
 {
-    free(p->particle);
-    *p = (plain_scene){
-        .particles = a->particles,
-        .links = a->links,
-        .particle = scene_allocate(a->particles * sizeof *p->particle),
-        .link = a->link,
+    free(plain.particle);
+    plain = (plain_scene){
+        .particles = all.particles,
+        .links = all.links,
+        .particle = scene_allocate(all.particles * sizeof *plain.particle),
+        .link = all.link,
         .drag = f->drag,
         .damped = f->damping > 0,
     };
-    memcpy(p->gravity, scene_gravity, sizeof p->gravity);
-    for (size_t i = 0; i < a->particles; i++) {
-        const double mass = f->masses ? a->mass[i] : scene_mass;
-        p->particle[i] = (plain_particle){.inverse_mass = a->pinned[i] != 0 ? 0 : 1 / mass};
-        memcpy(p->particle[i].x, &a->position[3 * i], sizeof p->particle[i].x);
+    memcpy(plain.gravity, scene_gravity, sizeof plain.gravity);
+    for (size_t i = 0; i < all.particles; i++) {
+        const double mass = f->masses ? all.mass[i] : scene_mass;
+        plain.particle[i] = (plain_particle){.inverse_mass = all.pinned[i] != 0 ? 0 : 1 / mass};
+        memcpy(plain.particle[i].x, &all.position[3 * i], sizeof plain.particle[i].x);
     }
 }
 
@@ -163,17 +163,11 @@ static void move_memory(const scene_subject *s, uint64_t passes)
         state = scene_allocate(allocated);
         memset(state, 0, allocated);
     }
-    const bench_streams streams = {values, state, state + array, state + 2 * array, NULL, NULL};
+    const bench_streams streams = {values, state, state + array, 1, {state + 2 * array}};
     for (; passes > 0; passes--) {
-        limits->streams[1][0][0](&streams, 1);
+        limits->streams(&streams, 1);
         limits->read(all.link, all.links * link_bytes, 1);
     }
-}
-
-static void read_definition(uint64_t times)
-{
-    const bench_limits *limits = bench_limits_of(false);
-    limits->read(all.link, all.links * sizeof *all.link, times);
 }
 
 static void build_other(const scene_subject *s)
@@ -198,43 +192,24 @@ static void prepare(const bench_row *row)
     if (s->against == LEAPFROG || s->against == IN_DOUBLE)
         build_other(s);
     if (row->baseline != NULL)
-        build_plain(&plain, &all, &s->feature);
-    if (s->against == SHUFFLED_LIST || s->work == RENUMBER)
-        scene_fill(&shuffled, s->shape, s->side, SHUFFLED, s->feature.damping);
-    if (s->against == SHUFFLED_LIST)
-        build_plain(&plain_shuffled, &shuffled, &s->feature);
-}
-
-/* Times renumbering of a copy of the links in random order. */
-static void renumber(uint64_t calls)
-{
-    uint32_t *order = scene_allocate(all.particles * sizeof *order);
-    for (; calls > 0; calls--) {
-        memcpy(all.link, shuffled.link, all.links * sizeof *all.link);
-        scene_renumber(&all, order);
-    }
-    free(order);
+        build_plain(&s->feature);
 }
 
 static void run_ours(const scene_subject *s, uint64_t calls)
 {
     const spring_scene_def def = definition(&s->feature, s->shape);
-    if (s->work == INIT)
+    if (s->against != DEFINITION)
+        advance(&ours, s->feature.method, s->steps, calls);
+    else
         for (; calls > 0; calls--)
             init(&ours, &def);
-    else if (s->work == RENUMBER)
-        renumber(calls);
-    else
-        advance(&ours, s->feature.method, s->steps, calls);
 }
 
 static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_t steps)
 {
     const bench_limits *limits = bench_limits_of(s->single);
-    if (s->work != STEPS)
-        read_definition(calls);
-    else if (s->against == SHUFFLED_LIST)
-        plain_advance(&plain_shuffled, dt, steps);
+    if (s->against == DEFINITION)
+        limits->read(all.link, all.links * sizeof *all.link, calls);
     else if (s->against == SIXTEEN_STEPS)
         advance(&ours, s->feature.method, 16, (s->steps * calls + 15) / 16);
     else if (s->against != LIMITS)
@@ -242,7 +217,7 @@ static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_
     else if (which == 1)
         move_memory(s, steps);
     else
-        limits->links[scene_axes(s->shape) - 1](steps * all.links / limits->together + 1);
+        limits->links(scene_axes(s->shape), steps * all.links / limits->together + 1);
 }
 
 double scene_time(const bench_row *row, int which, uint64_t calls)
@@ -251,7 +226,7 @@ double scene_time(const bench_row *row, int which, uint64_t calls)
     prepare(row);
     /* all steps of the plain loop and of limits take the same time, so in large scenes one step is timed instead of a
        call */
-    const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS && s->against != SHUFFLED_LIST);
+    const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS);
     const uint64_t share = all.links > 300000 && !scenes ? s->steps : 1, steps = s->steps / share;
     const double begin = timing_busy();
     if (which == 0)

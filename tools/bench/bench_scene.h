@@ -22,11 +22,8 @@ typedef enum scene_against {
     LEAPFROG,      /* the scene without its feature, by leapfrog */
     IN_DOUBLE,     /* the scene in double precision */
     SIXTEEN_STEPS, /* the scene with 16 steps per call */
-    SHUFFLED_LIST  /* the plain loop over the scene before renumbering */
+    DEFINITION     /* the time to read the links of the definition: this row times spring_scene_init() */
 } scene_against;
-
-/* The timed work. */
-typedef enum scene_work { STEPS, INIT, RENUMBER } scene_work;
 
 typedef struct scene_subject {
     scene_shape shape;
@@ -35,8 +32,7 @@ typedef struct scene_subject {
     scene_feature feature;
     uint64_t steps; /* per call */
     scene_against against;
-    bool single;     /* single precision */
-    scene_work work; /* except STEPS, compared with reading the links of the definition */
+    bool single; /* single precision */
 } scene_subject;
 
 /** The time of a row whose subject is a scene_subject. */

@@ -11,7 +11,6 @@
 void bench_add_springs(void);
 void bench_add_batches(void);
 void bench_add_scenes(void);
-void bench_add_small_scenes(void);
 
 /** The textbook formula of a spring that is not critically damped; `damped`, `loaded` are false if g, a are zero. */
 spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);

@@ -66,54 +66,30 @@ static void shuffle_links(scene_arrays *all, uint64_t *state)
     }
 }
 
-/* Moves particle order[i] to i. */
-static void permute(scene_arrays *all, const uint32_t *order)
-{
-    double *position = scene_allocate(all->particles * 3 * sizeof *position);
-    uint8_t *pinned = scene_allocate(all->particles);
-    for (size_t i = 0; i < all->particles; i++) {
-        memcpy(&position[3 * i], &all->position[3 * order[i]], 3 * sizeof *position);
-        pinned[i] = all->pinned[order[i]];
-    }
-    free(all->position);
-    free(all->pinned);
-    all->position = position;
-    all->pinned = pinned;
-}
-
 /* Numbers the particles at random. */
 static void shuffle_particles(scene_arrays *all, uint64_t *state)
 {
     uint32_t *number = scene_allocate(all->particles * sizeof *number);
-    uint32_t *order = scene_allocate(all->particles * sizeof *order);
+    double *position = scene_allocate(all->particles * 3 * sizeof *position);
+    uint8_t *pinned = scene_allocate(all->particles);
     for (size_t i = 0; i < all->particles; i++) { /* the same, inside-out variant */
         const size_t j = below(state, i + 1);
         number[i] = number[j];
         number[j] = (uint32_t)i;
     }
-    for (size_t i = 0; i < all->particles; i++)
-        order[number[i]] = (uint32_t)i;
-    permute(all, order);
+    for (size_t i = 0; i < all->particles; i++) {
+        memcpy(&position[3 * number[i]], &all->position[3 * i], 3 * sizeof *position);
+        pinned[number[i]] = all->pinned[i];
+    }
     for (size_t i = 0; i < all->links; i++) {
         all->link[i].a = number[all->link[i].a];
         all->link[i].b = number[all->link[i].b];
     }
     free(number);
-    free(order);
-}
-
-void scene_renumber(scene_arrays *all, uint32_t *order)
-{
-    static uint32_t *work;
-    static size_t allocated;
-    const size_t bytes = (4 * all->particles + 2 * all->links + 1) * sizeof *work;
-    if (allocated < bytes) {
-        free(work);
-        work = scene_allocate(bytes);
-        allocated = bytes;
-    }
-    if (spring_links_renumber(all->particles, all->links, all->link, order, NULL, work) != SPRING_OK)
-        cli_fail(CLI_FAILED, "%zu links cannot be renumbered", all->links);
+    free(all->position);
+    free(all->pinned);
+    all->position = position;
+    all->pinned = pinned;
 }
 
 void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scene_order order, double damping)
@@ -132,14 +108,8 @@ void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scene_order
     for (size_t i = 0; i < all->particles; i++)
         all->mass[i] = scene_mass * (1 + 0.1 * (double)(i % 7));
     uint64_t state = 1;
-    if (order >= SHUFFLED)
+    if (order == SHUFFLED)
         shuffle_particles(all, &state);
     if (order != NATURAL)
         shuffle_links(all, &state);
-    if (order == RENUMBERED) {
-        uint32_t *from = scene_allocate(all->particles * sizeof *from);
-        scene_renumber(all, from);
-        permute(all, from);
-        free(from);
-    }
 }

@@ -7,8 +7,8 @@
 
 typedef enum scene_shape { ROPE, SHEET, JELLY, WATER } scene_shape;
 
-/* SHUFFLED: links and particles are shuffled. RENUMBERED: the same, then spring_links_renumber(). */
-typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED, RENUMBERED } scene_order;
+/* SHUFFLED: links and particles are shuffled. */
+typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED } scene_order;
 
 /* The arrays of a definition. */
 typedef struct scene_arrays {
@@ -30,8 +30,5 @@ size_t scene_links(scene_shape shape, uint32_t side);
 
 /** Fills arrays, reproducibly; damping [N s/m] of every link. */
 void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scene_order order, double damping);
-
-/** Applies spring_links_renumber() to the links of shuffled arrays; order[] gives the new order of particles. */
-void scene_renumber(scene_arrays *all, uint32_t *order);
 
 #endif

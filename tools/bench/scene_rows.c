@@ -42,10 +42,8 @@ static double goal_speedup(const scene_subject *s)
 /* The largest allowed ratio to the time of the limit; INFINITY: none. */
 static double goal_ratio(const scene_subject *s)
 {
-    if (s->work != STEPS || s->against == SIXTEEN_STEPS)
+    if (s->against == DEFINITION || s->against == SIXTEEN_STEPS)
         return INFINITY;
-    if (s->against == SHUFFLED_LIST)
-        return s->side == 400 ? 1 / 2.5 : INFINITY; /* 10^6 links */
     if (s->single)
         return 0.5;
     if (s->feature.method == SPRING_RK4)
@@ -63,7 +61,7 @@ static const double most_excess = 25; /* [ns] overhead per step of one step per 
 /* The plain loop supports only three axes, double precision and leapfrog, without a callback. */
 static bool is_looped(const scene_subject *s)
 {
-    return s->shape != WATER && !s->single && s->work == STEPS && s->feature.method == SPRING_LEAPFROG &&
+    return s->shape != WATER && !s->single && s->against != DEFINITION && s->feature.method == SPRING_LEAPFROG &&
            s->feature.force == NULL && s->feature.flags == 0;
 }
 
@@ -71,12 +69,12 @@ static void add(const char *name, const scene_subject *s)
 {
     static const char *const shapes[] = {[ROPE] = "rope", [SHEET] = "sheet", [JELLY] = "jelly", [WATER] = "water"};
     static const char *const orders[] = {
-        [NATURAL] = "", [LINKS_SHUFFLED] = "_links_shuffled", [SHUFFLED] = "_shuffled", [RENUMBERED] = "_renumbered"};
+        [NATURAL] = "", [LINKS_SHUFFLED] = "_links_shuffled", [SHUFFLED] = "_shuffled"};
     static const char *const besides[] = {[LIMITS] = "streams",
                                           [LEAPFROG] = "leapfrog",
                                           [IN_DOUBLE] = "double",
                                           [SIXTEEN_STEPS] = "16_steps",
-                                          [SHUFFLED_LIST] = "shuffled_list"};
+                                          [DEFINITION] = "definition"};
     const size_t links = scene_links(s->shape, s->side);
     const bool looped = is_looped(s);
     bench_row row = {
@@ -85,18 +83,16 @@ static void add(const char *name, const scene_subject *s)
         .count = links,
         .steps = s->steps,
         .goal_ratio = goal_ratio(s),
-        .goal_ns = s->work == INIT && s->side == 1000 ? most_init : INFINITY,
+        .goal_ns = s->against == DEFINITION && s->side == 1000 ? most_init : INFINITY,
         .goal_excess_ns = s->against == SIXTEEN_STEPS ? most_excess : 0,
         .goal_speedup = looped ? goal_speedup(s) : 0,
-        .limits = {s->work != STEPS ? "definition" : besides[s->against],
-                   s->against == LIMITS && s->work == STEPS ? "arithmetic" : NULL},
+        .limits = {besides[s->against], s->against == LIMITS ? "arithmetic" : NULL},
         .baseline = looped ? "list" : NULL,
         .long_only = links > 2000000,
         .time = scene_time,
     };
-    if (s->work != STEPS)
-        snprintf(row.kernel, sizeof row.kernel, "%s_%s%s", s->work == INIT ? "init" : "renumber", shapes[s->shape],
-                 orders[s->order]);
+    if (s->against == DEFINITION)
+        snprintf(row.kernel, sizeof row.kernel, "init_%s", shapes[s->shape]);
     else
         snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s->feature.method), shapes[s->shape],
                  (int)s->steps, orders[s->order], name);
@@ -134,9 +130,6 @@ static void add_shapes(void)
     for (scene_order order = NATURAL; order <= SHUFFLED; order++)
         for (int i = 0; i < side_count; i++)
             add_both((scene_subject){.shape = SHEET, .side = sides[i], .order = order, .feature = plainly});
-    for (int i = 0; i < side_count; i++)
-        add_both((scene_subject){
-            .shape = SHEET, .side = sides[i], .order = RENUMBERED, .feature = plainly, .against = SHUFFLED_LIST});
     for (uint32_t side = 10; side <= 40; side *= 2)
         add_both((scene_subject){.shape = JELLY, .side = side, .feature = plainly});
     add("_copied", &(scene_subject){.shape = JELLY, .side = 10, .feature = copied, .steps = 16, .against = LEAPFROG});
@@ -174,7 +167,6 @@ static void add_features(uint32_t side)
         {"_callback_still", {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
-        {"_copied", {.method = SPRING_LEAPFROG, .copied = true}},
     };
     scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
@@ -189,23 +181,6 @@ static void add_features(uint32_t side)
     }
 }
 
-static void add_init(void)
-{
-    for (scene_order order = NATURAL; order <= SHUFFLED; order += SHUFFLED)
-        for (int i = 1; i < side_count; i++)
-            add("",
-                &(scene_subject){
-                    .shape = SHEET, .side = sides[i], .order = order, .feature = plainly, .steps = 1, .work = INIT});
-}
-
-static void add_renumbering(void)
-{
-    for (int i = 1; i < side_count; i++)
-        add("",
-            &(scene_subject){
-                .shape = SHEET, .side = sides[i], .order = SHUFFLED, .feature = plainly, .steps = 1, .work = RENUMBER});
-}
-
 void bench_add_scenes(void)
 {
     add_ropes();
@@ -213,6 +188,7 @@ void bench_add_scenes(void)
     add_features(35);
     add_features(128);
     add_features(1000);
-    add_init();
-    add_renumbering();
+    for (int i = 1; i < side_count; i++)
+        add("",
+            &(scene_subject){.shape = SHEET, .side = sides[i], .feature = plainly, .steps = 1, .against = DEFINITION});
 }
