@@ -217,17 +217,32 @@ static void step_map(affine *f, spring_method m, const iterate_rates *r, const m
     }
 }
 
-static void rounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
+/* One step of a spring, from w = k/m, g = c/m, a = f/m, each rounded to a double as in the library, or unrounded. */
+static void spring_map(affine *f, const spring_params *p, spring_method m, const mpfr_t h, bool rounded)
 {
     iterate_rates r;
-    mpfr_t h;
-    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness / p->mass, nearest);
-    mpfr_set_d(r.g, p->damping / p->mass, nearest);
-    mpfr_set_d(r.a, p->load / p->mass, nearest);
-    mpfr_set_d(h, dt, nearest);
+    mpfr_inits2(precision, r.w, r.g, r.a, (mpfr_ptr)NULL);
+    const struct {
+        mpfr_ptr out;
+        double of;
+    } rate[] = {{r.w, p->stiffness}, {r.g, p->damping}, {r.a, p->load}};
+    for (int i = 0; i < 3; i++) {
+        mpfr_set_d(rate[i].out, rounded ? rate[i].of / p->mass : rate[i].of, nearest);
+        if (!rounded)
+            mpfr_div_d(rate[i].out, rate[i].out, p->mass, nearest);
+    }
     step_map(f, m, &r, h);
-    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+    mpfr_clears(r.w, r.g, r.a, (mpfr_ptr)NULL);
+}
+
+/* The same for a step that is a double. */
+static void step_of(affine *f, const spring_params *p, spring_method m, double dt, bool rounded)
+{
+    mpfr_t h;
+    mpfr_init2(h, precision);
+    mpfr_set_d(h, dt, nearest);
+    spring_map(f, p, m, h, rounded);
+    mpfr_clear(h);
 }
 
 /* Replaces f by f composed n times, linear and constant part. */
@@ -254,7 +269,7 @@ void reference_iterate(reference *ref, const spring_params *p, spring_method m, 
 {
     affine steps;
     affine_init(&steps);
-    rounded_step_map(&steps, p, m, dt);
+    step_of(&steps, p, m, dt, true);
     affine_power(&steps, n);
     apply(ref, &steps);
     affine_clear(&steps);
@@ -294,21 +309,6 @@ void reference_mode(spring_method m, long double omega, double h, uint64_t n, lo
 }
 
 /* ------------------------------------------------------------------------------------------------ the worst error */
-
-static void unrounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
-{
-    iterate_rates r;
-    mpfr_t h;
-    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness, nearest);
-    mpfr_div_d(r.w, r.w, p->mass, nearest);
-    mpfr_set_d(r.g, p->damping, nearest);
-    mpfr_div_d(r.g, r.g, p->mass, nearest);
-    mpfr_set_zero(r.a, 1);
-    mpfr_set_d(h, dt, nearest);
-    step_map(f, m, &r, h);
-    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-}
 
 typedef struct wide_matrix {
     long double m[2][2];
@@ -359,47 +359,39 @@ double reference_worst_error(const spring_params *p, spring_method m, double fre
                              uint64_t stride)
 {
     enum { BLOCK = 1024 };
-    affine step, last, leap, leap_exact, block, block_exact, now, now_exact;
-    affine *const all[] = {&step, &last, &leap, &leap_exact, &block, &block_exact, &now, &now_exact};
-    const size_t count = sizeof all / sizeof all[0];
-    for (size_t i = 0; i < count; i++)
-        affine_init(all[i]);
+    enum { LAST, LEAP, BLOCKS, NOW, powers }; /* R^n, R^stride, R^(BLOCK stride), and R^i */
+    affine step[powers], exact_step[powers];
     spring_params unloaded = *p;
     unloaded.load = 0;
-    unrounded_step_map(&step, p, m, h);
-    solution_map(&now_exact, &unloaded, h);
-    affine_set(&last, &step);
-    affine_power(&last, n);
-    affine_set(&leap, &step);
-    affine_power(&leap, stride);
-    affine_set(&leap_exact, &now_exact);
-    affine_power(&leap_exact, stride);
-    affine_set(&block, &leap);
-    affine_power(&block, BLOCK);
-    affine_set(&block_exact, &leap_exact);
-    affine_power(&block_exact, BLOCK);
-    affine_set(&now, &now_exact); /* last exact, for a moment */
-    affine_power(&now, n);
-    wide_matrix error = wide_difference(&last, &now, frequency);
+    for (int k = 0; k < powers; k++) {
+        affine_init(&step[k]);
+        affine_init(&exact_step[k]);
+        step_of(&step[k], &unloaded, m, h, false);
+        solution_map(&exact_step[k], &unloaded, h);
+        affine_power(&step[k], k == LAST ? n : k == BLOCKS ? BLOCK * stride : stride);
+        affine_power(&exact_step[k], k == LAST ? n : k == BLOCKS ? BLOCK * stride : stride);
+    }
+    wide_matrix error = wide_difference(&step[LAST], &exact_step[LAST], frequency);
     double most = wide_norm(&error);
 
-    const wide_matrix R = wide_difference(&leap, NULL, frequency), F = wide_difference(&leap_exact, NULL, frequency);
-    const wide_matrix D = wide_difference(&leap, &leap_exact, frequency);
-    affine_set(&now, &leap);
-    affine_set(&now_exact, &leap_exact);
+    const wide_matrix R = wide_difference(&step[LEAP], NULL, frequency);
+    const wide_matrix F = wide_difference(&exact_step[LEAP], NULL, frequency);
+    const wide_matrix D = wide_difference(&step[LEAP], &exact_step[LEAP], frequency);
     for (uint64_t i = stride; i <= n;) {
-        error = wide_difference(&now, &now_exact, frequency);
-        wide_matrix exact = wide_difference(&now_exact, NULL, frequency);
+        error = wide_difference(&step[NOW], &exact_step[NOW], frequency);
+        wide_matrix exact = wide_difference(&exact_step[NOW], NULL, frequency);
         for (int k = 0; k < BLOCK && i <= n; k++, i += stride) {
             most = fmax(most, wide_norm(&error));
             error = wide_products(&R, &error, &D, &exact);
             exact = wide_products(&F, &exact, NULL, NULL);
         }
-        affine_compose(&now, &block, &now);
-        affine_compose(&now_exact, &block_exact, &now_exact);
+        affine_compose(&step[NOW], &step[BLOCKS], &step[NOW]);
+        affine_compose(&exact_step[NOW], &exact_step[BLOCKS], &exact_step[NOW]);
     }
-    for (size_t i = 0; i < count; i++)
-        affine_clear(all[i]);
+    for (int k = 0; k < powers; k++) {
+        affine_clear(&step[k]);
+        affine_clear(&exact_step[k]);
+    }
     return most;
 }
 
@@ -581,7 +573,7 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     affine step, solution;
     affine_init(&step);
     affine_init(&solution);
-    rounded_step_map(&step, p, m, dt);
+    step_of(&step, p, m, dt, true);
     solution_map(&solution, p, dt);
     const plane_map M = plane_of(&step, omega), exact = plane_of(&solution, omega);
     const plane_map defect = plane_difference(&step, &solution, omega);
@@ -630,17 +622,11 @@ void reference_bounds_end(reference_bounds *b, double *rounding, double *truncat
    damping has det = 1. The slack is far above the rounding error of 384 bits and far below that of a double. */
 static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
 {
-    iterate_rates r;
     affine f;
     mpfr_t trace, det, edge;
     affine_init(&f);
-    mpfr_inits2(precision, r.w, r.g, r.a, trace, det, edge, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness, nearest);
-    mpfr_div_d(r.w, r.w, p->mass, nearest);
-    mpfr_set_d(r.g, p->damping, nearest);
-    mpfr_div_d(r.g, r.g, p->mass, nearest);
-    mpfr_set_zero(r.a, 1);
-    step_map(&f, m, &r, h);
+    mpfr_inits2(precision, trace, det, edge, (mpfr_ptr)NULL);
+    spring_map(&f, p, m, h, false);
     mpfr_add(trace, f.m[0][0], f.m[1][1], nearest);
     mpfr_abs(trace, trace, nearest);
     mpfr_fmms(det, f.m[0][0], f.m[1][1], f.m[0][1], f.m[1][0], nearest);
@@ -650,7 +636,7 @@ static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
     mpfr_add(edge, edge, det, nearest);
     inside = inside && mpfr_cmp(trace, edge) <= 0;
     affine_clear(&f);
-    mpfr_clears(r.w, r.g, r.a, trace, det, edge, (mpfr_ptr)NULL);
+    mpfr_clears(trace, det, edge, (mpfr_ptr)NULL);
     return inside;
 }
 
