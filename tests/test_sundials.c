@@ -77,18 +77,6 @@ static void sprkstep(void)
 #endif
 }
 
-static void erkstep(void)
-{
-#if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
-    uint64_t evaluations;
-    CHECK(distance(ode_erkstep_rk4, &evaluations) > 1e-8,
-          "ERKStep before 6.7.0 treats the classical table as first-same-as-last");
-    CHECK(evaluations < 4 * steps, "and saves an evaluation that it must not save");
-#else
-    skip("SUNDIALS " SUNDIALS_VERSION " has the repaired ERKStep; the error was in versions before 6.7.0");
-#endif
-}
-
 /* CVODE's BDF works harder at damping 0.4 than at 0.5: its orders above 2 are unstable near the imaginary axis. */
 static void bdf_in_trouble(void)
 {
@@ -123,7 +111,6 @@ int main(void)
         {"ARKStep with the classical table agrees", arkstep},
         {"ARKStep with the table of order 8", arkstep_8},
         {"SPRKStep of order 6", sprkstep},
-        {"ERKStep with the classical table does not, before 6.7.0", erkstep},
         {"speed and version", slowness},
         {"BDF on a lightly damped spring", bdf_in_trouble},
     };

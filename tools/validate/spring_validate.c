@@ -87,7 +87,7 @@ static void against_references(const validation_case *c, spring_method m)
         segment s = first;
         if (c->vary != NULL) {
             s.n = 1;
-            c->vary(i, &s);
+            c->vary(c, i, &s);
         }
         done = done && spring_advance(&got, &s.p, m, s.dt, s.n) == SPRING_OK;
         const double t = s.dt * (double)s.n;
@@ -117,9 +117,9 @@ static void against_references(const validation_case *c, spring_method m)
     f.bound = m == SPRING_EXACT ? exact_rounding : rounding + truncation;
     f.reason = m == SPRING_EXACT ? "rounding of the exact solution" : "truncation + rounding";
     validate_check(&f);
-    if (c->exact != NULL) {
+    if (c->drive > 0) {
         spring_state drive;
-        const double sampling = c->exact(c, first.dt, first.dt * (double)first.n, &drive);
+        const double sampling = case_driven(c, first.dt, first.dt * (double)first.n, &drive);
         const double omega = sqrt(first.p.stiffness / first.p.mass);
         f.reference = "drive";
         f.error = hypot(got.x - drive.x, (got.v - drive.v) / omega);
