@@ -202,13 +202,30 @@ static const cli_option hidden_options[] = {
     {.name = NULL},
 };
 
+/* All options: of the tool, common, and hidden. */
+static struct {
+    const cli_option *option;
+    bool given;
+    char standard[32]; /* the default as text */
+} all[64];
+static size_t option_count, shown_count; /* all but the hidden ones are shown */
+
 const cli_option *cli_option_at(size_t i)
 {
-    const cli_option *o = cli_asked.program->options;
-    for (; o->name != NULL; o++)
-        if (i-- == 0)
-            return o;
-    return i < sizeof common_options / sizeof common_options[0] - 1 ? &common_options[i] : NULL;
+    return i < shown_count ? all[i].option : NULL;
+}
+
+const char *cli_default(size_t i)
+{
+    return all[i].standard;
+}
+
+bool cli_given(const void *target)
+{
+    for (size_t i = 0; i < shown_count; i++)
+        if (all[i].option->flag == target)
+            return all[i].given;
+    return false;
 }
 
 void cli_print_expectation(FILE *out, const cli_option *o)
@@ -250,12 +267,6 @@ void cli_print_expectation(FILE *out, const cli_option *o)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ defaults */
-
-enum { MOST_OPTIONS = 64 };
-
-static char defaults[MOST_OPTIONS][32];
-
 /* The initial value of a target is the default, if it is a valid value of the option. */
 static void note_default(char *text, size_t size, const cli_option *o)
 {
@@ -274,9 +285,14 @@ static void note_default(char *text, size_t size, const cli_option *o)
         snprintf(text, size, "%s", spring_method_name((spring_method)*o->choice));
 }
 
-const char *cli_default(size_t i)
+/* The options that are defined by a table. The initial values of their targets are their defaults. */
+static void add_options(const cli_option *options)
 {
-    return defaults[i];
+    for (const cli_option *o = options; o->name != NULL; o++) {
+        assert(option_count < sizeof all / sizeof all[0]);
+        note_default(all[option_count].standard, sizeof all[option_count].standard, o);
+        all[option_count++].option = o;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------- parsing */
@@ -353,35 +369,33 @@ static bool store(const cli_option *o, const char *value)
     return false;
 }
 
-static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
+/* The index of the option with this name; option_count: there is none. */
+static size_t find_option(const char *name, size_t length)
 {
-    for (const cli_option *o = options; o->name != NULL; o++)
-        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
-            return o;
-    return NULL;
+    size_t i = 0;
+    while (i < option_count &&
+           (strlen(all[i].option->name) != length || strncmp(all[i].option->name, name, length) != 0))
+        i++;
+    return i;
 }
 
-static const cli_option *option_of(const char *word, const char **value)
+static size_t option_of(const char *word, const char **value)
 {
     *value = NULL;
     if (strcmp(word, "-h") == 0)
-        return find_option(common_options, "help", strlen("help"));
+        return find_option("help", strlen("help"));
     /* -out... is a long option with one dash missing, not -o with the value "ut..." */
     if (word[0] == '-' && word[1] == 'o' && word[2] != '=' && strncmp(word, "-out", 4) != 0) {
         if (word[2] != '\0')
             *value = word + 2;
-        return &common_options[0];
+        return find_option("output", strlen("output"));
     }
     if (word[0] != '-' || word[1] != '-')
-        return NULL;
+        return option_count;
     const size_t length = strcspn(word + 2, "=");
     if (word[2 + length] == '=')
         *value = word + 2 + length + 1;
-    const cli_option *const tables[] = {cli_asked.program->options, common_options, hidden_options};
-    const cli_option *found = NULL;
-    for (size_t i = 0; found == NULL && i < sizeof tables / sizeof tables[0]; i++)
-        found = find_option(tables[i], word + 2, length);
-    return found;
+    return find_option(word + 2, length);
 }
 
 /* Prints a word quoted for a shell, on one line. Only words with special characters are quoted. */
@@ -415,7 +429,7 @@ static void print_quoted(FILE *out, const char *word)
    that name other output files. */
 static void record(FILE *words, const cli_option *o, const char *value)
 {
-    if (o == &common_options[0] || o->unstamped)
+    if (o->file == &cli_asked.output || o->unstamped)
         return;
     fprintf(words, " --%s", o->name);
     if (o->kind == CLI_FLAG)
@@ -452,23 +466,19 @@ static void take_value(const cli_option *o, const char *value)
         ++*o->times;
 }
 
-static uint64_t given; /* bit i: option i */
-
-bool cli_given(const void *target)
+static void check_options(void)
 {
-    const cli_option *o;
-    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++)
-        if (o->flag == target && (given >> i & 1) != 0)
-            return true;
-    return false;
-}
-
-static void fail_for_lack(const cli_option *o)
-{
-    const cli_option *other;
-    for (size_t i = 0; (other = cli_option_at(i)) != NULL; i++)
-        if (other->flag == o->needs)
-            cli_fail(CLI_USAGE, "--%s: has no effect without --%s", o->name, other->name);
+    for (size_t i = 0; i < shown_count; i++)
+        if (all[i].option->required && !all[i].given)
+            fail_at(all[i].option, NULL, "is missing; it should be ");
+    for (size_t i = 0; i < shown_count; i++) {
+        const void *const needs = all[i].option->needs;
+        if (needs == NULL || !all[i].given || cli_given(needs))
+            continue;
+        for (size_t k = 0; k < shown_count; k++)
+            if (all[k].option->flag == needs)
+                cli_fail(CLI_USAGE, "--%s: has no effect without --%s", all[i].option->name, all[k].option->name);
+    }
 }
 
 void cli_parse(const cli_program *p, int argc, char **argv)
@@ -476,21 +486,22 @@ void cli_parse(const cli_program *p, int argc, char **argv)
     cli_asked.program = p;
     cli_asked.started = time(NULL);
     cli_guard_files();
-    const cli_option *o;
-    size_t length, count = 0;
-    for (; (o = cli_option_at(count)) != NULL; count++) {
-        assert(count < MOST_OPTIONS);
-        note_default(defaults[count], sizeof defaults[count], o);
-    }
+    add_options(p->options);
+    add_options(common_options);
+    shown_count = option_count;
+    add_options(hidden_options);
+    size_t length;
     FILE *words = open_memstream(&cli_asked.text, &length);
     if (words == NULL)
         cli_fail(CLI_FAILED, "out of memory");
     fputs(p->name, words);
     for (int i = 1; i < argc; i++) {
         const char *value;
-        o = option_of(argv[i], &value);
-        if (o == NULL)
+        const size_t which = option_of(argv[i], &value);
+        if (which == option_count)
             fail_as_no_option(argv[i]);
+        const cli_option *const o = all[which].option;
+        all[which].given = true;
         if (o->kind == CLI_FLAG) {
             if (value != NULL)
                 cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name, value);
@@ -506,18 +517,8 @@ void cli_parse(const cli_program *p, int argc, char **argv)
             take_value(o, argv[++i]);
             record(words, o, argv[i]);
         }
-        for (size_t k = 0; k < count; k++)
-            if (o == cli_option_at(k))
-                given |= UINT64_C(1) << k;
     }
     if (fclose(words) != 0)
         cli_fail(CLI_FAILED, "out of memory");
-    for (size_t k = 0; k < count; k++)
-        if (cli_option_at(k)->required && (given >> k & 1) == 0)
-            fail_at(cli_option_at(k), NULL, "is missing; it should be ");
-    for (size_t k = 0; k < count; k++) {
-        o = cli_option_at(k);
-        if (o->needs != NULL && (given >> k & 1) != 0 && !cli_given(o->needs))
-            fail_for_lack(o);
-    }
+    check_options();
 }
