@@ -6,6 +6,7 @@
 
 #include "common/cli.h"
 #include "contact/trial.h"
+#include "scenes/start.h"
 
 static const double pi = 3.14159265358979323846, g = 9.81; /* [m/s^2] */
 
@@ -20,12 +21,12 @@ static const spring_collider ground = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}
 /* --------------------------------------------------------------------------------------------------------- cases */
 
 /* [m] height of the third bounce after a drop from 1 m, from the energy at its highest point. */
-static double bounce(contact_scheme scheme, double dt)
+static double bounce(contact_scheme scheme, double dt, double restitution)
 {
     const double x[3] = {0, 1, 0}, v[3] = {0};
     const spring_scene_def def = one_particle(x, v, g);
     spring_collider c = ground;
-    c.restitution = 0.8;
+    c.restitution = restitution;
     trial t;
     trial_open(&t, &def, &c, scheme, dt);
     int bounces = 0;
@@ -76,7 +77,7 @@ static void spring_on_plane(double *y, double *v)
 }
 
 /* [m] distance from the exact position and velocity/omega. */
-static double spring_case(contact_scheme scheme, double dt)
+static double spring_case(contact_scheme scheme, double dt, double restitution)
 {
     const double x[6] = {0, -10, 0, 0, 1, 0}, mass = 0.7;
     const uint8_t pinned[2] = {1, 0};
@@ -84,7 +85,7 @@ static double spring_case(contact_scheme scheme, double dt)
     const spring_scene_def def = {
         .particles = 2, .links = 1, .position = x, .mass_all = mass, .pinned = pinned, .link = &link};
     spring_collider c = ground;
-    c.restitution = 1;
+    c.restitution = restitution;
     double y[3], v[3], exact_y, exact_v;
     spring_on_plane(&exact_y, &exact_v);
     state_after(scheme, &def, &c, dt, 1.5, 1, y, v);
@@ -92,12 +93,12 @@ static double spring_case(contact_scheme scheme, double dt)
 }
 
 /* [m] distance from the exact position after 1.5 s of bounces at 3 m/s along the ground. */
-static double oblique(contact_scheme scheme, double dt)
+static double oblique(contact_scheme scheme, double dt, double friction)
 {
     const double x[3] = {0, 1, 0}, v[3] = {3, 0, 0}, end = 1.5;
     const spring_scene_def def = one_particle(x, v, g);
     spring_collider c = ground;
-    c.restitution = 0.8, c.friction = 0.1;
+    c.restitution = 0.8, c.friction = friction;
     double at = 0, speed = v[0], impact = sqrt(2 * g), t = impact / g, y[3], u[3];
     at = speed * t;
     for (;;) {
@@ -137,9 +138,9 @@ static void slide_exactly(double s[2], double mu, double end)
 }
 
 /* [m] distance from the exact position after 0.5 s. */
-static double sphere(contact_scheme scheme, double dt)
+static double sphere(contact_scheme scheme, double dt, double mu)
 {
-    const double start = 0.2, speed = 1, mu = 0.3, end = 0.5;
+    const double start = 0.2, speed = 1, end = 0.5;
     const double x[3] = {sin(start), cos(start), 0}, v[3] = {speed * cos(start), -speed * sin(start), 0};
     const spring_scene_def def = one_particle(x, v, g);
     const spring_collider c = {.shape = SPRING_SPHERE, .radius = 1, .friction = mu};
@@ -162,30 +163,20 @@ static double incline(contact_scheme scheme, double dt, double mu)
     return hypot(hypot(y[0], y[1]), y[2]);
 }
 
-static double creep(contact_scheme scheme, double dt)
-{
-    return incline(scheme, dt, 1.001 * tan(slope));
-}
-
-static double slide(contact_scheme scheme, double dt)
-{
-    return incline(scheme, dt, 0.3);
-}
-
 /* [m] distance in 3 s of a block that slides at 3 m/s with friction 0.4. */
-static double stopping(contact_scheme scheme, double dt)
+static double stopping(contact_scheme scheme, double dt, double friction)
 {
     const double x[3] = {0}, v[3] = {3, 0, 0};
     const spring_scene_def def = one_particle(x, v, g);
     spring_collider c = ground;
-    c.friction = 0.4;
+    c.friction = friction;
     double y[3], u[3];
     state_after(scheme, &def, &c, dt, 3, 0, y, u);
     return y[0];
 }
 
 /* Ratio of the tensions of a rope pulled over a cylinder, half a turn, with friction 0.3. */
-static double capstan(contact_scheme scheme, double dt)
+static double capstan(contact_scheme scheme, double dt, double friction)
 {
     enum { count = 64 };
     const double radius = 0.5, thick = 0.01, around = radius + thick, tail = 0.6, load = 5;
@@ -212,7 +203,7 @@ static double capstan(contact_scheme scheme, double dt)
                                   .link = link,
                                   .particle_radius = thick};
     const spring_collider c = {
-        .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = 0.3};
+        .shape = SPRING_CAPSULE, .at = {0, 0, -1}, .to = {0, 0, 1}, .radius = radius, .friction = friction};
     trial t;
     trial_open(&t, &def, &c, scheme, dt);
     const double frame = 1.0 / 60, moving = mass / spacing * speed * speed; /* momentum flux of the rope */
@@ -262,20 +253,10 @@ static double plate(contact_scheme scheme, double dt, double speed)
     return through;
 }
 
-static double plate_80(contact_scheme scheme, double dt)
-{
-    return plate(scheme, dt, 80);
-}
-
-static double plate_500(contact_scheme scheme, double dt)
-{
-    return plate(scheme, dt, 500);
-}
-
 typedef struct contact_case {
     const char *name, *purpose;
-    double (*run)(contact_scheme scheme, double dt);
-    double exact;
+    double (*run)(contact_scheme scheme, double dt, double parameter);
+    double parameter, exact;
     int schemes; /* number of schemes, the first of contact_scheme_names */
 } contact_case;
 
@@ -285,18 +266,21 @@ static void make_cases(contact_case c[case_count])
 {
     const double t = 2; /* [s] */
     const contact_case all[case_count] = {
-        {"bounce", "height of the third bounce [m], restitution 0.8", bounce, pow(0.8, 6), contact_schemes},
-        {"spring-on-plane", "distance from the exact state [m], restitution 1", spring_case, 0, contact_schemes},
-        {"oblique", "distance from the exact position [m], bounces with friction 0.1", oblique, 0, contact_schemes},
-        {"sphere", "distance from the exact position [m], sliding with friction 0.3", sphere, 0, contact_schemes},
-        {"creep", "motion in 2 s [m] on an incline of 30 degrees, friction 1.001 tan 30", creep, 0, contact_schemes},
-        {"slide", "motion in 2 s [m] on an incline of 30 degrees, friction 0.3", slide,
+        {"bounce", "height of the third bounce [m], restitution 0.8", bounce, 0.8, pow(0.8, 6), contact_schemes},
+        {"spring-on-plane", "distance from the exact state [m], restitution 1", spring_case, 1, 0, contact_schemes},
+        {"oblique", "distance from the exact position [m], bounces with friction 0.1", oblique, 0.1, 0,
+         contact_schemes},
+        {"sphere", "distance from the exact position [m], sliding with friction 0.3", sphere, 0.3, 0, contact_schemes},
+        {"creep", "motion in 2 s [m] on an incline of 30 degrees, friction 1.001 tan 30", incline, 1.001 * tan(slope),
+         0, contact_schemes},
+        {"slide", "motion in 2 s [m] on an incline of 30 degrees, friction 0.3", incline, 0.3,
          g / 2 * (sin(slope) - 0.3 * cos(slope)) * t * t, contact_schemes},
-        {"stopping", "distance to a stop [m] from 3 m/s, friction 0.4", stopping, 9 / (2 * 0.4 * g), contact_schemes},
-        {"capstan", "ratio of the tensions of a rope over a cylinder, friction 0.3", capstan, exp(0.3 * pi),
+        {"stopping", "distance to a stop [m] from 3 m/s, friction 0.4", stopping, 0.4, 9 / (2 * 0.4 * g),
+         contact_schemes},
+        {"capstan", "ratio of the tensions of a rope over a cylinder, friction 0.3", capstan, 0.3, exp(0.3 * pi),
          CONTACT_PROJECTION + 1},
-        {"plate-80", "particles of 1000 that a plate at 80 m/s passes through", plate_80, 0, contact_schemes},
-        {"plate-500", "particles of 1000 that a plate at 500 m/s passes through", plate_500, 0, contact_schemes},
+        {"plate-80", "particles of 1000 that a plate at 80 m/s passes through", plate, 80, 0, contact_schemes},
+        {"plate-500", "particles of 1000 that a plate at 500 m/s passes through", plate, 500, 0, contact_schemes},
     };
     memcpy(c, all, sizeof all);
 }
@@ -309,7 +293,7 @@ static double energy_in_box(double restitution, double damping, double fraction,
     const spring_grid grid = {.count = {4, 4, 4}, .spacing = 0.1, .families = 7, .stiffness = 40, .damping = damping};
     double x[3 * 64], v[3 * 64];
     static spring_link link[64 * 13];
-    size_t particles, links, bytes;
+    size_t particles, links;
     spring_grid_size(&grid, &particles, &links);
     spring_grid_fill(&grid, x, NULL, link);
     for (size_t i = 0; i < particles; i++)
@@ -327,11 +311,8 @@ static double energy_in_box(double restitution, double damping, double fraction,
         wall[i].axis[0][i / 2] = i % 2 == 0 ? 1 : -1;
         wall[i].at[i / 2] = i % 2 == 0 ? -0.2 : 0.6;
     }
-    spring_scene *s = NULL;
-    void *memory = spring_scene_bytes(&def, &bytes) == SPRING_OK ? malloc(bytes) : NULL;
-    if (memory == NULL || spring_scene_init(memory, bytes, &def, &s) != SPRING_OK ||
-        spring_scene_set_colliders(s, wall, 6) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no memory for a soft body");
+    spring_scene *s = start_definition(&def, NULL);
+    spring_scene_set_colliders(s, wall, 6);
     *dt = fraction * spring_scene_stable_step(s, SPRING_LEAPFROG);
     double first = 0, most = 0;
     for (int i = 0; i <= 600; i++) { /* ten times a second */
@@ -342,7 +323,7 @@ static double energy_in_box(double restitution, double damping, double fraction,
         if (spring_scene_advance(s, SPRING_LEAPFROG, *dt, (uint64_t)lround(0.1 / *dt)) != SPRING_OK)
             most = INFINITY;
     }
-    free(memory);
+    free(s);
     return most;
 }
 
@@ -383,7 +364,7 @@ static void print_rows(cli_table *table, const contact_case *c, contact_scheme s
     const int first = slow ? 8 : 4, last = quick ? 16 : slow ? 32 : 128; /* steps per frame */
     double first_error = 0;
     for (int steps = first; steps <= last; steps *= 2) {
-        const double dt = 1.0 / 60 / steps, value = c->run(scheme, dt);
+        const double dt = 1.0 / 60 / steps, value = c->run(scheme, dt, c->parameter);
         const double error = fabs(c->exact != 0 ? value / c->exact - 1 : value);
         if (steps == first)
             first_error = error;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/cli.h"
+#include "scenes/start.h"
 
 const char *const contact_scheme_names[] = {"library", "projection", "penalty", NULL};
 
@@ -165,11 +166,9 @@ void trial_open(trial *t, const spring_scene_def *def, const spring_collider *c,
     if (scheme == CONTACT_LIBRARY)
         own.colliders = 1;
     t->before = malloc(3 * def->particles * sizeof *t->before);
-    size_t bytes = 0;
-    void *memory = spring_scene_bytes(&own, &bytes) == SPRING_OK ? malloc(bytes) : NULL;
-    if (memory == NULL || t->before == NULL || spring_scene_init(memory, bytes, &own, &t->scene) != SPRING_OK ||
-        (scheme == CONTACT_LIBRARY && spring_scene_set_colliders(t->scene, c, 1) != SPRING_OK))
-        cli_fail(CLI_FAILED, "no memory for a scene of %zu bytes", bytes);
+    t->scene = start_definition(&own, NULL);
+    if (t->before == NULL || (scheme == CONTACT_LIBRARY && spring_scene_set_colliders(t->scene, c, 1) != SPRING_OK))
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles", def->particles);
 }
 
 void trial_close(trial *t)

@@ -9,6 +9,9 @@
 /** As preset_init(). */
 void start_preset(preset *r, const preset_settings *s);
 
+/** Creates a scene in one block of *bytes bytes (NULL: not needed); release it with free(). */
+spring_scene *start_definition(const spring_scene_def *def, size_t *bytes);
+
 /** As preset_start(), for one method and for leapfrog, whose stable step is the scale for all methods. */
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes);
 

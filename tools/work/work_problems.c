@@ -12,6 +12,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
+#include "scenes/start.h"
 #include "work.h"
 
 /* --------------------------------------------------------------------------------------------------- two sheets */
@@ -261,17 +262,6 @@ static const scene_case *case_of(const work_problem *problem)
     return problem->own;
 }
 
-spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes)
-{
-    spring_scene *scene = NULL;
-    if (spring_scene_bytes(def, bytes) != SPRING_OK)
-        cli_fail(CLI_FAILED, "an invalid scene");
-    void *memory = malloc(*bytes);
-    if (memory == NULL || spring_scene_init(memory, *bytes, def, &scene) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no memory for a scene of %zu links", def->links);
-    return scene;
-}
-
 static void count_call(void *user, double t, size_t particles, const double *const position[3],
                        const double *const velocity[3], double *const force[3])
 {
@@ -285,14 +275,14 @@ static void count_call(void *user, double t, size_t particles, const double *con
 static void make_scenes(work *w)
 {
     spring_scene_def def = w->scene.def;
-    w->moved = work_make_scene(&def, &w->bytes);
-    w->fresh = work_make_scene(&def, &w->bytes);
+    w->moved = start_definition(&def, &w->bytes);
+    w->fresh = start_definition(&def, &w->bytes);
     if (def.force == NULL)
         def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY; /* so that counting adds no evaluation */
     def.force = count_call;
     def.user = w;
     w->counted = def;
-    w->counting = work_make_scene(&def, &w->counting_bytes);
+    w->counting = start_definition(&def, &w->counting_bytes);
 }
 
 uint64_t work_count(work *w, spring_method m, uint64_t steps)
