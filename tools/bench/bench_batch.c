@@ -12,7 +12,6 @@
 #include "bench_limits.h"
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
 #include "rows.h"
 
 enum { alignment = 64 }; /* [bytes] the widest vector, and a cache line */

@@ -9,7 +9,6 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
 #include "rows.h"
 
 /* Short steps: within the few hundred seconds that a sample simulates, nothing overflows or becomes subnormal. */

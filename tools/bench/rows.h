@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rows of spring-bench: timed kernels and their comparisons. The functions of parts.h add rows to the table.
- * spring_bench.c takes the samples and writes the table.
+ * The rows of spring-bench: timed kernels and their comparisons. spring_bench.c takes the samples and writes the table.
  */
 #ifndef SPRINGSTEP_BENCH_ROWS_H
 #define SPRINGSTEP_BENCH_ROWS_H
@@ -10,6 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include <springstep/spring.h>
 
 enum { bench_most_limits = 2, bench_baseline = bench_most_limits + 1 };
 
@@ -36,8 +37,12 @@ struct bench_row {
 /** Adds copies of a row and of its subject of `bytes` bytes to the table. */
 void bench_add(const bench_row *row, const void *subject, size_t bytes);
 
-/** The rows so far; the distinct names of their kernels, ended by NULL. */
-const bench_row *bench_rows(size_t *count);
-extern const char *bench_kernels[];
+/* Each function adds the rows of its part to the table. */
+void bench_add_springs(void);
+void bench_add_batches(void);
+void bench_add_scenes(void);
+
+/** The textbook formula of a spring that is not critically damped; `damped`, `loaded` are false if g, a are zero. */
+spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);
 
 #endif

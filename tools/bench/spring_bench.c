@@ -9,8 +9,12 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
 #include "samples.h"
+
+enum { most_rows = 512 };
+static bench_row rows[most_rows];
+static size_t row_count;
+static const char *kernels[most_rows + 1]; /* distinct names, ended by NULL */
 
 static const char *const parts[] = {"spring", "batch", "scene", NULL}, *const precisions[] = {"double", "float", NULL};
 static int only_part = -1, only_kernel = -1, only_precision = -1;
@@ -20,7 +24,7 @@ static bool quick;
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
      .help = "spring (one spring), batch or scene"},
-    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = bench_kernels, .value = "NAME",
+    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
      .help = "only the rows with this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
@@ -81,6 +85,19 @@ static const cli_program program = {
     .options = options,
 };
 
+void bench_add(const bench_row *row, const void *subject, size_t bytes)
+{
+    void *kept = malloc(bytes);
+    if (kept == NULL || row_count == most_rows)
+        cli_fail(CLI_FAILED, "no room for more than %zu rows", row_count);
+    rows[row_count] = *row;
+    rows[row_count].subject = memcpy(kept, subject, bytes);
+    int k = 0;
+    while (kernels[k] != NULL && strcmp(kernels[k], row->kernel) != 0)
+        k++;
+    kernels[k] = rows[row_count++].kernel;
+}
+
 static void write_row(cli_table *table, const bench_row *r)
 {
     const bench_times t = bench_measure(r, quick);
@@ -101,16 +118,14 @@ static void write_row(cli_table *table, const bench_row *r)
 static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
-           (only_kernel < 0 || strcmp(bench_kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
+           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
            (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
 
 static void check_any_wanted(void)
 {
-    size_t count;
-    const bench_row *rows = bench_rows(&count);
-    for (const bench_row *r = rows; r < rows + count; r++)
+    for (const bench_row *r = rows; r < rows + row_count; r++)
         if (wanted(r))
             return;
     cli_fail(CLI_USAGE, "no row matches --part, --kernel, --precision and --count%s",
@@ -127,10 +142,8 @@ int main(int argc, char **argv)
     cli_table *table = cli_open_output();
     timing_stamp(table);
     cli_columns(table, program.columns);
-    size_t count;
-    const bench_row *rows = bench_rows(&count);
-    for (const bench_row *r = rows; r < rows + count; r++) {
-        cli_progress((double)(r - rows) / (double)count);
+    for (const bench_row *r = rows; r < rows + row_count; r++) {
+        cli_progress((double)(r - rows) / (double)row_count);
         if (!wanted(r))
             continue;
         if (calls > 0)
