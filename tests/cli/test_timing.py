@@ -2,12 +2,9 @@
 """spring-work and spring-bench: their measurements and verdicts. Times are not tested."""
 import functools
 import math
-import pathlib
 
 import pytest
-from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, run, table
-
-OPTIMISED = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'optimised'
+from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, table
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
@@ -65,13 +62,6 @@ def test_forces(work):
         (problem, who, '1') for who in ('springstep', 'others')]
     ours, *_ = times = [float(row['time_ns']) for row in forces]
     assert min(times) > 0 and all(about(float(row['ratio']), time / ours) for row, time in zip(forces, times))
-
-
-@pytest.mark.parametrize('args', [[], ['--nonsense'], ['sundials'], ['nonsense', 'there'], ['sundials', '--there']])
-def test_usage_of_the_build_with_optimisation(args):
-    result = run(OPTIMISED, *args)
-    assert (result.returncode, result.stdout) == (2, '')
-    assert result.stderr.startswith('usage: tools/bench/optimised sundials|chipmunk DIRECTORY')
 
 
 def cheapest(rows, error, among):
