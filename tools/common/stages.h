@@ -7,14 +7,9 @@
 
 #include <springstep/spring.h>
 
-/* The library computes the same step from a polynomial, with other rounding errors. These two functions reproduce other
-   programs to the last digit. Both work from stiffness/mass, damping/mass and load/mass, each rounded once, and do not
-   check their parameters. */
-
-/** Takes n steps with the sum of the original study: y += (h/6) (k1 + 2 k2 + 2 k3 + k4). */
+/** Takes n steps with the sum of the original study, y += (h/6) (k1 + 2 k2 + 2 k3 + k4), and reproduces it to the last
+    digit. The library computes the same step from a polynomial, with other rounding errors. Works from stiffness/mass,
+    damping/mass and load/mass, each rounded once, and does not check its parameters. */
 void stages_advance(spring_state *s, const spring_params *p, double h, uint64_t n);
-
-/** Takes n steps with the sum of GSL's rk4: y += h/6 k1; y += h/3 k2; y += h/3 k3; y += h/6 k4. */
-void stages_advance_gsl(spring_state *s, const spring_params *p, double h, uint64_t n);
 
 #endif
