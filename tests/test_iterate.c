@@ -49,24 +49,10 @@ static void random_springs(bool damped, bool loaded, double direction)
     }
 }
 
-static void undamped(void)
+static void forwards(void)
 {
-    random_springs(false, false, 1);
-}
-
-static void damped(void)
-{
-    random_springs(true, false, 1);
-}
-
-static void loaded(void)
-{
-    random_springs(false, true, 1);
-}
-
-static void damped_and_loaded(void)
-{
-    random_springs(true, true, 1);
+    for (int features = 0; features < 4; features++)
+        random_springs(features % 2 == 1, features / 2 == 1, 1);
 }
 
 static void backwards(void)
@@ -150,10 +136,7 @@ static void long_runs(void)
 int main(void)
 {
     static const test tests[] = {
-        {"undamped springs", undamped},
-        {"damped springs", damped},
-        {"loaded springs", loaded},
-        {"damped and loaded springs", damped_and_loaded},
+        {"springs without and with damping and load", forwards},
         {"backwards", backwards},
         {"energy laws of Euler, leapfrog and RK4", energy_laws},
         {"the formula of n leapfrog steps", leapfrog_by_formula},

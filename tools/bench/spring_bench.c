@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench: the cost of a step of a spring, compared with limits measured in the same run. See samples.h for the
+ * spring-bench: the cost of a step of a spring, compared with limits measured in the same run. See rows.h for the
  * method.
  */
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "samples.h"
+#include "rows.h"
 
 enum { most_rows = 512 };
 static bench_row rows[most_rows];
