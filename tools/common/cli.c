@@ -113,12 +113,15 @@ static const char *word_of(const cli_option *o, int i, int *value)
     return NULL;
 }
 
-void cli_print_words(FILE *out, const cli_option *o, const char *separator)
+const char *cli_word_list(const cli_option *o, const char *separator)
 {
+    static char text[8192];
+    size_t length = 0;
     const char *word;
-    int i = 0;
-    for (int value; (word = word_of(o, i, &value)) != NULL; i++)
-        fprintf(out, "%s%s", i > 0 ? separator : "", word);
+    text[0] = '\0';
+    for (int i = 0, value; (word = word_of(o, i, &value)) != NULL && length < sizeof text; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i > 0 ? separator : "", word);
+    return text;
 }
 
 static bool parse_word(const char *text, const cli_option *o)
@@ -228,43 +231,40 @@ bool cli_given(const void *target)
     return false;
 }
 
-void cli_print_expectation(FILE *out, const cli_option *o)
+const char *cli_expectation(const cli_option *o)
 {
+    static char text[8300];
     switch (o->kind) {
     case CLI_FLAG:
-        break;
+        return "";
     case CLI_COUNT:
         if (o->most > 0)
-            fprintf(out, "a whole number from %" PRIu64 " to %" PRIu64, o->least, o->most);
+            snprintf(text, sizeof text, "a whole number from %" PRIu64 " to %" PRIu64, o->least, o->most);
         else
-            fprintf(out, "a whole number of at least %" PRIu64, o->least);
-        break;
+            snprintf(text, sizeof text, "a whole number of at least %" PRIu64, o->least);
+        return text;
     case CLI_REAL:
-        fputs("a finite number", out);
-        break;
+        return "a finite number";
     case CLI_NOT_NEGATIVE:
-        fputs("a finite number of at least 0", out);
-        break;
+        return "a finite number of at least 0";
     case CLI_POSITIVE:
-        fputs("a finite number greater than 0", out);
-        break;
+        return "a finite number greater than 0";
     case CLI_CHOICE:
     case CLI_METHOD:
-        fputs("one of ", out);
-        cli_print_words(out, o, ", ");
-        break;
+        snprintf(text, sizeof text, "one of %s", cli_word_list(o, ", "));
+        return text;
     case CLI_REALS:
-        fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
-        break;
+        snprintf(text, sizeof text, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
+        return text;
     case CLI_FILE:
     case CLI_INPUT:
+        return "the name of a file";
     case CLI_FOLDER:
-        fprintf(out, "the name of a %s", o->kind == CLI_FOLDER ? "folder" : "file");
-        break;
+        return "the name of a folder";
     case CLI_WORDS:
-        fputs(o->value, out);
-        break;
+        return o->value;
     }
+    return "";
 }
 
 /* The initial value of a target is the default, if it is a valid value of the option. */
@@ -300,19 +300,13 @@ static void add_options(const cli_option *options)
 /* "program: --option: problem what it should be" */
 static _Noreturn void fail_at(const cli_option *o, const char *value, const char *problem)
 {
-    fprintf(stderr, "%s: --%s: ", cli_asked.program->name, o->name);
-    if (value != NULL)
-        fprintf(stderr, "\"%s\" ", value);
-    fputs(problem, stderr);
-    cli_print_expectation(stderr, o);
     likeness best = {.typed = value != NULL ? value : ""};
     const char *word;
     for (int i = 0, which; (word = word_of(o, i, &which)) != NULL; i++)
         compare(&best, word);
-    if (best.word != NULL)
-        fprintf(stderr, "; did you mean \"%s\"?", best.word);
-    fputc('\n', stderr);
-    exit(CLI_USAGE);
+    const bool known = value != NULL, meant = best.word != NULL;
+    cli_fail(CLI_USAGE, "--%s: %s%s%s%s%s%s%s%s", o->name, known ? "\"" : "", known ? value : "", known ? "\" " : "",
+             problem, cli_expectation(o), meant ? "; did you mean \"" : "", meant ? best.word : "", meant ? "\"?" : "");
 }
 
 static _Noreturn void fail_as_no_option(const char *word)
