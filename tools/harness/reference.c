@@ -53,30 +53,28 @@ static void spectral_norm(mpfr_t norm, const mpfr_t a, const mpfr_t b, const mpf
 
 /* -------------------------------------------------------------------------------------------------- affine maps */
 
-/* y -> M y + q on y = (x, v) */
+/* y -> M y + q on y = (x, v), with q in the last column of m */
 typedef struct affine {
-    mpfr_t m[2][2], q[2];
+    mpfr_t m[2][3];
 } affine;
 
 static void affine_init(affine *f)
 {
     for (int i = 0; i < 2; i++)
-        mpfr_inits2(precision, f->m[i][0], f->m[i][1], f->q[i], (mpfr_ptr)NULL);
+        mpfr_inits2(precision, f->m[i][0], f->m[i][1], f->m[i][2], (mpfr_ptr)NULL);
 }
 
 static void affine_clear(affine *f)
 {
     for (int i = 0; i < 2; i++)
-        mpfr_clears(f->m[i][0], f->m[i][1], f->q[i], (mpfr_ptr)NULL);
+        mpfr_clears(f->m[i][0], f->m[i][1], f->m[i][2], (mpfr_ptr)NULL);
 }
 
 static void affine_set(affine *to, const affine *from)
 {
-    for (int i = 0; i < 2; i++) {
-        mpfr_set(to->q[i], from->q[i], nearest);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_set(to->m[i][j], from->m[i][j], nearest);
-    }
 }
 
 /* to = after o before; to may be either */
@@ -85,10 +83,9 @@ static void affine_compose(affine *to, const affine *after, const affine *before
     affine f;
     affine_init(&f);
     for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++)
+        for (int j = 0; j < 3; j++)
             mpfr_fmma(f.m[i][j], after->m[i][0], before->m[0][j], after->m[i][1], before->m[1][j], nearest);
-        mpfr_fmma(f.q[i], after->m[i][0], before->q[0], after->m[i][1], before->q[1], nearest);
-        mpfr_add(f.q[i], f.q[i], after->q[i], nearest);
+        mpfr_add(f.m[i][2], f.m[i][2], after->m[i][2], nearest);
     }
     affine_set(to, &f);
     affine_clear(&f);
@@ -113,8 +110,8 @@ static void apply(reference *ref, const affine *f)
     mpfr_mul(ref->size, ref->size, norm, nearest);
     mpfr_fmma(x, f->m[0][0], ref->x, f->m[0][1], ref->v, nearest);
     mpfr_fmma(ref->v, f->m[1][0], ref->x, f->m[1][1], ref->v, nearest);
-    mpfr_add(ref->x, x, f->q[0], nearest);
-    mpfr_add(ref->v, ref->v, f->q[1], nearest);
+    mpfr_add(ref->x, x, f->m[0][2], nearest);
+    mpfr_add(ref->v, ref->v, f->m[1][2], nearest);
     mpfr_clears(x, norm, (mpfr_ptr)NULL);
 }
 
@@ -185,8 +182,8 @@ static void solution_map(affine *f, const spring_params *p, double t)
         mpfr_sqr(P, P, nearest);
         mpfr_div_ui(P, P, 2, nearest);
     }
-    mpfr_mul(f->q[0], a, P, nearest);
-    mpfr_mul(f->q[1], a, H, nearest);
+    mpfr_mul(f->m[0][2], a, P, nearest);
+    mpfr_mul(f->m[1][2], a, H, nearest);
     mpfr_clears(w, b, r, C, S, E, H, P, a, (mpfr_ptr)NULL);
 }
 
@@ -205,15 +202,12 @@ void reference_exact(reference *ref, const spring_params *p, double t)
 static void step_map(affine *f, spring_method m, const iterate_rates *r, const mpfr_t h)
 {
     const iterate *method = iterate_of(m);
-    mpfr_set_zero(f->q[0], 1);
-    mpfr_set_zero(f->q[1], 1);
-    method->spring(f->q[0], f->q[1], r, h);
-    for (int j = 0; j < 2; j++) {
+    for (int j = 2; j >= 0; j--) { /* the last column is the origin, which has no 1 */
         mpfr_set_ui(f->m[0][j], j == 0, nearest);
         mpfr_set_ui(f->m[1][j], j == 1, nearest);
         method->spring(f->m[0][j], f->m[1][j], r, h);
-        mpfr_sub(f->m[0][j], f->m[0][j], f->q[0], nearest);
-        mpfr_sub(f->m[1][j], f->m[1][j], f->q[1], nearest);
+        for (int i = 0; i < 2 && j < 2; i++)
+            mpfr_sub(f->m[i][j], f->m[i][j], f->m[i][2], nearest);
     }
 }
 
@@ -250,11 +244,9 @@ static void affine_power(affine *f, uint64_t n)
 {
     affine all;
     affine_init(&all);
-    for (int i = 0; i < 2; i++) {
-        mpfr_set_zero(all.q[i], 1);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_set_ui(all.m[i][j], i == j, nearest);
-    }
     for (; n > 0; n /= 2) {
         if (n % 2 == 1)
             affine_compose(&all, f, &all);
@@ -487,12 +479,9 @@ typedef struct plane_map { /* an affine map in (x, v/omega), in doubles */
 static plane_map plane_of(const affine *f, double omega)
 {
     return (plane_map){
-        mpfr_get_d(f->m[0][0], nearest),
-        mpfr_get_d(f->m[0][1], nearest) * omega,
-        mpfr_get_d(f->m[1][0], nearest) / omega,
-        mpfr_get_d(f->m[1][1], nearest),
-        mpfr_get_d(f->q[0], nearest),
-        mpfr_get_d(f->q[1], nearest) / omega,
+        mpfr_get_d(f->m[0][0], nearest),         mpfr_get_d(f->m[0][1], nearest) * omega,
+        mpfr_get_d(f->m[1][0], nearest) / omega, mpfr_get_d(f->m[1][1], nearest),
+        mpfr_get_d(f->m[0][2], nearest),         mpfr_get_d(f->m[1][2], nearest) / omega,
     };
 }
 
@@ -519,11 +508,9 @@ static double plane_norm(const plane_map *f)
 /* step - solution, subtracted before rounding */
 static plane_map plane_difference(affine *step, const affine *solution, double omega)
 {
-    for (int i = 0; i < 2; i++) {
-        mpfr_sub(step->q[i], step->q[i], solution->q[i], nearest);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_sub(step->m[i][j], step->m[i][j], solution->m[i][j], nearest);
-    }
     return plane_of(step, omega);
 }
 
