@@ -309,10 +309,7 @@ static void write_plan(cli_table *table)
 
 static double stable_substeps(const preset *r, spring_method m)
 {
-    size_t bytes;
-    spring_scene *scene = start_scene(r, m, &bytes);
-    const double step = spring_scene_stable_step(scene, m);
-    free(scene);
+    const double step = start_stable_step(r, m);
     return step > 0 ? floor(plan_frame / step) + 1 : 0;
 }
 

@@ -48,6 +48,15 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
     return scene;
 }
 
+double start_stable_step(const preset *r, spring_method m)
+{
+    size_t bytes;
+    spring_scene *scene = start_scene(r, m, &bytes);
+    const double step = spring_scene_stable_step(scene, m);
+    free(scene);
+    return step;
+}
+
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count)
 {
     if (count == 0)
