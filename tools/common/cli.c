@@ -392,30 +392,21 @@ static size_t option_of(const char *word, const char **value)
     return find_option(word + 2, length);
 }
 
-/* Prints a word quoted for a shell, on one line. Only words with special characters are quoted. */
+/* Prints a word quoted for a shell, on one line: control characters become "?". Only words with special characters are
+   quoted. */
 static void print_quoted(FILE *out, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-    const size_t length = strlen(word);
-    bool control = false;
-    for (size_t i = 0; i < length; i++)
-        control = control || iscntrl((unsigned char)word[i]);
-    if (length > 0 && strspn(word, plain) == length) {
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
         fputs(word, out);
         return;
     }
-    fputs(control ? "$'" : "'", out);
-    for (size_t i = 0; i < length; i++) {
-        const unsigned char c = (unsigned char)word[i];
-        if (iscntrl(c))
-            fprintf(out, "\\%03o", c);
-        else if (control && (c == '\'' || c == '\\'))
-            fprintf(out, "\\%c", c);
-        else if (c == '\'')
+    fputc('\'', out);
+    for (; *word != '\0'; word++)
+        if (*word == '\'')
             fputs("'\\''", out);
         else
-            fputc(c, out);
-    }
+            fputc(iscntrl((unsigned char)*word) ? '?' : *word, out);
     fputc('\'', out);
 }
 
