@@ -140,6 +140,18 @@ static void counts_of_external_solvers(void)
     }
 }
 
+static double ticks(void)
+{
+    static double now;
+    return now += 1;
+}
+
+static void speed_of_sundials(void)
+{
+    CHECK_CLOSE(ode_sundials_slowness(ticks), 1, 0, "by a clock that runs as fast for both sums");
+    CHECK(atoi(ode_sundials_version()) >= 6, "a version");
+}
+
 static double error_of(work *w, const work_solver *s, work_effort e)
 {
     double *y = scene_room(w->size, sizeof *y);
@@ -339,6 +351,7 @@ int main(void)
         {"every problem: force evaluations, one equation, the exact end", problems},
         {"leapfrog with a callback that may use velocities", predicted_velocity},
         {"force evaluations of external solvers", counts_of_external_solvers},
+        {"speed and version of SUNDIALS", speed_of_sundials},
         {"external solvers converge with their order", external_solvers_converge},
         {"forces that depend on velocities", some_forces_use_velocities},
         {"stiffness and damping of the stiff scenes", stiffness_of_frames},
