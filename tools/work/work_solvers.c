@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/stages.h"
+#include "common/stepper.h"
 #include "scenes/start.h"
 #include "work.h"
 
