@@ -255,7 +255,7 @@ static void add_features(void)
     static const struct {
         size_t count;
         uint64_t steps;
-    } at[] = {{in_cache, 16}, {from_memory, 1}};
+    } at[] = {{in_cache, 16}, {in_cache, 1}, {from_memory, 1}};
     for (size_t k = 0; k < sizeof accurate / sizeof accurate[0]; k++)
         for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
             for (size_t f = 0; f < sizeof features / sizeof features[0]; f++)
