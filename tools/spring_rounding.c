@@ -67,12 +67,12 @@ typedef struct compensated_state {
     double x_rest[compensated_springs], v_rest[compensated_springs]; /* 0 at the start */
 } compensated_state;
 
-/* sum + rest += d, where rest is at most an ulp of sum */
-static inline void add(double *sum, double *rest, double d)
+/* number + rest += d, where rest is at most an ulp of the number */
+static inline void add(double *number, double *rest, double d)
 {
-    const double add = d + *rest, total = *sum + add, added = total - *sum;
-    *rest = (*sum - (total - added)) + (add - added);
-    *sum = total;
+    const double add = d + *rest, total = *number + add, added = total - *number;
+    *rest = (*number - (total - added)) + (add - added);
+    *number = total;
 }
 
 static void leapfrog_steps(compensated_state *s, double w, double h, uint64_t n)
