@@ -389,8 +389,8 @@ static void write_row(view *v)
     char touching[24] = "";
     if (colliders.count > 0)
         snprintf(touching, sizeof touching, "\t%zu", count_touching(v));
-    cli_row(v->output, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g%s", spring_scene_time(v->scene),
-            e.kinetic + e.elastic + e.gravity, e.kinetic, e.elastic, e.gravity, most, touching);
+    cli_row(v->output, "%.17g\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g%s", spring_scene_time(v->scene), scene_run_total(&e),
+            e.kinetic, e.elastic, e.gravity, most, touching);
 }
 
 static void write_pictures(const view *v, uint64_t frame)

@@ -14,6 +14,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
+#include "scenes/scene_run.h"
 #include "scenes/start.h"
 
 static const double frame_time = 1.0 / 60; /* [s] */
@@ -73,11 +74,6 @@ typedef struct outcome {
     bool exploded;
 } outcome;
 
-static double total(const spring_scene_energies *e)
-{
-    return e->kinetic + e->elastic + e->gravity;
-}
-
 static spring_scene *start(const subject *s, spring_method m)
 {
     size_t bytes;
@@ -93,7 +89,7 @@ static void run_reference(subject *s)
         if (spring_scene_advance(scene, SPRING_LEAPFROG, frame_time / (double)substeps, substeps) != SPRING_OK)
             cli_fail(CLI_FAILED, "the run in very short steps overflows");
         const spring_scene_energies e = spring_scene_energy(scene);
-        s->energy[i] = total(&e);
+        s->energy[i] = scene_run_total(&e);
         s->kinetic = fmax(s->kinetic, e.kinetic);
     }
     free(scene);
@@ -107,7 +103,7 @@ static outcome run(const subject *s, spring_method m, uint64_t substeps)
     for (uint64_t i = 0; i < s->frames && !o.exploded; i++) {
         const spring_status status = spring_scene_advance(scene, m, frame_time / (double)substeps, substeps);
         const spring_scene_energies e = spring_scene_energy(scene);
-        const double error = (total(&e) - s->energy[i]) / s->kinetic;
+        const double error = (scene_run_total(&e) - s->energy[i]) / s->kinetic;
         o.exploded = status != SPRING_OK || !(e.kinetic <= much * s->kinetic);
         if (!(fabs(error) <= fabs(o.error)))
             o.error = status == SPRING_OK && isfinite(error) ? error : INFINITY;
@@ -149,21 +145,13 @@ static void end(subject *s)
     preset_clear(&s->preset);
 }
 
-static double stable_step(const subject *s, spring_method m)
-{
-    spring_scene *scene = start(s, m);
-    const double step = spring_scene_stable_step(scene, m);
-    free(scene);
-    return step;
-}
-
 /* Writes a row for each number of steps per frame, unless table is NULL. Returns the least number from which all runs
    are fine and below the stable step, or 0. Runs above the stable step do not count even if they are fine: larger
    scenes of the same kind could overflow. */
 static uint64_t map_method(cli_table *table, const subject *s, preset_kind kind, spring_method m)
 {
     const uint64_t most_substeps = 64;
-    const double stable = stable_step(s, m);
+    const double stable = start_stable_step(&s->preset, m);
     uint64_t fewest = 0;
     for (uint64_t n = 1; n <= most_substeps; n = next_number(n)) {
         const outcome o = run(s, m, n);
@@ -225,7 +213,7 @@ static void time_method(cli_table *table, preset_kind kind, spring_method m, uin
         frame = time_frames(&s, m, substeps);
         if (round == rounds - 1)
             cli_row(table, "%s\t%s\t%" PRIu64 "\t%.17g\t%.17g\t%zu\t%zu\t%.4g\t%.4g", preset_names[kind],
-                    spring_method_name(m), substeps, frame_time / (double)substeps, stable_step(&s, m),
+                    spring_method_name(m), substeps, frame_time / (double)substeps, start_stable_step(&s.preset, m),
                     s.preset.def.particles, s.preset.def.links, frame, (double)s.preset.def.particles / frame);
         end(&s);
     }

@@ -52,5 +52,5 @@ def test_rows_of_every_method(tool, args, column, expected):
 
 def test_benchmarks_of_every_method():
     kernels = set(choices(BENCH, '--kernel'))
-    assert {f'{m}{end}' for m in STEPPERS for end in ('', '_damped_loaded', '_call', '_batch_1', '_batch_16')} <= kernels
+    assert {f'{m}{end}' for m in STEPPERS for end in ('', '_batch_1', '_batch_16')} <= kernels
     assert {f'{m}_sheet_16' for m in SCENES} <= kernels

@@ -2,18 +2,11 @@
 """spring-work and spring-bench: their measurements and verdicts. Times are not tested."""
 import functools
 import math
-import pathlib
 
 import pytest
-from tools import BENCH, ORDER, SCENE_STEPPERS, STEPPERS, WORK, parse, run, table
-
-OPTIMISED = pathlib.Path(__file__).resolve().parents[2] / 'tools' / 'bench' / 'optimised'
+from tools import BENCH, SCENE_STEPPERS, WORK, parse, table
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
-
-PEERS = {'gsl-rk4': 11, 'gsl-rk8pd': 13, 'arkode-rk4': 4, 'arkode-8': 13}  # evaluations a step
-ODEINT = {'odeint-rkf78': 13, 'odeint-sb3a-m4': 5}  # where Boost is installed
-
 
 @pytest.fixture(scope='module', params=['ideal-1', 'elastic-pendulum'])
 def work(request, tmp_path_factory):
@@ -35,24 +28,6 @@ def test_work_rows(work):
     assert exact == (['0'] if problem == 'ideal-1' else [])
 
 
-def cost(solver):
-    """Of our own as spring-order says."""
-    if solver in PEERS | ODEINT:
-        return (PEERS | ODEINT)[solver]
-    row, = table(ORDER, '--method', solver, '--n-min', '1', '--n-max', '1')
-    return int(row['force_evaluations'])
-
-
-@pytest.mark.parametrize('solver', [*STEPPERS, *PEERS, *ODEINT])
-def test_force_evaluations_of_fixed_steps(solver, work):
-    rows = [row for row in work[1] if row['solver'] == solver]
-    if solver in ODEINT and not any(row['solver'].startswith('odeint-') for row in work[1]):
-        pytest.skip('built without Boost.odeint')
-    assert rows
-    first = [int(row['force_evaluations']) - cost(solver) * int(row['steps']) for row in rows]
-    assert set(first) <= {0, 1}  # one more at the start
-
-
 def test_stamp_of_the_table(work, tmp_path_factory):
     text = work[2]
     assert str(tmp_path_factory.getbasetemp()) not in text
@@ -65,13 +40,6 @@ def test_forces(work):
         (problem, who, '1') for who in ('springstep', 'others')]
     ours, *_ = times = [float(row['time_ns']) for row in forces]
     assert min(times) > 0 and all(about(float(row['ratio']), time / ours) for row, time in zip(forces, times))
-
-
-@pytest.mark.parametrize('args', [[], ['--nonsense'], ['sundials'], ['nonsense', 'there'], ['sundials', '--there']])
-def test_usage_of_the_build_with_optimisation(args):
-    result = run(OPTIMISED, *args)
-    assert (result.returncode, result.stdout) == (2, '')
-    assert result.stderr.startswith('usage: tools/bench/optimised sundials|chipmunk DIRECTORY')
 
 
 def cheapest(rows, error, among):

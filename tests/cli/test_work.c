@@ -8,8 +8,6 @@
 #include "check.h"
 #include "work/work.h"
 
-typedef void work_check(work *w);
-
 enum { MOST_PROBLEMS = 32 };
 static work opened[MOST_PROBLEMS]; /* once for all tests: a reference takes seconds */
 
@@ -18,19 +16,6 @@ static work *work_of(size_t i)
     if (opened[i].problem == NULL)
         work_open(&opened[i], &work_problems[i]);
     return &opened[i];
-}
-
-/* On every problem of a kind. */
-static void on_each(work_kind kind, work_check *holds)
-{
-    CHECK(work_problem_count <= MOST_PROBLEMS, "there is room");
-    for (size_t i = 0; i < work_problem_count; i++)
-        if (work_problems[i].kind == kind) {
-            work *w = work_of(i);
-            const double duration = w->duration;
-            holds(w);
-            w->duration = duration;
-        }
 }
 
 static work *work_named(const char *name)
@@ -153,6 +138,18 @@ static void counts_of_external_solvers(void)
         CHECK(s->fixed == NULL || (derivatives >= once * steps && derivatives <= once * steps + 1),
               "GSL's RK4 4 + 3 + 4, since its step is doubled; ARKODE's RK4 4; McLachlan's 5; SPRKStep 8; order 8: 13");
     }
+}
+
+static double ticks(void)
+{
+    static double now;
+    return now += 1;
+}
+
+static void speed_of_sundials(void)
+{
+    CHECK_CLOSE(ode_sundials_slowness(ticks), 1, 0, "by a clock that runs as fast for both sums");
+    CHECK(atoi(ode_sundials_version()) >= 6, "a version");
 }
 
 static double error_of(work *w, const work_solver *s, work_effort e)
@@ -327,43 +324,36 @@ static void exact_end_of_a_spring(work *w)
     CHECK_BELOW(work_energy_error(w, y), 2 * bound, "energy is the square of that");
 }
 
-static void scenes_count(void)
+static void every_scene(work *w)
 {
-    on_each(WORK_SCENE, counts_of_a_scene);
+    const double duration = w->duration;
+    counts_of_a_scene(w);
+    counted_is_timed(w);
+    w->duration = duration;
+    one_equation(w);
+    exact_end_of_a_scene(w);
 }
 
-static void scenes_counted(void)
+/* Every problem, opened once for all tests. */
+static void problems(void)
 {
-    on_each(WORK_SCENE, counted_is_timed);
-}
-
-static void scenes_equation(void)
-{
-    on_each(WORK_SCENE, one_equation);
-}
-
-static void scenes_exact(void)
-{
-    on_each(WORK_SCENE, exact_end_of_a_scene);
-}
-
-static void springs_exact(void)
-{
-    on_each(WORK_SPRING, exact_end_of_a_spring);
+    CHECK(work_problem_count <= MOST_PROBLEMS, "there is room");
+    for (size_t i = 0; i < work_problem_count; i++)
+        if (work_problems[i].kind == WORK_SCENE)
+            every_scene(work_of(i));
+        else if (work_problems[i].kind == WORK_SPRING)
+            exact_end_of_a_spring(work_of(i));
 }
 
 int main(void)
 {
     static const test tests[] = {
-        {"force evaluations of scenes, by a callback", scenes_count},
-        {"a scene that counts moves like one that does not", scenes_counted},
+        {"every problem: force evaluations, one equation, the exact end", problems},
         {"leapfrog with a callback that may use velocities", predicted_velocity},
         {"force evaluations of external solvers", counts_of_external_solvers},
+        {"speed and version of SUNDIALS", speed_of_sundials},
         {"external solvers converge with their order", external_solvers_converge},
         {"forces that depend on velocities", some_forces_use_velocities},
-        {"one equation of a scene", scenes_equation},
-        {"the exact end of a scene", scenes_exact},
-        {"the exact end of a spring", springs_exact},
         {"stiffness and damping of the stiff scenes", stiffness_of_frames},
         {"XPBD converges", xpbd_converges},
     };

@@ -79,7 +79,7 @@ static void check_real(const char *word)
     }
 }
 
-static void check_options(const char *word)
+static void check_values(const char *word)
 {
     for (const cli_option *o = options; o->name != NULL; o++) {
         if (o->kind == CLI_FLAG || !store(o, word))
@@ -92,7 +92,12 @@ static void check_options(const char *word)
         must((o->kind != CLI_FILE && o->kind != CLI_FOLDER) || *word != '\0', "no name", word);
     }
     const char *value;
-    const cli_option *o = option_of(word, &value);
+    if (option_count == 0) {
+        add_options(options);
+        add_options(common_options);
+    }
+    const size_t which = option_of(word, &value);
+    const cli_option *o = which < option_count ? option_table[which].option : NULL;
     must(o != NULL || word[0] != '-' || word[1] != 'o', "-o is always an option", word);
     must(value == NULL || (value > word && value <= word + strlen(word)), "the value is part of the word", word);
     if (o != NULL && word[1] == '-')
@@ -109,6 +114,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     cli_asked.program = &fuzzed;
     check_count(word);
     check_real(word);
-    check_options(word);
+    check_values(word);
     return 0;
 }

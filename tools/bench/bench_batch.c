@@ -12,7 +12,6 @@
 #include "bench_limits.h"
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
 #include "rows.h"
 
 enum { alignment = 64 }; /* [bytes] the widest vector, and a cache line */
@@ -112,8 +111,7 @@ static void prepare(const subject *s, bool settled)
             if (all[i].memory == NULL)
                 cli_fail(CLI_FAILED, "no memory for %zu springs", s->count);
         }
-        const double smallest = s->single ? 1e-41 : 1e-310; /* denormal */
-        fill(&all[i], s, settled && i <= V ? smallest : 1);
+        fill(&all[i], s, settled && i <= V ? 1e-310 : 1); /* denormal */
     }
 }
 
@@ -145,10 +143,11 @@ static void advance(const subject *s, bool unaligned, uint64_t calls)
 
 static void move_streams(const bench_limits *limits, const subject *s, uint64_t calls)
 {
-    const bool w = s->omega2 >= OWN, g = s->gamma >= OWN, a = s->accel >= OWN;
-    const bench_streams streams = {s->count,           all[X].memory,     all[V].memory,
-                                   all[OMEGA2].memory, all[GAMMA].memory, all[ACCEL].memory};
-    limits->streams[w][g][a](&streams, calls);
+    bench_streams streams = {.count = s->count, .x = all[X].memory, .v = all[V].memory};
+    for (int i = OMEGA2; i < arrays; i++)
+        if (all[i].sharing >= OWN)
+            streams.parameter[streams.parameters++] = all[i].memory;
+    limits->streams(&streams, calls);
 }
 
 static void textbook(const subject *s, uint64_t calls)
@@ -182,7 +181,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
     else if (which == 1)
         move_streams(limits, s, calls);
     else
-        bench_arithmetic_of(limits, s->method)->run[s->gamma != NONE][s->accel != NONE](steps);
+        limits->arithmetic(s->method, s->gamma != NONE, s->accel != NONE, steps);
     const double elapsed = timing_busy() - begin;
     return which == 2 ? elapsed * springs / (double)steps : elapsed;
 }
@@ -191,7 +190,7 @@ static double run(const bench_row *row, int which, uint64_t calls)
 
 /* Ratios to the limit in the same run: one step over springs in memory, and several steps. */
 static const double memory_goal = 1 / 0.88, memory_goal_rk4 = 1 / 0.85, steps_goal = 1 / 0.8;
-static const size_t from_memory = 10000000, in_cache = 1000;
+enum { from_memory = 10000000, in_cache = 1000 };
 
 static void add(const char *feature, subject s)
 {
@@ -239,12 +238,7 @@ static void add_methods(void)
     }
 }
 
-/* Order 2 or more. */
-static bool is_accurate(spring_method m)
-{
-    const spring_method_info *info = spring_method_describe(m);
-    return info->springs && info->order > 1;
-}
+static const spring_method accurate[] = {SPRING_LEAPFROG, SPRING_RK4};
 
 /* Adds the features one by one. */
 static void add_features(void)
@@ -255,17 +249,17 @@ static void add_features(void)
     } features[] = {
         {"_shared_omega2", SHARED, NONE, NONE}, {"_shared_gamma", OWN, SHARED, NONE},
         {"_own_gamma", OWN, OWN, NONE},         {"_shared_accel", OWN, NONE, SHARED},
-        {"_own_accel", OWN, NONE, OWN},         {"_shared_gamma_accel", OWN, SHARED, SHARED},
-        {"_own_gamma_accel", OWN, OWN, OWN},    {"_zero_gamma_accel", OWN, ZERO, ZERO},
+        {"_own_accel", OWN, NONE, OWN},         {"_own_gamma_accel", OWN, OWN, OWN},
+        {"_zero_gamma_accel", OWN, ZERO, ZERO},
     };
     static const struct {
         size_t count;
         uint64_t steps;
-    } at[] = {{1000, 16}, {1000, 1}, {10000000, 1}};
-    for (int k = 0; k < SPRING_METHOD_COUNT; k++)
-        for (size_t i = 0; is_accurate(spring_method_at(k)) && i < sizeof at / sizeof at[0]; i++)
+    } at[] = {{in_cache, 16}, {in_cache, 1}, {from_memory, 1}};
+    for (size_t k = 0; k < sizeof accurate / sizeof accurate[0]; k++)
+        for (size_t i = 0; i < sizeof at / sizeof at[0]; i++)
             for (size_t f = 0; f < sizeof features / sizeof features[0]; f++)
-                add(features[f].name, (subject){.method = spring_method_at(k),
+                add(features[f].name, (subject){.method = accurate[k],
                                                 .count = at[i].count,
                                                 .steps = at[i].steps,
                                                 .omega2 = features[f].omega2,
@@ -287,15 +281,9 @@ static void add_special(void)
         exact.accel = OWN;
         add("_own_gamma_accel", exact);
     }
-    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
-        const subject s = {spring_method_at(i), in_cache, 16, OWN, .against = ORDINARY, .settled = true};
-        if (is_accurate(s.method))
-            add("_settled", s);
-    }
-    const subject settled = {SPRING_LEAPFROG, in_cache, 16, OWN, .single = true, .against = ORDINARY, .settled = true};
-    add("_settled", settled);
-    const subject unaligned = {SPRING_LEAPFROG, in_cache, 1, OWN, .against = ORDINARY, .unaligned = true};
-    add("_unaligned", unaligned);
+    for (size_t i = 0; i < sizeof accurate / sizeof accurate[0]; i++)
+        add("_settled", (subject){accurate[i], in_cache, 16, OWN, .against = ORDINARY, .settled = true});
+    add("_unaligned", (subject){SPRING_LEAPFROG, in_cache, 1, OWN, .against = ORDINARY, .unaligned = true});
 }
 
 void bench_add_batches(void)

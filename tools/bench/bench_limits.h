@@ -25,29 +25,19 @@
 typedef struct bench_streams {
     size_t count; /* springs; memory is accessed up to the next whole vector */
     void *x, *v;
-    const void *w, *g, *a; /* NULL: absent */
+    int parameters;
+    const void *parameter[3]; /* [parameters] */
 } bench_streams;
 
-typedef struct bench_arithmetic {
-    void (*run[2][2])(uint64_t steps); /* by damped, loaded */
-} bench_arithmetic;
-
 typedef struct bench_limits {
-    size_t springs;                                                   /* springs per step of `arithmetic` */
-    void (*streams[2][2][2])(const bench_streams *s, uint64_t times); /* by presence of w, g, a */
-    bench_arithmetic arithmetic[SPRING_METHOD_COUNT];                 /* by method; NULL: use `least` */
-    bench_arithmetic least;
+    size_t springs, together; /* springs per step of `arithmetic`; links computed at once */
+    void (*streams)(const bench_streams *s, uint64_t times);
     void (*read)(const void *memory, size_t bytes, uint64_t times); /* up to the next whole vector */
-    size_t together;                                                /* links computed at once */
-    void (*links[3])(uint64_t times);                               /* by axes - 1 */
+    void (*arithmetic)(spring_method m, bool damped, bool loaded, uint64_t steps);
+    void (*links)(uint32_t axes, uint64_t times); /* 1 or 3 axes */
 } bench_limits;
 
 /** The limits for the widest vectors; single: in single precision. */
 const bench_limits *bench_limits_of(bool single);
-
-static inline const bench_arithmetic *bench_arithmetic_of(const bench_limits *l, spring_method m)
-{
-    return l->arithmetic[m].run[0][0] != NULL ? &l->arithmetic[m] : &l->least;
-}
 
 #endif

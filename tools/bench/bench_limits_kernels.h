@@ -8,23 +8,20 @@ typedef SCALAR NAME(unaligned) __attribute__((vector_size(BYTES), aligned(sizeof
 
 /* ---------------------------------------------------------------------------------------------------------- streams */
 
-INLINE void NAME(stream)(const bench_streams *s, uint64_t times, bool w, bool g, bool a)
+INLINE void NAME(stream)(const bench_streams *s, uint64_t times, int parameters)
 {
     const size_t vectors = (s->count * sizeof(SCALAR) + BYTES - 1) / BYTES;
     NAME(unaligned) *const x = s->x, *const v = s->v;
-    const NAME(unaligned) *const parameter[] = {s->w, s->g, s->a};
-    const bool there[] = {w, g, a};
+    const NAME(unaligned) *const parameter[] = {s->parameter[0], s->parameter[1], s->parameter[2]};
     for (; times > 0; times--) {
         for (size_t i = 0; i < vectors; i++) {
             real xi = x[i], vi = v[i];
             TOUCH(xi);
             TOUCH(vi);
             UNROLL
-            for (int k = 0; k < 3; k++) {
-                if (there[k]) {
-                    real p = parameter[k][i];
-                    TOUCH(p);
-                }
+            for (int k = 0; k < parameters; k++) {
+                real p = parameter[k][i];
+                TOUCH(p);
             }
             x[i] = xi;
             v[i] = vi;
@@ -32,20 +29,17 @@ INLINE void NAME(stream)(const bench_streams *s, uint64_t times, bool w, bool g,
     }
 }
 
-#define STREAM(w, g, a)                                                        \
-    static void NAME(stream_##w##g##a)(const bench_streams *s, uint64_t times) \
-    {                                                                          \
-        NAME(stream)(s, times, w, g, a);                                       \
-    }
-STREAM(0, 0, 0)
-STREAM(0, 0, 1)
-STREAM(0, 1, 0)
-STREAM(0, 1, 1)
-STREAM(1, 0, 0)
-STREAM(1, 0, 1)
-STREAM(1, 1, 0)
-STREAM(1, 1, 1)
-#undef STREAM
+static void NAME(streams)(const bench_streams *s, uint64_t times)
+{
+    if (s->parameters == 0)
+        NAME(stream)(s, times, 0);
+    else if (s->parameters == 1)
+        NAME(stream)(s, times, 1);
+    else if (s->parameters == 2)
+        NAME(stream)(s, times, 2);
+    else
+        NAME(stream)(s, times, 3);
+}
 
 static void NAME(read)(const void *memory, size_t bytes, uint64_t times)
 {
@@ -104,15 +98,13 @@ INLINE void NAME(link)(uint64_t times, int axes)
     }
 }
 
-#define LINK(axes)                                \
-    static void NAME(link_##axes)(uint64_t times) \
-    {                                             \
-        NAME(link)(times, axes);                  \
-    }
-LINK(1)
-LINK(2)
-LINK(3)
-#undef LINK
+static void NAME(links)(uint32_t axes, uint64_t times)
+{
+    if (axes == 1)
+        NAME(link)(times, 1);
+    else
+        NAME(link)(times, 3);
+}
 
 /* ------------------------------------------------------------------------------------------------------- arithmetic */
 
@@ -198,39 +190,38 @@ INLINE void NAME(run)(NAME(step) * step, uint64_t steps, bool damped, bool loade
     }
 }
 
-#define RUN(method, damped, loaded)                             \
-    static void NAME(method##_##damped##loaded)(uint64_t steps) \
-    {                                                           \
-        NAME(run)(NAME(method), steps, damped, loaded);         \
-    }
-#define RUNS(method) RUN(method, 0, 0) RUN(method, 0, 1) RUN(method, 1, 0) RUN(method, 1, 1)
-RUNS(kick_drift)
-RUNS(leapfrog)
-RUNS(rk4)
-RUNS(exact)
-#undef RUNS
-#undef RUN
+INLINE void NAME(run_with)(NAME(step) * step, uint64_t steps, bool damped, bool loaded)
+{
+    if (damped && loaded)
+        NAME(run)(step, steps, true, true);
+    else if (damped)
+        NAME(run)(step, steps, true, false);
+    else if (loaded)
+        NAME(run)(step, steps, false, true);
+    else
+        NAME(run)(step, steps, false, false);
+}
 
-#define RUNS(method)                                 \
-    {                                                \
-        {                                            \
-            {NAME(method##_00), NAME(method##_01)},  \
-            {                                        \
-                NAME(method##_10), NAME(method##_11) \
-            }                                        \
-        }                                            \
-    }
+static void NAME(arithmetic)(spring_method m, bool damped, bool loaded, uint64_t steps)
+{
+    if (m == SPRING_LEAPFROG)
+        NAME(run_with)(NAME(leapfrog), steps, damped, loaded);
+    else if (m == SPRING_RK4)
+        NAME(run_with)(NAME(rk4), steps, damped, loaded);
+    else if (m == SPRING_EXACT)
+        NAME(run_with)(NAME(exact), steps, damped, loaded);
+    else
+        NAME(run_with)(NAME(kick_drift), steps, damped, loaded);
+}
+
 static const bench_limits NAME(limits) = {
     .springs = NAME(together) * BYTES / sizeof(SCALAR),
-    .streams = {{{NAME(stream_000), NAME(stream_001)}, {NAME(stream_010), NAME(stream_011)}},
-                {{NAME(stream_100), NAME(stream_101)}, {NAME(stream_110), NAME(stream_111)}}},
-    .arithmetic = {[SPRING_LEAPFROG] = RUNS(leapfrog), [SPRING_RK4] = RUNS(rk4), [SPRING_EXACT] = RUNS(exact)},
-    .least = RUNS(kick_drift),
-    .read = NAME(read),
     .together = BYTES / sizeof(SCALAR),
-    .links = {NAME(link_1), NAME(link_2), NAME(link_3)},
+    .streams = NAME(streams),
+    .read = NAME(read),
+    .arithmetic = NAME(arithmetic),
+    .links = NAME(links),
 };
-#undef RUNS
 
 #undef real
 #undef SCALAR

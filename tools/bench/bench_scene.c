@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench, scenes: timing of the rows, compared with a plain loop over the links and with limits from memory
- * bandwidth and arithmetic (bench_limits.h).
+ * spring-bench, scenes: ropes, sheets, blocks of jelly and water, in natural and in other orders, the cost of each
+ * feature, and the cost of creating a scene. They are compared with a plain loop over the links and with limits from
+ * memory bandwidth and arithmetic (bench_limits.h).
  *
  * The work of a scene is proportional to its links, so times are per link.
  */
-#include "bench_scene.h"
-
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,9 +15,166 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "plain_loop.h"
+#include "rows.h"
 
-static scene_arrays all, shuffled; /* shuffled: copy of `all` before renumbering */
-static double dt;                  /* [s] half the safe step of leapfrog */
+typedef enum scene_shape { ROPE, SHEET, JELLY, WATER } scene_shape;
+
+/* SHUFFLED: links and particles are shuffled. */
+typedef enum scene_order { NATURAL, LINKS_SHUFFLED, SHUFFLED } scene_order;
+
+/* The arrays of a definition. */
+typedef struct scene_arrays {
+    size_t particles, links;
+    double *position, *mass; /* different masses, for scenes with this feature */
+    uint8_t *pinned;
+    spring_link *link;
+} scene_arrays;
+
+static const double scene_mass = 0.1, scene_gravity[3] = {0.3, -9.81, -0.5}; /* [kg], [m/s^2] */
+
+/* Features of a scene besides links, gravity and pins, and of its steps. */
+typedef struct scene_feature {
+    spring_method method;
+    uint32_t flags;
+    double drag, damping;
+    spring_scene_force_fn *force;
+    bool masses;
+    bool copied; /* the scene is a copy whose arrays are not aligned to a cache line */
+} scene_feature;
+
+/* The comparison of a row. */
+typedef enum scene_against {
+    LIMITS,        /* the kernels of bench_limits.h */
+    LEAPFROG,      /* the scene without its feature, by leapfrog */
+    IN_DOUBLE,     /* the scene in double precision */
+    SIXTEEN_STEPS, /* the scene with 16 steps per call */
+    DEFINITION     /* the time to read the links of the definition: this row times spring_scene_init() */
+} scene_against;
+
+typedef struct scene_subject {
+    scene_shape shape;
+    uint32_t side; /* particles along an edge */
+    scene_order order;
+    scene_feature feature;
+    uint64_t steps; /* per call */
+    scene_against against;
+    bool single; /* single precision */
+} scene_subject;
+
+/* ----------------------------------------------------------------------------------------------------------- grids */
+
+/* Memory aligned for a scene, padded to a whole vector; exits if out of memory. */
+static void *scene_allocate(size_t bytes)
+{
+    void *memory = aligned_alloc(SPRING_SCENE_ALIGN, (bytes / SPRING_SCENE_ALIGN + 2) * SPRING_SCENE_ALIGN);
+    if (memory == NULL)
+        cli_fail(CLI_FAILED, "no memory for %zu bytes of a scene", bytes);
+    return memory;
+}
+
+static uint32_t scene_axes(scene_shape shape)
+{
+    return shape == WATER ? 1 : 3;
+}
+
+static spring_grid grid_of(scene_shape shape, uint32_t side, double damping)
+{
+    return (spring_grid){
+        .count = {side, shape == ROPE ? 1 : side, shape == JELLY ? side : 1},
+        .height = shape == WATER,
+        .spacing = 0.1,
+        .stretch = 1.05, /* so that sheets do not crumple: compressed springs need shorter steps */
+        .families =
+            shape == ROPE ? SPRING_GRID_STRUCTURAL : SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR | SPRING_GRID_BEND,
+        .stiffness = 20000,
+        .damping = damping,
+        .pinned = shape == ROPE ? SPRING_GRID_FIRST_X : SPRING_GRID_FIRST_Y | SPRING_GRID_LAST_Y,
+    };
+}
+
+static void size_of(const spring_grid *grid, size_t *particles, size_t *links)
+{
+    if (spring_grid_size(grid, particles, links) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no grid of side %u", grid->count[0]);
+}
+
+/* The number of links of a scene with `side` particles along an edge. */
+static size_t scene_links(scene_shape shape, uint32_t side)
+{
+    const spring_grid grid = grid_of(shape, side, 0);
+    size_t particles, links;
+    size_of(&grid, &particles, &links);
+    return links;
+}
+
+/* A pseudorandom number below n, from the high bits of Knuth's 64-bit generator. */
+static size_t below(uint64_t *state, size_t n)
+{
+    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (size_t)((*state >> 32) * n >> 32);
+}
+
+static void shuffle_links(scene_arrays *all, uint64_t *state)
+{
+    for (size_t i = all->links; i > 1; i--) { /* Fisher and Yates */
+        const size_t j = below(state, i);
+        const spring_link kept = all->link[i - 1];
+        all->link[i - 1] = all->link[j];
+        all->link[j] = kept;
+    }
+}
+
+/* Numbers the particles at random. */
+static void shuffle_particles(scene_arrays *all, uint64_t *state)
+{
+    uint32_t *number = scene_allocate(all->particles * sizeof *number);
+    double *position = scene_allocate(all->particles * 3 * sizeof *position);
+    uint8_t *pinned = scene_allocate(all->particles);
+    for (size_t i = 0; i < all->particles; i++) { /* the same, inside-out variant */
+        const size_t j = below(state, i + 1);
+        number[i] = number[j];
+        number[j] = (uint32_t)i;
+    }
+    for (size_t i = 0; i < all->particles; i++) {
+        memcpy(&position[3 * number[i]], &all->position[3 * i], 3 * sizeof *position);
+        pinned[number[i]] = all->pinned[i];
+    }
+    for (size_t i = 0; i < all->links; i++) {
+        all->link[i].a = number[all->link[i].a];
+        all->link[i].b = number[all->link[i].b];
+    }
+    free(number);
+    free(all->position);
+    free(all->pinned);
+    all->position = position;
+    all->pinned = pinned;
+}
+
+/* Fills arrays, reproducibly; damping [N s/m] of every link. */
+static void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scene_order order, double damping)
+{
+    const spring_grid grid = grid_of(shape, side, damping);
+    free(all->position);
+    free(all->mass);
+    free(all->pinned);
+    free(all->link);
+    size_of(&grid, &all->particles, &all->links);
+    all->position = scene_allocate(all->particles * 3 * sizeof *all->position);
+    all->mass = scene_allocate(all->particles * sizeof *all->mass);
+    all->pinned = scene_allocate(all->particles);
+    all->link = scene_allocate(all->links * sizeof *all->link);
+    spring_grid_fill(&grid, all->position, all->pinned, all->link);
+    for (size_t i = 0; i < all->particles; i++)
+        all->mass[i] = scene_mass * (1 + 0.1 * (double)(i % 7));
+    uint64_t state = 1;
+    if (order == SHUFFLED)
+        shuffle_particles(all, &state);
+    if (order != NATURAL)
+        shuffle_links(all, &state);
+}
+
+static scene_arrays all;
+static double dt; /* [s] half the safe step of leapfrog */
 
 /* ----------------------------------------------------------------------------------------------------------- scenes */
 
@@ -124,24 +281,24 @@ static void advance(const built *b, spring_method method, uint64_t steps, uint64
 
 /* -------------------------------------------------------------------------------------------------- the plain loop */
 
-static plain_scene plain, plain_shuffled;
+static plain_scene plain;
 
-static void build_plain(plain_scene *p, const scene_arrays *a, const scene_feature *f)
+static void build_plain(const scene_feature *f)
 {
-    free(p->particle);
-    *p = (plain_scene){
-        .particles = a->particles,
-        .links = a->links,
-        .particle = scene_allocate(a->particles * sizeof *p->particle),
-        .link = a->link,
+    free(plain.particle);
+    plain = (plain_scene){
+        .particles = all.particles,
+        .links = all.links,
+        .particle = scene_allocate(all.particles * sizeof *plain.particle),
+        .link = all.link,
         .drag = f->drag,
         .damped = f->damping > 0,
     };
-    memcpy(p->gravity, scene_gravity, sizeof p->gravity);
-    for (size_t i = 0; i < a->particles; i++) {
-        const double mass = f->masses ? a->mass[i] : scene_mass;
-        p->particle[i] = (plain_particle){.inverse_mass = a->pinned[i] != 0 ? 0 : 1 / mass};
-        memcpy(p->particle[i].x, &a->position[3 * i], sizeof p->particle[i].x);
+    memcpy(plain.gravity, scene_gravity, sizeof plain.gravity);
+    for (size_t i = 0; i < all.particles; i++) {
+        const double mass = f->masses ? all.mass[i] : scene_mass;
+        plain.particle[i] = (plain_particle){.inverse_mass = all.pinned[i] != 0 ? 0 : 1 / mass};
+        memcpy(plain.particle[i].x, &all.position[3 * i], sizeof plain.particle[i].x);
     }
 }
 
@@ -163,17 +320,11 @@ static void move_memory(const scene_subject *s, uint64_t passes)
         state = scene_allocate(allocated);
         memset(state, 0, allocated);
     }
-    const bench_streams streams = {values, state, state + array, state + 2 * array, NULL, NULL};
+    const bench_streams streams = {values, state, state + array, 1, {state + 2 * array}};
     for (; passes > 0; passes--) {
-        limits->streams[1][0][0](&streams, 1);
+        limits->streams(&streams, 1);
         limits->read(all.link, all.links * link_bytes, 1);
     }
-}
-
-static void read_definition(uint64_t times)
-{
-    const bench_limits *limits = bench_limits_of(false);
-    limits->read(all.link, all.links * sizeof *all.link, times);
 }
 
 static void build_other(const scene_subject *s)
@@ -198,43 +349,24 @@ static void prepare(const bench_row *row)
     if (s->against == LEAPFROG || s->against == IN_DOUBLE)
         build_other(s);
     if (row->baseline != NULL)
-        build_plain(&plain, &all, &s->feature);
-    if (s->against == SHUFFLED_LIST || s->work == RENUMBER)
-        scene_fill(&shuffled, s->shape, s->side, SHUFFLED, s->feature.damping);
-    if (s->against == SHUFFLED_LIST)
-        build_plain(&plain_shuffled, &shuffled, &s->feature);
-}
-
-/* Times renumbering of a copy of the links in random order. */
-static void renumber(uint64_t calls)
-{
-    uint32_t *order = scene_allocate(all.particles * sizeof *order);
-    for (; calls > 0; calls--) {
-        memcpy(all.link, shuffled.link, all.links * sizeof *all.link);
-        scene_renumber(&all, order);
-    }
-    free(order);
+        build_plain(&s->feature);
 }
 
 static void run_ours(const scene_subject *s, uint64_t calls)
 {
     const spring_scene_def def = definition(&s->feature, s->shape);
-    if (s->work == INIT)
+    if (s->against != DEFINITION)
+        advance(&ours, s->feature.method, s->steps, calls);
+    else
         for (; calls > 0; calls--)
             init(&ours, &def);
-    else if (s->work == RENUMBER)
-        renumber(calls);
-    else
-        advance(&ours, s->feature.method, s->steps, calls);
 }
 
 static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_t steps)
 {
     const bench_limits *limits = bench_limits_of(s->single);
-    if (s->work != STEPS)
-        read_definition(calls);
-    else if (s->against == SHUFFLED_LIST)
-        plain_advance(&plain_shuffled, dt, steps);
+    if (s->against == DEFINITION)
+        limits->read(all.link, all.links * sizeof *all.link, calls);
     else if (s->against == SIXTEEN_STEPS)
         advance(&ours, s->feature.method, 16, (s->steps * calls + 15) / 16);
     else if (s->against != LIMITS)
@@ -242,16 +374,16 @@ static void run_limit(const scene_subject *s, int which, uint64_t calls, uint64_
     else if (which == 1)
         move_memory(s, steps);
     else
-        limits->links[scene_axes(s->shape) - 1](steps * all.links / limits->together + 1);
+        limits->links(scene_axes(s->shape), steps * all.links / limits->together + 1);
 }
 
-double scene_time(const bench_row *row, int which, uint64_t calls)
+static double time(const bench_row *row, int which, uint64_t calls)
 {
     const scene_subject *s = row->subject;
     prepare(row);
     /* all steps of the plain loop and of limits take the same time, so in large scenes one step is timed instead of a
        call */
-    const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS && s->against != SHUFFLED_LIST);
+    const bool scenes = which == 0 || (which != bench_baseline && s->against != LIMITS);
     const uint64_t share = all.links > 300000 && !scenes ? s->steps : 1, steps = s->steps / share;
     const double begin = timing_busy();
     if (which == 0)
@@ -262,4 +394,187 @@ double scene_time(const bench_row *row, int which, uint64_t calls)
         for (uint64_t i = 0; i < calls; i++)
             plain_advance(&plain, dt, steps);
     return (timing_busy() - begin) * (double)share;
+}
+
+static const scene_feature plainly = {.method = SPRING_LEAPFROG};
+static const scene_feature copied = {.method = SPRING_LEAPFROG, .copied = true};
+
+/* ------------------------------------------------------------------------------------------------------------ goals */
+
+/* Goals for vectors of AVX-512, of AVX2, and of 16 bytes. */
+static double by_vector(double avx512, double avx2, double others)
+{
+    const size_t lanes = bench_limits_of(false)->together;
+    return lanes == 8 ? avx512 : lanes == 4 ? avx2 : others;
+}
+
+/* The required speedup over the plain loop; 0: none. */
+static double goal_speedup(const scene_subject *s)
+{
+    if (s->shape == ROPE)
+        return s->steps == 1 ? 0 : s->side <= 8 ? 1 : s->side >= 16 ? by_vector(1 / 0.6, 1 / 0.6, 1 / 0.85) : 1;
+    if (s->feature.damping > 0 || s->feature.drag > 0 || s->feature.masses)
+        return 0;
+    if (s->order != NATURAL)
+        return 1;
+    if (s->shape == JELLY)
+        return s->side <= 20 ? by_vector(2.1, 1.6, 0) : 0; /* in cache */
+    return s->side == 10                     ? by_vector(1.6, 1.3, 0)
+           : s->side == 35 || s->side == 128 ? by_vector(2.1, 1.6, 0)
+           : s->side == 1000                 ? 2.2
+                                             : 0;
+}
+
+/* The largest allowed ratio to the time of the limit; INFINITY: none. */
+static double goal_ratio(const scene_subject *s)
+{
+    if (s->against == DEFINITION || s->against == SIXTEEN_STEPS)
+        return INFINITY;
+    if (s->single)
+        return 0.5;
+    if (s->feature.method == SPRING_RK4)
+        return 4.3;
+    if (s->feature.damping > 0)
+        return s->side < 1000 ? 1.6 : 2.1;
+    return s->shape == WATER ? 2.2 : INFINITY;
+}
+
+static const double most_init = 18;   /* [ns] per link, for scenes of 10^6 particles */
+static const double most_excess = 25; /* [ns] overhead per step of one step per call, compared with 16 steps per call */
+
+/* ------------------------------------------------------------------------------------------------------------- rows */
+
+/* The plain loop supports only three axes, double precision and leapfrog, without a callback. */
+static bool is_looped(const scene_subject *s)
+{
+    return s->shape != WATER && !s->single && s->against != DEFINITION && s->feature.method == SPRING_LEAPFROG &&
+           s->feature.force == NULL && s->feature.flags == 0;
+}
+
+static void add(const char *name, const scene_subject *s)
+{
+    static const char *const shapes[] = {[ROPE] = "rope", [SHEET] = "sheet", [JELLY] = "jelly", [WATER] = "water"};
+    static const char *const orders[] = {
+        [NATURAL] = "", [LINKS_SHUFFLED] = "_links_shuffled", [SHUFFLED] = "_shuffled"};
+    static const char *const besides[] = {[LIMITS] = "streams",
+                                          [LEAPFROG] = "leapfrog",
+                                          [IN_DOUBLE] = "double",
+                                          [SIXTEEN_STEPS] = "16_steps",
+                                          [DEFINITION] = "definition"};
+    const size_t links = scene_links(s->shape, s->side);
+    const bool looped = is_looped(s);
+    bench_row row = {
+        .part = "scene",
+        .precision = s->single ? "float" : "double",
+        .count = links,
+        .steps = s->steps,
+        .goal_ratio = goal_ratio(s),
+        .goal_ns = s->against == DEFINITION && s->side == 1000 ? most_init : INFINITY,
+        .goal_excess_ns = s->against == SIXTEEN_STEPS ? most_excess : 0,
+        .goal_speedup = looped ? goal_speedup(s) : 0,
+        .limits = {besides[s->against], s->against == LIMITS ? "arithmetic" : NULL},
+        .baseline = looped ? "list" : NULL,
+        .long_only = links > 2000000,
+        .time = time,
+    };
+    if (s->against == DEFINITION)
+        snprintf(row.kernel, sizeof row.kernel, "init_%s", shapes[s->shape]);
+    else
+        snprintf(row.kernel, sizeof row.kernel, "%s_%s_%d%s%s", spring_method_name(s->feature.method), shapes[s->shape],
+                 (int)s->steps, orders[s->order], name);
+    bench_add(&row, s, sizeof *s);
+}
+
+static const uint32_t sides[] = {10, 35, 128, 400, 1000};
+
+enum { side_count = sizeof sides / sizeof sides[0] };
+
+static void add_ropes(void)
+{
+    static const uint32_t particles[] = {2, 3, 4, 8, 16, 32, 64};
+    for (size_t i = 0; i < sizeof particles / sizeof particles[0]; i++) {
+        add("", &(scene_subject){.shape = ROPE, .side = particles[i], .feature = plainly, .steps = 16});
+        add("", &(scene_subject){
+                    .shape = ROPE, .side = particles[i], .feature = plainly, .steps = 1, .against = SIXTEEN_STEPS});
+    }
+}
+
+/* Adds rows for one and for sixteen steps per call. */
+static void add_both(scene_subject s)
+{
+    s.steps = 1;
+    add("", &s);
+    if ((s.order == LINKS_SHUFFLED || s.order == SHUFFLED) &&
+        s.side > 128) /* slow, and no data stay in the cache between steps */
+        return;
+    s.steps = 16;
+    add("", &s);
+}
+
+static void add_shapes(void)
+{
+    for (scene_order order = NATURAL; order <= SHUFFLED; order++)
+        for (int i = 0; i < side_count; i++)
+            add_both((scene_subject){.shape = SHEET, .side = sides[i], .order = order, .feature = plainly});
+    for (uint32_t side = 10; side <= 40; side *= 2)
+        add_both((scene_subject){.shape = JELLY, .side = side, .feature = plainly});
+    add("_copied", &(scene_subject){.shape = JELLY, .side = 10, .feature = copied, .steps = 16, .against = LEAPFROG});
+    for (int i = 1; i < side_count; i++) {
+        add_both((scene_subject){.shape = WATER, .side = sides[i], .feature = plainly});
+        add_both((scene_subject){
+            .shape = SHEET, .side = sides[i], .feature = plainly, .against = IN_DOUBLE, .single = true});
+    }
+}
+
+/* Wind. */
+static void blow(void *user, double t, size_t particles, const double *const position[3],
+                 const double *const velocity[3], double *const force[3])
+{
+    (void)user;
+    (void)t;
+    (void)position;
+    (void)velocity;
+    double *z = force[2];
+    for (size_t i = 0; i < particles; i++)
+        z[i] += 0.02;
+}
+
+/* Adds the other methods, then the features one by one, compared with the scene without them. */
+static void add_features(uint32_t side)
+{
+    static const struct {
+        const char *name;
+        scene_feature feature;
+    } features[] = {
+        {"_damping", {.method = SPRING_LEAPFROG, .damping = 0.05}},
+        {"_drag", {.method = SPRING_LEAPFROG, .drag = 0.01}},
+        {"_masses", {.method = SPRING_LEAPFROG, .masses = true}},
+        {"_callback", {.method = SPRING_LEAPFROG, .force = blow}},
+        {"_callback_still", {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
+        {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
+        {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
+    };
+    scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
+    for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
+        s.feature = (scene_feature){.method = spring_method_at(i)};
+        if (s.feature.method != SPRING_LEAPFROG && spring_method_describe(s.feature.method)->scenes && side <= 128)
+            add("", &s);
+    }
+    for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
+        s.feature = features[i].feature;
+        if (side <= 128 || s.feature.damping > 0) /* the feature with a second pass over the links */
+            add(features[i].name, &s);
+    }
+}
+
+void bench_add_scenes(void)
+{
+    add_ropes();
+    add_shapes();
+    add_features(35);
+    add_features(128);
+    add_features(1000);
+    for (int i = 1; i < side_count; i++)
+        add("",
+            &(scene_subject){.shape = SHEET, .side = sides[i], .feature = plainly, .steps = 1, .against = DEFINITION});
 }

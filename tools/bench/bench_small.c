@@ -12,7 +12,6 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
 #include "rows.h"
 
 /* The tables only, so that the code below has the same constant coefficients as the library. */

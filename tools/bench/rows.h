@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The rows of spring-bench: timed kernels and their comparisons. The functions of parts.h add rows to the table.
- * spring_bench.c takes the samples and writes the table.
+ * The rows of spring-bench: timed kernels and their comparisons, and their samples.
+ *
+ * Method    A sample is the time of a fixed number of calls. Samples of the library and of its comparisons alternate,
+ *           so that temporary slowdowns of the machine affect all of them. Each result is the median of its samples. If
+ *           there are two limits, the slower one counts. Samples are processor time, so other processes affect them
+ *           only through caches and memory bandwidth.
  */
 #ifndef SPRINGSTEP_BENCH_ROWS_H
 #define SPRINGSTEP_BENCH_ROWS_H
@@ -10,6 +14,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include <springstep/spring.h>
 
 enum { bench_most_limits = 2, bench_baseline = bench_most_limits + 1 };
 
@@ -36,8 +42,27 @@ struct bench_row {
 /** Adds copies of a row and of its subject of `bytes` bytes to the table. */
 void bench_add(const bench_row *row, const void *subject, size_t bytes);
 
-/** The rows so far; the distinct names of their kernels, ended by NULL. */
-const bench_row *bench_rows(size_t *count);
-extern const char *bench_kernels[];
+/* Each function adds the rows of its part to the table. */
+void bench_add_springs(void);
+void bench_add_batches(void);
+void bench_add_scenes(void);
+void bench_add_small_scenes(void);
+
+/** The textbook formula of a spring that is not critically damped; `damped`, `loaded` are false if g, a are zero. */
+spring_state bench_textbook(spring_state s, double w, double g, double a, double t, bool damped, bool loaded);
+
+/* samples.c; spring-engines uses it, too */
+
+typedef struct bench_times {
+    double ours, limit, baseline; /* [ns] per spring, or link, and step; NAN: there is none */
+    const char *limit_name;       /* the slower limit */
+    double spread;                /* interquartile range over median, the largest of the three */
+} bench_times;
+
+/** Measures a row; quick: with fewer and shorter samples. */
+bench_times bench_measure(const bench_row *row, bool quick);
+
+/** Returns true if the spread is so large that the row is inconclusive, because the machine was busy. */
+bool bench_is_noisy(double spread);
 
 #endif

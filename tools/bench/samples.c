@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The samples of rows; see samples.h. */
-#include "samples.h"
+/* The samples of rows; see rows.h. */
+#include "rows.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-bench: the cost of a step of a spring, compared with limits measured in the same run. See samples.h for the
+ * spring-bench: the cost of a step of a spring, compared with limits measured in the same run. See rows.h for the
  * method.
  */
 #include <stdio.h>
@@ -9,8 +9,12 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
-#include "parts.h"
-#include "samples.h"
+#include "rows.h"
+
+enum { most_rows = 512 };
+static bench_row rows[most_rows];
+static size_t row_count;
+static const char *kernels[most_rows + 1]; /* distinct names, ended by NULL */
 
 static const char *const parts[] = {"spring", "batch", "scene", "small", NULL}, *const precisions[] = {"double",
                                                                                                        "float", NULL};
@@ -21,7 +25,7 @@ static bool quick;
 static const cli_option options[] = {
     {"part", CLI_CHOICE, .choice = &only_part, .choices = parts, .value = "PART",
      .help = "spring (one spring), batch, scene or small"},
-    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = bench_kernels, .value = "NAME",
+    {"kernel", CLI_CHOICE, .choice = &only_kernel, .choices = kernels, .value = "NAME",
      .help = "only the rows with this name"},
     {"precision", CLI_CHOICE, .choice = &only_precision, .choices = precisions, .value = "P",
      .help = "double or float"},
@@ -41,16 +45,15 @@ static const cli_program program = {
         "the time of the library (nan: no plain loop). ratio is the time of the library over the time of a\n"
         "limit. The goals are goal_speedup and goal_excess_ns (0: no goal), and goal_ratio and goal_ns (inf:\n"
         "no goal).\n\n"
-        "Part spring: METHOD is spring_advance() over many steps. METHOD_call is a loop of calls of the\n"
-        "kernel. METHOD_advance_1 is a loop of calls of spring_advance() with one step. _damped and _loaded\n"
-        "have damping and load. The limit \"loop\" is a hand-written loop over the same steps, in registers:\n"
-        "Euler; kick, drift, kick; the four stages of rk4. The limit \"kicks\", for other methods, is one kick\n"
-        "and one drift for each force evaluation. The limit \"textbook\" is the formula of the exact solution,\n"
-        "with exp, cos and sin, or cosh and sinh. leapfrog_denormal starts from 1e-310 m. Its limit,\n"
-        "\"ordinary\", is leapfrog from an ordinary start.\n\n"
+        "Part spring: METHOD is spring_advance() over many steps. exact_call is a loop of calls of the kernel.\n"
+        "The limit \"loop\" is a hand-written loop over the same steps, in registers: Euler; kick, drift, kick;\n"
+        "the four stages of rk4. The limit \"kicks\", for other methods, is one kick and one drift for each\n"
+        "force evaluation. The limit \"textbook\" is the formula of the exact solution, with exp, cos and sin, or\n"
+        "cosh and sinh. leapfrog_denormal starts from 1e-310 m. Its limit, \"ordinary\", is leapfrog from an\n"
+        "ordinary start.\n\n"
         "Part batch: METHOD_batch_N is spring_batch_advance() with N steps per call, and omega2 is an array.\n"
         "In _shared_X, _own_X and _zero_X, X is shared, an array, and an array of zeros. _settled starts from\n"
-        "1e-310 m (float: 1e-41). In _mixed, every second spring is overdamped. In _unaligned, arrays begin 8\n"
+        "1e-310 m. In _mixed, every second spring is overdamped. In _unaligned, arrays begin 8\n"
         "bytes after a multiple of 64. The limits use SIMD vectors as wide as the library's. \"streams\" reads\n"
         "and writes the same arrays without arithmetic, and its time is divided by the number of steps per\n"
         "call. \"arithmetic\" does the multiplications and additions of a step in registers, with given\n"
@@ -61,15 +64,13 @@ static const cli_program program = {
         "Part scene: METHOD_SHAPE_N is spring_scene_advance() with N steps per call: a rope, a sheet or a\n"
         "block of jelly with structural, shear and bend springs, or water, a height field, with gravity and\n"
         "pinned edges. In _links_shuffled, links are in random order. In _shuffled, particles are also\n"
-        "numbered at random. _renumbered is _shuffled after spring_links_renumber(), and its limit is the\n"
-        "plain loop before it, \"shuffled_list\". The plain loop is a loop over an array of links and one over\n"
-        "an array of particles, with a division and a square root per link, compiled with -O2. Limits:\n"
-        "\"streams\" reads and writes the state, and reads forces and links. \"arithmetic\" does the arithmetic\n"
-        "of the links, once per link, in registers. The limit of float is the same scene in double. The limit\n"
-        "of a feature (_drag, _damping, ...) or of another method is \"leapfrog\" without it. The limit of a\n"
-        "rope with one step per call is \"16_steps\" per call. init_SHAPE is spring_scene_init(), and\n"
-        "renumber_SHAPE is the call that sorts its links. Their limit is reading the links of a definition.\n"
-        "Goals that depend on the vector width are for this processor.\n\n"
+        "numbered at random. The plain loop is a loop over an array of links and one over an array of\n"
+        "particles, with a division and a square root per link, compiled with -O2. Limits: \"streams\" reads\n"
+        "and writes the state, and reads forces and links. \"arithmetic\" does the arithmetic of the links, once\n"
+        "per link, in registers. The limit of float is the same scene in double. The limit of a feature (_drag,\n"
+        "_damping, ...) or of another method is \"leapfrog\" without it. The limit of a rope with one step per\n"
+        "call is \"16_steps\" per call. init_sheet is spring_scene_init(). Its limit is reading the links of a\n"
+        "definition. Goals that depend on the vector width are for this processor.\n\n"
         "Part small: METHOD_SCENE is spring_scene_advance() for one to six particles. Times are per force\n"
         "evaluation, and count is the number of evaluations per step. Limits: \"written_out\" is the same\n"
         "method, hand-written in C for this scene. \"callback\" is the callback alone.\n\n"
@@ -87,6 +88,19 @@ static const cli_program program = {
                  "--quick --part batch --count 1000 -o bench.tsv"},
     .options = options,
 };
+
+void bench_add(const bench_row *row, const void *subject, size_t bytes)
+{
+    void *kept = malloc(bytes);
+    if (kept == NULL || row_count == most_rows)
+        cli_fail(CLI_FAILED, "no room for more than %zu rows", row_count);
+    rows[row_count] = *row;
+    rows[row_count].subject = memcpy(kept, subject, bytes);
+    int k = 0;
+    while (kernels[k] != NULL && strcmp(kernels[k], row->kernel) != 0)
+        k++;
+    kernels[k] = rows[row_count++].kernel;
+}
 
 static void write_row(cli_table *table, const bench_row *r)
 {
@@ -108,16 +122,14 @@ static void write_row(cli_table *table, const bench_row *r)
 static bool wanted(const bench_row *r)
 {
     return (only_part < 0 || strcmp(parts[only_part], r->part) == 0) &&
-           (only_kernel < 0 || strcmp(bench_kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
+           (only_kernel < 0 || strcmp(kernels[only_kernel], r->kernel) == 0) && !(quick && r->long_only) &&
            (only_precision < 0 || strcmp(precisions[only_precision], r->precision) == 0) &&
            (only_count == 0 || only_count == r->count);
 }
 
 static void check_any_wanted(void)
 {
-    size_t count;
-    const bench_row *rows = bench_rows(&count);
-    for (const bench_row *r = rows; r < rows + count; r++)
+    for (const bench_row *r = rows; r < rows + row_count; r++)
         if (wanted(r))
             return;
     cli_fail(CLI_USAGE, "no row matches --part, --kernel, --precision and --count%s",
@@ -135,10 +147,8 @@ int main(int argc, char **argv)
     cli_table *table = cli_open_output();
     timing_stamp(table);
     cli_columns(table, program.columns);
-    size_t count;
-    const bench_row *rows = bench_rows(&count);
-    for (const bench_row *r = rows; r < rows + count; r++) {
-        cli_progress((double)(r - rows) / (double)count);
+    for (const bench_row *r = rows; r < rows + row_count; r++) {
+        cli_progress((double)(r - rows) / (double)row_count);
         if (!wanted(r))
             continue;
         if (calls > 0)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * spring-engines: the same sheet in the library and in physics engines for games, measured in one run. See samples.h
+ * spring-engines: the same sheet in the library and in physics engines for games, measured in one run. See rows.h
  * for the method.
  *
  * A sheet, pinned along two edges, hangs under gravity, with damped structural, shear and bend links. Both use the same
@@ -12,7 +12,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "engine.h"
-#include "samples.h"
+#include "rows.h"
 
 static const char *const engines[] = {"bullet", "chipmunk", NULL};
 static const physics_engine *const engine_of[] = {&engine_bullet, &engine_chipmunk};

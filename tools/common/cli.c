@@ -113,12 +113,15 @@ static const char *word_of(const cli_option *o, int i, int *value)
     return NULL;
 }
 
-void cli_print_words(FILE *out, const cli_option *o, const char *separator)
+const char *cli_word_list(const cli_option *o, const char *separator)
 {
+    static char text[8192];
+    size_t length = 0;
     const char *word;
-    int i = 0;
-    for (int value; (word = word_of(o, i, &value)) != NULL; i++)
-        fprintf(out, "%s%s", i > 0 ? separator : "", word);
+    text[0] = '\0';
+    for (int i = 0, value; (word = word_of(o, i, &value)) != NULL && length < sizeof text; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i > 0 ? separator : "", word);
+    return text;
 }
 
 static bool parse_word(const char *text, const cli_option *o)
@@ -202,59 +205,67 @@ static const cli_option hidden_options[] = {
     {.name = NULL},
 };
 
+/* All options: of the tool, common, and hidden. */
+static struct {
+    const cli_option *option;
+    bool given;
+    char standard[32]; /* the default as text */
+} option_table[64];
+static size_t option_count, shown_count; /* all but the hidden ones are shown */
+
 const cli_option *cli_option_at(size_t i)
 {
-    const cli_option *o = cli_asked.program->options;
-    for (; o->name != NULL; o++)
-        if (i-- == 0)
-            return o;
-    return i < sizeof common_options / sizeof common_options[0] - 1 ? &common_options[i] : NULL;
+    return i < shown_count ? option_table[i].option : NULL;
 }
 
-void cli_print_expectation(FILE *out, const cli_option *o)
+const char *cli_default(size_t i)
 {
+    return option_table[i].standard;
+}
+
+bool cli_given(const void *target)
+{
+    for (size_t i = 0; i < shown_count; i++)
+        if (option_table[i].option->flag == target)
+            return option_table[i].given;
+    return false;
+}
+
+const char *cli_expectation(const cli_option *o)
+{
+    static char text[8300];
     switch (o->kind) {
     case CLI_FLAG:
-        break;
+        return "";
     case CLI_COUNT:
         if (o->most > 0)
-            fprintf(out, "a whole number from %" PRIu64 " to %" PRIu64, o->least, o->most);
+            snprintf(text, sizeof text, "a whole number from %" PRIu64 " to %" PRIu64, o->least, o->most);
         else
-            fprintf(out, "a whole number of at least %" PRIu64, o->least);
-        break;
+            snprintf(text, sizeof text, "a whole number of at least %" PRIu64, o->least);
+        return text;
     case CLI_REAL:
-        fputs("a finite number", out);
-        break;
+        return "a finite number";
     case CLI_NOT_NEGATIVE:
-        fputs("a finite number of at least 0", out);
-        break;
+        return "a finite number of at least 0";
     case CLI_POSITIVE:
-        fputs("a finite number greater than 0", out);
-        break;
+        return "a finite number greater than 0";
     case CLI_CHOICE:
     case CLI_METHOD:
-        fputs("one of ", out);
-        cli_print_words(out, o, ", ");
-        break;
+        snprintf(text, sizeof text, "one of %s", cli_word_list(o, ", "));
+        return text;
     case CLI_REALS:
-        fprintf(out, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
-        break;
+        snprintf(text, sizeof text, "%" PRIu64 " finite numbers separated by commas, %s", o->least, o->value);
+        return text;
     case CLI_FILE:
     case CLI_INPUT:
+        return "the name of a file";
     case CLI_FOLDER:
-        fprintf(out, "the name of a %s", o->kind == CLI_FOLDER ? "folder" : "file");
-        break;
+        return "the name of a folder";
     case CLI_WORDS:
-        fputs(o->value, out);
-        break;
+        return o->value;
     }
+    return "";
 }
-
-/* ------------------------------------------------------------------------------------------------------ defaults */
-
-enum { MOST_OPTIONS = 64 };
-
-static char defaults[MOST_OPTIONS][32];
 
 /* The initial value of a target is the default, if it is a valid value of the option. */
 static void note_default(char *text, size_t size, const cli_option *o)
@@ -274,9 +285,14 @@ static void note_default(char *text, size_t size, const cli_option *o)
         snprintf(text, size, "%s", spring_method_name((spring_method)*o->choice));
 }
 
-const char *cli_default(size_t i)
+/* The options that are defined by a table. The initial values of their targets are their defaults. */
+static void add_options(const cli_option *options)
 {
-    return defaults[i];
+    for (const cli_option *o = options; o->name != NULL; o++) {
+        assert(option_count < sizeof option_table / sizeof option_table[0]);
+        note_default(option_table[option_count].standard, sizeof option_table[option_count].standard, o);
+        option_table[option_count++].option = o;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------- parsing */
@@ -284,19 +300,13 @@ const char *cli_default(size_t i)
 /* "program: --option: problem what it should be" */
 static _Noreturn void fail_at(const cli_option *o, const char *value, const char *problem)
 {
-    fprintf(stderr, "%s: --%s: ", cli_asked.program->name, o->name);
-    if (value != NULL)
-        fprintf(stderr, "\"%s\" ", value);
-    fputs(problem, stderr);
-    cli_print_expectation(stderr, o);
     likeness best = {.typed = value != NULL ? value : ""};
     const char *word;
     for (int i = 0, which; (word = word_of(o, i, &which)) != NULL; i++)
         compare(&best, word);
-    if (best.word != NULL)
-        fprintf(stderr, "; did you mean \"%s\"?", best.word);
-    fputc('\n', stderr);
-    exit(CLI_USAGE);
+    const bool known = value != NULL, meant = best.word != NULL;
+    cli_fail(CLI_USAGE, "--%s: %s%s%s%s%s%s%s%s", o->name, known ? "\"" : "", known ? value : "", known ? "\" " : "",
+             problem, cli_expectation(o), meant ? "; did you mean \"" : "", meant ? best.word : "", meant ? "\"?" : "");
 }
 
 static _Noreturn void fail_as_no_option(const char *word)
@@ -353,61 +363,50 @@ static bool store(const cli_option *o, const char *value)
     return false;
 }
 
-static const cli_option *find_option(const cli_option *options, const char *name, size_t length)
+/* The index of the option with this name; option_count: there is none. */
+static size_t find_option(const char *name, size_t length)
 {
-    for (const cli_option *o = options; o->name != NULL; o++)
-        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
-            return o;
-    return NULL;
+    size_t i = 0;
+    while (i < option_count &&
+           (strlen(option_table[i].option->name) != length || strncmp(option_table[i].option->name, name, length) != 0))
+        i++;
+    return i;
 }
 
-static const cli_option *option_of(const char *word, const char **value)
+static size_t option_of(const char *word, const char **value)
 {
     *value = NULL;
     if (strcmp(word, "-h") == 0)
-        return find_option(common_options, "help", strlen("help"));
+        return find_option("help", strlen("help"));
     /* -out... is a long option with one dash missing, not -o with the value "ut..." */
     if (word[0] == '-' && word[1] == 'o' && word[2] != '=' && strncmp(word, "-out", 4) != 0) {
         if (word[2] != '\0')
             *value = word + 2;
-        return &common_options[0];
+        return find_option("output", strlen("output"));
     }
     if (word[0] != '-' || word[1] != '-')
-        return NULL;
+        return option_count;
     const size_t length = strcspn(word + 2, "=");
     if (word[2 + length] == '=')
         *value = word + 2 + length + 1;
-    const cli_option *const tables[] = {cli_asked.program->options, common_options, hidden_options};
-    const cli_option *found = NULL;
-    for (size_t i = 0; found == NULL && i < sizeof tables / sizeof tables[0]; i++)
-        found = find_option(tables[i], word + 2, length);
-    return found;
+    return find_option(word + 2, length);
 }
 
-/* Prints a word quoted for a shell, on one line. Only words with special characters are quoted. */
+/* Prints a word quoted for a shell, on one line: control characters become "?". Only words with special characters are
+   quoted. */
 static void print_quoted(FILE *out, const char *word)
 {
     static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-    const size_t length = strlen(word);
-    bool control = false;
-    for (size_t i = 0; i < length; i++)
-        control = control || iscntrl((unsigned char)word[i]);
-    if (length > 0 && strspn(word, plain) == length) {
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
         fputs(word, out);
         return;
     }
-    fputs(control ? "$'" : "'", out);
-    for (size_t i = 0; i < length; i++) {
-        const unsigned char c = (unsigned char)word[i];
-        if (iscntrl(c))
-            fprintf(out, "\\%03o", c);
-        else if (control && (c == '\'' || c == '\\'))
-            fprintf(out, "\\%c", c);
-        else if (c == '\'')
+    fputc('\'', out);
+    for (; *word != '\0'; word++)
+        if (*word == '\'')
             fputs("'\\''", out);
         else
-            fputc(c, out);
-    }
+            fputc(iscntrl((unsigned char)*word) ? '?' : *word, out);
     fputc('\'', out);
 }
 
@@ -415,7 +414,7 @@ static void print_quoted(FILE *out, const char *word)
    that name other output files. */
 static void record(FILE *words, const cli_option *o, const char *value)
 {
-    if (o == &common_options[0] || o->unstamped)
+    if (o->file == &cli_asked.output || o->unstamped)
         return;
     fprintf(words, " --%s", o->name);
     if (o->kind == CLI_FLAG)
@@ -452,23 +451,20 @@ static void take_value(const cli_option *o, const char *value)
         ++*o->times;
 }
 
-static uint64_t given; /* bit i: option i */
-
-bool cli_given(const void *target)
+static void check_options(void)
 {
-    const cli_option *o;
-    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++)
-        if (o->flag == target && (given >> i & 1) != 0)
-            return true;
-    return false;
-}
-
-static void fail_for_lack(const cli_option *o)
-{
-    const cli_option *other;
-    for (size_t i = 0; (other = cli_option_at(i)) != NULL; i++)
-        if (other->flag == o->needs)
-            cli_fail(CLI_USAGE, "--%s: has no effect without --%s", o->name, other->name);
+    for (size_t i = 0; i < shown_count; i++)
+        if (option_table[i].option->required && !option_table[i].given)
+            fail_at(option_table[i].option, NULL, "is missing; it should be ");
+    for (size_t i = 0; i < shown_count; i++) {
+        const void *const needs = option_table[i].option->needs;
+        if (needs == NULL || !option_table[i].given || cli_given(needs))
+            continue;
+        for (size_t k = 0; k < shown_count; k++)
+            if (option_table[k].option->flag == needs)
+                cli_fail(CLI_USAGE, "--%s: has no effect without --%s", option_table[i].option->name,
+                         option_table[k].option->name);
+    }
 }
 
 void cli_parse(const cli_program *p, int argc, char **argv)
@@ -476,21 +472,22 @@ void cli_parse(const cli_program *p, int argc, char **argv)
     cli_asked.program = p;
     cli_asked.started = time(NULL);
     cli_guard_files();
-    const cli_option *o;
-    size_t length, count = 0;
-    for (; (o = cli_option_at(count)) != NULL; count++) {
-        assert(count < MOST_OPTIONS);
-        note_default(defaults[count], sizeof defaults[count], o);
-    }
+    add_options(p->options);
+    add_options(common_options);
+    shown_count = option_count;
+    add_options(hidden_options);
+    size_t length;
     FILE *words = open_memstream(&cli_asked.text, &length);
     if (words == NULL)
         cli_fail(CLI_FAILED, "out of memory");
     fputs(p->name, words);
     for (int i = 1; i < argc; i++) {
         const char *value;
-        o = option_of(argv[i], &value);
-        if (o == NULL)
+        const size_t which = option_of(argv[i], &value);
+        if (which == option_count)
             fail_as_no_option(argv[i]);
+        const cli_option *const o = option_table[which].option;
+        option_table[which].given = true;
         if (o->kind == CLI_FLAG) {
             if (value != NULL)
                 cli_fail(CLI_USAGE, "--%s: \"%s\" is not expected: this option takes no value", o->name, value);
@@ -506,18 +503,8 @@ void cli_parse(const cli_program *p, int argc, char **argv)
             take_value(o, argv[++i]);
             record(words, o, argv[i]);
         }
-        for (size_t k = 0; k < count; k++)
-            if (o == cli_option_at(k))
-                given |= UINT64_C(1) << k;
     }
     if (fclose(words) != 0)
         cli_fail(CLI_FAILED, "out of memory");
-    for (size_t k = 0; k < count; k++)
-        if (cli_option_at(k)->required && (given >> k & 1) == 0)
-            fail_at(cli_option_at(k), NULL, "is missing; it should be ");
-    for (size_t k = 0; k < count; k++) {
-        o = cli_option_at(k);
-        if (o->needs != NULL && (given >> k & 1) != 0 && !cli_given(o->needs))
-            fail_for_lack(o);
-    }
+    check_options();
 }

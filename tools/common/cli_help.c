@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* --help, the man page and shell completion of a tool, generated from its table of options; see cli.h. */
-#define _XOPEN_SOURCE 700 /* open_memstream() */
 #include <ctype.h>
-#include <stdlib.h>
+#include <stdarg.h>
 #include <string.h>
 
 #include "common/cli_parts.h"
@@ -17,16 +16,15 @@ static int line_length(const char *text)
 
 /* ---------------------------------------------------------------------------------------------------------- help */
 
-/* "--method M" */
-static int print_name(FILE *out, const cli_option *o)
+/* " M" in "--method M" */
+static const char *space_before(const char *value)
 {
-    return fprintf(out, "--%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+    return value != NULL ? " " : "";
 }
 
-static void print_default(FILE *out, size_t i)
+static const char *or_nothing(const char *text)
 {
-    if (cli_default(i)[0] != '\0')
-        fprintf(out, " (default: %s)", cli_default(i));
+    return text != NULL ? text : "";
 }
 
 static void print_option(size_t i)
@@ -34,13 +32,15 @@ static void print_option(size_t i)
     enum { column = 26 };
     const cli_option *o = cli_option_at(i);
     const bool output = strcmp(o->name, "output") == 0;
-    const int width = printf(output ? "  -o, " : "  ") + print_name(stdout, o);
+    const int width =
+        printf("  %s--%s%s%s", output ? "-o, " : "", o->name, space_before(o->value), or_nothing(o->value));
     printf("%*s", width < column ? column - width : 2, "");
     if (o->help != NULL)
         printf("%.*s", line_length(o->help), o->help);
     else
-        cli_print_words(stdout, o, ", ");
-    print_default(stdout, i);
+        fputs(cli_word_list(o, ", "), stdout);
+    if (cli_default(i)[0] != '\0')
+        printf(" (default: %s)", cli_default(i));
     putchar('\n');
 }
 
@@ -124,31 +124,14 @@ static void print_letters(const char *text, int count)
         print_letter(text[i]);
 }
 
-static void print_roff(const char *text)
+/* Prints text that is escaped for roff. */
+static void print_roff(const char *format, ...)
 {
-    print_letters(text, (int)strlen(text));
-}
-
-/* Collects printed text in memory. */
-typedef struct memory {
-    FILE *stream;
-    char *text;
-    size_t length;
-} memory;
-
-static void open_memory(memory *m)
-{
-    m->stream = open_memstream(&m->text, &m->length);
-    if (m->stream == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-}
-
-static void print_memory(memory *m)
-{
-    if (fclose(m->stream) != 0)
-        cli_fail(CLI_FAILED, "out of memory");
-    print_roff(m->text);
-    free(m->text);
+    static char text[16384];
+    va_list arguments;
+    va_start(arguments, format);
+    print_letters(text, vsnprintf(text, sizeof text, format, arguments));
+    va_end(arguments);
 }
 
 static void print_section(const char *name)
@@ -171,20 +154,12 @@ static void print_paragraphs(const char *text)
 static void print_man_option(size_t i)
 {
     const cli_option *o = cli_option_at(i);
-    memory name;
-    open_memory(&name);
-    if (strcmp(o->name, "output") == 0)
-        fputs("-o FILE, ", name.stream);
-    if (strcmp(o->name, "help") == 0)
-        fputs("-h, ", name.stream);
-    print_name(name.stream, o);
+    const char *short_name = strcmp(o->name, "output") == 0 ? "-o FILE, " : strcmp(o->name, "help") == 0 ? "-h, " : "";
     fputs(".TP\n.B ", stdout);
-    print_memory(&name);
-    putchar('\n');
+    print_roff("%s--%s%s%s\n", short_name, o->name, space_before(o->value), or_nothing(o->value));
     if (o->help != NULL) {
         const int first = line_length(o->help);
-        print_letters(o->help, first);
-        putchar('\n');
+        print_roff("%.*s\n", first, o->help);
         if (o->help[first] != '\0') {
             puts(".br");
             print_paragraphs(o->help + first);
@@ -194,13 +169,9 @@ static void print_man_option(size_t i)
         return;
     if (o->help != NULL)
         puts(".br");
-    memory value;
-    open_memory(&value);
-    fputs("Value: ", value.stream);
-    cli_print_expectation(value.stream, o);
-    print_default(value.stream, i);
-    print_memory(&value);
-    putchar('\n');
+    const bool standard = cli_default(i)[0] != '\0';
+    print_roff("Value: %s%s%s%s\n", cli_expectation(o), standard ? " (default: " : "", cli_default(i),
+               standard ? ")" : "");
 }
 
 /* By convention, the title of a man page is the name in upper case. */
@@ -219,8 +190,7 @@ static void print_output(const cli_program *p)
          "names of the columns and by the rows.");
     if (p->columns != NULL) {
         puts(".PP\nColumns:");
-        print_roff(p->columns);
-        putchar('\n');
+        print_roff("%s\n", p->columns);
     }
     if (p->meaning != NULL) {
         puts(".PP");
@@ -233,21 +203,18 @@ void cli_print_man(void)
     const cli_program *p = cli_asked.program;
     print_title();
     print_section("NAME");
-    print_roff(p->name);
+    print_roff("%s", p->name);
     fputs(" \\- ", stdout);
-    print_roff(p->summary);
-    putchar('\n');
+    print_roff("%s\n", p->summary);
     print_section("SYNOPSIS");
     fputs(".B ", stdout);
-    print_roff(p->name);
-    putchar('\n');
-    for (const cli_option *o = p->options; o->name != NULL; o++) {
-        if (!o->required)
-            continue;
-        fputs(".B \\-\\-", stdout);
-        print_roff(o->name);
-        printf("\n.I %s\n", o->value);
-    }
+    print_roff("%s\n", p->name);
+    for (const cli_option *o = p->options; o->name != NULL; o++)
+        if (o->required) {
+            fputs(".B ", stdout);
+            print_roff("--%s\n", o->name);
+            printf(".I %s\n", o->value);
+        }
     puts(".RI [ OPTION ]...");
     print_section("DESCRIPTION");
     print_paragraphs(p->details != NULL ? p->details : p->summary);
@@ -261,14 +228,12 @@ void cli_print_man(void)
     print_section("EXIT STATUS");
     puts("0: success. 1: the computation failed, or a check failed. 2: invalid usage. 3: cannot read or write. If the\n"
          "output is a closed pipe, SIGPIPE ends the program without a message.");
-    if (p->examples[0] != NULL)
+    if (p->examples[0] != NULL) {
         print_section("EXAMPLES");
-    for (int i = 0; i < EXAMPLES && p->examples[i] != NULL; i++) {
-        fputs(i == 0 ? ".nf\n" : "", stdout);
-        print_roff(p->name);
-        putchar(' ');
-        print_roff(p->examples[i]);
-        fputs(i + 1 == EXAMPLES || p->examples[i + 1] == NULL ? "\n.fi\n" : "\n", stdout);
+        puts(".nf");
+        for (int i = 0; i < EXAMPLES && p->examples[i] != NULL; i++)
+            print_roff("%s %s\n", p->name, p->examples[i]);
+        puts(".fi");
     }
     print_section("SEE ALSO");
     puts(".BR spring\\-methods (1),\n.BR spring\\-plan (1),\n.BR spring\\-run (1),\n.BR spring\\-scene (1),\n"
@@ -299,9 +264,6 @@ static const char *kind_of_value(const cli_option *o)
 void cli_print_completion(void)
 {
     const cli_option *o;
-    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++) {
-        printf("--%s %s ", o->name, kind_of_value(o));
-        cli_print_words(stdout, o, " ");
-        putchar('\n');
-    }
+    for (size_t i = 0; (o = cli_option_at(i)) != NULL; i++)
+        printf("--%s %s %s\n", o->name, kind_of_value(o), cli_word_list(o, " "));
 }

@@ -25,11 +25,11 @@ const cli_option *cli_option_at(size_t i);
 /** The default of option i as text; "": it has none. */
 const char *cli_default(size_t i);
 
-/** Prints a description of valid values: "a finite number". */
-void cli_print_expectation(FILE *out, const cli_option *o);
+/** Describes valid values: "a finite number". */
+const char *cli_expectation(const cli_option *o);
 
-/** Prints the valid words of an option, if it has a list of them. */
-void cli_print_words(FILE *out, const cli_option *o, const char *separator);
+/** The valid words of an option, if it has a list of them. */
+const char *cli_word_list(const cli_option *o, const char *separator);
 
 /* cli_help.c; prints to standard output */
 

@@ -33,4 +33,9 @@ void stepper_comment(const stepper *m, cli_table *table);
 /** spring_advance() in the chosen arithmetic. */
 spring_status stepper_advance(const stepper *m, spring_state *s, const spring_params *p, double dt, uint64_t n);
 
+/** Takes n steps with the sum of the original study, y += (h/6) (k1 + 2 k2 + 2 k3 + k4), and reproduces it to the last
+    digit. The library computes the same step from a polynomial, with other rounding errors. Works from stiffness/mass,
+    damping/mass and load/mass, each rounded once, and does not check its parameters. */
+void stages_advance(spring_state *s, const spring_params *p, double h, uint64_t n);
+
 #endif

@@ -40,11 +40,10 @@ struct validation_case {
     double tolerance; /* of their adaptive solvers, relative to the initial state; 0: the finest reliable one */
     bool slow;        /* takes more than a second: not part of quick runs */
 
-    /* NULL: one segment of n steps. Otherwise there are n segments of one step each, and `vary` changes segment i.
-       `exact` (optional) is the exact state under the continuous drive after `duration`, with a bound on the error of
-       sampling the drive once per step. */
-    void (*vary)(uint64_t i, segment *s);
-    double (*exact)(const validation_case *c, double dt, double duration, spring_state *state);
+    /* NULL: one segment of n steps. Otherwise there are n segments of one step each, and `vary` changes segment i. */
+    void (*vary)(const validation_case *c, uint64_t i, segment *s);
+    double drive;   /* [1/s] frequency of a continuous drive; 0: none */
+    double sampled; /* the fraction of a step at which the drive is sampled: 0 or 0.5 */
 };
 
 extern const validation_case cases[];
@@ -55,5 +54,9 @@ bool case_takes(const validation_case *c, spring_method m);
 
 /* The parameters and step of a case for one method. */
 segment case_segment(const validation_case *c, spring_method m, spring_state *start);
+
+/* The exact state under the continuous drive of a case after `duration`. Returns a bound on the error of sampling the
+   drive once per step. */
+double case_driven(const validation_case *c, double dt, double duration, spring_state *state);
 
 #endif

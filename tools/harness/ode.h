@@ -88,8 +88,4 @@ double ode_sundials_slowness(double (*clock)(void));
    about 3 with -O2, which does not vectorise this loop, and 5.3 to 7.6 with -O0. */
 #define ODE_UNOPTIMISED 4
 
-/* RK4 by ERKStep, before SUNDIALS 6.7.0 only, for a test of a known error: from the second step on it treats the table
-   as first-same-as-last. */
-const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n);
-
 #endif

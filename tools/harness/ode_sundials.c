@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* SUNDIALS CVODE and ARKODE, 6.4 to 7.x; see ode.h. */
 #include <arkode/arkode_arkstep.h>
-#include <arkode/arkode_erkstep.h>
 #ifdef SPRING_SPRKSTEP
 #include <arkode/arkode_sprkstep.h>
 #endif
@@ -158,14 +157,6 @@ const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance)
     return cvode(o, y, duration, CV_BDF, tolerance);
 }
 
-static void *create_arkstep(const session *s)
-{
-    void *memory = ARKStepCreate(derivative, NULL, 0, s->y, s->context);
-    if (memory != NULL)
-        ARKStepSetErrFile(memory, NULL);
-    return memory;
-}
-
 static ARKodeButcherTable classical_table(void)
 {
     sunrealtype c[] = {0, 0.5, 0.5, 1};
@@ -190,20 +181,43 @@ static bool take_steps(session *s, ode *o, evolve_function *evolve, double h, ui
     return taken;
 }
 
-/* Frees the table. */
-static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int order, ARKodeButcherTable table)
+static bool set_up_arkstep(session *s, ode *o, double h, double end, double tolerance, int order,
+                           ARKodeButcherTable table)
+{
+    s->memory = ARKStepCreate(derivative, NULL, 0, s->y, s->context);
+    if (s->memory == NULL)
+        return false;
+    ARKStepSetErrFile(s->memory, NULL);
+    if (ARKodeSetUserData(s->memory, o) != ARK_SUCCESS)
+        return false;
+    if (h != 0)
+        return table != NULL && ARKStepSetTables(s->memory, order, 0, NULL, table) == ARK_SUCCESS &&
+               ARKodeSetFixedStep(s->memory, h) == ARK_SUCCESS;
+    return ARKodeSetOrder(s->memory, order) == ARK_SUCCESS &&
+           ARKodeSVtolerances(s->memory, tolerance, s->tolerance) == ARK_SUCCESS &&
+           ARKodeSetMaxNumSteps(s->memory, -1) == ARK_SUCCESS && ARKodeSetStopTime(s->memory, end) == ARK_SUCCESS;
+}
+
+/* Takes n steps of h by a table, which it frees, or without a table adaptive steps to the end. */
+static const char *arkstep(ode *o, double *y, double h, uint64_t n, double end, double tolerance, int order,
+                           ARKodeButcherTable table)
 {
     session s;
-    const char *message = open_session(&s, o, y, 1);
-    if (message == NULL) {
-        s.memory = create_arkstep(&s);
-        if (s.memory == NULL || table == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ARKStepSetTables(s.memory, order, 0, NULL, table) != ARK_SUCCESS ||
-            ARKodeSetFixedStep(s.memory, h) != ARK_SUCCESS)
-            message = "ARKStep: cannot start";
-    }
-    if (message == NULL && !take_steps(&s, o, ARKodeEvolve, h, n))
+    const char *message = open_session(&s, o, y, tolerance);
+    double t = 0;
+    long steps = 0;
+    if (message == NULL && !set_up_arkstep(&s, o, h, end, tolerance, order, table))
+        message = "ARKStep: cannot start";
+    if (message == NULL && h != 0 && !take_steps(&s, o, ARKodeEvolve, h, n))
         message = "ARKStep: the integration failed";
+    if (message == NULL && h == 0) {
+        ode_start_clock(o);
+        if (ARKodeEvolve(s.memory, end, s.y, &t, ARK_NORMAL) < 0)
+            message = "ARKStep: the integration failed";
+        ode_stop_clock(o);
+        if (message == NULL && ARKodeGetNumSteps(s.memory, &steps) == ARK_SUCCESS)
+            o->steps += (uint64_t)steps;
+    }
     if (s.memory != NULL)
         ARKodeFree(&s.memory);
     ARKodeButcherTable_Free(table);
@@ -213,38 +227,17 @@ static const char *arkstep_fixed(ode *o, double *y, double h, uint64_t n, int or
 
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n)
 {
-    return arkstep_fixed(o, y, h, n, 4, classical_table());
+    return arkstep(o, y, h, n, 0, 1, 4, classical_table());
 }
 
 const char *ode_arkstep_8(ode *o, double *y, double h, uint64_t n)
 {
-    return arkstep_fixed(o, y, h, n, 8, ARKodeButcherTable_LoadERK(ARKODE_FEHLBERG_13_7_8));
+    return arkstep(o, y, h, n, 0, 1, 8, ARKodeButcherTable_LoadERK(ARKODE_FEHLBERG_13_7_8));
 }
 
 const char *ode_arkstep_adaptive(ode *o, double *y, double duration, double tolerance)
 {
-    session s;
-    const char *message = open_session(&s, o, y, tolerance);
-    double t = 0;
-    long steps = 0;
-    if (message == NULL) {
-        s.memory = create_arkstep(&s);
-        if (s.memory == NULL || ARKodeSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ARKodeSetOrder(s.memory, 4) != ARK_SUCCESS ||
-            ARKodeSVtolerances(s.memory, tolerance, s.tolerance) != ARK_SUCCESS ||
-            ARKodeSetMaxNumSteps(s.memory, -1) != ARK_SUCCESS || ARKodeSetStopTime(s.memory, duration) != ARK_SUCCESS)
-            message = "ARKStep: cannot start";
-    }
-    ode_start_clock(o);
-    if (message == NULL && ARKodeEvolve(s.memory, duration, s.y, &t, ARK_NORMAL) < 0)
-        message = "ARKStep: the integration failed";
-    ode_stop_clock(o);
-    if (message == NULL && ARKodeGetNumSteps(s.memory, &steps) == ARK_SUCCESS)
-        o->steps += (uint64_t)steps;
-    if (s.memory != NULL)
-        ARKodeFree(&s.memory);
-    close_session(&s);
-    return message;
+    return arkstep(o, y, 0, 0, duration, tolerance, 4, NULL);
 }
 
 #ifdef SPRING_SPRKSTEP
@@ -282,28 +275,6 @@ const char *ode_sprkstep_6(ode *o, double *y, double h, uint64_t n)
         message = "SPRKStep: the integration failed";
     if (s.memory != NULL)
         SPRKStepFree(&s.memory);
-    close_session(&s);
-    return message;
-}
-#endif
-
-#if SUNDIALS_VERSION_MAJOR < 7 && SUNDIALS_VERSION_MINOR < 7
-const char *ode_erkstep_rk4(ode *o, double *y, double h, uint64_t n)
-{
-    session s;
-    const char *message = open_session(&s, o, y, 1);
-    const ARKodeButcherTable table = classical_table();
-    if (message == NULL) {
-        s.memory = ERKStepCreate(derivative, 0, s.y, s.context);
-        if (s.memory == NULL || ERKStepSetUserData(s.memory, o) != ARK_SUCCESS ||
-            ERKStepSetTable(s.memory, table) != ARK_SUCCESS || ERKStepSetFixedStep(s.memory, h) != ARK_SUCCESS)
-            message = "ERKStep: cannot start";
-    }
-    if (message == NULL && !take_steps(&s, o, ERKStepEvolve, h, n))
-        message = "ERKStep: the integration failed";
-    if (s.memory != NULL)
-        ERKStepFree(&s.memory);
-    ARKodeButcherTable_Free(table);
     close_session(&s);
     return message;
 }

@@ -53,30 +53,28 @@ static void spectral_norm(mpfr_t norm, const mpfr_t a, const mpfr_t b, const mpf
 
 /* -------------------------------------------------------------------------------------------------- affine maps */
 
-/* y -> M y + q on y = (x, v) */
+/* y -> M y + q on y = (x, v), with q in the last column of m */
 typedef struct affine {
-    mpfr_t m[2][2], q[2];
+    mpfr_t m[2][3];
 } affine;
 
 static void affine_init(affine *f)
 {
     for (int i = 0; i < 2; i++)
-        mpfr_inits2(precision, f->m[i][0], f->m[i][1], f->q[i], (mpfr_ptr)NULL);
+        mpfr_inits2(precision, f->m[i][0], f->m[i][1], f->m[i][2], (mpfr_ptr)NULL);
 }
 
 static void affine_clear(affine *f)
 {
     for (int i = 0; i < 2; i++)
-        mpfr_clears(f->m[i][0], f->m[i][1], f->q[i], (mpfr_ptr)NULL);
+        mpfr_clears(f->m[i][0], f->m[i][1], f->m[i][2], (mpfr_ptr)NULL);
 }
 
 static void affine_set(affine *to, const affine *from)
 {
-    for (int i = 0; i < 2; i++) {
-        mpfr_set(to->q[i], from->q[i], nearest);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_set(to->m[i][j], from->m[i][j], nearest);
-    }
 }
 
 /* to = after o before; to may be either */
@@ -85,10 +83,9 @@ static void affine_compose(affine *to, const affine *after, const affine *before
     affine f;
     affine_init(&f);
     for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++)
+        for (int j = 0; j < 3; j++)
             mpfr_fmma(f.m[i][j], after->m[i][0], before->m[0][j], after->m[i][1], before->m[1][j], nearest);
-        mpfr_fmma(f.q[i], after->m[i][0], before->q[0], after->m[i][1], before->q[1], nearest);
-        mpfr_add(f.q[i], f.q[i], after->q[i], nearest);
+        mpfr_add(f.m[i][2], f.m[i][2], after->m[i][2], nearest);
     }
     affine_set(to, &f);
     affine_clear(&f);
@@ -113,8 +110,8 @@ static void apply(reference *ref, const affine *f)
     mpfr_mul(ref->size, ref->size, norm, nearest);
     mpfr_fmma(x, f->m[0][0], ref->x, f->m[0][1], ref->v, nearest);
     mpfr_fmma(ref->v, f->m[1][0], ref->x, f->m[1][1], ref->v, nearest);
-    mpfr_add(ref->x, x, f->q[0], nearest);
-    mpfr_add(ref->v, ref->v, f->q[1], nearest);
+    mpfr_add(ref->x, x, f->m[0][2], nearest);
+    mpfr_add(ref->v, ref->v, f->m[1][2], nearest);
     mpfr_clears(x, norm, (mpfr_ptr)NULL);
 }
 
@@ -185,8 +182,8 @@ static void solution_map(affine *f, const spring_params *p, double t)
         mpfr_sqr(P, P, nearest);
         mpfr_div_ui(P, P, 2, nearest);
     }
-    mpfr_mul(f->q[0], a, P, nearest);
-    mpfr_mul(f->q[1], a, H, nearest);
+    mpfr_mul(f->m[0][2], a, P, nearest);
+    mpfr_mul(f->m[1][2], a, H, nearest);
     mpfr_clears(w, b, r, C, S, E, H, P, a, (mpfr_ptr)NULL);
 }
 
@@ -205,29 +202,41 @@ void reference_exact(reference *ref, const spring_params *p, double t)
 static void step_map(affine *f, spring_method m, const iterate_rates *r, const mpfr_t h)
 {
     const iterate *method = iterate_of(m);
-    mpfr_set_zero(f->q[0], 1);
-    mpfr_set_zero(f->q[1], 1);
-    method->spring(f->q[0], f->q[1], r, h);
-    for (int j = 0; j < 2; j++) {
+    for (int j = 2; j >= 0; j--) { /* the last column is the origin, which has no 1 */
         mpfr_set_ui(f->m[0][j], j == 0, nearest);
         mpfr_set_ui(f->m[1][j], j == 1, nearest);
         method->spring(f->m[0][j], f->m[1][j], r, h);
-        mpfr_sub(f->m[0][j], f->m[0][j], f->q[0], nearest);
-        mpfr_sub(f->m[1][j], f->m[1][j], f->q[1], nearest);
+        for (int i = 0; i < 2 && j < 2; i++)
+            mpfr_sub(f->m[i][j], f->m[i][j], f->m[i][2], nearest);
     }
 }
 
-static void rounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
+/* One step of a spring, from w = k/m, g = c/m, a = f/m, each rounded to a double as in the library, or unrounded. */
+static void spring_map(affine *f, const spring_params *p, spring_method m, const mpfr_t h, bool rounded)
 {
     iterate_rates r;
-    mpfr_t h;
-    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness / p->mass, nearest);
-    mpfr_set_d(r.g, p->damping / p->mass, nearest);
-    mpfr_set_d(r.a, p->load / p->mass, nearest);
-    mpfr_set_d(h, dt, nearest);
+    mpfr_inits2(precision, r.w, r.g, r.a, (mpfr_ptr)NULL);
+    const struct {
+        mpfr_ptr out;
+        double of;
+    } rate[] = {{r.w, p->stiffness}, {r.g, p->damping}, {r.a, p->load}};
+    for (int i = 0; i < 3; i++) {
+        mpfr_set_d(rate[i].out, rounded ? rate[i].of / p->mass : rate[i].of, nearest);
+        if (!rounded)
+            mpfr_div_d(rate[i].out, rate[i].out, p->mass, nearest);
+    }
     step_map(f, m, &r, h);
-    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
+    mpfr_clears(r.w, r.g, r.a, (mpfr_ptr)NULL);
+}
+
+/* The same for a step that is a double. */
+static void step_of(affine *f, const spring_params *p, spring_method m, double dt, bool rounded)
+{
+    mpfr_t h;
+    mpfr_init2(h, precision);
+    mpfr_set_d(h, dt, nearest);
+    spring_map(f, p, m, h, rounded);
+    mpfr_clear(h);
 }
 
 /* Replaces f by f composed n times, linear and constant part. */
@@ -235,11 +244,9 @@ static void affine_power(affine *f, uint64_t n)
 {
     affine all;
     affine_init(&all);
-    for (int i = 0; i < 2; i++) {
-        mpfr_set_zero(all.q[i], 1);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_set_ui(all.m[i][j], i == j, nearest);
-    }
     for (; n > 0; n /= 2) {
         if (n % 2 == 1)
             affine_compose(&all, f, &all);
@@ -254,7 +261,7 @@ void reference_iterate(reference *ref, const spring_params *p, spring_method m, 
 {
     affine steps;
     affine_init(&steps);
-    rounded_step_map(&steps, p, m, dt);
+    step_of(&steps, p, m, dt, true);
     affine_power(&steps, n);
     apply(ref, &steps);
     affine_clear(&steps);
@@ -294,21 +301,6 @@ void reference_mode(spring_method m, long double omega, double h, uint64_t n, lo
 }
 
 /* ------------------------------------------------------------------------------------------------ the worst error */
-
-static void unrounded_step_map(affine *f, const spring_params *p, spring_method m, double dt)
-{
-    iterate_rates r;
-    mpfr_t h;
-    mpfr_inits2(precision, r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness, nearest);
-    mpfr_div_d(r.w, r.w, p->mass, nearest);
-    mpfr_set_d(r.g, p->damping, nearest);
-    mpfr_div_d(r.g, r.g, p->mass, nearest);
-    mpfr_set_zero(r.a, 1);
-    mpfr_set_d(h, dt, nearest);
-    step_map(f, m, &r, h);
-    mpfr_clears(r.w, r.g, r.a, h, (mpfr_ptr)NULL);
-}
 
 typedef struct wide_matrix {
     long double m[2][2];
@@ -359,47 +351,39 @@ double reference_worst_error(const spring_params *p, spring_method m, double fre
                              uint64_t stride)
 {
     enum { BLOCK = 1024 };
-    affine step, last, leap, leap_exact, block, block_exact, now, now_exact;
-    affine *const all[] = {&step, &last, &leap, &leap_exact, &block, &block_exact, &now, &now_exact};
-    const size_t count = sizeof all / sizeof all[0];
-    for (size_t i = 0; i < count; i++)
-        affine_init(all[i]);
+    enum { LAST, LEAP, BLOCKS, NOW, powers }; /* R^n, R^stride, R^(BLOCK stride), and R^i */
+    affine step[powers], exact_step[powers];
     spring_params unloaded = *p;
     unloaded.load = 0;
-    unrounded_step_map(&step, p, m, h);
-    solution_map(&now_exact, &unloaded, h);
-    affine_set(&last, &step);
-    affine_power(&last, n);
-    affine_set(&leap, &step);
-    affine_power(&leap, stride);
-    affine_set(&leap_exact, &now_exact);
-    affine_power(&leap_exact, stride);
-    affine_set(&block, &leap);
-    affine_power(&block, BLOCK);
-    affine_set(&block_exact, &leap_exact);
-    affine_power(&block_exact, BLOCK);
-    affine_set(&now, &now_exact); /* last exact, for a moment */
-    affine_power(&now, n);
-    wide_matrix error = wide_difference(&last, &now, frequency);
+    for (int k = 0; k < powers; k++) {
+        affine_init(&step[k]);
+        affine_init(&exact_step[k]);
+        step_of(&step[k], &unloaded, m, h, false);
+        solution_map(&exact_step[k], &unloaded, h);
+        affine_power(&step[k], k == LAST ? n : k == BLOCKS ? BLOCK * stride : stride);
+        affine_power(&exact_step[k], k == LAST ? n : k == BLOCKS ? BLOCK * stride : stride);
+    }
+    wide_matrix error = wide_difference(&step[LAST], &exact_step[LAST], frequency);
     double most = wide_norm(&error);
 
-    const wide_matrix R = wide_difference(&leap, NULL, frequency), F = wide_difference(&leap_exact, NULL, frequency);
-    const wide_matrix D = wide_difference(&leap, &leap_exact, frequency);
-    affine_set(&now, &leap);
-    affine_set(&now_exact, &leap_exact);
+    const wide_matrix R = wide_difference(&step[LEAP], NULL, frequency);
+    const wide_matrix F = wide_difference(&exact_step[LEAP], NULL, frequency);
+    const wide_matrix D = wide_difference(&step[LEAP], &exact_step[LEAP], frequency);
     for (uint64_t i = stride; i <= n;) {
-        error = wide_difference(&now, &now_exact, frequency);
-        wide_matrix exact = wide_difference(&now_exact, NULL, frequency);
+        error = wide_difference(&step[NOW], &exact_step[NOW], frequency);
+        wide_matrix exact = wide_difference(&exact_step[NOW], NULL, frequency);
         for (int k = 0; k < BLOCK && i <= n; k++, i += stride) {
             most = fmax(most, wide_norm(&error));
             error = wide_products(&R, &error, &D, &exact);
             exact = wide_products(&F, &exact, NULL, NULL);
         }
-        affine_compose(&now, &block, &now);
-        affine_compose(&now_exact, &block_exact, &now_exact);
+        affine_compose(&step[NOW], &step[BLOCKS], &step[NOW]);
+        affine_compose(&exact_step[NOW], &exact_step[BLOCKS], &exact_step[NOW]);
     }
-    for (size_t i = 0; i < count; i++)
-        affine_clear(all[i]);
+    for (int k = 0; k < powers; k++) {
+        affine_clear(&step[k]);
+        affine_clear(&exact_step[k]);
+    }
     return most;
 }
 
@@ -495,12 +479,9 @@ typedef struct plane_map { /* an affine map in (x, v/omega), in doubles */
 static plane_map plane_of(const affine *f, double omega)
 {
     return (plane_map){
-        mpfr_get_d(f->m[0][0], nearest),
-        mpfr_get_d(f->m[0][1], nearest) * omega,
-        mpfr_get_d(f->m[1][0], nearest) / omega,
-        mpfr_get_d(f->m[1][1], nearest),
-        mpfr_get_d(f->q[0], nearest),
-        mpfr_get_d(f->q[1], nearest) / omega,
+        mpfr_get_d(f->m[0][0], nearest),         mpfr_get_d(f->m[0][1], nearest) * omega,
+        mpfr_get_d(f->m[1][0], nearest) / omega, mpfr_get_d(f->m[1][1], nearest),
+        mpfr_get_d(f->m[0][2], nearest),         mpfr_get_d(f->m[1][2], nearest) / omega,
     };
 }
 
@@ -527,11 +508,9 @@ static double plane_norm(const plane_map *f)
 /* step - solution, subtracted before rounding */
 static plane_map plane_difference(affine *step, const affine *solution, double omega)
 {
-    for (int i = 0; i < 2; i++) {
-        mpfr_sub(step->q[i], step->q[i], solution->q[i], nearest);
-        for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
             mpfr_sub(step->m[i][j], step->m[i][j], solution->m[i][j], nearest);
-    }
     return plane_of(step, omega);
 }
 
@@ -581,7 +560,7 @@ void reference_bounds_add(reference_bounds *b, const spring_params *p, spring_me
     affine step, solution;
     affine_init(&step);
     affine_init(&solution);
-    rounded_step_map(&step, p, m, dt);
+    step_of(&step, p, m, dt, true);
     solution_map(&solution, p, dt);
     const plane_map M = plane_of(&step, omega), exact = plane_of(&solution, omega);
     const plane_map defect = plane_difference(&step, &solution, omega);
@@ -630,17 +609,11 @@ void reference_bounds_end(reference_bounds *b, double *rounding, double *truncat
    damping has det = 1. The slack is far above the rounding error of 384 bits and far below that of a double. */
 static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
 {
-    iterate_rates r;
     affine f;
     mpfr_t trace, det, edge;
     affine_init(&f);
-    mpfr_inits2(precision, r.w, r.g, r.a, trace, det, edge, (mpfr_ptr)NULL);
-    mpfr_set_d(r.w, p->stiffness, nearest);
-    mpfr_div_d(r.w, r.w, p->mass, nearest);
-    mpfr_set_d(r.g, p->damping, nearest);
-    mpfr_div_d(r.g, r.g, p->mass, nearest);
-    mpfr_set_zero(r.a, 1);
-    step_map(&f, m, &r, h);
+    mpfr_inits2(precision, trace, det, edge, (mpfr_ptr)NULL);
+    spring_map(&f, p, m, h, false);
     mpfr_add(trace, f.m[0][0], f.m[1][1], nearest);
     mpfr_abs(trace, trace, nearest);
     mpfr_fmms(det, f.m[0][0], f.m[1][1], f.m[0][1], f.m[1][0], nearest);
@@ -650,7 +623,7 @@ static bool stable(const spring_params *p, spring_method m, const mpfr_t h)
     mpfr_add(edge, edge, det, nearest);
     inside = inside && mpfr_cmp(trace, edge) <= 0;
     affine_clear(&f);
-    mpfr_clears(r.w, r.g, r.a, trace, det, edge, (mpfr_ptr)NULL);
+    mpfr_clears(trace, det, edge, (mpfr_ptr)NULL);
     return inside;
 }
 

@@ -35,16 +35,6 @@ static void weigh(scene_problem *p, size_t i, double kilograms)
     p->def.mass = p->mass;
 }
 
-/* One moving coordinate, attached to 0 by a link (to particle 1, which is pinned) unless the stiffness is 0. */
-static void make_one(scene_problem *p, double x, double v, double stiffness)
-{
-    make(p, 1, 2, stiffness > 0);
-    p->position[0] = x;
-    p->velocity[0] = v;
-    p->pinned[1] = true;
-    p->link[0] = (spring_link){0, 1, 0, stiffness, 0};
-}
-
 /* -------------------------------------------------------------------------------------- systems with a callback */
 
 typedef const double *const *state_arrays;
@@ -56,26 +46,11 @@ static void cubic(void *user, double t, size_t particles, state_arrays x, state_
     force[0][0] -= mass * x[0][0] * x[0][0] * x[0][0];
 }
 
-static void build_duffing(const scene_case *c, scene_problem *p) /* x'' = -x - x^3 */
-{
-    (void)c;
-    make_one(p, 1, 0, mass);
-    p->def.force = cubic;
-    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
-}
-
 static void gravity_on_a_circle(void *user, double t, size_t particles, state_arrays x, state_arrays v,
                                 force_arrays force)
 {
     (void)user, (void)t, (void)particles, (void)v;
     force[0][0] -= mass * sin(x[0][0]);
-}
-
-static void build_pendulum(const scene_case *c, scene_problem *p) /* x'' = -sin x */
-{
-    (void)c;
-    make_one(p, 3, 0, 0);
-    p->def.force = gravity_on_a_circle;
 }
 
 static void cubic_driven(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
@@ -84,28 +59,11 @@ static void cubic_driven(void *user, double t, size_t particles, state_arrays x,
     force[0][0] += mass * 7.5 * cos(t);
 }
 
-static void build_chaotic(const scene_case *c, scene_problem *p) /* x'' = -0.05 x' - x^3 + 7.5 cos t */
-{
-    (void)c;
-    make_one(p, 3, 4, 0);
-    p->def.drag = 0.05 * mass;
-    p->def.force = cubic_driven;
-    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
-}
-
 static void van_der_pol(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
 {
-    const double *mu = user;
+    const double mu = (double)((const scene_case *)user)->count;
     (void)t, (void)particles;
-    force[0][0] += mass * *mu * (1 - x[0][0] * x[0][0]) * v[0][0];
-}
-
-static void build_van_der_pol(const scene_case *c, scene_problem *p) /* x'' = mu (1 - x^2) x' - x */
-{
-    static double mu[] = {1, 5};
-    make_one(p, 2, 0, mass);
-    p->def.force = van_der_pol;
-    p->def.user = &mu[c->count > 1];
+    force[0][0] += mass * mu * (1 - x[0][0] * x[0][0]) * v[0][0];
 }
 
 static void resonant(void *user, double t, size_t particles, state_arrays x, state_arrays v, force_arrays force)
@@ -114,12 +72,21 @@ static void resonant(void *user, double t, size_t particles, state_arrays x, sta
     force[0][0] += mass * 0.7 * cos(t);
 }
 
-static void build_resonance(const scene_case *c, scene_problem *p) /* x'' = -x + 0.7 cos t */
+/* One moving coordinate with a force, attached to 0 (particle 1, which is pinned) if it has a spring. The damping of
+   the chaotic motion is a drag. */
+static void build_one(const scene_case *c, scene_problem *p)
 {
-    (void)c;
-    make_one(p, 0, 0, mass);
-    p->def.force = resonant;
-    p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
+    make(p, 1, 2, c->spring);
+    p->position[0] = c->x;
+    p->velocity[0] = c->v;
+    p->pinned[1] = true;
+    p->link[0] = (spring_link){0, 1, 0, mass, 0};
+    p->def.force = c->force;
+    p->def.user = (void *)c;
+    if (c->force == cubic_driven)
+        p->def.drag = 0.05 * mass;
+    if (c->force != van_der_pol && c->force != gravity_on_a_circle)
+        p->def.flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY;
 }
 
 static void solve_resonance(const scene_case *c, const scene_problem *p, double *y)
@@ -480,28 +447,33 @@ static void solve_damped_pair(const scene_case *c, const scene_problem *p, doubl
 
 const scene_case scene_cases[] = {
     /* callbacks, with digits known */
-    {"duffing", "a spring that hardens", build_duffing, .duration = 1, STEPS(512, 128, 32, 4), .omega = 1, .length = 1,
-     .callback = 1, .known = 1, .digits = {0.233691791143141266259324}, .external = true},
-    {"duffing-period", "the same for one period, back to the start", build_duffing,
+    /* x'' = -x - x^3 */
+    {"duffing", "a spring that hardens", build_one, .spring = true, .x = 1, .force = cubic, .duration = 1,
+     STEPS(512, 128, 32, 4), .omega = 1, .length = 1, .callback = 1, .known = 1, .digits = {0.233691791143141266259324},
+     .external = true},
+    {"duffing-period", "the same for one period, back to the start", build_one, .spring = true, .x = 1, .force = cubic,
      .duration = 4.768022029102460806304518, STEPS(4096, 512, 128, 16), .omega = 1, .length = 1, .callback = 1,
      .known = 2, .digits = {1, 0}},
-    {"pendulum", "a pendulum that starts next to its highest point", build_pendulum, .duration = 10,
-     STEPS(10240, 1280, 160, 0), .omega = 1, .length = 3, .callback = 1, .known = 1,
+    /* x'' = -sin x */
+    {"pendulum", "a pendulum that starts next to its highest point", build_one, .x = 3, .force = gravity_on_a_circle,
+     .duration = 10, STEPS(10240, 1280, 160, 0), .omega = 1, .length = 3, .callback = 1, .known = 1,
      .digits = {-2.650674563598209613232602}, .external = true},
-    {"pendulum-period", "the same for one period, past the highest point", build_pendulum,
-     .duration = 16.15553937239337476376028, STEPS(16384, 2048, 256, 0), .omega = 1, .length = 3, .callback = 1,
-     .known = 2, .digits = {3, 0}},
-    {"chaotic-10", "chaotic motion under a drive", build_chaotic, .duration = 10, STEPS(163840, 20480, 1280, 160),
-     .omega = 1, .length = 4, .callback = 100, .known = 2, .digits = {-0.92175345784461174225, 5.2692478469465402339},
-     .external = true},
-    {"chaotic-50", "the same for a longer time", build_chaotic, .duration = 50, STEPS(0, 102400, 3200, 400), .omega = 1,
-     .length = 4, .callback = 100, .known = 2, .digits = {1.2219466385675419578, 5.5654797876653488797},
-     .external = true, .slow = true},
-    {"van-der-pol-1", "damping that depends on position and drives the motion", build_van_der_pol, .count = 1,
-     .duration = 20, STEPS(81920, 10240, 1280, 0), .omega = 1, .length = 2, .callback = 17, .known = 2,
-     .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
-    {"van-der-pol-5", "the same with jumps", build_van_der_pol, .count = 5, .duration = 20,
-     STEPS(327680, 40960, 2560, 0), .omega = 1, .length = 2, .callback = 205, .known = 2,
+    {"pendulum-period", "the same for one period, past the highest point", build_one, .x = 3,
+     .force = gravity_on_a_circle, .duration = 16.15553937239337476376028, STEPS(16384, 2048, 256, 0), .omega = 1,
+     .length = 3, .callback = 1, .known = 2, .digits = {3, 0}},
+    /* x'' = -0.05 x' - x^3 + 7.5 cos t */
+    {"chaotic-10", "chaotic motion under a drive", build_one, .x = 3, .v = 4, .force = cubic_driven, .duration = 10,
+     STEPS(163840, 20480, 1280, 160), .omega = 1, .length = 4, .callback = 100, .known = 2,
+     .digits = {-0.92175345784461174225, 5.2692478469465402339}, .external = true},
+    {"chaotic-50", "the same for a longer time", build_one, .x = 3, .v = 4, .force = cubic_driven, .duration = 50,
+     STEPS(0, 102400, 3200, 400), .omega = 1, .length = 4, .callback = 100, .known = 2,
+     .digits = {1.2219466385675419578, 5.5654797876653488797}, .external = true, .slow = true},
+    /* x'' = mu (1 - x^2) x' - x */
+    {"van-der-pol-1", "damping that depends on position and drives the motion", build_one, .spring = true, .x = 2,
+     .force = van_der_pol, .count = 1, .duration = 20, STEPS(81920, 10240, 1280, 0), .omega = 1, .length = 2,
+     .callback = 17, .known = 2, .digits = {2.0081497621749485920, -0.042508875273202146986}, .external = true},
+    {"van-der-pol-5", "the same with jumps", build_one, .spring = true, .x = 2, .force = van_der_pol, .count = 5,
+     .duration = 20, STEPS(327680, 40960, 2560, 0), .omega = 1, .length = 2, .callback = 205, .known = 2,
      .digits = {-1.6012968795428539088, 0.19832667633866208454}, .external = true, .slow = true},
     {"stiff-and-soft-1", "stiff springs and soft quartic ones in a row", build_stiff_and_soft, .duration = 1,
      STEPS(16384, 2048, 512, 64), .omega = 50, .length = 1, .callback = 12, .known = 2,
@@ -512,8 +484,9 @@ const scene_case scene_cases[] = {
     {"double-pendulum", "inertia that depends on the angles", build_double_pendulum, .duration = 5,
      STEPS(81920, 10240, 640, 0), .omega = 3, .length = 1, .callback = 256, .known = 2,
      .digits = {-0.62718670506653073014, -1.3013155502098116779}, .external = true},
-    {"resonant-drive", "a drive in the callback, sampled at every stage", build_resonance, .duration = 20,
-     STEPS(20480, 2560, 640, 80), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
+    /* x'' = -x + 0.7 cos t */
+    {"resonant-drive", "a drive in the callback, sampled at every stage", build_one, .spring = true, .force = resonant,
+     .duration = 20, STEPS(20480, 2560, 640, 80), .omega = 1, .length = 7, .callback = 0.7, .formula = "formula",
      .solution = solve_resonance, .external = true},
     /* links */
     {"elastic-pendulum", "a spring that swings", build_elastic_pendulum, .duration = 8, STEPS(65536, 4096, 1024, 56),

@@ -32,15 +32,18 @@ struct scene_case {
     const char *name;
     const char *purpose; /* the fault that the case is designed to find */
     void (*build)(const scene_case *c, scene_problem *p);
-    size_t count;        /* parameter of `build`: number of particles, axes or masses */
-    double duration;     /* [s] */
-    uint64_t steps[4];   /* for methods of order 1, 2, 4, and 8 or more; see scene_case_steps() */
-    double omega;        /* [1/s] */
-    double length;       /* [m] scale of the motion; tolerances are relative to it */
-    double callback;     /* [m/s^2] largest sum of the sizes of all terms in the callback, over mass */
-    size_t known;        /* number of leading components of the final y that are known to double precision */
-    double digits[4];    /* their values */
-    const char *formula; /* name of an exact expression for ... */
+    size_t count;                 /* parameter of `build`: number of particles, axes or masses */
+    double x, v;                  /* [m], [m/s] start of the only coordinate, which ... */
+    bool spring;                  /* ... has a spring with omega = 1/s, ... */
+    spring_scene_force_fn *force; /* ... and this force; NULL: `build` makes another scene */
+    double duration;              /* [s] */
+    uint64_t steps[4];            /* for methods of order 1, 2, 4, and 8 or more; see scene_case_steps() */
+    double omega;                 /* [1/s] */
+    double length;                /* [m] scale of the motion; tolerances are relative to it */
+    double callback;              /* [m/s^2] largest sum of the sizes of all terms in the callback, over mass */
+    size_t known;                 /* number of leading components of the final y that are known to double precision */
+    double digits[4];             /* their values */
+    const char *formula;          /* name of an exact expression for ... */
     void (*iterate)(const scene_case *c, const scene_problem *p, spring_method m, double h, uint64_t n,
                     double *y);                                               /* ... the method's steps */
     void (*solution)(const scene_case *c, const scene_problem *p, double *y); /* ... the exact end */

@@ -20,8 +20,6 @@ typedef struct plan_row {
     double time;        /* [s] running time of the steps; INFINITY: no steps */
 } plan_row;
 
-plan_row plan_spring(const spring_params *p, spring_method m, double duration, double error);
-
 /* A scene with its reference. */
 typedef struct plan_scene plan_scene;
 

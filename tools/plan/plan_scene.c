@@ -14,6 +14,7 @@
 #include "common/cli.h"
 #include "common/timing.h"
 #include "plan.h"
+#include "scenes/scene_run.h"
 #include "scenes/start.h"
 
 static const double most_numbers = 2e7; /* kept by the reference: a second of 10^5 particles */
@@ -38,14 +39,6 @@ static void *room(size_t count)
     return all;
 }
 
-static double distance(const double *a, const double *b, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum);
-}
-
 static void positions_of(const plan_scene *s, const spring_scene *scene, double *out)
 {
     spring_scene_get(scene, SPRING_POSITION, out, 0, 0, s->preset->def.particles);
@@ -55,14 +48,6 @@ static spring_scene *start(const plan_scene *s, spring_method m)
 {
     size_t bytes;
     return start_scene(s->preset, m, &bytes);
-}
-
-static double stable_step(const plan_scene *s, spring_method m)
-{
-    spring_scene *scene = start(s, m);
-    const double step = spring_scene_stable_step(scene, m);
-    free(scene);
-    return step;
 }
 
 /* The work of all frames: force evaluations times particles and links. */
@@ -93,7 +78,7 @@ static double error_of(const plan_scene *s, spring_method m, uint64_t substeps)
     for (uint64_t i = 0; i < s->frames && most < INFINITY; i++) {
         const bool holds = spring_scene_advance(scene, m, s->frame / (double)substeps, substeps) == SPRING_OK;
         positions_of(s, scene, now);
-        const double error = distance(now, &s->reference[i * s->numbers], s->numbers) / s->motion;
+        const double error = scene_run_distance(now, &s->reference[i * s->numbers], s->numbers) / s->motion;
         most = holds && isfinite(error) ? fmax(most, error) : INFINITY;
     }
     free(now);
@@ -122,7 +107,7 @@ static void measure_motion(plan_scene *s)
     free(scene);
     s->motion = 0;
     for (uint64_t i = 0; i < s->frames; i++)
-        s->motion = fmax(s->motion, distance(first, &s->reference[i * s->numbers], s->numbers));
+        s->motion = fmax(s->motion, scene_run_distance(first, &s->reference[i * s->numbers], s->numbers));
     free(first);
 }
 
@@ -130,7 +115,7 @@ static void run_reference(plan_scene *s, double error, double work)
 {
     const spring_method m = best_method(s);
     const double below = ldexp(1, spring_method_describe(m)->order) - 1, share = 20;
-    const double fewest = 2 * ceil(s->frame / fmin(stable_step(s, m), s->frame));
+    const double fewest = 2 * ceil(s->frame / fmin(start_stable_step(s->preset, m), s->frame));
     if (!(work_of(s, m, 3 * fewest) <= patience * work))
         cli_fail(CLI_FAILED,
                  "the reference of this scene would need %.3g steps per frame for %" PRIu64
@@ -143,7 +128,7 @@ static void run_reference(plan_scene *s, double error, double work)
         known = run(s, m, 2 * substeps, fine) && known;
         double off = 0;
         for (uint64_t i = 0; i < s->frames; i++)
-            off = fmax(off, distance(&fine[i * s->numbers], &coarse[i * s->numbers], s->numbers) / below);
+            off = fmax(off, scene_run_distance(&fine[i * s->numbers], &coarse[i * s->numbers], s->numbers) / below);
         for (size_t i = 0; i < s->frames * s->numbers; i++)
             s->reference[i] = fine[i] + (fine[i] - coarse[i]) / below;
         measure_motion(s);

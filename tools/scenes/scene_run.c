@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Runs a scene while its state is finite, and hashes the state; see scene_run.h. */
+/* Runs a scene while its state is finite, and measures and hashes the state; see scene_run.h. */
 #include "scene_run.h"
 
-#include <math.h> /* isfinite() */
+#include <math.h> /* isfinite(), sqrt() */
 #include <string.h>
 
 double scene_run_step(double frame_rate, uint64_t steps_per_frame)
@@ -10,10 +10,23 @@ double scene_run_step(double frame_rate, uint64_t steps_per_frame)
     return 1 / (frame_rate * (double)steps_per_frame);
 }
 
+double scene_run_total(const spring_scene_energies *e)
+{
+    return e->kinetic + e->elastic + e->gravity;
+}
+
+double scene_run_distance(const double *a, const double *b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(sum);
+}
+
 bool scene_run_holds(const spring_scene *scene)
 {
     const spring_scene_energies e = spring_scene_energy(scene);
-    return isfinite(e.kinetic + e.elastic + e.gravity);
+    return isfinite(scene_run_total(&e));
 }
 
 static bool take(spring_scene *scene, void *saved, size_t bytes, spring_method m, double dt, uint64_t n)

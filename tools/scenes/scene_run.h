@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Runs a scene while its state is finite, and hashes the state. */
+/* Runs a scene while its state is finite, and measures and hashes the state. */
 #ifndef SPRINGSTEP_SCENE_RUN_H
 #define SPRINGSTEP_SCENE_RUN_H
 
@@ -7,6 +7,12 @@
 
 /** The step [s] of a frame: 1/(rate steps). All programs use this function, so that they round alike. */
 double scene_run_step(double frame_rate, uint64_t steps_per_frame);
+
+/** The total energy [J]. */
+double scene_run_total(const spring_scene_energies *e);
+
+/** The Euclidean distance of two vectors of positions. */
+double scene_run_distance(const double *a, const double *b, size_t count);
 
 /** Returns true if the positions, velocities and energies of the scene are finite. */
 bool scene_run_holds(const spring_scene *scene);

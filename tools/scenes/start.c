@@ -2,6 +2,8 @@
 /* Presets and disturbances for programs; see start.h. */
 #include "start.h"
 
+#include <stdlib.h>
+
 #include "common/cli.h"
 
 void start_preset(preset *r, const preset_settings *s)
@@ -11,6 +13,19 @@ void start_preset(preset *r, const preset_settings *s)
         cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" makes more particles or links than a scene can have", s->size);
     if (status != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of this --size");
+}
+
+spring_scene *start_definition(const spring_scene_def *def, size_t *bytes)
+{
+    size_t needed = 0;
+    spring_scene *scene = NULL;
+    void *memory = spring_scene_bytes(def, &needed) == SPRING_OK ? malloc(needed) : NULL;
+    if (memory == NULL || spring_scene_init(memory, needed, def, &scene) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles and %zu links, %zu bytes", def->particles,
+                 def->links, needed);
+    if (bytes != NULL)
+        *bytes = needed;
+    return scene;
 }
 
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
@@ -31,6 +46,15 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
     if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
     return scene;
+}
+
+double start_stable_step(const preset *r, spring_method m)
+{
+    size_t bytes;
+    spring_scene *scene = start_scene(r, m, &bytes);
+    const double step = spring_scene_stable_step(scene, m);
+    free(scene);
+    return step;
 }
 
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count)

@@ -9,8 +9,14 @@
 /** As preset_init(). */
 void start_preset(preset *r, const preset_settings *s);
 
+/** Creates a scene in one block of *bytes bytes (NULL: not needed); release it with free(). */
+spring_scene *start_definition(const spring_scene_def *def, size_t *bytes);
+
 /** As preset_start(), for one method and for leapfrog, whose stable step is the scale for all methods. */
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes);
+
+/** The stable step of a scene at its start. */
+double start_stable_step(const preset *r, spring_method m);
 
 /** Makes a list of disturbances the callback of the scene; NULL if the list is empty. */
 disturbances *start_disturbances(preset *r, const disturbance *list, size_t count);

@@ -79,7 +79,7 @@ static double round_digits(const axis *a, double x)
     return strtod(text, NULL);
 }
 
-double axis_value(const axis *a, uint64_t i)
+static double axis_value(const axis *a, uint64_t i)
 {
     const double last = (double)(a->count - 1);
     if (a->kind == AXIS_LIST)

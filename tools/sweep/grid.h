@@ -46,8 +46,6 @@ bool grid_add_methods(grid *g, const char *names);  /* separated by commas, or "
 bool grid_add_measures(grid *g, const char *names); /* separated by commas */
 bool grid_finish(grid *g);                          /* checks the grid; counts points and blocks */
 
-double axis_value(const axis *a, uint64_t i);
-
 /**
  * Measures points.
  *

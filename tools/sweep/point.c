@@ -251,19 +251,6 @@ void sweep_memory_free(sweep_memory *memory)
     free(memory);
 }
 
-static double total(const spring_scene_energies *e)
-{
-    return e->kinetic + e->elastic + e->gravity;
-}
-
-static double distance(const double *a, const double *b, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum);
-}
-
 static void positions_of(const subject *s, const spring_scene *scene, double *out)
 {
     spring_scene_get(scene, SPRING_POSITION, out, 0, 0, s->preset.def.particles);
@@ -356,9 +343,9 @@ static void run_reference(sweep_memory *r, const subject *s, spring_scene *scene
         r->overflows = spring_scene_advance(scene, SPRING_RK4, dt, substeps) != SPRING_OK;
         positions_of(s, scene, now);
         const spring_scene_energies e = spring_scene_energy(scene);
-        r->energy[i] = total(&e);
+        r->energy[i] = scene_run_total(&e);
         r->kinetic = fmax(r->kinetic, e.kinetic);
-        r->motion = fmax(r->motion, distance(now, r->position, s->numbers));
+        r->motion = fmax(r->motion, scene_run_distance(now, r->position, s->numbers));
     }
     double extent = 0;
     for (size_t i = 0; i < s->numbers; i++)
@@ -412,8 +399,8 @@ static bool run_scene(looks *l, const sweep_memory *r, const subject *s, spring_
         const bool holds = spring_scene_advance(scene, m, s->dt, substeps) == SPRING_OK;
         const spring_scene_energies e = spring_scene_energy(scene);
         positions_of(s, scene, now);
-        const double error = distance(now, &r->position[i * s->numbers], s->numbers) / r->motion;
-        const double off = (total(&e) - r->energy[i]) / r->kinetic;
+        const double error = scene_run_distance(now, &r->position[i * s->numbers], s->numbers) / r->motion;
+        const double off = (scene_run_total(&e) - r->energy[i]) / r->kinetic;
         if (holds && isfinite(error) && isfinite(off))
             look(l, t, error, off, !(e.kinetic <= tenfold * r->kinetic), e.kinetic <= quiet * r->kinetic);
         else

@@ -141,13 +141,6 @@ static void print_header(char *text, size_t size, const grid *g, uint64_t number
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
 
-typedef struct work {
-    const grid *grid;
-    const char *path;
-    uint64_t number, parts; /* part `number` of 1 to `parts` */
-    int done;               /* file descriptor that receives a byte per block; -1: none */
-} work;
-
 /* The line in which two headers differ. */
 static int different_line(const char *a, const char *b, const char **line_a, const char **line_b)
 {
@@ -255,35 +248,36 @@ static void write_block(cli_table *table, const grid *g, sweep_memory *memory, u
     }
 }
 
-/* If the reading process has ended, this process ends by SIGPIPE. */
-static void tell_done(const work *w, uint64_t block)
+/* Writes every stride-th block from `first`, numbered if the table is a part; NULL: all are there already. A byte for
+   each block goes to the file descriptor `done`, or to the progress if it is negative. If the process that reads it has
+   ended, this process ends by SIGPIPE. */
+static void do_blocks(cli_table *table, const grid *g, uint64_t first, uint64_t stride, bool numbered, int done)
 {
-    if (w->done < 0)
-        cli_progress((double)(block + 1) / (double)w->grid->blocks);
-    else if (write(w->done, "", 1) < 0)
-        cli_fail(CLI_IO, "the parent process has exited");
-}
-
-static void do_part(const work *w)
-{
-    char header[header_size];
-    print_header(header, sizeof header, w->grid, w->number, w->parts);
-    FILE *in = open_part(w->path, header);
-    const bool there = in != NULL && is_complete(in, w->number, w->parts, w->grid->blocks);
-    cli_table *table = there ? NULL : cli_open_file("output", w->path);
     sweep_memory *memory = sweep_memory_new();
-    if (!there)
-        write_text(table, header, strlen(header));
-    for (uint64_t block = w->number - 1; block < w->grid->blocks; block += w->parts) {
-        if (!there) {
-            write_block(table, w->grid, memory, block);
+    for (uint64_t block = first; block < g->blocks; block += stride) {
+        if (table != NULL)
+            write_block(table, g, memory, block);
+        if (table != NULL && numbered)
             cli_row(table, "# block %" PRIu64, block);
-        }
-        tell_done(w, block);
+        if (done < 0)
+            cli_progress((double)(block + 1) / (double)g->blocks);
+        else if (write(done, "", 1) < 0)
+            cli_fail(CLI_IO, "the parent process has exited");
     }
     sweep_memory_free(memory);
-    if (!there) {
-        check_part(w->path, header);
+}
+
+static void do_part(const grid *g, const char *path, uint64_t number, uint64_t parts, int done)
+{
+    char header[header_size];
+    print_header(header, sizeof header, g, number, parts);
+    FILE *in = open_part(path, header);
+    cli_table *table = in != NULL && is_complete(in, number, parts, g->blocks) ? NULL : cli_open_file("output", path);
+    if (table != NULL)
+        write_text(table, header, strlen(header));
+    do_blocks(table, g, number - 1, parts, true, done);
+    if (table != NULL) {
+        check_part(path, header);
         cli_close(table);
     }
 }
@@ -307,18 +301,24 @@ static void do_one_part(const grid *g)
         cli_fail(CLI_USAGE, "--part: \"%s\" is not I/N with 1 <= I <= N <= %d", text, most_parts);
     if (cli_output_path() == NULL)
         cli_fail(CLI_USAGE, "--part: requires --output, the file of the part");
-    do_part(&(work){.grid = g, .path = cli_output_path(), .number = number, .parts = parts, .done = -1});
+    do_part(g, cli_output_path(), number, parts, -1);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- join */
 
 /* The file of a part. It is opened for each block, because there can be more parts than open files. */
-typedef struct part_file {
+typedef struct place {
     const char *path; /* NULL: missing */
     long long next;   /* position of the next block */
+} place;
+
+typedef struct part_file {
+    place at;
+    uint64_t number, parts, blocks;
+    char header[header_size]; /* without the line of the part */
 } part_file;
 
-static FILE *open_at(const part_file *file)
+static FILE *open_at(const place *file)
 {
     FILE *in = fopen(file->path, "r");
     if (in == NULL || fseeko(in, (off_t)file->next, SEEK_SET) != 0)
@@ -327,78 +327,61 @@ static FILE *open_at(const part_file *file)
 }
 
 /* Reads the header, up to and including the first line that does not start with "#". */
-static void read_header(part_file *file, char *header)
+static void read_header(part_file *file)
 {
-    FILE *in = open_at(file);
+    FILE *in = open_at(&file->at);
     size_t used = 0;
     const char *line = "#";
     while (line[0] == '#') {
-        line = header + used;
-        const bool more = fgets(header + used, (int)(header_size - used), in) != NULL;
+        line = file->header + used;
+        const bool more = fgets(file->header + used, (int)(header_size - used), in) != NULL;
         used += more ? strlen(line) : 0;
-        if (!more || line == header + used || header[used - 1] != '\n')
+        if (!more || line == file->header + used || file->header[used - 1] != '\n')
             cli_fail(CLI_IO,
                      "--join: \"%s\" is not a part of a sweep: its header should be whole lines of fewer than %d bytes "
                      "in all",
-                     file->path, header_size);
+                     file->at.path, header_size);
     }
-    file->next = (long long)used;
+    file->at.next = (long long)used;
     fclose(in);
 }
 
 /* Removes the line "# part I of N, K blocks" from a header. */
-static bool take_part_line(char *header, uint64_t *number, uint64_t *parts, uint64_t *blocks)
+static bool take_part_line(part_file *f)
 {
     static const char start[] = "\n# part ";
-    char *line = strstr(header, start);
+    char *line = strstr(f->header, start);
     int read = 0;
     if (line == NULL ||
-        sscanf(line + 1, "# part %" SCNu64 " of %" SCNu64 ", %" SCNu64 " blocks%n", number, parts, blocks, &read) !=
-            3 ||
-        read == 0 || line[1 + read] != '\n' || *number == 0 || *number > *parts || *parts > most_parts)
+        sscanf(line + 1, "# part %" SCNu64 " of %" SCNu64 ", %" SCNu64 " blocks%n", &f->number, &f->parts, &f->blocks,
+               &read) != 3 ||
+        read == 0 || line[1 + read] != '\n' || f->number == 0 || f->number > f->parts || f->parts > most_parts)
         return false;
     memmove(line, line + 1 + read, strlen(line + 1 + read) + 1);
     return true;
 }
 
-static void look_at_part(const char *path, const char *first_path, part_file **all, uint64_t *parts, uint64_t *blocks,
-                         char *header)
+/* Fails unless the part is complete and of the same sweep as the first one. */
+static void look_at_part(part_file *f, const part_file *first)
 {
-    part_file file = {.path = path};
-    uint64_t number, of, its_blocks;
-    char own[header_size];
-    read_header(&file, own);
-    if (!take_part_line(own, &number, &of, &its_blocks))
-        cli_fail(CLI_FAILED, "--join: \"%s\" is not a part of a sweep", path);
-    if (*all == NULL) {
-        *parts = of;
-        *blocks = its_blocks;
-        strcpy(header, own);
-        *all = calloc(of, sizeof **all);
-        if (*all == NULL)
-            cli_fail(CLI_FAILED, "out of memory");
-    }
     const char *this, *that;
-    if (strcmp(own, header) != 0) {
-        const int width = different_line(own, header, &this, &that);
-        cli_fail(CLI_FAILED, "--join: \"%s\" is of another sweep: it has \"%.*s\" where \"%s\" has \"%.*s\"", path,
-                 width, this, first_path, (int)strcspn(that, "\n"), that);
+    read_header(f);
+    if (!take_part_line(f))
+        cli_fail(CLI_FAILED, "--join: \"%s\" is not a part of a sweep", f->at.path);
+    if (strcmp(f->header, first->header) != 0) {
+        const int width = different_line(f->header, first->header, &this, &that);
+        cli_fail(CLI_FAILED, "--join: \"%s\" is of another sweep: it has \"%.*s\" where \"%s\" has \"%.*s\"",
+                 f->at.path, width, this, first->at.path, (int)strcspn(that, "\n"), that);
     }
-    if (of != *parts || its_blocks != *blocks)
+    if (f->parts != first->parts || f->blocks != first->blocks)
         cli_fail(CLI_FAILED,
                  "--join: \"%s\" is one of %" PRIu64 " parts with %" PRIu64 " blocks, \"%s\" one of %" PRIu64
                  " with %" PRIu64,
-                 path, of, its_blocks, first_path, *parts, *blocks);
-    part_file *place = &(*all)[number - 1];
-    if (place->path != NULL)
-        cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", path, number, place->path);
-    if (!is_complete(open_at(&file), number, of, its_blocks))
-        cli_fail(CLI_FAILED, "--join: \"%s\" is incomplete or damaged; run this part again", path);
-    *place = file;
+                 f->at.path, f->parts, f->blocks, first->at.path, first->parts, first->blocks);
 }
 
 /* Fails with the numbers of the first few missing parts, if any are missing. */
-static void check_missing(const part_file *all, uint64_t parts)
+static void check_missing(const place *all, uint64_t parts)
 {
     char names[100] = "";
     uint64_t missing = 0;
@@ -428,20 +411,33 @@ static void check_no_part_is_replaced(const char *const *paths, size_t count)
 
 static void join(const char *const *paths, size_t count)
 {
-    part_file *all = NULL;
-    char header[header_size];
-    uint64_t parts = 0, blocks = 0;
-    for (size_t i = 0; i < count; i++)
-        look_at_part(paths[i], paths[0], &all, &parts, &blocks, header);
-    check_missing(all, parts);
+    static part_file first, file;
+    place *all = NULL;
+    for (size_t i = 0; i < count; i++) {
+        part_file *const f = i == 0 ? &first : &file;
+        *f = (part_file){.at = {.path = paths[i]}};
+        look_at_part(f, &first);
+        if (i == 0)
+            all = calloc(first.parts, sizeof *all);
+        if (all == NULL)
+            cli_fail(CLI_FAILED, "out of memory");
+        place *const p = &all[f->number - 1];
+        if (p->path != NULL)
+            cli_fail(CLI_FAILED, "--join: \"%s\" is part %" PRIu64 ", and so is \"%s\"", f->at.path, f->number,
+                     p->path);
+        *p = f->at;
+        if (!is_complete(open_at(p), f->number, f->parts, f->blocks))
+            cli_fail(CLI_FAILED, "--join: \"%s\" is incomplete or damaged; run this part again", f->at.path);
+    }
+    check_missing(all, first.parts);
     cli_table *table = cli_open_output();
-    write_text(table, header, strlen(header));
-    for (uint64_t block = 0; block < blocks; block++) {
-        part_file *file = &all[block % parts];
-        FILE *in = open_at(file);
+    write_text(table, first.header, strlen(first.header));
+    for (uint64_t block = 0; block < first.blocks; block++) {
+        place *const p = &all[block % first.parts];
+        FILE *in = open_at(p);
         if (!copy_block(in, block, table))
-            cli_fail(CLI_FAILED, "--join: \"%s\" has changed", file->path);
-        file->next = ftello(in);
+            cli_fail(CLI_FAILED, "--join: \"%s\" has changed", p->path);
+        p->next = ftello(in);
         fclose(in);
     }
     cli_finish();
@@ -457,12 +453,7 @@ static void stream(const grid *g)
     print_header(header, sizeof header, g, 0, 0);
     cli_table *table = cli_open_output();
     write_text(table, header, strlen(header));
-    sweep_memory *memory = sweep_memory_new();
-    for (uint64_t block = 0; block < g->blocks; block++) {
-        write_block(table, g, memory, block);
-        cli_progress((double)(block + 1) / (double)g->blocks);
-    }
-    sweep_memory_free(memory);
+    do_blocks(table, g, 0, 1, false, -1);
     cli_finish();
 }
 
@@ -472,15 +463,14 @@ static const char **part_paths(const grid *g, uint64_t parts)
 {
     const size_t size = strlen(cli_output_path()) + 50;
     const char **paths = calloc(parts, sizeof *paths);
-    char header[header_size];
-    for (uint64_t i = 0; paths != NULL && i < parts; i++) {
-        char *path = malloc(size);
-        if (path == NULL)
-            cli_fail(CLI_FAILED, "out of memory");
-        snprintf(path, size, "%s.%" PRIu64 "-of-%" PRIu64, cli_output_path(), i + 1, parts);
+    char *text = malloc(parts * size), header[header_size];
+    if (paths == NULL || text == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    for (uint64_t i = 0; i < parts; i++) {
+        paths[i] = text + i * size;
+        snprintf(text + i * size, size, "%s.%" PRIu64 "-of-%" PRIu64, cli_output_path(), i + 1, parts);
         print_header(header, sizeof header, g, i + 1, parts);
-        check_part(path, header);
-        paths[i] = path;
+        check_part(paths[i], header);
     }
     return paths;
 }
@@ -494,7 +484,7 @@ static void start_jobs(const grid *g, const char *const *paths, uint64_t parts, 
         if (child == 0) {
             close(ends[0]); /* writing then fails as soon as the first process has ended */
             for (uint64_t i = job; i < parts; i += jobs)
-                do_part(&(work){.grid = g, .path = paths[i], .number = i + 1, .parts = parts, .done = ends[1]});
+                do_part(g, paths[i], i + 1, parts, ends[1]);
             exit(0);
         }
     }
@@ -547,17 +537,16 @@ static void run_jobs(const grid *g)
     const uint64_t parts = g->blocks < most_jobs ? g->blocks : most_jobs;
     const char **paths = part_paths(g, parts);
     int ends[2];
-    if (paths == NULL || pipe(ends) != 0)
+    if (pipe(ends) != 0)
         cli_fail(CLI_FAILED, "out of memory");
     start_jobs(g, paths, parts, ends);
     close(ends[1]);
     show_progress(g, ends[0]);
     wait_for_jobs();
     join(paths, parts);
-    for (uint64_t i = 0; i < parts; i++) {
+    for (uint64_t i = 0; i < parts; i++)
         unlink(paths[i]);
-        free((char *)paths[i]);
-    }
+    free((char *)paths[0]);
     free(paths);
 }
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of spring-validate: a row for each check. */
+/* The parts of spring-validate: the rows of its table, one for each check, and the checks of scenes. */
 #ifndef VALIDATE_ROWS_H
 #define VALIDATE_ROWS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "common/cli.h"
+#include "harness/scenes.h"
 
 typedef struct validate_row {
     const char *of, *method, *reference, *reason;
@@ -17,13 +17,10 @@ typedef struct validate_row {
     bool scene;
 } validate_row;
 
-/* Sets the table for the following rows. */
-void validate_into(cli_table *table);
-
 /* Writes a row with its verdict. */
 void validate_check(const validate_row *row);
 
-/* The number of failed rows. */
-unsigned validate_failures(void);
+/* Checks a scene with every method against all its references. */
+void validate_scene(const scene_case *c);
 
 #endif

@@ -18,9 +18,7 @@
 #include "harness/cases.h"
 #include "harness/ode.h"
 #include "harness/reference.h"
-#include "harness/scenes.h"
 #include "rows.h"
-#include "validate_scene.h"
 
 static const char **case_names; /* ended by NULL */
 static int only_case = -1;
@@ -57,6 +55,18 @@ static const cli_program program = {
     .options = options,
 };
 
+static cli_table *table;
+static unsigned failures;
+
+void validate_check(const validate_row *r)
+{
+    const bool pass = r->error <= r->bound; /* false for NaN */
+    failures += !pass;
+    cli_row(table, "%s\t%s\t%s\t%.17g\t%" PRIu64 "\t%.17g\t%.17g\t%s\t%s\t%.17g\t%" PRIu64 "\t%s", r->of, r->method,
+            r->reference, r->dt, r->steps, r->error, r->bound, pass ? "pass" : "fail", r->reason, r->uncertainty,
+            r->evaluations, r->scene ? "scene" : "spring");
+}
+
 /* ------------------------------------------------------------------------ multiple precision, segment by segment */
 
 /* The accuracy of spring_step_exact() (spring.h), and the contribution of the response to a load. */
@@ -87,7 +97,7 @@ static void against_references(const validation_case *c, spring_method m)
         segment s = first;
         if (c->vary != NULL) {
             s.n = 1;
-            c->vary(i, &s);
+            c->vary(c, i, &s);
         }
         done = done && spring_advance(&got, &s.p, m, s.dt, s.n) == SPRING_OK;
         const double t = s.dt * (double)s.n;
@@ -117,9 +127,9 @@ static void against_references(const validation_case *c, spring_method m)
     f.bound = m == SPRING_EXACT ? exact_rounding : rounding + truncation;
     f.reason = m == SPRING_EXACT ? "rounding of the exact solution" : "truncation + rounding";
     validate_check(&f);
-    if (c->exact != NULL) {
+    if (c->drive > 0) {
         spring_state drive;
-        const double sampling = c->exact(c, first.dt, first.dt * (double)first.n, &drive);
+        const double sampling = case_driven(c, first.dt, first.dt * (double)first.n, &drive);
         const double omega = sqrt(first.p.stiffness / first.p.mass);
         f.reference = "drive";
         f.error = hypot(got.x - drive.x, (got.v - drive.v) / omega);
@@ -232,30 +242,22 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     if (list_only && (only_case >= 0 || quick))
         cli_fail(CLI_USAGE, "--%s: has no effect with --list", quick ? "quick" : "case");
-    cli_table *table = cli_open_output();
-    validate_into(table);
+    table = cli_open_output();
     cli_columns(table, list_only ? "case purpose" : program.columns);
-    for (size_t i = 0; i < case_count; i++) {
-        if (only_case >= 0 && i != (size_t)only_case)
-            continue;
+    for (size_t i = 0; i < case_count + scene_case_count; i++) {
+        const validation_case *c = i < case_count ? &cases[i] : NULL;
+        const scene_case *scene = c == NULL ? &scene_cases[i - case_count] : NULL;
+        const bool chosen = only_case < 0 ? !quick || !(c != NULL ? c->slow : scene->slow) : i == (size_t)only_case;
         if (list_only)
-            cli_row(table, "%s\t%s", cases[i].name, cases[i].purpose);
-        else if (!quick || !cases[i].slow || only_case >= 0)
-            run_case(&cases[i]);
+            cli_row(table, "%s\t%s", case_names[i], c != NULL ? c->purpose : scene->purpose);
+        else if (chosen && c != NULL)
+            run_case(c);
+        else if (chosen)
+            validate_scene(scene);
         cli_progress((double)(i + 1) / (double)(case_count + scene_case_count));
-    }
-    for (size_t i = 0; i < scene_case_count; i++) {
-        const scene_case *c = &scene_cases[i];
-        if (only_case >= 0 && case_count + i != (size_t)only_case)
-            continue;
-        if (list_only)
-            cli_row(table, "%s\t%s", c->name, c->purpose);
-        else if (!quick || !c->slow || only_case >= 0)
-            validate_scene(c);
-        cli_progress((double)(case_count + i + 1) / (double)(case_count + scene_case_count));
     }
     cli_finish();
     free(case_names);
     mpfr_free_cache();
-    return validate_failures() > 0 ? CLI_FAILED : 0;
+    return failures > 0 ? CLI_FAILED : 0;
 }

@@ -28,7 +28,7 @@
 #include "harness/ode.h"
 #include "harness/reference.h"
 #include "rows.h"
-#include "validate_scene.h"
+#include "scenes/start.h"
 
 typedef struct trial {
     const scene_case *c;
@@ -46,39 +46,33 @@ static double ratio_of(spring_method m) /* 2^order */
     return ldexp(1, spring_method_describe(m)->order);
 }
 
-static void *vectors(const scene_problem *p, size_t count)
+static double *vectors(const scene_problem *p, size_t count)
 {
-    void *room = malloc(count * 2 * p->moving * sizeof(double));
-    if (room == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    return room;
+    return scene_room(count * 2 * p->moving, sizeof(double));
 }
 
-/* Stores NaN if the library does not follow its specification. */
+/* Reads the state of a scene: NaN if the library does not follow its specification. `room` is for two vectors of all
+   particles. */
+static void get_state(const scene_problem *p, const spring_scene *scene, double *room, double *y)
+{
+    const size_t numbers = p->def.axes * p->def.particles;
+    const bool known = spring_scene_get(scene, SPRING_POSITION, room, 0, 0, p->def.particles) == SPRING_OK &&
+                       spring_scene_get(scene, SPRING_VELOCITY, room + numbers, 0, 0, p->def.particles) == SPRING_OK;
+    for (size_t i = 0; i < 2 * p->moving; i++)
+        y[i] = !known ? NAN : i < p->moving ? room[p->coordinate[i]] : room[numbers + p->coordinate[i - p->moving]];
+}
+
+/* Stores the state after n steps; NaN if a call fails. */
 static void run(const scene_problem *p, spring_method m, double dt, uint64_t n, double *y)
 {
-    const spring_scene_def *def = &p->def;
-    const size_t numbers = def->axes * def->particles;
-    size_t bytes = 0;
-    spring_scene *scene;
-    for (size_t i = 0; i < 2 * p->moving; i++)
+    double *room = scene_room(2 * p->def.axes * p->def.particles, sizeof *room);
+    spring_scene *scene = start_definition(&p->def, NULL);
+    const bool done = spring_scene_advance(scene, m, dt, n) == SPRING_OK;
+    get_state(p, scene, room, y);
+    for (size_t i = 0; i < 2 * p->moving && !done; i++)
         y[i] = NAN;
-    if (spring_scene_bytes(def, &bytes) != SPRING_OK)
-        return;
-    void *memory = malloc(bytes);
-    double *state = malloc(2 * numbers * sizeof *state);
-    if (memory == NULL || state == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    if (spring_scene_init(memory, bytes, def, &scene) == SPRING_OK &&
-        spring_scene_advance(scene, m, dt, n) == SPRING_OK &&
-        spring_scene_get(scene, SPRING_POSITION, state, 0, 0, def->particles) == SPRING_OK &&
-        spring_scene_get(scene, SPRING_VELOCITY, state + numbers, 0, 0, def->particles) == SPRING_OK)
-        for (size_t i = 0; i < p->moving; i++) {
-            y[i] = state[p->coordinate[i]];
-            y[p->moving + i] = state[numbers + p->coordinate[i]];
-        }
-    free(memory);
-    free(state);
+    free(scene);
+    free(room);
 }
 
 static double step_of(const trial *t, int run_index)
@@ -326,9 +320,7 @@ static void find_mode(sheet_mode *s)
     const int most = 100; /* the uncertainty includes the rest of other modes */
     const unsigned N = s->N;
     const size_t count = (size_t)N * N;
-    double *before = malloc(5 * count * sizeof *before), *image = before + count, *work = before + 2 * count;
-    if (before == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
+    double *before = scene_room(5 * count, sizeof *before), *image = before + count, *work = before + 2 * count;
     const double enough = 1e-10; /* its effect on the projection is quadratic */
     double quotient, residual;
     for (int k = 0;; k++) {
@@ -360,9 +352,7 @@ static bool mode_of(const scene_case *c, const scene_problem *p, sheet_mode *s)
     const size_t axes = p->def.axes, count = (size_t)s->N * s->N;
     const spring_link *link = p->link;
     double largest = 0;
-    s->shape = malloc(count * sizeof *s->shape);
-    if (s->shape == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
+    s->shape = scene_room(count, sizeof *s->shape);
     for (size_t i = 0; i < count; i++)
         s->shape[i] = p->position[axes * i + axes - 1];
     normalise(count, s->shape);
@@ -402,45 +392,35 @@ static double across(const reference_turn *step, const followed *f)
 
 static followed look_at_mode(const trial *t, const sheet_mode *s, const spring_scene *scene, double *room)
 {
-    const size_t axes = t->p->def.axes, count = t->p->def.particles;
-    double *x = room, *v = room + axes * count;
+    const scene_problem *p = t->p;
+    const size_t axes = p->def.axes;
+    double *y = room + 2 * axes * p->def.particles;
     followed f = {0, 0, 0};
-    if (spring_scene_get(scene, SPRING_POSITION, x, 0, 0, count) != SPRING_OK ||
-        spring_scene_get(scene, SPRING_VELOCITY, v, 0, 0, count) != SPRING_OK)
-        return (followed){NAN, NAN, NAN};
-    for (size_t i = 0; i < count; i++) {
-        f.q += s->shape[i] * x[axes * i + axes - 1];
-        f.p += s->shape[i] * v[axes * i + axes - 1] / s->omega;
-    }
+    get_state(p, scene, room, y);
+    for (size_t i = 0; i < p->moving; i++)
+        if (p->coordinate[i] % axes == axes - 1) {
+            f.q += s->shape[p->coordinate[i] / axes] * y[i];
+            f.p += s->shape[p->coordinate[i] / axes] * y[p->moving + i] / s->omega;
+        }
     return f;
 }
 
 static followed follow(const trial *t, const sheet_mode *s, const reference_turn *step)
 {
-    const spring_scene_def *def = &t->p->def;
-    const double dt = step_of(t, 0);
-    size_t bytes = 0;
-    spring_scene *scene = NULL;
-    followed f = {NAN, NAN, NAN};
-    if (spring_scene_bytes(def, &bytes) != SPRING_OK)
-        return f;
-    void *memory = malloc(bytes);
-    double *room = malloc(2 * def->axes * def->particles * sizeof *room);
-    if (memory == NULL || room == NULL)
-        cli_fail(CLI_FAILED, "out of memory");
-    bool well = spring_scene_init(memory, bytes, def, &scene) == SPRING_OK;
-    if (well)
-        f = look_at_mode(t, s, scene, room);
-    for (uint64_t i = 0; i < t->steps && well; i++) {
-        well = spring_scene_advance(scene, t->m, dt, 1) == SPRING_OK;
+    const scene_problem *p = t->p;
+    double *room = scene_room(2 * p->def.axes * p->def.particles + 2 * p->moving, sizeof *room);
+    spring_scene *scene = start_definition(&p->def, NULL);
+    followed f = look_at_mode(t, s, scene, room);
+    for (uint64_t i = 0; i < t->steps; i++) {
+        const bool done = spring_scene_advance(scene, t->m, step_of(t, 0), 1) == SPRING_OK;
         followed next = look_at_mode(t, s, scene, room);
-        const double p = across(step, &f), next_p = across(step, &next);
-        next.phase = f.phase + atan2(next.q * p - next_p * f.q, next.q * f.q + next_p * p);
+        const double p0 = across(step, &f), p1 = across(step, &next);
+        next.phase = done ? f.phase + atan2(next.q * p0 - p1 * f.q, next.q * f.q + p1 * p0) : NAN;
         f = next;
     }
-    free(memory);
+    free(scene);
     free(room);
-    return well ? f : (followed){NAN, NAN, NAN};
+    return f;
 }
 
 static const double requirement = 0.005; /* relative, of a frequency */
@@ -563,8 +543,10 @@ void validate_scene(const scene_case *c)
         if (t.steps == 0)
             continue;
         double *all = vectors(&p, 6), *by_definition = all + 10 * p.moving;
-        for (int i = 0; i < 5; i++)
-            *(i < 3 ? &t.run[i] : &t.best[i - 3]) = all + 2 * p.moving * (size_t)i;
+        for (size_t i = 0; i < 3; i++)
+            t.run[i] = all + 2 * p.moving * i;
+        for (size_t i = 0; i < 2; i++)
+            t.best[i] = all + 2 * p.moving * (3 + i);
         t.rounding = scene_rounding(c, &p, t.m, step_of(&t, 0), t.steps, by_definition);
         try_method(&t);
         same_method(&t, by_definition);

@@ -89,9 +89,6 @@ typedef struct work {
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED on failure */
 void work_close(work *w);
 
-/* Creates a scene in its own memory; exits on failure. */
-spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes);
-
 /* The error relative to the motion, at least the uncertainty of `exact`. */
 double work_error(const work *w, const double *y);
 

@@ -12,6 +12,7 @@
 
 #include "common/cli.h"
 #include "common/timing.h"
+#include "scenes/start.h"
 #include "work.h"
 
 /* --------------------------------------------------------------------------------------------------- two sheets */
@@ -81,56 +82,40 @@ static void stiffen(scene_problem *p, double stiff, double damped)
 
 static const double stiff_scene = 50, damped_scene = 100; /* leapfrog takes half the first number in steps per frame */
 
-/* One metre and one kilogram, initially level and unstretched. Particles are a hundredth of the spacing above or below
-   the plane, so that buckling does not start from rounding errors. */
-static void build_stiff(scene_problem *p, const spring_grid *g)
-{
-    scene_problem_grid(p, g, 0, 1.0 / (g->count[0] * g->count[1]));
-    for (size_t i = 0; i < p->def.particles; i++)
-        p->position[3 * i + 2] = 0.01 * g->spacing * sin(1.7 * (double)i);
-    p->def.gravity[2] = -9.81;
-}
-
-/* Hangs by two corners. */
-static void build_stiff_sheet(scene_problem *p, uint32_t side, double damped)
-{
-    build_stiff(
-        p, &(spring_grid){.count = {side, side, 1}, .axes = 3, .spacing = 1.0 / (side - 1), .families = ALL_FAMILIES});
-    p->pinned[0] = p->pinned[side - 1] = 1;
-    stiffen(p, stiff_scene, damped);
-}
-
-static void build_stiff_cloth(const scene_case *c, scene_problem *p)
-{
-    (void)c;
-    build_stiff_sheet(p, 32, 0);
-}
-
-/* Smaller, because the explicit reference takes hundreds of steps per frame. */
-static void build_damped_cloth(const scene_case *c, scene_problem *p)
-{
-    (void)c;
-    build_stiff_sheet(p, 16, damped_scene);
-}
-
-/* Hangs by one end. The particle at the other end is a hundred times as heavy. */
-static void build_stiff_rope(const scene_case *c, scene_problem *p)
-{
-    const uint32_t particles = 32;
-    (void)c;
-    build_stiff(p, &(spring_grid){.count = {particles, 1, 1}, .axes = 3, .spacing = 1.0 / (particles - 1)});
-    p->pinned[0] = 1;
-    p->mass[particles - 1] *= 100;
-    p->def.mass = p->mass;
-    stiffen(p, stiff_scene, 0);
-}
-
+/* The damped sheet is smaller, because the explicit reference takes hundreds of steps per frame. */
+static void build_stiff(const scene_case *c, scene_problem *p);
 static const scene_case stiff_cloth = {
-    .name = "stiff-cloth", .build = build_stiff_cloth, .duration = 0.25, .omega = 300, .length = 0.1};
+    .name = "stiff-cloth", .build = build_stiff, .count = 32, .duration = 0.25, .omega = 300, .length = 0.1};
 static const scene_case stiff_rope = {
-    .name = "stiff-rope", .build = build_stiff_rope, .duration = 0.25, .omega = 300, .length = 0.1};
+    .name = "stiff-rope", .build = build_stiff, .count = 32, .duration = 0.25, .omega = 300, .length = 0.1};
 static const scene_case damped_cloth = {
-    .name = "damped-cloth", .build = build_damped_cloth, .duration = 0.1, .omega = 30, .length = 0.03};
+    .name = "damped-cloth", .build = build_stiff, .count = 16, .duration = 0.1, .omega = 30, .length = 0.03};
+
+/* A rope or a sheet of one metre and one kilogram, with c->count particles along an edge, initially level and
+   unstretched. Particles are a hundredth of the spacing above or below the plane, so that buckling does not start from
+   rounding errors. A sheet hangs by two corners. A rope hangs by one end, and the particle at the other end is a
+   hundred times as heavy. */
+static void build_stiff(const scene_case *c, scene_problem *p)
+{
+    const uint32_t side = (uint32_t)c->count;
+    const bool rope = c == &stiff_rope;
+    const spring_grid g = {.count = {side, rope ? 1 : side, 1},
+                           .axes = 3,
+                           .spacing = 1.0 / (side - 1),
+                           .families = rope ? 0 : ALL_FAMILIES};
+    scene_problem_grid(p, &g, 0, 1.0 / (g.count[0] * g.count[1]));
+    for (size_t i = 0; i < p->def.particles; i++)
+        p->position[3 * i + 2] = 0.01 * g.spacing * sin(1.7 * (double)i);
+    p->def.gravity[2] = -9.81;
+    p->pinned[0] = 1;
+    if (rope) {
+        p->mass[side - 1] *= 100;
+        p->def.mass = p->mass;
+    } else {
+        p->pinned[side - 1] = 1;
+    }
+    stiffen(p, stiff_scene, c == &damped_cloth ? damped_scene : 0);
+}
 
 static const scene_case cloth = {.name = "cloth", .build = build_cloth, .duration = 0.25, .omega = 30, .length = 0.04};
 static const scene_case long_cloth = {
@@ -261,17 +246,6 @@ static const scene_case *case_of(const work_problem *problem)
     return problem->own;
 }
 
-spring_scene *work_make_scene(const spring_scene_def *def, size_t *bytes)
-{
-    spring_scene *scene = NULL;
-    if (spring_scene_bytes(def, bytes) != SPRING_OK)
-        cli_fail(CLI_FAILED, "an invalid scene");
-    void *memory = malloc(*bytes);
-    if (memory == NULL || spring_scene_init(memory, *bytes, def, &scene) != SPRING_OK)
-        cli_fail(CLI_FAILED, "no memory for a scene of %zu links", def->links);
-    return scene;
-}
-
 static void count_call(void *user, double t, size_t particles, const double *const position[3],
                        const double *const velocity[3], double *const force[3])
 {
@@ -285,14 +259,14 @@ static void count_call(void *user, double t, size_t particles, const double *con
 static void make_scenes(work *w)
 {
     spring_scene_def def = w->scene.def;
-    w->moved = work_make_scene(&def, &w->bytes);
-    w->fresh = work_make_scene(&def, &w->bytes);
+    w->moved = start_definition(&def, &w->bytes);
+    w->fresh = start_definition(&def, &w->bytes);
     if (def.force == NULL)
         def.flags |= SPRING_SCENE_FORCE_IGNORES_VELOCITY; /* so that counting adds no evaluation */
     def.force = count_call;
     def.user = w;
     w->counted = def;
-    w->counting = work_make_scene(&def, &w->counting_bytes);
+    w->counting = start_definition(&def, &w->counting_bytes);
 }
 
 uint64_t work_count(work *w, spring_method m, uint64_t steps)

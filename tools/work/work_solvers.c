@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/stages.h"
+#include "common/stepper.h"
+#include "scenes/start.h"
 #include "work.h"
 
 static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a_step = 4};
@@ -130,7 +131,7 @@ static work_result run_softened(const work *w, const work_solver *s, uint64_t st
     work_result r = {.failure = "links cannot be softened"};
     if (spring_links_soften(&def, w->duration / (double)steps, fraction, link) == SPRING_OK) {
         def.link = link;
-        spring_scene *fresh = work_make_scene(&def, &bytes), *moved = work_make_scene(&def, &bytes);
+        spring_scene *fresh = start_definition(&def, &bytes), *moved = start_definition(&def, &bytes);
         r = run_scene_of(w, moved, fresh, bytes, s->method, steps, runs, y);
         const uint64_t each = w->damped ? 2 : 1; /* as counted by work_count() */
         r.evaluations = each * steps + 1;
