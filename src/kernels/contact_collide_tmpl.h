@@ -39,7 +39,7 @@ enum {
     corner_passes = 2,      /* of step 5 */
     stop_rounds = 32        /* of the last kick */
 };
-enum { most_kept = 4 }; /* contacts */
+enum { most_kept = 3 }; /* contacts */
 
 /* Fractions of a step up to this size are rounding errors. */
 static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON);
