@@ -189,9 +189,9 @@ typedef struct spring_scene spring_scene;
  *         SPRING_EINVAL: NULL, an invalid value, or a mass or its reciprocal, 2 stiffness/mass, 2 damping/mass or
  *         drag/mass that is not finite in the precision of the scene.
  *         SPRING_ERANGE: an index of a particle or a count is too large.
- *         SPRING_EUNSUPPORTED: the methods include the exact solution; they include RKN8 or SRKN6, and the scene has a
- *         damped link, tension-only links, colliders or a callback that may use velocities; or the scene has one axis
- *         and tension-only links or colliders
+ *         SPRING_EUNSUPPORTED: the methods include one that is not for scenes (the exact solution); they include RKN8 or
+ *         SRKN6, and the scene has a damped link, tension-only links, colliders or a callback that may use
+ *         velocities; or the scene has one axis and tension-only links or colliders
  */
 SPRING_API spring_status spring_scene_check(const spring_scene_def *def, const char **field, size_t *index);
 

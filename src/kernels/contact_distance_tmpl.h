@@ -112,8 +112,9 @@ SPRING_NOINLINE void find_contact(const scene_collider *c, pose_time when, real 
     case SPRING_BOX:
         set_box(p, c);
         break;
-    default: /* SPRING_SPHERE */
+    case SPRING_SPHERE:
         set_round(p, p->arm, c->radius);
+        break;
     }
 }
 

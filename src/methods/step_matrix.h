@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One step of a method as a matrix, in powers of the step. The error of a method follows from it: spring/accuracy.c. */
-#ifndef SPRINGSTEP_STEP_TERMS_H
-#define SPRINGSTEP_STEP_TERMS_H
+#ifndef SPRINGSTEP_STEP_MATRIX_H
+#define SPRINGSTEP_STEP_MATRIX_H
 
 #include "../simd/arithmetic.h"
 

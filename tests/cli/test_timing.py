@@ -4,7 +4,9 @@ import functools
 import math
 
 import pytest
-from tools import BENCH, SCENE_STEPPERS, WORK, parse, table
+from tools import BENCH, METHODS, SCENE_STEPPERS, WORK, parse, table
+
+OURS = {*METHODS, *SCENE_STEPPERS}
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
@@ -57,8 +59,8 @@ def test_levels_of_the_table(work):
     levels = parse(text)
     assert [(row['problem'], row['error']) for row in levels] == [(problem, f'1e-{n}') for n in range(1, 13)]
     for row in levels:
-        for solver, time, among in (('solver', 'time_s', lambda name: name in SCENE_STEPPERS),
-                                    ('peer', 'peer_time_s', lambda name: name not in [*SCENE_STEPPERS, 'exact', 'leapfrog-softened', 'xpbd'])):
+        for solver, time, among in (('solver', 'time_s', lambda name: name in OURS - {'exact'}),
+                                    ('peer', 'peer_time_s', lambda name: name not in OURS | {'leapfrog-softened', 'xpbd'})):
             least, names = cheapest(rows, float(row['error']), among)
             assert row[time] == least and row[solver] in names
         ratio = float(row['peer_time_s']) / float(row['time_s'])

@@ -7,11 +7,11 @@ import subprocess
 import time
 
 import pytest
-from tools import (BENCH, BY_METHOD, CONTACTS, ENERGY, MAP, METHODS, METHOD_TABLE, ORDER, PLAN, ROUNDING, RUN, SCENE, SHORT, STABILITY, STEPPERS,
+from tools import (BENCH, BY_METHOD, CONTACTS, ENERGY, MAP, METHODS, METHOD_TABLE, ORDER, PLAN, ROUNDING, RUN, SCENE, SCENE_STEPPERS, SHORT, STABILITY, STEPPERS,
                    SWEEP, VALIDATE, WORK, each_tool, is_failure, run, table)
 
 METHOD = f'one of {", ".join(METHODS)}'
-STEPPER = f'one of {", ".join(STEPPERS)}'
+SCENE_STEPPER = f'one of {", ".join(SCENE_STEPPERS)}'
 REAL, NOT_NEGATIVE, POSITIVE = 'a finite number', 'a finite number of at least 0', 'a finite number greater than 0'
 COUNT_1, COUNT_53 = 'a whole number of at least 1', 'a whole number from 1 to 9007199254740992'
 SCENE_NAME = 'one of rope, cloth, jelly, chain, water'
@@ -56,7 +56,7 @@ REFUSED_VALUES = [  # of a tool, options, values; what each should be
     (STABILITY, '--points', ['0', '10001', '-3', 'x'], 'from 1 to 10000'),
     (ROUNDING, '--steps', ['9999'], 'from 10000'),
     (SCENE, '--scene', ['', 'ropes', 'Rope'], SCENE_NAME),
-    (SCENE, '--method', ['exact'], STEPPER),
+    (SCENE, '--method', ['exact'], SCENE_STEPPER),
     (SCENE, '--size', ['1', '4001', '2.5'], 'from 2 to 4000'),
     (SCENE, '--dt --duration --length --mass --fps --stretch --push-duration', ['0', '-1', 'nan'], POSITIVE),
     (SCENE, '--stiffness --damping --drag --rain', ['-1', 'inf'], NOT_NEGATIVE),
@@ -64,7 +64,7 @@ REFUSED_VALUES = [  # of a tool, options, values; what each should be
                          '0,,0,1,1'], POKE),
     (SCENE, '--drop-box', ['1'], '2 finite numbers separated by commas, T,MASS'),
     (SCENE, '--frames', [''], 'the name of a folder'),
-    (MAP, '--method', ['exact'], STEPPER),
+    (MAP, '--method', ['exact'], SCENE_STEPPER),
     (MAP, '--scene', ['sea'], SCENE_NAME),
 ]
 
@@ -145,7 +145,7 @@ REFUSED = [  # a tool with arguments; what else the message says
         (f'{VALIDATE} --case', ['--case', 'value is missing', 'one of']),
         (f'{ROUNDING} --method rk4', ['--sum', 'missing', 'one of plain, compensated']),
         (f'{ROUNDING} --method rk4 --sum plain --dt 1e-3 --duration 1', ['--duration', '"1"', '1000 steps', 'at least 10000 of them, 10 s']),
-        (f'{SCENE} --scene rope', ['--method', 'missing', STEPPER]),
+        (f'{SCENE} --scene rope', ['--method', 'missing', SCENE_STEPPER]),
         (f'{SCENE} --scene rope --method rk4 --steps 100', ['--steps', '"100"', '--dt, --steps-per-frame or --duration']),
         (f'{SCENE} --scene rope --method rk4 --frame-rate 1e-300 --steps-per-frame 1 --steps 1e10',
          ['--steps', '"10000000000"', '1e+300 s', 'finite']),

@@ -118,7 +118,7 @@ static void bad_colliders(void)
     spring_scene_def def = {
         .particles = 2, .position = x, .colliders = 2, .methods = 1u << SPRING_EULER | 1u << SPRING_LEAPFROG};
     spring_scene *s = scene_of(&def);
-    for (int shape = 0; shape < 4; shape++)
+    for (int shape = 0; shape < shape_count; shape++)
         for (size_t f = 0; f < sizeof fields / sizeof fields[0]; f++)
             for (size_t i = 0; i < fields[f].numbers; i++)
                 for (int k = 0; k < (fields[f].signed_number ? 4 : 5); k++) {
@@ -139,7 +139,7 @@ static void bad_colliders(void)
     check_field(s, c, NULL);
     c = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1.01, 0}}};
     check_field(s, c, "axis");
-    c = (spring_collider){.shape = (spring_shape)4, .axis = {{0, 1, 0}}};
+    c = (spring_collider){.shape = (spring_shape)shape_count, .axis = {{0, 1, 0}}};
     check_field(s, c, "shape");
     c = (spring_collider){
         .shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}, .at = {(double)SCALAR_MAX, (double)SCALAR_MAX, 0}};
@@ -329,7 +329,7 @@ static void floor_and_wall(void)
    moves inwards. Pinned particles stay. */
 static void inside_at_first(void)
 {
-    for (int shape = 0; shape < 4; shape++)
+    for (int shape = 0; shape < shape_count; shape++)
         for (int m = 0; m < method_count; m++) {
             const double x[] = {0.1, 0.2, 0.05, 0.2, 0.3, 0.1};
             const uint8_t pinned[] = {0, 1};

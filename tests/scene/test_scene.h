@@ -24,7 +24,7 @@ typedef spring_scene scene;
 
 extern const scene_kernels plain_scene; /* without vectors, see plain_kernels.c */
 
-enum { kernel_count = 4 };
+enum { kernel_count = 4, shape_count = SPRING_BOX + 1 };
 
 /* By ascending length of the vectors, and without vectors; NULL: this processor lacks the instructions. */
 SPRING_INLINE const scene_kernels *kernels_of(int i)
@@ -350,7 +350,7 @@ SPRING_INLINE void random_unit(double axis[3], uint32_t axes)
 /* Of any shape, moving and spinning, about the origin. */
 SPRING_INLINE spring_collider random_collider(uint32_t axes)
 {
-    spring_collider c = {.shape = (spring_shape)(random_bits() % 4),
+    spring_collider c = {.shape = (spring_shape)(random_bits() % shape_count),
                          .radius = random_uniform(0.2, 0.5),
                          .friction = random_bits() % 3 ? random_uniform(0, 1) : 0,
                          .restitution = random_bits() % 3 ? random_uniform(0, 1) : 0};

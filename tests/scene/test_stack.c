@@ -120,7 +120,7 @@ static void test_stack(void)
         spring_collider c[most_colliders];
         for (size_t i = 0; i < most_colliders; i++)
             c[i] = (spring_collider){
-                .shape = (spring_shape)(i % (SPRING_BOX + 1)),
+                .shape = (spring_shape)(i % shape_count),
                 .at = {random_uniform(0, 14), random_uniform(0, 14), -1.2},
                 .to = {random_uniform(0, 14), random_uniform(0, 14), -1},
                 .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},

@@ -2,7 +2,7 @@
 /*
  * Independent implementations of the methods, written as in textbooks. Steps of the library are compared with them.
  *
- * iterates.c has one entry per method. To add a method to all tests and tools, add its entry there.
+ * iterates.c has one entry per method. docs/internals.md says how to add a method.
  */
 #ifndef HARNESS_ITERATES_H
 #define HARNESS_ITERATES_H
@@ -41,7 +41,7 @@ typedef struct iterate {
     size_t vectors; /* vectors of `count` numbers that need room */
 } iterate;
 
-/* Exits with a message if the method has no steps, such as SPRING_EXACT. */
+/* Exits with a message if the method has no steps, such as SPRING_EXACT, or a function of the two is missing. */
 const iterate *iterate_of(spring_method m);
 
 /* Size of `room`, enough for every method. */
