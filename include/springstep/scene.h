@@ -33,7 +33,7 @@
  *  - Threads may use different scenes concurrently. They may also read the same scene concurrently, with functions that
  *    accept a const scene, while no thread changes it.
  *  - No function needs more than 16 KiB of the stack, compiled by gcc 12 or clang 14 with optimisation
- *    (tests/scene/test_stack.c). A callback runs on top of at most as much.
+ *    (tests/scene/test_stack.c). At most as much is in use when a callback is called.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
  *    callback are.
  *  - Particles collide with colliders: planes, spheres, capsules and boxes. They do not collide with each other. Links

@@ -10,9 +10,9 @@
  *           2. Newton's method on the gap along the path gives the time of impact: theta <- theta + gap/(rate of
  *              approach). The gap to a convex body that does not turn is a convex function of the fraction, so the
  *              method never overshoots.
- *           3. Impact, if n.u < 0 for u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n per mass, with
- *              friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has the changed
- *              velocity.
+ *           3. Impact, if n.u < 0 for u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n times the mass,
+ *              with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has the
+ *              changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
  *              is lambda n, with the lambda for which the path ends on the surface, and friction is at most mu lambda.
  *              Static friction holds a particle exactly: w = V, d = h V. Late, in the second half of the step, at a
@@ -243,7 +243,7 @@ SPRING_NOINLINE void collide(const scene_collider *c, unsigned i, drifting *p, m
     const real rate = dot3(u, n);
     const mask bounces = hit & (rate * p->h < -contact_slop(c, p->x0)) & not_mask(again & (fraction <= 0));
     if (any(bounces)) {
-        const real impulse = -(1 + c->restitution) * rate; /* [m/s] per mass */
+        const real impulse = -(1 + c->restitution) * rate; /* [m/s] divided by the mass */
         const real3 friction = friction_loss(tangential_to(n, u), c->friction * vec_abs(impulse));
         const real3 change = minus3(times3(impulse, n), friction);
         p->w = select3(bounces, plus3(p->w, change), p->w);

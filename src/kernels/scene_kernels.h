@@ -168,7 +168,7 @@ typedef struct scene_motion {
     /* kick_drift */
     bool ends_previous; /* begin with the implicit kick that ends the previous step */
     scalar *predicted;  /* written: velocities at the end of the step; may be `force`. NULL: none */
-    /* Further arguments of kernels that are named so in the table below. */
+    /* Further arguments: of Euler and RK4, of RKN8, of the series for link damping, and of drifts with drag. */
     const scene_stage *stage;
     const scene_nystrom *nystrom;
     const scene_chebyshev *damping_term;

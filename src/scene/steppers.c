@@ -99,15 +99,15 @@ static scene_outcome scene_leapfrog(scene_step *s)
     if (s->damping.terms > 0)
         return scene_leapfrog_with_heavy_damping(s);
     const bool keeps = !scene_callback_uses_velocity(s->scene), uses_velocity = scene_forces_use_velocity(s->scene);
-    const bool previous_kick_is_left = keeps && !s->first, leaves_last_kick = keeps && !s->last;
+    const bool previous_kick_is_pending = keeps && !s->first, defers_last_kick = keeps && !s->last;
     find_start_force(s);
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 2;
-    kick_drift.ends_previous = previous_kick_is_left;
+    kick_drift.ends_previous = previous_kick_is_pending;
     kick_drift.predicted = uses_velocity ? predicted_velocities(s) : NULL;
     last_kick.v0 = kick_drift.v;
     last_kick.force = s->forces.force;
-    particle_kernel *const implicit_kick = leaves_last_kick ? NULL : s->kernels->implicit_kick;
+    particle_kernel *const implicit_kick = defers_last_kick ? NULL : s->kernels->implicit_kick;
     const scalar *const v = uses_velocity ? kick_drift.predicted : kick_drift.v;
     return (scene_outcome){
         .finite = move_evaluate_move(s, s->kernels->kick_drift, &kick_drift, v, 1, implicit_kick, &last_kick),
