@@ -44,13 +44,6 @@ export function productError(a, b, product) {
     return aHigh * bHigh - product + aHigh * bLow + aLow * bHigh + aLow * bLow;
 }
 
-/** a^2 - square, where square is a^2 rounded. */
-export function squareError(a, square) {
-    const aHigh = upper(a);
-    const aLow = a - aHigh;
-    return aHigh * aHigh - square + aHigh * (2 * aLow) + aLow * aLow;
-}
-
 const inverse = [1]; // 1/n! of factorials that are exact
 for (let n = 1, factorial = 1; n < 19; n++) inverse[n] = 1 / (factorial *= n);
 

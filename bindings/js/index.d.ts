@@ -3,10 +3,10 @@
 /** The parameters of T, and no others. */
 type Only<T> = T & { [K in Exclude<Names, keyof T>]?: never };
 type Names =
-    | ("stiffness" | "damping" | "mass" | "response" | "dampingFraction")
+    | ("stiffness" | "damping" | "mass" | "response" | "dampingFraction" | "settling" | "tolerance")
     | ("duration" | "bounce" | "hertz" | "dampingRatio" | "halfLife");
 
-/** Parameters of a spring, in one of five forms. Times are in seconds. */
+/** Parameters of a spring, in one of six forms. Times are in seconds. */
 export type SpringParameters =
     | Only<{
           /** >= 0 */
@@ -39,16 +39,37 @@ export type SpringParameters =
           halfLife: number;
           /** > 0; default 1, which does not overshoot */
           dampingRatio?: number;
+      }>
+    | Only<{
+          /** time after which a value that starts at rest stays within `tolerance` of the way; > 0 */
+          settling: number;
+          /** > 0; default 1, which does not overshoot */
+          dampingRatio?: number;
+          /** 0 to 1; default 0.001 */
+          tolerance?: number;
       }>;
 
-interface Tolerances {
-    /** A value settles if its distance from the target is at most this; default 1/10000 of the size of the motion. */
+export interface Tolerances {
+    /** A value settles if its distance from the target stays at most this; default 1/10000 of the size of the motion. */
     restDelta?: number;
-    /** A value settles if its speed per second is at most this; default 1/1000 of the size of the motion. */
+    /** A value settles if its speed per second stays at most this; default 1/1000 of the size of the motion. */
     restSpeed?: number;
 }
 
-export type SpringsOptions = SpringParameters & Tolerances & { clamp?: never; onRest?: never };
+/** Each parameter is a number, or an array with a number for each value. */
+type Each<T> = T extends unknown
+    ? { [K in keyof T]: [Exclude<T[K], undefined>] extends [never] ? T[K] : T[K] | ArrayLike<number> }
+    : never;
+
+export type SpringsParameters = Each<SpringParameters>;
+
+export type SpringsOptions = SpringsParameters &
+    Each<Tolerances> & {
+        /** see Springs.clamp; default false */
+        clamp?: boolean;
+        /** see Springs.onRest; default null */
+        onRest?: ((i: number, springs: Springs) => void) | null;
+    };
 
 export type SpringOptions = SpringParameters &
     Tolerances & {
@@ -63,46 +84,96 @@ export declare class Spring {
     /** At rest on its target `value`, which is 0 by default. The default options are `{ duration: 0.5 }`. */
     constructor(value?: number, options?: SpringOptions);
 
-    readonly value: number;
+    /** The value. A new value keeps velocity and target. */
+    value: number;
 
-    /** Velocity, in units of the value per second. Set it when a gesture ends, for example. */
+    /** Velocity, in units of the value per second. */
     velocity: number;
 
-    /** Target. A new target keeps value and velocity. */
+    /** The place of the target at the end of the next step. A new target keeps value and velocity. */
     target: number;
+
+    /** The velocity of the target, default 0. To follow a moving target without lag, set both before each step. */
+    targetVelocity: number;
 
     /** Whether the value is at rest on its target. step() has no effect then. A new target makes it false until a step. */
     readonly settled: boolean;
 
+    /** Resolves when the value is at rest on its target, at once if it is. A new target keeps the promise. */
+    readonly finished: Promise<void>;
+
     /** Stop at the target instead of overshooting, however long the step. A value on its target stays there. */
     clamp: boolean;
 
-    /** Called by step() when the spring settles: once for each new target or velocity, also if the target equals the value. */
+    /** Called when the spring settles: once for each new target, value or velocity, also if the target equals the value. */
     onRest: ((spring: Spring) => void) | null;
+
+    /** Replaces the parameters; value, velocity and target stay. Tolerances that are not given stay, too. */
+    set(options: SpringParameters & Tolerances): void;
 
     /** Places value and target at `value`, at rest. Does not call onRest. */
     jump(value: number): void;
 
+    /** Ends a gesture: sets the velocity, and the target if it is given. */
+    release(velocity: number, target?: number): void;
+
+    /** Ends the motion: places the value on its target. */
+    finish(): void;
+
     /**
-     * Advances by `dt` seconds, of any length, and returns the value. A negative `dt` integrates backwards. Value and velocity are bit-identical to those of
-     * spring_follow() in C. If they would overflow, step() throws a RangeError and changes nothing. A settled spring stays
-     * at rest on its target.
+     * Seconds until the value settles, if frames are short: 0 if it is settled. Infinity if it never does, if the target has a
+     * velocity, and if a tolerance is 0.
+     */
+    settlingTime(): number;
+
+    /**
+     * Advances by `dt` seconds, of any length, and returns the value. A negative `dt` integrates backwards. Value and velocity
+     * are bit-identical to those of spring_follow() in C. If they would overflow, step() throws a RangeError and changes
+     * nothing. A settled spring stays at rest on its target.
      */
     step(dt: number): number;
 }
 
-/** Many values with the same parameters, each with its own target. */
+/**
+ * Many values, each with its own target. animate() notices changes of the arrays where they are read from this object:
+ * `springs.target[i] = 1`.
+ */
 export declare class Springs {
     /** Values, velocities and targets are 0. The default options are `{ duration: 0.5 }`. */
     constructor(count: number, options?: SpringsOptions);
 
-    readonly target: Float64Array;
     readonly value: Float64Array;
     readonly velocity: Float64Array;
+    readonly target: Float64Array;
+    readonly targetVelocity: Float64Array;
+
+    /** see Spring.clamp */
+    clamp: boolean;
+
+    /** Called for each value that comes to rest on its target, after the step. */
+    onRest: ((i: number, springs: Springs) => void) | null;
+
+    /** Whether value i is at rest on its target. */
+    settled(i: number): boolean;
+
+    /** Replaces the parameters, as Spring.set(). */
+    set(options: SpringsParameters & Each<Tolerances>): void;
+
+    /** Places all values on their targets. */
+    finish(): void;
 
     /**
-     * Advances by `dt` seconds, of any length, and returns the number of values that still move. If a target is not finite or
+     * Advances by `dt` seconds, of any length, and returns the number of values that still move. A value is placed on its target
+     * when it is within the tolerances at the end of a step, as by spring_batch_follow_moving() in C. If a target is not finite or
      * a value would overflow, that value keeps its state, the others are advanced, and step() throws a RangeError.
      */
     step(dt: number): number;
+}
+
+/** The velocity of a pointer, by least squares over its positions of the last 100 ms. Use one for each axis. */
+export declare class VelocityTracker {
+    /** `time` is in milliseconds, as `event.timeStamp`. */
+    add(position: number, time: number): void;
+    /** Units per second at `time`, by default that of the last position. A pointer that has not moved for 100 ms is at rest. */
+    velocity(time?: number): number;
 }

@@ -1,3 +1,5 @@
 // SPDX-License-Identifier: MIT
+// @ts-self-types="./index.d.ts"
 export { Spring } from "./spring.js";
 export { Springs } from "./springs.js";
+export { VelocityTracker } from "./tracker.js";

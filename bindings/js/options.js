@@ -2,6 +2,7 @@
 // Options of springs: checks, and the parameters that people know, as in src/spring/params.c.
 import { leastNormal } from "./elementary.js";
 import { Propagator } from "./propagator.js";
+import { timeWithin } from "./settling.js";
 
 /** Throws unless `holds`: `stiffness must be a finite number >= 0, got NaN`. */
 export function check(holds, name, what, value, Kind = typeof value === "number" ? RangeError : TypeError) {
@@ -26,39 +27,29 @@ const ways = {
     duration: "bounce",
     hertz: "dampingRatio",
     halfLife: "dampingRatio",
+    settling: "dampingRatio",
 };
+// The option that may be added to these two.
+const thirds = { stiffness: "mass", settling: "tolerance" };
 
 /** The decay rate of the slowest mode, in units of omega. */
 const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 1) * Math.sqrt(ratio + 1)));
 
-/** The undamped angular frequency and the damping ratio of a way other than stiffness and damping. */
-function omegaAndRatio(way, first, name, second) {
-    checkPositive(way, first);
-    if (way === "hertz") {
-        checkNotNegative(name, second);
-        return [twoPi * first, second];
-    }
-    if (way === "halfLife") {
-        checkPositive(name, second);
-        return [Math.LN2 / first / slowest(second), second];
-    }
-    if (way === "response") checkNotNegative(name, second);
-    else {
-        check(isNumber(second) && second > -1 && second <= 1, name, "a number > -1 and <= 1", second);
-        second = second >= 0 ? 1 - second : 1 / (1 + second);
-    }
-    return [twoPi / first, second];
-}
+export const checkFunction = (name, value) =>
+    check(value === null || typeof value === "function", name, "a function or null", value, TypeError);
+
+/** The name of the method whose result console.log() of Node shows. */
+export const inspected = Symbol.for("nodejs.util.inspect.custom");
 
 /** The size of a motion that begins at a distance from the target with a velocity. */
 export const sizeOf = (p, distance, velocity) =>
     Math.abs(p.omega2 && distance) + Math.abs(velocity) * p.reach;
 
 /**
- * Of options: the propagator p, the explicit tolerances, and near(left, speed, size), which is whether a value is at rest at a
- * distance and a speed, in a motion of a size. `others` are the names of further options.
+ * Of options: the propagator p, the explicit tolerances, and the tolerances of distance and speed in a motion of a size.
+ * `others` are the names of further options.
  */
-export function settings(options, others) {
+export function settings(options, others = []) {
     const { restDelta, restSpeed, ...rest } = options;
     checkNotNegative("restDelta", restDelta ?? 0);
     checkNotNegative("restSpeed", restSpeed ?? 0);
@@ -71,12 +62,25 @@ export function settings(options, others) {
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
     const second = ways[way];
     for (const name of given)
-        if (name !== way && name !== second && (name !== "mass" || way !== "stiffness"))
+        if (name !== way && name !== second && name !== thirds[way])
             throw new TypeError(`the option ${name} does not go with ${way}`);
     let { stiffness, damping, mass = 1 } = rest;
     if (way !== "stiffness") {
-        const byDefault = second === "bounce" ? 0 : 1;
-        const [omega, ratio] = omegaAndRatio(way, rest[way], second, rest[second] ?? byDefault);
+        const { [way]: first, [second]: given = second === "bounce" ? 0 : 1, tolerance = 1e-3 } = rest;
+        checkPositive(way, first);
+        let ratio = given;
+        if (second === "bounce") {
+            check(isNumber(given) && given > -1 && given <= 1, second, "a number > -1 and <= 1", given);
+            ratio = given >= 0 ? 1 - given : 1 / (1 + given);
+        } else (way === "halfLife" || way === "settling" ? checkPositive : checkNotNegative)(second, given);
+        let omega = twoPi / first;
+        if (way === "hertz") omega = twoPi * first;
+        if (way === "halfLife") omega = Math.LN2 / first / slowest(ratio);
+        if (way === "settling") {
+            check(tolerance > 0 && tolerance < 1, "tolerance", "a number > 0 and < 1", tolerance);
+            // Settling times are inversely proportional to omega.
+            omega = timeWithin(new Propagator(1, 2 * ratio, 1), 1, 0, tolerance) / first;
+        }
         stiffness = omega * omega;
         damping = 2 * ratio * omega;
         check(stiffness >= leastNormal, "stiffness", "no denormal number", stiffness);
@@ -87,7 +91,6 @@ export function settings(options, others) {
     checkFinite("stiffness / mass", stiffness / mass);
     checkFinite("damping / mass", damping / mass);
     const p = new Propagator(stiffness, damping, mass);
-    const near = (left, speed, size) =>
-        left <= (restDelta ?? size / 1e4) && Math.abs(speed) <= (restSpeed ?? size / 1e3);
-    return { p, restDelta, restSpeed, near };
+    const tolerances = (size) => [restDelta ?? size / 1e4, restSpeed ?? size / 1e3];
+    return { p, restDelta, restSpeed, tolerances };
 }

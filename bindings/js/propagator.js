@@ -11,7 +11,6 @@ import {
     productError,
     scaled,
     sineCosine,
-    squareError,
 } from "./elementary.js";
 
 const { abs, max, min, sqrt } = Math;
@@ -53,7 +52,7 @@ export class Propagator {
         const scale = powerOfTwo(-k);
         const c = b * scale;
         const square = c * c;
-        const D = w * scale * scale - square - squareError(c, square) + rest * scale * scale;
+        const D = w * scale * scale - square - productError(c, c, square) + rest * scale * scale;
         this.split = sqrt(abs(D)) * powerOfTwo(k);
         this.overdamped = D < 0;
         this.dt = NaN;
@@ -61,7 +60,7 @@ export class Propagator {
         this.reach = 1 / (sqrt(w) || g || Infinity);
     }
 
-    /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - wH x) about the target. */
+    /** Coefficients for a step of dt: x' = half (F x + H v), v' = half (G v - omega2 H x) about the target. */
     prepare(dt) {
         if (dt === this.dt) return;
         this.dt = dt;
@@ -100,7 +99,6 @@ export class Propagator {
         this.F = other * F;
         this.G = other * G;
         this.H = other * H;
-        this.wH = omega2 * (other * H);
         const decay = rate * dt;
         this.fraction = omega2 > 0 && decay > 0 ? min(max(decay, leastFraction), 1) : 0;
         this.angle = this.overdamped ? 0 : size; // [rad] by which the oscillation advances

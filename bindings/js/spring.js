@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: MIT
-// One value that follows a target: spring_follow() with a load and a target velocity of 0.
-import { check, checkFinite, isNumber, settings, sizeOf } from "./options.js";
+// One value that follows a target: spring_follow() without a load.
+import { epsilon } from "./elementary.js";
+import { checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { lands } from "./propagator.js";
+import { restTime, turningTime } from "./settling.js";
+import { changed } from "./watch.js";
+
+const { abs } = Math;
 
 export class Spring {
     #settings;
     #value;
     #velocity = 0;
     #target;
+    #targetVelocity = 0;
     #settled = true;
     #resting = false; // during onRest()
     #size = 0; // of the motion since the target or the velocity was set
+    #finished = null; // the promise
+    #finish;
     clamp;
     onRest;
 
     constructor(value = 0, options = {}) {
         checkFinite("value", value);
         this.#settings = settings(options, ["clamp", "onRest"]);
-        this.clamp = options.clamp ?? false;
-        const { onRest = null } = options;
-        check(
-            onRest === null || typeof onRest === "function",
-            "onRest",
-            "a function or null",
-            onRest,
-            TypeError,
-        );
+        const { clamp = false, onRest = null } = options;
+        this.clamp = clamp;
+        checkFunction("onRest", onRest);
         this.onRest = onRest;
         this.#value = this.#target = value;
         if (new.target === Spring) Object.seal(this); // `spring.stiffness = 300` throws
@@ -33,11 +35,19 @@ export class Spring {
 
     #moves() {
         this.#settled = false;
-        this.#size = sizeOf(this.#settings.p, this.#target - this.#value, this.#velocity);
+        const { p } = this.#settings;
+        this.#size = sizeOf(p, this.#target - this.#value, this.#velocity - this.#targetVelocity);
+        changed(this);
     }
 
     get value() {
         return this.#value;
+    }
+
+    set value(value) {
+        checkFinite("value", value);
+        this.#value = value;
+        this.#moves();
     }
 
     get velocity() {
@@ -62,51 +72,116 @@ export class Spring {
         this.#moves();
     }
 
+    get targetVelocity() {
+        return this.#targetVelocity;
+    }
+
+    set targetVelocity(velocity) {
+        checkFinite("targetVelocity", velocity);
+        if (velocity === this.#targetVelocity) return;
+        this.#targetVelocity = velocity + 0; // no -0
+        this.#moves();
+    }
+
     get settled() {
         return this.#settled;
     }
 
+    get finished() {
+        if (this.#settled) return Promise.resolve();
+        return (this.#finished ??= new Promise((resolve) => (this.#finish = resolve)));
+    }
+
+    set(options) {
+        const { restDelta, restSpeed } = this.#settings;
+        this.#settings = settings({ restDelta, restSpeed, ...options });
+        if (!this.#settled) changed(this);
+        else if (this.#value !== this.#target) this.#moves(); // it had no stiffness
+    }
+
     jump(value) {
         checkFinite("value", value);
-        this.#value = this.#target = value;
-        this.#velocity = 0;
-        this.#settled = true;
+        this.#target = value;
+        this.#targetVelocity = 0;
+        this.#place(value, false);
+        changed(this);
+    }
+
+    release(velocity, target = this.#target) {
+        checkFinite("target", target);
+        this.velocity = velocity;
+        this.target = target;
+    }
+
+    finish() {
+        if (this.#settled) return;
+        this.#place(this.#target);
+        changed(this);
+    }
+
+    settlingTime() {
+        if (this.#settled) return 0;
+        if (this.#targetVelocity !== 0) return Infinity;
+        const { p, tolerances } = this.#settings;
+        const y = this.#value - this.#target;
+        const v = this.#velocity;
+        const time = restTime(p, y, v, ...tolerances(this.#size));
+        if (!this.clamp || p.omega2 === 0) return time;
+        // It stops where it reaches the target. The distance is a velocity, of its integral.
+        return Math.min(time, turningTime(p, -(v + 2 * p.b * y) / p.omega2, y));
     }
 
     step(dt) {
         checkFinite("dt", dt);
         if (this.#settled || dt === 0) return this.#value;
-        if (this.#value === this.#target && this.#velocity === 0) return this.#rest(this.#value);
-        const { p, near } = this.#settings;
-        p.prepare(dt);
         const target = this.#target;
-        const attracts = p.omega2 > 0;
-        const to = attracts ? target : 0; // without stiffness a target has no effect
-        const y0 = this.#value - to;
-        const v0 = this.#velocity;
-        const y = p.half * (p.F * y0 + p.H * v0);
-        const v = p.half * (p.G * v0 - p.wH * y0);
+        const speed = this.#targetVelocity;
+        if (this.#value === target && this.#velocity === 0 && speed === 0) return this.#place(target);
+        const { p, tolerances } = this.#settings;
+        p.prepare(dt);
+        const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
+        const moved = speed && speed * dt;
+        const to = attracts ? target : moved;
+        const y0 = this.#value - (attracts ? target - moved : 0);
+        const u0 = this.#velocity - speed;
+        const y = p.half * (p.F * y0 + p.H * u0);
+        const u = p.half * (p.G * u0 - p.omega2 * p.H * y0);
         const x = to + y;
+        const v = speed ? speed + u : u;
         if (!isNumber(0 * x + 0 * v)) throw new RangeError("value or velocity overflows");
-        // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
-        const passed = y0 > 0 ? y <= 0 : y0 === 0 || y >= 0;
-        const stops = this.clamp && dt > 0 && attracts && (passed || p.angle >= Math.PI);
-        const left = Math.abs(attracts ? x - target : v * p.reach);
-        if (stops || near(left, v, this.#size) || lands(x, to, y, v, p.fraction, p.omega2))
-            return this.#rest(attracts ? target : x);
+        let stops = lands(x, to, y, u, p.fraction, p.omega2);
+        if (this.clamp && dt > 0 && attracts) {
+            // Whether the value was on its target during the step. Zeros of an oscillation are pi apart.
+            const on = speed && 4 * epsilon * (abs(target) + abs(moved));
+            stops ||= abs(y0) <= abs(on) || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= Math.PI;
+        }
+        const [restDelta, restSpeed] = tolerances(this.#size);
+        const left = attracts && x - target;
+        if (abs(left) <= restDelta && abs(u) <= restSpeed)
+            stops ||= restTime(p, left, u, restDelta, restSpeed) === 0;
+        if (stops) return this.#place(attracts ? target : x);
         this.#velocity = v;
         return (this.#value = x);
     }
 
-    #rest(value) {
+    /** Places the value where it rests, or moves along with its target. */
+    #place(value, tells = true) {
         this.#value = value;
-        this.#velocity = 0;
+        this.#velocity = this.#targetVelocity;
+        if (this.#velocity !== 0) return value;
         this.#settled = this.#resting = true;
+        this.#finished = null;
+        this.#finish?.();
         try {
-            this.onRest?.(this);
+            if (tells) this.onRest?.(this);
         } finally {
             this.#resting = false;
         }
         return this.#value;
+    }
+
+    [inspected]() {
+        const { value, velocity, target, targetVelocity, settled } = this;
+        return { value, velocity, target, targetVelocity, settled };
     }
 }

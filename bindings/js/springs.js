@@ -1,92 +1,232 @@
 // SPDX-License-Identifier: MIT
-// Many values with the same parameters, each with its own target: spring_batch_follow() without a load.
-import { check, checkFinite, isNumber, settings, sizeOf } from "./options.js";
+// Many values, each with its own target: spring_batch_follow_moving() without a load.
+import { check, checkFinite, checkFunction, inspected, isNumber, settings, sizeOf } from "./options.js";
 import { epsilon, leastNormal } from "./elementary.js";
 import { lands } from "./propagator.js";
+import { changed } from "./watch.js";
 
 const { abs } = Math;
 
+/** Settings of each value; if no option is an array, of all values. */
+function settingsOf(options, count, others) {
+    const lists = Object.entries(options).filter(
+        ([, value]) => typeof value === "object" && value?.length >= 0,
+    );
+    for (const [name, { length }] of lists) check(length === count, `${name}.length`, `${count}`, length);
+    if (lists.length === 0) return settings(options, others);
+    return Array.from({ length: count }, (_, i) => {
+        try {
+            return settings(
+                { ...options, ...Object.fromEntries(lists.map(([name, list]) => [name, list[i]])) },
+                others,
+            );
+        } catch (error) {
+            error.message = `value ${i}: ${error.message}`;
+            throw error;
+        }
+    });
+}
+
 export class Springs {
-    #settings;
+    #settings; // of all values, or an array
+    #given; // options, of which set() keeps the tolerances
+    #target;
+    #targetVelocity;
+    #value;
+    #velocity;
     #targets; // of the last step
     #sizes; // of the motions to these targets
+    #failed = -1; // first value that has kept its state in a step
+    #rested = []; // values that came to rest in a step
+    clamp;
+    onRest;
 
     constructor(count, options = {}) {
         check(Number.isSafeInteger(count) && count >= 0, "count", "an integer >= 0", count);
-        this.#settings = settings(options, []);
-        this.target = new Float64Array(count);
-        this.value = new Float64Array(count);
-        this.velocity = new Float64Array(count);
-        this.#targets = new Float64Array(count);
-        this.#sizes = new Float64Array(count);
+        this.#settings = settingsOf(options, count, ["clamp", "onRest"]);
+        this.#given = options;
+        const { clamp = false, onRest = null } = options;
+        this.clamp = clamp;
+        checkFunction("onRest", onRest);
+        this.onRest = onRest;
+        const zeros = () => new Float64Array(count);
+        [this.#value, this.#velocity, this.#target, this.#targetVelocity] = [
+            zeros(),
+            zeros(),
+            zeros(),
+            zeros(),
+        ];
+        [this.#targets, this.#sizes] = [zeros(), zeros()];
         if (new.target === Springs) Object.seal(this);
     }
 
-    /** A motion begins at a new target, and at a value on its target. Returns the largest tolerance of a distance. */
-    #measure() {
-        const { target, value, velocity } = this;
-        const { p, restDelta, restSpeed } = this.#settings;
-        if (restDelta >= 0 && restSpeed >= 0) return restDelta;
-        const targets = this.#targets;
-        const sizes = this.#sizes;
-        let largest = 0;
-        for (let i = 0; i < value.length; i++) {
-            const goal = target[i];
-            if (goal !== targets[i] || (goal === value[i] && velocity[i] !== 0)) {
-                targets[i] = goal;
-                sizes[i] = sizeOf(p, goal - value[i], velocity[i]);
-            }
-            if (sizes[i] > largest) largest = sizes[i];
+    // Who gets an array may write to it.
+
+    get value() {
+        changed(this);
+        return this.#value;
+    }
+
+    get velocity() {
+        changed(this);
+        return this.#velocity;
+    }
+
+    get target() {
+        changed(this);
+        return this.#target;
+    }
+
+    get targetVelocity() {
+        changed(this);
+        return this.#targetVelocity;
+    }
+
+    settled(i) {
+        const count = this.#value.length;
+        check(Number.isInteger(i) && i >= 0 && i < count, "i", `the index of one of ${count} values`, i);
+        return this.#rests(i);
+    }
+
+    #rests(i) {
+        return this.#value[i] === this.#target[i] && this.#velocity[i] === 0 && this.#targetVelocity[i] === 0;
+    }
+
+    set(options) {
+        const { restDelta, restSpeed } = this.#given;
+        const given = { restDelta, restSpeed, ...options };
+        this.#settings = settingsOf(given, this.#value.length);
+        this.#given = given;
+        changed(this);
+    }
+
+    finish() {
+        for (let i = 0; i < this.#value.length; i++) {
+            if (this.#rests(i)) continue;
+            this.#value[i] = this.#target[i];
+            this.#velocity[i] = this.#targetVelocity[i];
+            if (this.#velocity[i] === 0) this.#rested.push(i);
         }
-        return restDelta ?? largest / 1e4;
+        changed(this);
+        this.#tell();
     }
 
     step(dt) {
         checkFinite("dt", dt);
-        const { target, value, velocity } = this;
-        const count = value.length;
-        const { p, near } = this.#settings;
-        const mostDelta = this.#measure();
+        const each = this.#settings;
+        const count = this.#value.length;
+        let moving = 0;
+        this.#failed = -1;
+        if (!Array.isArray(each)) moving = this.#advance(each, 0, count, dt);
+        else for (let i = 0; i < count; i++) moving += this.#advance(each[i], i, i + 1, dt);
+        this.#tell();
+        const failed = this.#failed;
+        if (failed >= 0) {
+            // The others have been advanced.
+            for (const name of ["target", "targetVelocity", "value", "velocity"])
+                checkFinite(`${name}[${failed}]`, this[name][failed]);
+            throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
+        }
+        return moving;
+    }
+
+    #tell() {
+        const rested = this.#rested;
+        this.#rested = [];
+        if (this.onRest) for (const i of rested) this.onRest(i, this);
+    }
+
+    /** A motion begins at a new target, and at a value on its target. Returns the largest size of a motion. */
+    #measure(p, from, end) {
+        const [value, velocity, target, speed] = [
+            this.#value,
+            this.#velocity,
+            this.#target,
+            this.#targetVelocity,
+        ];
+        const targets = this.#targets;
         const sizes = this.#sizes;
-        if (dt === 0) return value.filter((x, i) => !near(abs(x - target[i]), velocity[i], sizes[i])).length;
+        let largest = 0;
+        for (let i = from; i < end; i++) {
+            const goal = target[i];
+            if (goal !== targets[i] || (goal === value[i] && velocity[i] !== 0)) {
+                targets[i] = goal;
+                sizes[i] = sizeOf(p, goal - value[i], velocity[i] - speed[i]);
+            }
+            if (sizes[i] > largest) largest = sizes[i];
+        }
+        return largest;
+    }
+
+    /** Advances values with equal settings, and returns how many of them move. */
+    #advance({ p, tolerances, restDelta, restSpeed }, from, end, dt) {
+        const [value, velocity, target, targetVelocity] = [
+            this.#value,
+            this.#velocity,
+            this.#target,
+            this.#targetVelocity,
+        ];
+        const sizes = this.#sizes;
+        const [mostDelta] = tolerances(restDelta >= 0 && restSpeed >= 0 ? 0 : this.#measure(p, from, end));
+        const near = (left, speed, size) => {
+            const [byDelta, bySpeed] = tolerances(size);
+            return left <= byDelta && abs(speed) <= bySpeed;
+        };
+        let resting = 0;
+        if (dt === 0) {
+            for (let i = from; i < end; i++) {
+                const speed = targetVelocity[i];
+                resting += speed === 0 && near(abs(value[i] - target[i]), velocity[i], sizes[i]);
+            }
+            return end - from - resting;
+        }
         p.prepare(dt);
-        const { half, F, G, H, wH, fraction, omega2 } = p;
-        const attracts = omega2 > 0;
-        const origin = attracts ? target : new Float64Array(count); // without stiffness a target has no effect
+        const { half, F, G, H, fraction, omega2, angle } = p;
+        const wH = omega2 * H;
+        const attracts = omega2 > 0; // without stiffness, only the velocity of a target has an effect
+        const clamp = this.clamp && dt > 0 && attracts;
+        const turns = angle >= Math.PI;
+        const tells = this.onRest !== null;
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels.
         const slope = (4 * epsilon) / (fraction || 1);
         const least = attracts ? (slope / epsilon) * leastNormal + 2 * mostDelta : Infinity;
-        let resting = 0;
-        let failed = -1;
-        for (let i = 0; i < count; i++) {
-            const to = origin[i];
-            const v0 = velocity[i];
-            const y0 = value[i] - to;
-            const y = half * (F * y0 + H * v0);
-            const v = half * (G * v0 - wH * y0);
+        for (let i = from; i < end; i++) {
+            const goal = target[i];
+            const speed = targetVelocity[i];
+            const moved = speed !== 0 ? speed * dt : 0;
+            const to = attracts ? goal : moved;
+            const u0 = velocity[i] - speed;
+            const y0 = value[i] - (attracts ? goal - moved : 0);
+            const y = half * (F * y0 + H * u0);
+            const u = half * (G * u0 - wH * y0);
             const x = to + y;
-            if (!(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
-                const goal = target[i];
+            const v = speed !== 0 ? speed + u : u;
+            const passed =
+                clamp &&
+                (turns ||
+                    (y0 > 0 ? y <= 0 : y >= 0) ||
+                    abs(y0) <= (speed !== 0 ? 4 * epsilon * (abs(goal) + abs(moved)) : 0));
+            if (passed || !(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
                 if (!isNumber(0 * x + 0 * v + 0 * goal)) {
-                    if (failed < 0) failed = i;
+                    if (this.#failed < 0) this.#failed = i;
                     continue;
                 }
-                if (near(abs(x - goal), v, sizes[i]) || lands(x, to, y, v, fraction, omega2)) {
+                if (passed || near(abs(x - goal), u, sizes[i]) || lands(x, to, y, u, fraction, omega2)) {
+                    if (tells && speed === 0 && !this.#rests(i)) this.#rested.push(i);
                     value[i] = goal;
-                    velocity[i] = 0;
-                    resting++;
+                    velocity[i] = speed;
+                    resting += speed === 0;
                     continue;
                 }
             }
             value[i] = x;
             velocity[i] = v;
         }
-        if (failed >= 0) {
-            // The others have been advanced.
-            for (const name of ["target", "value", "velocity"])
-                checkFinite(`${name}[${failed}]`, this[name][failed]);
-            throw new RangeError(`value[${failed}] or velocity[${failed}] overflows`);
-        }
-        return count - resting;
+        return end - from - resting;
+    }
+
+    [inspected]() {
+        const { value, velocity, target, targetVelocity } = this;
+        return { value, velocity, target, targetVelocity };
     }
 }

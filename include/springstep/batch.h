@@ -156,6 +156,34 @@ SPRING_API spring_status spring_batchf_follow(const spring_batchf *b, const floa
                                               double v_tol, size_t *moving);
 
 /**
+ * Advances a batch like spring_batch_follow(), with a velocity for each target.
+ *
+ *     x[i]'' = accel[i] - omega2[i] (x[i] - T[i]) - gamma[i] (x[i]' - T[i]')
+ *
+ * Spring i is advanced like a single spring by spring_follow(), where T[i] is target[i] at the end of the step and T[i]'
+ * is target_velocity[i]. In double precision the result is bit-identical. After the step, a spring within x_tol of its
+ * rest position whose velocity differs from that of its target by at most v_tol is placed at its rest position with the
+ * velocity of its target. It counts as moving while that velocity is not 0.
+ *
+ * The springs are advanced with SIMD. Targets are added and landings are decided spring by spring.
+ *
+ * @param[in] target_velocity  [count] mean velocities of the targets in the step, (target - previous target)/dt [m/s];
+ *                             must not overlap x or v. NULL: 0, as in spring_batch_follow()
+ * All other parameters, results and errors are those of spring_batch_follow(). A spring also fails if the velocity of
+ * its target is not finite.
+ * @par Threads   re-entrant; allocates nothing and keeps no state; disjoint ranges of a batch may be advanced
+ *                concurrently
+ */
+SPRING_API spring_status spring_batch_follow_moving(const spring_batch *b, const double *target,
+                                                    const double *target_velocity, double dt, double x_tol,
+                                                    double v_tol, size_t *moving);
+
+/** The single-precision version; see spring_batchf_follow(). Target velocities times dt are rounded to float. */
+SPRING_API spring_status spring_batchf_follow_moving(const spring_batchf *b, const float *target,
+                                                     const float *target_velocity, double dt, double x_tol,
+                                                     double v_tol, size_t *moving);
+
+/**
  * Returns the stability limit of a batch: the smallest spring_stable_step() of its springs [s].
  *
  * It visits every spring that has its own parameters, and computes square roots. Call it when parameters change, not

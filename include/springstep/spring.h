@@ -397,6 +397,17 @@ SPRING_API bool spring_at_rest(const spring_state *s, const spring_params *p, do
  */
 SPRING_API double spring_settling_time(const spring_state *s, const spring_params *p, double x_tol);
 
+/**
+ * Returns the time after which spring_at_rest() stays true: the exact solution stays within x_tol of its rest position,
+ * and its speed stays at most v_tol.
+ *
+ * @param[in] x_tol  >= 0 [m]
+ * @param[in] v_tol  >= 0 [m/s]
+ * @return time [s]; INFINITY if the spring never rests; NaN for invalid input
+ * @par Accuracy  as spring_settling_time(), for x and for v
+ */
+SPRING_API double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol, double v_tol);
+
 /** Returns whether spring_advance() accepts these parameters; see SPRING_EINVAL. False for NULL. */
 SPRING_API bool spring_params_valid(const spring_params *p);
 

@@ -4,6 +4,7 @@
  */
 #include "../kernels/batch_kernels.h"
 #include "../simd/targets.h"
+#include "../spring/follow_formula_tmpl.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -165,6 +166,17 @@ static spring_propagator propagator_of(const spring_batch *b, double t, bool loa
     return spring_propagator_of(&r, t, loaded);
 }
 
+/* n steps, with a propagator if it is the same for all springs. */
+static batch_run run_of(const spring_batch *b, spring_method m, scalar dt, uint64_t n, spring_propagator *propagator)
+{
+    batch_run run = {.method = m, .dt = dt, .n = n, .t = (double)dt * (double)n};
+    if (m == SPRING_EXACT && same_propagator(b)) {
+        *propagator = propagator_of(b, run.t, b->accel != NULL);
+        run.propagator = propagator;
+    }
+    return run;
+}
+
 /* The step is rounded to the precision of the batch once, here. */
 spring_status spring_batch_advance_with(const batch_kernels *kernels, const spring_batch *b, spring_method m,
                                         double step, uint64_t n)
@@ -173,12 +185,8 @@ spring_status spring_batch_advance_with(const batch_kernels *kernels, const spri
     const scalar dt = (scalar)step;
     if (status != SPRING_OK || b->count == 0 || n == 0 || dt == 0)
         return status;
-    batch_run run = {.method = m, .dt = dt, .n = n, .t = (double)dt * (double)n};
     spring_propagator propagator;
-    if (m == SPRING_EXACT && same_propagator(b)) {
-        propagator = propagator_of(b, run.t, b->accel != NULL);
-        run.propagator = &propagator;
-    }
+    const batch_run run = run_of(b, m, dt, n, &propagator);
     return advance_all(kernels, b, run) ? SPRING_OK : SPRING_EPARTIAL;
 }
 
@@ -187,35 +195,57 @@ spring_status spring_batch_advance(const spring_batch *b, spring_method m, doubl
     return spring_batch_advance_with(best_batch_kernels(), b, m, dt, n);
 }
 
+/* Of a spring, from its target. */
+static scalar rest_position(const spring_batch *b, const scalar *target, size_t i)
+{
+    const scalar a = element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL));
+    const scalar w = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2));
+    return a != 0 ? target[i] + a / w : target[i];
+}
+
 /* The number of springs that are not at rest on their targets. */
-static size_t count_moving(const spring_batch *b, const scalar *target, const exact_landing *landing)
+static size_t count_moving(const spring_batch *b, const scalar *target, const scalar *speed,
+                           const exact_landing *landing)
 {
     size_t moving = 0;
     for (size_t i = 0; i < b->count; i++) {
-        const scalar a = element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL));
-        const scalar w = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2));
-        const scalar rest = a != 0 ? target[i] + a / w : target[i], distance = b->x[i] - rest;
+        const scalar distance = b->x[i] - rest_position(b, target, i);
         const bool settled = fabs((double)distance) <= landing->x_tol && fabs((double)b->v[i]) <= landing->v_tol;
-        moving += !(settled && spring_valid(b, target, i));
+        moving += !(settled && (speed == NULL || speed[i] == 0) && spring_valid(b, target, i));
     }
     return moving;
 }
 
-/* In single precision, tolerances are rounded once, here. */
+/* Whether an array of targets or of their velocities may be used. */
+static bool target_valid(const spring_batch *b, const scalar *target)
+{
+    return b->count == 0 ||
+           (target != NULL && !overlap(b->x, b->count, target, b->count) && !overlap(b->v, b->count, target, b->count));
+}
+
+static bool follow_valid(const spring_batch *b, const scalar *target, double dt, double x_tol, double v_tol)
+{
+    return b != NULL && batch_valid(b) && spring_finite(dt) && x_tol >= 0 && v_tol >= 0 && target_valid(b, target);
+}
+
+/* In single precision, tolerances are rounded once, here. No infinite distance is tolerated. */
+static exact_landing landing_of(double x_tol, double v_tol, size_t *moving)
+{
+    const double largest = (double)SCALAR_MAX;
+    return (exact_landing){
+        .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = moving};
+}
+
 spring_status spring_batch_follow_with(const batch_kernels *kernels, const spring_batch *b, const scalar *target,
                                        double dt, double x_tol, double v_tol, size_t *moving)
 {
-    if (b == NULL || !batch_valid(b) || !spring_finite(dt) || !(x_tol >= 0) || !(v_tol >= 0) ||
-        (b->count > 0 &&
-         (target == NULL || overlap(b->x, b->count, target, b->count) || overlap(b->v, b->count, target, b->count))))
+    if (!follow_valid(b, target, dt, x_tol, v_tol))
         return SPRING_EINVAL;
     size_t count = 0;
     spring_status status = SPRING_OK;
-    const double largest = (double)SCALAR_MAX; /* no infinite distance is tolerated */
-    const exact_landing landing = {
-        .x_tol = (double)(scalar)fmin(x_tol, largest), .v_tol = (double)(scalar)fmin(v_tol, largest), .moving = &count};
+    const exact_landing landing = landing_of(x_tol, v_tol, &count);
     if (b->count > 0 && dt == 0)
-        count = count_moving(b, target, &landing);
+        count = count_moving(b, target, NULL, &landing);
     if (b->count > 0 && dt != 0) {
         batch_run run = {.method = SPRING_EXACT, .t = dt, .target = target, .landing = landing};
         spring_propagator propagator;
@@ -255,30 +285,154 @@ static spring_batch part_of(const spring_batch *b, size_t first, size_t count, s
     };
 }
 
-spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double dt, uint64_t n,
+enum { part_size = 4 * largest_group }; /* [springs] that are copied to find those that fail */
+
+/* Advances at most part_size springs, and writes the status of each spring. */
+static bool advance_part(const spring_batch *b, const batch_run *run, uint8_t *failed)
+{
+    const batch_kernels *const kernels = best_batch_kernels();
+    scalar x[part_size], v[part_size]; /* copies, advanced one by one to find the springs that fail */
+    memcpy(x, b->x, b->count * sizeof *x);
+    memcpy(v, b->v, b->count * sizeof *v);
+    memset(failed, SPRING_OK, b->count);
+    if (advance_all(kernels, b, *run))
+        return true;
+    for (size_t i = 0; i < b->count; i++) {
+        const spring_batch one = part_of(b, i, 1, x + i, v + i);
+        if (!advance_all(kernels, &one, *run))
+            failed[i] = spring_valid(&one, NULL, 0) ? SPRING_ENONFINITE : SPRING_EINVAL;
+    }
+    return false;
+}
+
+spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m, double step, uint64_t n,
                                           uint8_t *failed)
 {
-    enum { part = 4 * largest_group };
-    spring_status status = failed != NULL ? check_batch(b, m, dt) : SPRING_EINVAL;
-    if (status != SPRING_OK)
+    spring_status status = failed != NULL ? check_batch(b, m, step) : SPRING_EINVAL;
+    const scalar dt = (scalar)step;
+    if (status != SPRING_OK || b->count == 0)
         return status;
-    for (size_t first = 0; first < b->count; first += part) {
-        const size_t count = b->count - first < part ? b->count - first : part;
+    memset(failed, SPRING_OK, b->count);
+    if (n == 0 || dt == 0)
+        return status;
+    spring_propagator propagator;
+    const batch_run run = run_of(b, m, dt, n, &propagator);
+    for (size_t first = 0; first < b->count; first += part_size) {
+        const size_t count = b->count - first < part_size ? b->count - first : part_size;
         const spring_batch some = part_of(b, first, count, b->x + first, b->v + first);
-        scalar x[part], v[part]; /* copies, advanced one by one to find the springs that fail */
-        memcpy(x, some.x, count * sizeof *x);
-        memcpy(v, some.v, count * sizeof *v);
-        memset(failed + first, SPRING_OK, count);
-        if (spring_batch_advance(&some, m, dt, n) == SPRING_OK)
-            continue;
-        status = SPRING_EPARTIAL;
-        for (size_t i = 0; i < count; i++) {
-            const spring_batch one = part_of(b, first + i, 1, x + i, v + i);
-            if (spring_batch_advance(&one, m, dt, n) != SPRING_OK)
-                failed[first + i] = spring_valid(&one, NULL, 0) ? SPRING_ENONFINITE : SPRING_EINVAL;
-        }
+        if (!advance_part(&some, &run, failed + first))
+            status = SPRING_EPARTIAL;
     }
     return status;
+}
+
+/* Where the target of a spring is at the end of a step, relative to which its motion is computed: see spring_follow(). */
+typedef struct moving_target {
+    scalar from, to, speed;
+} moving_target;
+
+static moving_target target_of(const spring_batch *b, const scalar *target, const scalar *speeds, size_t i, double dt)
+{
+    const scalar speed = speeds != NULL ? speeds[i] : 0;
+    const scalar moved = speed != 0 ? (scalar)(speed * dt) : 0;
+    if (element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0) /* a target has no effect, but its velocity */
+        return (moving_target){0, moved, speed};
+    const scalar rest = rest_position(b, target, i);
+    return (moving_target){rest - moved, rest, speed};
+}
+
+/* Where a spring may land, the rule of follow_formula_tmpl.h. The propagator is NULL if springs have their own. */
+static bool lands(const spring_params *p, scalar x, scalar y, scalar u, scalar rest, double dt,
+                  const spring_propagator *shared)
+{
+    const bool single = sizeof(scalar) == sizeof(float);
+    follow_coefficients c = {.omega2 = (scalar)p->stiffness, .fraction = follow_least_fraction(single)};
+    if (!(p->stiffness > 0) || !follow_lands(x, rest, y, u, &c, single))
+        return false;
+    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, 1);
+    const spring_propagator own = shared != NULL ? *shared : spring_propagator_of(&r, dt, false);
+    c = follow_prepare(exact_prepare(&own), (scalar)p->stiffness, (scalar)dt, single);
+    return follow_lands(x, rest, y, u, &c, single);
+}
+
+/* At most largest_group springs that follow moving targets. Their motion relative to the targets is advanced as a batch. */
+static size_t follow_part(const spring_batch *b, const scalar *target, const scalar *speeds, const batch_run *run,
+                          bool *all)
+{
+    scalar y[largest_group], u[largest_group], accel[largest_group];
+    moving_target moving_to[largest_group];
+    uint8_t failed[largest_group];
+    bool valid[largest_group];
+    for (size_t i = 0; i < b->count; i++) {
+        valid[i] = spring_valid(b, target, i) && (speeds == NULL || scalar_finite(speeds[i]));
+        const moving_target none = {0, 0, 0};
+        moving_to[i] = valid[i] ? target_of(b, target, speeds, i, run->t) : none;
+        y[i] = valid[i] ? b->x[i] - moving_to[i].from : 0;
+        u[i] = valid[i] ? b->v[i] - moving_to[i].speed : 0;
+        const bool is_free = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0;
+        accel[i] = is_free ? element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL)) : 0;
+    }
+    spring_batch relative = *b;
+    relative.x = y;
+    relative.v = u;
+    if (b->accel != NULL) {
+        relative.accel = accel;
+        relative.shared &= ~SPRING_SHARED_ACCEL;
+    }
+    advance_part(&relative, run, failed);
+    size_t moving = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const moving_target *to = &moving_to[i];
+        const spring_params p = spring_at(b, i);
+        scalar x = to->to + y[i], v = to->speed != 0 ? to->speed + u[i] : u[i];
+        const bool stays = !valid[i] || failed[i] != SPRING_OK;
+        bool rests = false;
+        if (!stays) {
+            const scalar rest = rest_position(b, target, i);
+            rests = fabs((double)(x - rest)) <= run->landing.x_tol && fabs((double)u[i]) <= run->landing.v_tol;
+            if (rests || lands(&p, x, y[i], u[i], to->to, run->t, run->propagator)) {
+                x = rest;
+                v = to->speed;
+                rests = v == 0;
+            }
+        }
+        if (stays || !scalar_finite(x) || !scalar_finite(v)) {
+            *all = false;
+            rests = false;
+        } else {
+            b->x[i] = x;
+            b->v[i] = v;
+        }
+        moving += !rests;
+    }
+    return moving;
+}
+
+spring_status spring_batch_follow_moving(const spring_batch *b, const scalar *target, const scalar *target_velocity,
+                                         double dt, double x_tol, double v_tol, size_t *moving)
+{
+    if (!follow_valid(b, target, dt, x_tol, v_tol) || (target_velocity != NULL && !target_valid(b, target_velocity)))
+        return SPRING_EINVAL;
+    size_t count = 0;
+    bool all = true;
+    const exact_landing landing = landing_of(x_tol, v_tol, &count);
+    batch_run run = {.method = SPRING_EXACT, .t = dt, .landing = landing};
+    spring_propagator propagator;
+    if (b->count > 0 && dt != 0 && same_propagator(b)) {
+        propagator = propagator_of(b, dt, *b->omega2 == 0 && b->accel != NULL);
+        run.propagator = &propagator;
+    }
+    if (dt == 0)
+        count = count_moving(b, target, target_velocity, &landing);
+    for (size_t first = 0; first < b->count && dt != 0; first += largest_group) {
+        const size_t size = b->count - first < largest_group ? b->count - first : largest_group;
+        const spring_batch some = part_of(b, first, size, b->x + first, b->v + first);
+        const scalar *const speeds = target_velocity != NULL ? target_velocity + first : NULL;
+        count += follow_part(&some, target + first, speeds, &run, &all);
+    }
+    if (moving != NULL)
+        *moving = count;
+    return all ? SPRING_OK : SPRING_EPARTIAL;
 }
 
 double spring_batch_stable_step(const spring_batch *b, spring_method m)

@@ -13,6 +13,7 @@
 #define spring_batch_advance_with   spring_batchf_advance_with
 #define spring_batch_advance_marked spring_batchf_advance_marked
 #define spring_batch_follow         spring_batchf_follow
+#define spring_batch_follow_moving  spring_batchf_follow_moving
 #define spring_batch_follow_with    spring_batchf_follow_with
 #define spring_batch_stable_step    spring_batchf_stable_step
 #define spring_batch_v128           spring_batchf_v128

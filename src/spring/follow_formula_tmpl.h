@@ -37,10 +37,15 @@ typedef struct follow_coefficients {
     real fraction; /* f, about the fraction of its distance that a spring moves in a step; 0 if it does not land */
 } follow_coefficients;
 
-/* single: x is stored as a float, even if it is computed in double. */
+/* f0, see above. single: x is stored as a float, even if it is computed in double. */
+SPRING_INLINE real follow_least_fraction(bool single)
+{
+    return splat(single ? (scalar)0x1p-11 : (scalar)0x1p-16);
+}
+
 SPRING_INLINE follow_coefficients follow_prepare(exact_coefficients exact, real omega2, real dt, bool single)
 {
-    const real f0 = splat(single ? (scalar)0x1p-11 : (scalar)0x1p-16), decay = exact.decay_rate * dt;
+    const real f0 = follow_least_fraction(single), decay = exact.decay_rate * dt;
     const mask lands = (decay > 0) & (omega2 > 0);
     const real fraction = select_real(decay < f0, f0, select_real(decay < 1, decay, splat(1)));
     return (follow_coefficients){exact, omega2, select_real(lands, fraction, splat(0))};

@@ -6,7 +6,8 @@
  *           spaced by pi/split for an oscillating spring; an overdamped spring has at most one. The amplitude at the
  *           turning points decreases by a fixed factor. After the last turning point beyond x_tol, |y| falls below
  *           x_tol and stays below. The first turning point and the crossing are found by bisection of time on the exact
- *           solution, so the time is bit-identical wherever the solution is.
+ *           solution, so the time is bit-identical wherever the solution is. The velocity obeys the equation of a spring
+ *           without load, with the acceleration as its derivative, so the same search finds when it stays within v_tol.
  * Special   Without stiffness, the particle stops at x + v/g if there is damping and no load. At an infinite time, the
  *           exact solution is NaN, which ends every search.
  * Accuracy  bisection of the computed exact solution ends at adjacent doubles. For a tolerance within the rounding
@@ -115,6 +116,20 @@ double spring_settling_time(const spring_state *s, const spring_params *p, doubl
     if (m.tol == 0) /* a moving spring does not stay at distance 0 */
         return m.start.v == 0 && is_within(&m, 0) ? 0 : (double)INFINITY;
     return m.roots.overdamped || m.roots.split == 0 ? settling_creeping(&m) : settling_oscillating(&m);
+}
+
+double spring_rest_time(const spring_state *s, const spring_params *p, double x_tol, double v_tol)
+{
+    const double time = spring_settling_time(s, p, x_tol);
+    if (time != time || !(v_tol >= 0))
+        return (double)NAN;
+    const spring_roots r = spring_roots_of(p);
+    const spring_params unloaded = {p->mass, p->stiffness, p->damping, 0};
+    const double y = r.omega2 > 0 ? s->x - p->load / p->stiffness : 0;
+    const spring_state rate = {s->v, -r.omega2 * y - 2 * r.b * s->v};
+    if (!spring_finite(time) || !spring_finite(rate.v))
+        return (double)INFINITY;
+    return fmax(time, spring_settling_time(&rate, &unloaded, v_tol));
 }
 
 #include "../simd/size_end.h"

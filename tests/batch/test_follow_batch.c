@@ -152,6 +152,20 @@ static void bits_of_single_springs(void)
         }
 }
 
+/* Damped springs of about the same frequency, all with the coefficients of the first if `features` says so. */
+static void draw_alike(place *p, double lowest, double zeta)
+{
+    for (size_t j = 0; j < most; j++) {
+        const double omega = lowest * random_uniform(1, 1.5), damping_ratio = zeta * random_uniform(1, 1.5);
+        p->w[j] = (scalar)(omega * omega);
+        p->g[j] = (scalar)(2 * damping_ratio * omega);
+        p->target[j] = (scalar)random_uniform(-1000, 1000);
+        p->a[j] = (scalar)(random_uniform(-1, 1) * omega * omega);
+        p->x[j] = (scalar)random_uniform(-1000, 1000);
+        p->v[j] = 0;
+    }
+}
+
 #ifdef SPRING_FLOAT
 
 static const double least_fraction = 0x1p-11; /* as in batch.h */
@@ -189,20 +203,6 @@ static void near_single_springs(void)
             CHECK_CLOSE((double)p.x[j], s.x, bound, "roundings to float, and landing");
             CHECK_CLOSE((double)p.v[j] / omega, s.v / omega, bound, "roundings to float, and landing");
         }
-    }
-}
-
-/* Damped springs of about the same frequency, all with the coefficients of the first if `features` says so. */
-static void draw_alike(place *p, double lowest, double zeta)
-{
-    for (size_t j = 0; j < most; j++) {
-        const double omega = lowest * random_uniform(1, 1.5), damping_ratio = zeta * random_uniform(1, 1.5);
-        p->w[j] = (scalar)(omega * omega);
-        p->g[j] = (scalar)(2 * damping_ratio * omega);
-        p->target[j] = (scalar)random_uniform(-1000, 1000);
-        p->a[j] = (scalar)(random_uniform(-1, 1) * omega * omega);
-        p->x[j] = (scalar)random_uniform(-1000, 1000);
-        p->v[j] = 0;
     }
 }
 
@@ -303,6 +303,114 @@ static void no_step_counts(void)
         }
 }
 
+static scalar speeds[most];
+
+static void draw_speeds(bool spoilt)
+{
+    for (size_t i = 0; i < most; i++)
+        speeds[i] = (scalar)(random_bits() % 3 ? random_uniform(-1000, 1000) : random_bits() % 2 ? 0 : -0.0);
+    if (spoilt)
+        speeds[random_bits() % most] = bad_numbers[random_bits() % 3];
+}
+
+/* A spring of a batch that follows a moving target, alone. */
+static outcome alone_moving(const place *p, unsigned features, size_t i, double dt, double x_tol, double v_tol)
+{
+    const spring_params one = spring_at(p, features, i);
+    spring_state s = {(double)p->x[i], (double)p->v[i]};
+    const double target = (double)p->target[i], speed = (double)speeds[i];
+    const double rest = one.load != 0 ? target + one.load / one.stiffness : target;
+    const spring_status status = spring_follow(&s, &one, target, speed, dt);
+    if (status == SPRING_OK && dt != 0 && fabs(s.x - rest) <= x_tol && isfinite(rest)) {
+        /* v - speed, as it is before the velocity of the target is added */
+        spring_state relative = {(double)p->x[i] - (one.stiffness > 0 ? rest - (speed != 0 ? speed * dt : 0) : 0),
+                                 (double)p->v[i] - speed};
+        const spring_params unloaded = {1, one.stiffness, one.damping, one.stiffness > 0 ? 0 : one.load};
+        spring_step_exact(&relative, &unloaded, dt);
+        if (fabs(relative.v) <= v_tol)
+            s = (spring_state){rest, speed};
+    }
+    return (outcome){(scalar)s.x, (scalar)s.v, status, !(status == SPRING_OK && s.x == rest && s.v == 0 && speed == 0)};
+}
+
+/* Moving targets: the bits of single springs in double, all roundings in single precision. A spring that fails keeps its
+   state. */
+static void moving_targets(void)
+{
+    static place p, before;
+    static const double steps[] = {1.0 / 60, 1.0 / 240, 0.5, -0.01, 1e-6, 0};
+    for (unsigned features = 0; features < all_features; features++)
+        for (size_t i = 0; i < 60; i++) {
+            const double dt = steps[i % 6], x_tol = i % 4 == 3 ? 50 : 0, v_tol = i % 4 == 3 ? 3000 : 0;
+            draw(&p, dt != 0 ? dt : 1);
+            draw_speeds(i % 3 == 0);
+            if (i % 3 == 0)
+                spoil(&p);
+            before = p;
+            const size_t count = i % 2 ? most : i * 3;
+            const spring_batch b = batch_of(&p, features, count);
+            size_t moving = 12345, moves = 0, differ = 0;
+            bool fails = false;
+            const spring_status status = spring_batch_follow_moving(&b, p.target, speeds, dt, x_tol, v_tol, &moving);
+            for (size_t j = 0; j < count; j++) {
+                const outcome want = alone_moving(&before, features, j, dt, x_tol, v_tol);
+                moves += want.moving;
+                fails |= want.status != SPRING_OK && dt != 0;
+                differ += !same(p.x[j], want.x) || !same(p.v[j], want.v);
+#ifdef SPRING_FLOAT
+                const double omega = sqrt(spring_at(&before, features, j).stiffness), speed = (double)speeds[j];
+                if (i % 3 != 0 && x_tol == 0 && omega > 0 && dt > 1e-3) {
+                    const double size = fabs((double)before.x[j]) + fabs((double)before.target[j]) +
+                                        fabs((double)before.a[j]) / omega / omega + fabs(speed * dt) +
+                                        (fabs((double)before.v[j]) + fabs(speed)) / omega;
+                    const double bound = 40 * eps * size + 2400 * eps * fabs((double)want.x);
+                    CHECK_CLOSE((double)p.x[j], (double)want.x, bound, "roundings to float, and landing");
+                }
+#endif
+            }
+            if (sizeof(scalar) == sizeof(double) && dt != 0) {
+                CHECK(status == (fails ? SPRING_EPARTIAL : SPRING_OK), "all other springs advance");
+                CHECK(differ == 0, "the bits of single springs");
+                CHECK(moving == moves, "springs that move, follow or fail are counted");
+            }
+            if (dt == 0)
+                CHECK(memcmp(&p, &before, sizeof p) == 0 && status == SPRING_OK, "nothing moves");
+        }
+}
+
+/* A target at constant velocity is followed without lag, and its spring moves along with it. Without velocities of
+   targets, nothing differs from spring_batch_follow(). */
+static void moving_targets_without_lag(void)
+{
+    static place p, other;
+    draw_alike(&p, 6, 0.7);
+    other = p;
+    const spring_batch b = batch_of(&p, UNLOADED, most), c = batch_of(&other, UNLOADED, most);
+    for (int i = 0; i < 200; i++) {
+        size_t moving, same_moving;
+        spring_batch_follow_moving(&b, p.target, NULL, 1.0 / 60, 0.01, 0.1, &moving);
+        spring_batch_follow_with(kernels, &c, other.target, 1.0 / 60, 0.01, 0.1, &same_moving);
+        CHECK(moving == same_moving || sizeof(scalar) == sizeof(float), "as many move");
+        for (size_t j = 0; j < most; j++)
+            CHECK_CLOSE((double)p.x[j], (double)other.x[j], sizeof(scalar) == sizeof(float) ? 0.02 : 0,
+                        "the same step");
+    }
+    for (size_t j = 0; j < most; j++)
+        speeds[j] = (scalar)random_uniform(1, 100);
+    for (int i = 0; i < 400; i++) {
+        size_t moving;
+        for (size_t j = 0; j < most; j++)
+            p.target[j] += speeds[j] / 64;
+        spring_batch_follow_moving(&b, p.target, speeds, 1.0 / 64, 0, 0, &moving);
+        CHECK(moving == most, "they move along");
+    }
+    for (size_t j = 0; j < most; j++) {
+        const double lag = sizeof(scalar) == sizeof(float) ? 0.02 : 1e-9;
+        CHECK_CLOSE((double)p.x[j], (double)p.target[j], lag, "rounding errors of targets below 8000");
+        CHECK_CLOSE((double)p.v[j], (double)speeds[j], 20 * lag, "the velocity of the target");
+    }
+}
+
 static void bad_input_changes_nothing(void)
 {
     static place p, before;
@@ -327,6 +435,8 @@ static void bad_input_changes_nothing(void)
         CHECK(moving == 12345, "not written");
     }
     spring_batch unknown = good, shared = good;
+    CHECK(spring_batch_follow_moving(&good, p.target, p.v + 3, 0.1, 0, 0, NULL) == SPRING_EINVAL, "overlaps");
+    CHECK(spring_batch_follow_moving(&good, NULL, p.a, 0.1, 0, 0, NULL) == SPRING_EINVAL, "no targets");
     unknown.shared = 8;
     CHECK(spring_batch_follow(&unknown, p.target, 0.1, 0, 0, NULL) == SPRING_EINVAL, "an unknown bit");
     shared.shared = SPRING_SHARED_OMEGA2;
@@ -349,6 +459,8 @@ int main(int argc, char **argv)
         {"stops near the target", stops_near_the_target},
 #endif
         {"a step of 0 counts", no_step_counts},
+        {"moving targets", moving_targets},
+        {"moving targets without lag", moving_targets_without_lag},
         {"bad input", bad_input_changes_nothing},
     };
     const char *vectors = argc > 1 ? argv[1] : "v128";

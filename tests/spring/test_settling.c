@@ -101,6 +101,46 @@ static void settling_time_is_the_first(void)
     }
 }
 
+/* After the time spring_at_rest() holds at every sample; right before it does not. */
+static void rest_time_by_sampling(void)
+{
+    for (int i = 0; i < 4000; i++) {
+        spring_params p = {.mass = random_log(0.1, 10), .stiffness = i % 13 == 0 ? 0 : random_log(0.1, 10)};
+        const double omega = sqrt(p.stiffness / p.mass), zeta = i % 5 == 0 ? 1 : random_log(0.05, 20);
+        p.damping = omega > 0 ? 2 * zeta * omega * p.mass : random_log(0.1, 10);
+        if (omega > 0)
+            p.load = random_uniform(-1, 1);
+        const spring_state s = {random_uniform(-1, 1), random_uniform(-1, 1)};
+        const double x_tol = random_log(1e-5, 1), v_tol = random_log(1e-5, 1), g = p.damping / p.mass;
+        const double T = spring_rest_time(&s, &p, x_tol, v_tol), edge = 1e-8;
+        CHECK(T >= spring_settling_time(&s, &p, x_tol) && isfinite(T), "both tolerances");
+        if (omega == 0) {
+            const double want = fmax(0, fmax(log(fabs(s.v) / g / x_tol), log(fabs(s.v) / v_tol)) / g);
+            CHECK_CLOSE(T, want, 1e-12 / g, "exponential decay");
+            continue;
+        }
+        for (int j = 0; j <= 200; j++) {
+            spring_state after = s;
+            spring_step_exact(&after, &p, T + 20 / omega * j / 200);
+            CHECK(spring_at_rest(&after, &p, x_tol * (1 + edge), v_tol * (1 + edge)), "at rest for good");
+        }
+        spring_state before = s;
+        spring_step_exact(&before, &p, T * (1 - 1e-7));
+        CHECK(T == 0 || !spring_at_rest(&before, &p, x_tol * (1 - edge), v_tol * (1 - edge)), "not before");
+    }
+    const spring_params p = {1, 4, 1, 0}, undamped = {1, 4, 0, 0}, huge = {1, 1e300, 1, 0};
+    const spring_state s = {1, 0}, large = {1e200, 0}, still = {0, 0};
+    CHECK_BITS(spring_rest_time(&s, &undamped, 0.1, 9), INFINITY, "never in a distance of 0.1");
+    CHECK_BITS(spring_rest_time(&s, &undamped, 9, 0.1), INFINITY, "never slower than 0.1");
+    CHECK_BITS(spring_rest_time(&s, &undamped, 9, 9), 0, "always");
+    CHECK_BITS(spring_rest_time(&still, &p, 0, 0), 0, "at rest");
+    CHECK_BITS(spring_rest_time(&s, &p, 0.1, 0), INFINITY, "a tolerance of 0");
+    CHECK_BITS(spring_rest_time(&large, &huge, 1, 1), INFINITY, "an acceleration that overflows");
+    CHECK(isnan(spring_rest_time(NULL, &p, 1, 1)) && isnan(spring_rest_time(&s, &p, 1, NAN)) &&
+              isnan(spring_rest_time(&s, &p, -1, 1)) && isnan(spring_rest_time(&s, &p, 1, -1)),
+          "bad input");
+}
+
 static void settling_time_special(void)
 {
     const spring_params undamped = {1.3, 2.7, 0, 0}, damped = {1.3, 2.7, 0.6, 0.54}, drag = {2, 0, 0.5, 0};
@@ -282,6 +322,7 @@ int main(void)
         {"settling time, distances equal to the tolerance", settling_time_at_the_tolerance},
         {"settling time to the last bit", settling_time_is_the_first},
         {"settling time, special springs", settling_time_special},
+        {"rest time by sampling", rest_time_by_sampling},
         {"settling time of states of any size", settling_time_of_any_size},
         {"settling time, bad input", settling_time_bad_input},
         {"at rest", at_rest},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A program in TypeScript that uses every declaration of the package, for tests/js.
-import { Spring, Springs, type SpringOptions } from "springstep";
+import { Spring, Springs, VelocityTracker, type SpringOptions } from "springstep";
+import { animate, animator } from "springstep/animate";
+import { linear } from "springstep/css";
 
 const options: SpringOptions = { duration: 0.5, bounce: 0.2, restDelta: 0.01, restSpeed: 0.1 };
 const rested: number[] = [];
@@ -15,6 +17,7 @@ const ways: SpringOptions[] = [
     { response: 0.5, dampingFraction: 0.8 },
     { hertz: 2, dampingRatio: 0.7 },
     { halfLife: 0.05, dampingRatio: 0.7 },
+    { settling: 0.5, dampingRatio: 0.7, tolerance: 0.01 },
 ];
 for (const way of ways) new Spring(0, way).jump(1);
 new Spring(0, { clamp: true });
@@ -48,8 +51,14 @@ const refused: (() => unknown)[] = [
     () => new Spring(0, { dampingRatio: 1 }),
     // @ts-expect-error
     () => new Spring(0, { mass: 1 }),
-    // @ts-expect-error: only for single springs
-    () => new Springs(1, { ...options, clamp: true }),
+    // @ts-expect-error: of another form
+    () => new Spring(0, { hertz: 1, tolerance: 0.1 }),
+    // @ts-expect-error: a number is required
+    () => new Spring(0, { stiffness: [1], damping: 1 }),
+    // @ts-expect-error: two forms
+    () => new Springs(1, { stiffness: [1], damping: 1, hertz: [1] }),
+    // @ts-expect-error: not a parameter
+    () => new Spring(0).set({ clamp: true }),
     // @ts-expect-error: no such property
     () => (new Spring(0).stiffness = 300),
 ];
@@ -69,5 +78,35 @@ const many = new Springs(2, { hertz: 2, dampingRatio: 0.7 });
 many.target.set([1, -1]);
 let moving: number = many.step(1 / 60);
 for (let i = 0; i < 200; i++) moving = many.step(1 / 60);
+
+spring.onRest = null;
+const timer: { callback: ((time: number) => void) | null } = { callback: null };
+const run = animator({ request: (frame) => (timer.callback = frame) });
+const drawn: number[] = [];
+const stop: () => void = run(spring, (value, { velocity }) => drawn.push(value + 0 * velocity));
+run(many, (values: Float64Array) => drawn.push(0 * values[0]!), { reducedMotion: "run" });
+many.set({ stiffness: [100, 200], damping: 20 });
+many.onRest = (i, springs) => springs.settled(i);
+spring.set({ stiffness: 300, damping: 20 });
+const tracker = new VelocityTracker();
+tracker.add(3, 0);
+spring.release(tracker.velocity(16), 3);
+spring.targetVelocity = 0;
+for (let time = 0; timer.callback && time < 20000; time += 16) {
+    const { callback } = timer;
+    timer.callback = null;
+    callback(time);
+}
+stop();
+const settled: Promise<void> = spring.finished;
+await settled;
+const { duration, easing } = linear({ duration: 0.5, bounce: 0.2 }, 0);
+const good =
+    spring.value === 3 &&
+    spring.settlingTime() === 0 &&
+    drawn.length > 5 &&
+    duration > 500 &&
+    easing.length > 50;
+if (!good || typeof animate !== "function") throw new Error("the animation does not end");
 
 console.log(rested.join(), spring.settled && assign.length + wrong.length + accepted.length === 1, moving);

@@ -6,9 +6,12 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSyn
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
-import { Spring, Springs } from "../index.js";
-import { compareSets, compareSingle } from "./compare.mjs";
-import { logarithmic, slowRate, uniform, usual } from "./random.mjs";
+import { inspect } from "node:util";
+import { animate, animator } from "../animate.js";
+import { linear } from "../css.js";
+import { Spring, Springs, VelocityTracker } from "../index.js";
+import { compareSets, compareSettling, compareSingle, compareSteered } from "./compare.mjs";
+import { bits, logarithmic, slowRate, uniform, usual } from "./random.mjs";
 import { done, note, refused, test } from "./tap.mjs";
 
 const [program, versionHeader, springs = "100000"] = process.argv.slice(2);
@@ -33,6 +36,444 @@ await test("sets of springs have the bits of spring_batch_follow()", () => {
     note(`${different} of ${count} springs differ`);
     assert.strictEqual(different, 0);
     assert.strictEqual(miscounted, 0, "how many move, or whether one fails");
+});
+
+await test("targets with velocities and new parameters have the bits of spring_follow()", () => {
+    const springs = Math.max(count / 5, 20000);
+    const { one, many, landed, steps } = compareSteered(program, springs);
+    note(`of ${steps} steps ${one} of Spring and ${many} of Springs differ, ${landed} end on a target`);
+    assert.deepStrictEqual([one, many], [0, 0]);
+    assert(landed > steps / 20, "many land");
+});
+
+await test("parameters of a settling time are those of spring_params_settling()", () => {
+    assert.strictEqual(compareSettling(program, 5000), 0);
+    const spring = new Spring(1, { settling: 0.7, dampingRatio: 0.4, restDelta: 1e-3, restSpeed: 1e9 });
+    spring.target = 0;
+    const time = spring.settlingTime();
+    assert(Math.abs(time - 0.7) < 1e-12, `${time}`);
+});
+
+/** A spring in motion, in a frame of its own length. */
+function moving() {
+    const { stiffness, damping, mass, omega } = usual();
+    const limits = bits() % 2 ? {} : { restDelta: logarithmic(1e-4, 1), restSpeed: logarithmic(1e-4, 1) };
+    const free = bits() % 10 === 0 ? { stiffness: 0 } : {};
+    const spring = new Spring(uniform(-1, 1), {
+        stiffness,
+        damping,
+        mass,
+        ...free,
+        ...limits,
+        clamp: bits() % 3 === 0,
+    });
+    spring.target = uniform(-1, 1);
+    spring.velocity = uniform(-1, 1) * omega * (bits() % 4 ? 1 : 10);
+    return spring;
+}
+
+await test("a spring settles in the first frame after settlingTime(), at any frame rate", () => {
+    let clamped = 0;
+    for (let i = 0; i < 2000; i++) {
+        const spring = moving();
+        const time = spring.settlingTime();
+        const dt = Math.max(1 / uniform(30, 240), time / 1000);
+        let frames = 0;
+        for (; !spring.settled && frames < 1100; frames++) {
+            if (frames % 10 === 0) {
+                const left = time - frames * dt;
+                const error = Math.abs(spring.settlingTime() - left);
+                assert(error <= 1e-6 * time, `${spring.settlingTime()}, not ${left}`);
+            }
+            spring.step(dt);
+        }
+        clamped += spring.clamp;
+        assert(
+            frames === Math.max(1, Math.ceil(time / dt)) || Math.abs(frames * dt - time) < 1e-6 * time + dt,
+            `${frames * dt}: ${time}`,
+        );
+    }
+    assert(clamped > 100);
+    const undamped = new Spring(0, { duration: 1, bounce: 1 });
+    undamped.target = 1;
+    assert.strictEqual(undamped.settlingTime(), Infinity);
+});
+
+await test("a target at constant velocity is followed without lag, at any frame rate", () => {
+    for (const rate of [15, 30, 60, 240]) {
+        const spring = new Spring(3, { duration: 0.5, bounce: 0.3 });
+        for (let i = 1; i <= 20 * rate; i++) {
+            spring.target = 7 + (40 * i) / rate;
+            spring.targetVelocity = 40;
+            spring.step(1 / rate);
+        }
+        assert(
+            Math.abs(spring.value - spring.target) < 1e-9,
+            `${rate} per second: ${spring.value - spring.target}`,
+        );
+        assert(Math.abs(spring.velocity - 40) < 1e-9 && !spring.settled);
+        assert.strictEqual(spring.settlingTime(), Infinity);
+        spring.targetVelocity = 0;
+        for (let i = 0; i < 3 * rate; i++) spring.step(1 / rate);
+        assert(spring.settled && spring.value === spring.target);
+    }
+});
+
+await test("new parameters keep value, velocity, target and tolerances", () => {
+    const spring = new Spring(0, { duration: 0.5, restDelta: 0.01, restSpeed: 0.1 });
+    spring.target = 1;
+    spring.step(0.1);
+    const { value, velocity, target } = spring;
+    spring.set({ stiffness: 300, damping: 10 });
+    assert.deepStrictEqual([spring.value, spring.velocity, spring.target], [value, velocity, target]);
+    const same = new Spring(value, { stiffness: 300, damping: 10, restDelta: 0.01, restSpeed: 0.1 });
+    same.velocity = velocity;
+    same.target = 1;
+    for (let i = 0; i < 100; i++) assert.strictEqual(spring.step(1 / 60), same.step(1 / 60));
+    assert(spring.settled && same.settled);
+    spring.set({ hertz: 3 });
+    assert(spring.settled, "a value at rest on its target stays");
+    refused(() => spring.set({ hertz: NaN }), "RangeError: hertz must be a finite number > 0, got NaN");
+    refused(
+        () => spring.set({ hertz: 1, clamp: true }),
+        "TypeError: the option clamp does not go with hertz",
+    );
+    const free = new Spring(0, { stiffness: 0, damping: 4 });
+    free.target = 5;
+    for (let i = 0; i < 600; i++) free.step(1 / 60);
+    assert(free.settled && free.value === 0);
+    free.set({ duration: 0.2 });
+    for (let i = 0; i < 600; i++) free.step(1 / 60);
+    assert(free.settled && free.value === 5, "it has stiffness now");
+});
+
+await test("finished resolves when a spring rests, once, and at once if it does", async () => {
+    const done = [];
+    const spring = new Spring(0, { duration: 0.3 });
+    const wait = (name) => spring.finished.then(() => done.push(name));
+    const run = async (frames) => {
+        for (let i = 0; i < frames; i++) spring.step(1 / 60);
+        await null;
+        await null;
+    };
+    await wait("nothing to do");
+    spring.target = 1;
+    wait("first");
+    await run(5);
+    spring.target = 2;
+    wait("second");
+    assert.strictEqual(spring.finished, spring.finished);
+    await run(5);
+    assert.deepStrictEqual(done, ["nothing to do"]);
+    await run(100);
+    assert.deepStrictEqual(done, ["nothing to do", "first", "second"]);
+    spring.target = 2;
+    wait("the same target");
+    await run(1);
+    spring.target = 3;
+    wait("jump");
+    spring.jump(7);
+    await run(1);
+    spring.targetVelocity = 1;
+    wait("moving target");
+    for (let i = 0; i < 300; i++) {
+        spring.target += 1 / 60;
+        spring.step(1 / 60);
+    }
+    assert.deepStrictEqual(done.slice(3), ["the same target", "jump"]);
+    spring.targetVelocity = 0;
+    await run(300);
+    spring.target = 0;
+    wait("finish");
+    spring.finish();
+    await run(1);
+    assert.deepStrictEqual(done.slice(5), ["moving target", "finish"]);
+    assert.deepStrictEqual([spring.value, spring.velocity, spring.settled], [0, 0, true]);
+});
+
+await test("gestures: the velocity of a pointer, and a release", () => {
+    for (let i = 0; i < 100; i++) {
+        const tracker = new VelocityTracker();
+        const speed = uniform(-3000, 3000);
+        const every = uniform(4, 20);
+        for (let t = 0; t < 300; t += every) tracker.add(10 + (speed * t) / 1000, 5000 + t);
+        assert(Math.abs(tracker.velocity() - speed) < 1e-6 * Math.abs(speed), "a constant velocity");
+        const last = 5000 + Math.floor(300 / every - 1e-9) * every;
+        assert(Math.abs(tracker.velocity(last + 100)) < 1e-9, "at rest for 100 ms");
+        assert(Math.abs(tracker.velocity(last + 60)) < Math.abs(speed), "slower after 60 ms at rest");
+    }
+    const tracker = new VelocityTracker();
+    assert.strictEqual(tracker.velocity(), 0);
+    tracker.add(5, 100);
+    assert.deepStrictEqual([tracker.velocity(), tracker.velocity(150)], [0, 0], "one sample");
+    tracker.add(500, 100);
+    assert.strictEqual(tracker.velocity(), 0, "two samples at one time");
+    tracker.add(0, 1000);
+    tracker.add(10, 1010);
+    assert(Math.abs(tracker.velocity() - 1000) < 1e-9, "an earlier gesture has no effect");
+    const spring = new Spring(0, { duration: 0.4 });
+    spring.jump(30);
+    spring.release(-500, 0);
+    assert.deepStrictEqual(
+        [spring.value, spring.velocity, spring.target, spring.settled],
+        [30, -500, 0, false],
+    );
+    refused(() => spring.release(1, NaN), "RangeError: target must be a finite number, got NaN");
+    assert.strictEqual(spring.velocity, -500);
+});
+
+await test("sets: parameters of each value, clamp, onRest, settled, finish", () => {
+    const parameters = {
+        hertz: [1, 2, 3, 4],
+        dampingRatio: [0.2, 0.2, 1, 2],
+        restDelta: 1e-3,
+        restSpeed: 1e-2,
+    };
+    const rested = [];
+    const many = new Springs(4, {
+        ...parameters,
+        clamp: true,
+        onRest: (i, set) => rested.push([i, set.value[i]]),
+    });
+    const ones = [0, 1, 2, 3].map(
+        (i) =>
+            new Spring(0, {
+                hertz: parameters.hertz[i],
+                dampingRatio: parameters.dampingRatio[i],
+                clamp: true,
+            }),
+    );
+    many.target.set([1, 2, 3, 4]);
+    ones.forEach((spring, i) => (spring.target = i + 1));
+    let moving = 4;
+    for (let i = 0; moving > 0; i++) {
+        moving = many.step(1 / 60);
+        ones.forEach((one, j) => {
+            one.step(1 / 60);
+            if (!many.settled(j) && !one.settled) assert.strictEqual(many.value[j], one.value);
+            assert(many.value[j] <= j + 1, "never beyond the target");
+        });
+        assert(i < 300 && many.settled(0) === (many.value[0] === 1));
+    }
+    assert.deepStrictEqual([...many.value], [1, 2, 3, 4]);
+    assert.deepStrictEqual(rested.map(([i]) => i).sort(), [0, 1, 2, 3]);
+    many.velocity.fill(50);
+    assert.strictEqual(many.step(1 / 60), 0, "a value on its target stays");
+    many.target.fill(0);
+    many.step(1 / 60);
+    many.set({ duration: 0.2 });
+    many.clamp = false;
+    rested.length = 0;
+    many.finish();
+    assert.deepStrictEqual(
+        [...many.value, ...many.velocity, many.step(0), rested.length],
+        [0, 0, 0, 0, 0, 0, 0, 0, 0, 4],
+    );
+    many.targetVelocity[1] = 3;
+    assert.strictEqual(many.step(0), 1, "it follows");
+});
+
+await test("console.log() shows the state of a spring", () => {
+    const spring = new Spring(1);
+    spring.target = 2;
+    const text = inspect(spring);
+    for (const part of ["value: 1", "velocity: 0", "target: 2", "targetVelocity: 0", "settled: false"])
+        assert(text.includes(part), text);
+    assert(inspect(new Springs(2)).includes("target: Float64Array(2) [ 0, 0 ]"));
+});
+
+/** Frames that a test requests; time in ms. */
+function stage(now = true) {
+    const it = { time: 0, callback: null, requests: 0 };
+    const request = (frame) => {
+        assert.strictEqual(it.callback, null, "one loop");
+        it.callback = frame;
+        it.requests++;
+    };
+    it.animate = animator(now ? { request, now: () => it.time } : { request });
+    it.frame = (milliseconds) => {
+        const { callback } = it;
+        it.callback = null;
+        callback?.((it.time += milliseconds));
+        return callback !== null;
+    };
+    it.run = (most = 600) => {
+        let frames = 0;
+        while (it.frame(1000 / 60) && frames < most) frames++;
+        return frames;
+    };
+    return it;
+}
+
+await test("animate: one loop that starts, stops, and has the values of its own steps", () => {
+    const it = stage();
+    const springs = Array.from({ length: 20 }, () => new Spring(0, { duration: 0.5, bounce: 0.2 }));
+    const drawn = springs.map(() => []);
+    const stops = springs.map((spring, i) => it.animate(spring, (value) => drawn[i].push(value)));
+    assert.strictEqual(it.requests, 0, "nothing moves");
+    for (let round = 1; round < 30; round++) {
+        for (const spring of springs) spring.target = round % 2;
+        const reference = new Spring(1 - (round % 2), { duration: 0.5, bounce: 0.2 });
+        reference.target = round % 2;
+        for (const list of drawn) list.length = 0;
+        let since = it.time; // of the reference
+        const expected = [];
+        for (let i = 0; it.callback; i++) {
+            // The first frame may be earlier than the event. Later, a tab may be hidden.
+            it.frame(i === 0 ? uniform(-16, 16) : bits() % 20 ? 1000 / 60 : uniform(100, 20000));
+            expected.push(reference.step(Math.max(0, it.time - since) / 1000));
+            since = Math.max(since, it.time);
+            assert(i < 200);
+        }
+        for (const list of drawn) {
+            assert.deepStrictEqual(list, expected);
+            assert.strictEqual(list.at(-1), round % 2, "it settles on its target");
+        }
+    }
+    for (const stop of stops) stop();
+    springs[0].target = 9;
+    assert.strictEqual(it.callback, null, "stopped");
+});
+
+await test("animate: each change starts the loop, rest stops it", () => {
+    const it = stage(false);
+    let draws = 0;
+    const spring = new Spring(0, { duration: 0.3 });
+    it.animate(spring, () => draws++);
+    const changes = {
+        target: () => (spring.target = 1),
+        "the same target": () => (spring.target = 1),
+        value: () => (spring.value = 0.5),
+        velocity: () => (spring.velocity = 3),
+        release: () => spring.release(-3, 2),
+        jump: () => spring.jump(7),
+        "parameters that move nothing": () => spring.set({ stiffness: 0, damping: 5 }),
+        "a target without stiffness": () => (spring.target = 9),
+        "parameters that move": () => spring.set({ duration: 0.2 }),
+    };
+    for (const [name, change] of Object.entries(changes)) {
+        draws = 0;
+        change();
+        const still = name.includes("nothing");
+        assert.strictEqual(it.run() > 0 || draws > 0, !still, name);
+        assert(spring.settled && it.callback === null, `${name}: rest`);
+    }
+    const many = new Springs(3, { duration: 0.3 });
+    it.animate(many, () => draws++);
+    it.run();
+    for (const change of [
+        () => (many.target[1] = 5),
+        () => many.velocity.fill(2),
+        () => (many.value[0] = 1),
+        () => (many.targetVelocity[2] = 1),
+    ]) {
+        change();
+        assert(it.callback, "it runs");
+        if (many.targetVelocity[2] === 0) assert(it.run() < 300 && many.step(0) === 0);
+        else assert.strictEqual(it.run(200), 200, "as long as a target moves");
+    }
+});
+
+await test("animate: changes and errors in callbacks", () => {
+    const it = stage();
+    const thrown = [];
+    globalThis.reportError = (error) => thrown.push(error.message);
+    const [lead, follower] = [new Spring(0, { duration: 0.3 }), new Spring(0, { duration: 0.3 })];
+    const seen = [];
+    it.animate(lead, (value) => (follower.target = value));
+    const stop = it.animate(follower, (value, spring) => seen.push(value === spring.value));
+    it.animate(follower, () => {
+        throw new Error("a callback");
+    });
+    lead.target = 1;
+    const frames = it.run();
+    assert(follower.settled && follower.value === 1 && frames < 120 && seen.every(Boolean));
+    assert.strictEqual(thrown.length, seen.length);
+    stop();
+    stop();
+    seen.length = 0;
+    lead.onRest = (spring) => spring.value < 5 && spring.target++;
+    lead.target = 2;
+    it.run();
+    assert(lead.value === 5 && follower.value === 5 && seen.length === 0, "a new target when one is reached");
+    const wild = new Spring(0, { stiffness: 0, damping: 0 });
+    it.animate(wild, () => {});
+    wild.velocity = 1e308;
+    thrown.length = 0;
+    lead.onRest = null;
+    lead.target = 0;
+    it.frame(1e6);
+    it.frame(1e6);
+    assert.deepStrictEqual([thrown[0], lead.value], ["value or velocity overflows", 0]);
+    delete globalThis.reportError;
+    refused(() => animator({ request: null })(lead, () => {}), "TypeError: request must be...");
+    refused(() => animate(lead, null), "TypeError: draw must be a function, got null");
+    refused(() => animate(lead, () => {}), "TypeError: the spring is animated by another loop");
+    refused(
+        () => it.animate(new Spring(0), () => {}, { reducedMotion: "off" }),
+        'TypeError: reducedMotion must be "jump" or "run", got "off"',
+    );
+});
+
+await test("animate: reduced motion jumps, or as told", async () => {
+    const it = stage();
+    globalThis.matchMedia = () => ({ matches: true });
+    let rested = 0;
+    const spring = new Spring(0, { duration: 0.3, onRest: () => rested++ });
+    const fade = new Spring(0, { duration: 0.3 });
+    const many = new Springs(2);
+    const drawn = [];
+    it.animate(spring, (value) => drawn.push(value));
+    it.animate(fade, () => {}, { reducedMotion: "run" });
+    it.animate(many, () => {});
+    spring.target = fade.target = many.target[1] = 4;
+    const finished = spring.finished;
+    it.frame(16);
+    await finished;
+    assert.deepStrictEqual([drawn, rested, many.value[1]], [[4], 1, 4]);
+    assert(!fade.settled && it.run() > 10 && fade.value === 4);
+    delete globalThis.matchMedia;
+});
+
+await test("animate: without requestAnimationFrame it uses a timer", async () => {
+    const spring = new Spring(0, { duration: 0.05 });
+    let frames = 0;
+    const stop = animate(spring, () => frames++);
+    spring.target = 1;
+    await spring.finished;
+    assert(frames > 1 && spring.value === 1);
+    stop();
+});
+
+await test("linear() of CSS: within 0.2 % of the way", () => {
+    for (let i = 0; i < 300; i++) {
+        const options =
+            i < 20
+                ? { duration: 0.5, bounce: -0.95 + 0.08 * i }
+                : { hertz: logarithmic(0.1, 20), dampingRatio: logarithmic(0.1, 5) };
+        const ratio = options.dampingRatio ?? 1 - options.bounce;
+        const velocity = i % 3 || ratio > 1.5 ? 0 : uniform(-2, 2) * 2 * Math.PI * (options.hertz ?? 2);
+        const { duration, easing } = linear(options, velocity);
+        const points = /^linear\((.*)\)$/
+            .exec(easing)[1]
+            .split(", ")
+            .map((point) => point.split(" "));
+        const times = points.map(([, at], j) => (at ? parseFloat(at) / 100 : j ? 1 : 0));
+        if (ratio >= 0.25 && velocity === 0) assert(points.length <= 40, `${points.length} points`);
+        const spring = new Spring(0, { ...options, restDelta: 0, restSpeed: 0 });
+        spring.target = 1;
+        if (velocity) spring.velocity = velocity;
+        let most = Math.abs(points.at(-1)[0] - 1);
+        for (let k = 1, j = 1; k <= 3000; k++) {
+            const value = spring.step(duration / 3e6);
+            while (times[j] < k / 3000) j++;
+            const [from, to] = [points[j - 1][0], points[j][0]].map(Number);
+            const at = from + ((to - from) * (k / 3000 - times[j - 1])) / (times[j] - times[j - 1]);
+            most = Math.max(most, Math.abs(at - value));
+        }
+        assert(most <= 0.002, `${JSON.stringify(options)} ${velocity}: ${most}`);
+    }
+    refused(() => linear({ duration: 1, bounce: 1 }), "RangeError: the spring does not settle");
 });
 
 await test("every spring lands exactly on its target", () => {
@@ -277,7 +718,8 @@ await test("errors name field and value", () => {
         spring({ halfLife: 1, dampingRatio: 0 }),
         "RangeError: dampingRatio must be a finite number > 0, got 0",
     );
-    const oneOf = "TypeError: options must have one of stiffness, response, duration, hertz, halfLife";
+    const oneOf =
+        "TypeError: options must have one of stiffness, response, duration, hertz, halfLife, settling";
     refused(spring({ damping: 3 }), oneOf);
     refused(spring({ hertz: 1, bounce: 0 }), "TypeError: the option bounce does not go with hertz");
     refused(spring({ hertz: 1, duration: 1 }), "TypeError: the option duration does not go with hertz");
@@ -301,9 +743,14 @@ await test("errors name field and value", () => {
     assert.deepStrictEqual([s.value, s.velocity, s.target], [1, 2, 1], "nothing has changed");
     refused(() => new Springs(-1), "RangeError: count must be an integer >= 0, got -1");
     refused(
-        () => new Springs(2, { ...good, clamp: true }),
-        "TypeError: the option clamp does not go with stiffness",
+        () => new Springs(2, { ...good, damping: [1, 2, 3] }),
+        "RangeError: damping.length must be 2, got 3",
     );
+    refused(
+        () => new Springs(2, { ...good, damping: [1, -2] }),
+        "RangeError: value 1: damping must be a finite number >= 0, got -2",
+    );
+    refused(() => new Springs(2).settled(2), "RangeError: i must be the index of one of 2 values, got 2");
     const many = new Springs(3, good);
     many.target.set([1, NaN, 1]);
     refused(() => many.step(0.1), "RangeError: target[1] must be a finite number, got NaN");

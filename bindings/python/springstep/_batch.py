@@ -37,6 +37,7 @@ class Batch:
         self._name, self._pointer = _PRECISIONS[x.dtype]
         self._steps = getattr(lib, f"{self._name}_advance_marked")
         self._follows = getattr(lib, f"{self._name}_follow")
+        self._follows_moving = getattr(lib, f"{self._name}_follow_moving")
         self._guard = Guard("the batch is being advanced by another thread")
         self._batch = ffi.new(f"{self._name} *", {"count": len(x)})
         self._x, self._v, self._failed = x, v, np.zeros(len(x), np.uint8)
@@ -82,9 +83,11 @@ class Batch:
     def __len__(self) -> int:
         return self._batch.count
 
-    def _first_invalid(self, index: int | None, target: np.ndarray | None = None) -> None:
+    def _first_invalid(self, index: int | None, target: np.ndarray | None = None,
+                       target_velocity: np.ndarray | None = None) -> None:
         """Raise InvalidError for an invalid state or parameter of a spring, or an invalid shared parameter."""
-        for field, values in (("x", self._x), ("v", self._v), ("target", target), *self._parameters.items()):
+        for field, values in (("x", self._x), ("v", self._v), ("target", target),
+                              ("target_velocity", target_velocity), *self._parameters.items()):
             if values is None or (index is None and values.ndim):
                 continue
             value = float(values[index] if values.ndim else values)
@@ -115,13 +118,14 @@ class Batch:
             fail(status, "method", method)
         self._fail(status, failed, dt)
 
-    def _fail(self, status: int, failed: np.ndarray, dt: float, target: np.ndarray | None = None) -> NoReturn:
+    def _fail(self, status: int, failed: np.ndarray, dt: float, target: np.ndarray | None = None,
+              target_velocity: np.ndarray | None = None) -> NoReturn:
         """Raise the exception for a status, with the indices of the springs that have kept their state."""
         first = int(failed[0]) if len(failed) else None
         try:
             finite("dt", dt)
             for index in failed if len(failed) else [None]:
-                self._first_invalid(None if index is None else int(index), target)
+                self._first_invalid(None if index is None else int(index), target, target_velocity)
             if first is None:
                 fail(status)
             fail(lib.SPRING_ENONFINITE, "x", float(self._x[first]), first)
@@ -129,51 +133,68 @@ class Batch:
             error.failed = failed
             raise
 
-    def _follow(self, target: np.ndarray, dt: float, x_tol: float, v_tol: float) -> tuple[int, int, np.ndarray | None]:
+    def _follow(self, target: np.ndarray, target_velocity: np.ndarray | None, dt: float, x_tol: float,
+                v_tol: float) -> tuple[int, int, np.ndarray | None]:
         """The status, the number of springs that move and, after an error, the indices of springs that have kept their
         state: those that are where they were, and fail again alone."""
         moving = ffi.new("size_t *")
         x, v = self._x.copy(), self._v.copy()
-        status = self._follows(self._batch, self._as_lent("target", target), dt, x_tol, v_tol, moving)
+        goals = self._as_lent("target", target)
+        if target_velocity is None:
+            status = self._follows(self._batch, goals, dt, x_tol, v_tol, moving)
+        else:
+            speeds = self._as_lent("target_velocity", target_velocity)
+            status = self._follows_moving(self._batch, goals, speeds, dt, x_tol, v_tol, moving)
         if status == lib.SPRING_OK:
             return status, moving[0], None
         if status != lib.SPRING_EPARTIAL:
             return status, 0, np.empty(0, np.intp)
         bits = f"u{x.itemsize}"
         kept = (x.view(bits) == self._x.view(bits)) & (v.view(bits) == self._v.view(bits))
-        failed = [index for index in np.flatnonzero(kept) if self._fails(index, target, dt)]
+        failed = [index for index in np.flatnonzero(kept) if self._fails(index, target, target_velocity, dt)]
         return status, moving[0], np.array(failed, np.intp)
 
-    def _fails(self, index: int, target: np.ndarray, dt: float) -> bool:
+    def _fails(self, index: int, target: np.ndarray, target_velocity: np.ndarray | None, dt: float) -> bool:
         """Return whether this spring would fail by itself."""
-        part = slice(index, index + 1)
-        parameters = (values if values is None or not values.ndim else values[part] for values in self._parameters.values())
-        one = Batch(self._x[part].copy(), self._v[part].copy(), *parameters)
-        return one._follows(one._batch, one._as_lent("target", target[part]), dt, 0, 0, ffi.NULL) != lib.SPRING_OK
+        def part(values: Any) -> Any:
+            return values if values is None or not values.ndim else values[index:index + 1]
 
-    def follow(self, target: np.ndarray | float, dt: float, x_tol: float = 0.0, v_tol: float = 0.0) -> int:
+        one = Batch(part(self._x).copy(), part(self._v).copy(), *map(part, self._parameters.values()))
+        return one._follow(part(target), part(target_velocity), dt, 0, 0)[0] != lib.SPRING_OK
+
+    def _target(self, field: str, target: np.ndarray | float) -> np.ndarray:
+        """Return an array like x that does not share its memory."""
+        if np.ndim(target) == 0:
+            target = np.full(len(self), target, self._x.dtype)
+        self._as_lent(field, target)
+        for name, state in (("x", self._x), ("v", self._v)):
+            if np.may_share_memory(state, target):
+                raise ValueError(f"{field}: shares memory with {name}")
+        return target
+
+    def follow(self, target: np.ndarray | float, dt: float, x_tol: float = 0.0, v_tol: float = 0.0,
+               target_velocity: np.ndarray | float = 0.0) -> int:
         """Advance every spring by dt [s] towards its target [m], by the exact solution; return how many still move.
 
-        target: an array like x, or one number for all springs
+        target: [m] positions of the targets at the end of the step, an array like x, or one number for all springs
         x_tol, v_tol: [m], [m/s] a spring within both tolerances of rest on its target is placed there
+        target_velocity: [m/s] mean velocities of the targets during the step, an array like x, or one number; 0 for targets
+            that jump. A spring is placed on its target with this velocity, and moves while it is not 0.
 
         A damped spring lands on its target as with Spring.follow(); in float32 from a distance below 3e-4 of its value, if its
         half-life is not longer than 1400 steps.
 
         Springs that fail keep their state, are counted, and are named by the exception, as in advance().
         """
-        if np.ndim(target) == 0:
-            target = np.full(len(self), target, self._x.dtype)
         for field, value in (("x_tol", x_tol), ("v_tol", v_tol)):
             if not value >= 0:
                 invalid(field, value)
-        self._as_lent("target", target)
-        for name, state in (("x", self._x), ("v", self._v)):
-            if np.may_share_memory(state, target):
-                raise ValueError(f"target: shares memory with {name}")
-        status, moving, failed = self._guard.long(self._follow, target, dt, x_tol, v_tol)
+        target = self._target("target", target)
+        still = np.ndim(target_velocity) == 0 and target_velocity == 0
+        speeds = None if still else self._target("target_velocity", target_velocity)
+        status, moving, failed = self._guard.long(self._follow, target, speeds, dt, x_tol, v_tol)
         if failed is not None:
-            self._fail(status, failed, dt, target)
+            self._fail(status, failed, dt, target, speeds)
         return moving
 
     def stable_step(self, method: str = "leapfrog") -> float:

@@ -169,14 +169,15 @@ class Spring:
         """Whether the spring is within x_tol [m] of its rest position and not faster than v_tol [m/s]."""
         return lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
 
-    def settling_time(self, x_tol: float) -> float:
-        """Time [s] from which on the exact solution stays within x_tol >= 0 [m] of the rest position, or infinity."""
+    def settling_time(self, x_tol: float, v_tol: float = math.inf) -> float:
+        """Time [s] from which on the exact solution stays within x_tol >= 0 [m] of the rest position, and not faster than
+        v_tol >= 0 [m/s], or infinity."""
         self._check_parameters()
-        time = lib.spring_settling_time(self._state, self._params, x_tol)
+        time = lib.spring_rest_time(self._state, self._params, x_tol, v_tol)
         if math.isnan(time):
             finite("x", self.x)
             finite("v", self.v)
-            invalid("x_tol", x_tol)
+            invalid(*(("v_tol", v_tol) if x_tol >= 0 else ("x_tol", x_tol)))
         return time
 
     def snapshot(self) -> tuple[float, float]:

@@ -131,6 +131,28 @@ def test_following_has_the_bits_of_single_springs():
     assert batch.follow(target, 0) == COUNT and batch.follow(target, 0, np.inf, np.inf) == 0
 
 
+def test_moving_targets_are_followed_without_lag():
+    batch = example()
+    batch.accel[:] = 0
+    target, speed = np.zeros(COUNT), np.random.default_rng(9).uniform(-5, 5, COUNT)
+    springs = [Spring(w, 1, g, x=x, v=v) for x, v, w, g in zip(batch.x, batch.v, batch.omega2, batch.gamma)]
+    for _ in range(7):
+        target += speed / 64
+        assert batch.follow(target, 1 / 64, target_velocity=speed) == COUNT
+        for spring, goal, velocity in zip(springs, target, speed):
+            spring.follow(goal, 1 / 64, velocity)
+    assert (batch.x == [spring.x for spring in springs]).all() and (batch.v == [spring.v for spring in springs]).all()
+    assert batch.follow(target, 1 / 64, np.inf, np.inf, target_velocity=speed) == COUNT
+    assert (batch.x == target).all() and (batch.v == speed).all()
+    batch.follow(3.0, 1 / 64, target_velocity=2.0)  # one number for all
+    speed[40] = np.nan
+    with pytest.raises(springstep.InvalidError, match=r"^target_velocity\[40\] = nan: ") as caught:
+        batch.follow(target, 1 / 64, target_velocity=speed)
+    assert caught.value.failed.tolist() == [40]
+    with pytest.raises(ValueError, match="^target_velocity: shares memory with x"):
+        batch.follow(target, 1 / 64, target_velocity=batch.x)
+
+
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_springs_land_on_their_targets(dtype):
     batch = example(dtype)

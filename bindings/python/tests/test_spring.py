@@ -63,6 +63,11 @@ def test_how_it_should_feel():
     assert Spring.response(0.3, 0.7).stiffness == pytest.approx(438.649084492860, rel=1e-12)
     assert Spring.bounce(0.5, 0.25).damping == pytest.approx(18.8495559215388, rel=1e-12)
     assert Spring.settling(0.4, 0.3, x=1).settling_time(1e-3) == pytest.approx(0.4, rel=1e-9)
+    slow = Spring(4, 1, 1, x=1)
+    time = slow.settling_time(0.1, 1e-3)
+    assert time > slow.settling_time(0.1)
+    slow.advance(time, 1, "exact")
+    assert abs(slow.v) == pytest.approx(1e-3)
 
 
 def test_a_spring_lands_on_its_target():
@@ -94,7 +99,7 @@ def test_a_wrong_field_is_named(field, value):
     (lambda s: s.advance(1.0, 2**64), "steps"), (lambda s: s.advance(1.0, 1, "verlet"), "method"),
     (lambda s: s.stable_step("verlet"), "method"), (lambda s: s.accurate_step(0, 1e-3), "duration"),
     (lambda s: s.accurate_step(1, -1e-3), "tolerance"), (lambda s: s.step_error(1, 0), "dt"),
-    (lambda s: s.step_error(math.nan, 1e-3), "duration"), (lambda s: s.settling_time(-1), "x_tol"),
+    (lambda s: s.step_error(math.nan, 1e-3), "duration"), (lambda s: s.settling_time(-1), "x_tol"), (lambda s: s.settling_time(1, -1), "v_tol"),
     (lambda s: Spring.hertz(-1, 0.5), "hertz"), (lambda s: Spring.hertz(1, -0.5), "damping_ratio"),
     (lambda s: Spring.half_life(0, 0.5), "half_life"), (lambda s: Spring.half_life(1, 0), "damping_ratio"),
     (lambda s: Spring.response(0, 1), "response"), (lambda s: Spring.response(1, -1), "damping_fraction"),

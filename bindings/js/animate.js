@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// @ts-self-types="./animate.d.ts"
+// One loop of frames for any number of springs. It runs while one of them moves.
+import { check, checkFunction } from "./options.js";
+import { watch } from "./watch.js";
+
+const nextFrame = (frame) =>
+    globalThis.requestAnimationFrame
+        ? requestAnimationFrame(frame)
+        : setTimeout(() => frame(performance.now()), 1000 / 60);
+const isReduced = () => globalThis.matchMedia?.("(prefers-reduced-motion: reduce)").matches;
+
+/** An error of one spring must not stop the others. */
+function report(error) {
+    if (globalThis.reportError) reportError(error);
+    else
+        setTimeout(() => {
+            throw error;
+        });
+}
+
+export function animator({
+    request = nextFrame,
+    now = request === nextFrame ? () => performance.now() : null,
+} = {}) {
+    check(typeof request === "function", "request", "a function", request, TypeError);
+    checkFunction("now", now);
+    const entries = new WeakMap(); // { spring, draws, runs, time, stale } of a spring
+    const moving = new Set();
+    let requested = false;
+
+    function schedule() {
+        if (!requested) request(frame);
+        requested = true;
+    }
+
+    function wake(entry) {
+        entry.stale = true;
+        if (moving.has(entry)) return;
+        entry.time = now ? now() : null; // of the start, so that no frame is too long
+        moving.add(entry);
+        schedule();
+    }
+
+    function frame(time) {
+        requested = false;
+        const reduced = isReduced();
+        for (const entry of [...moving]) {
+            // The time of a frame may be earlier than that of the event that started the motion.
+            const dt = Math.max(0, time - (entry.time ?? time)) / 1000;
+            entry.time = Math.max(time, entry.time ?? time);
+            if (!advance(entry, dt, reduced)) moving.delete(entry);
+        }
+        if (moving.size > 0) schedule();
+    }
+
+    /** Advances and draws one spring, and returns whether it moves on. */
+    function advance(entry, dt, reduced) {
+        const { spring, draws } = entry;
+        entry.stale = false;
+        try {
+            if (reduced && !entry.runs) spring.finish();
+            else spring.step(dt);
+        } catch (error) {
+            report(error);
+            return false;
+        }
+        const { value } = spring;
+        for (const { draw } of draws)
+            try {
+                draw(value, spring);
+            } catch (error) {
+                report(error);
+            }
+        // Springs cannot tell whether somebody has written to their arrays.
+        if (typeof spring.settled === "function") return spring.step(0) > 0;
+        return entry.stale || !spring.settled;
+    }
+
+    return function animate(spring, draw, { reducedMotion = "jump" } = {}) {
+        check(typeof draw === "function", "draw", "a function", draw, TypeError);
+        const known = reducedMotion === "jump" || reducedMotion === "run";
+        check(known, "reducedMotion", '"jump" or "run"', reducedMotion, TypeError);
+        let entry = entries.get(spring);
+        if (!entry) {
+            entry = { spring, draws: new Set(), runs: false, time: null, stale: false };
+            watch(spring, () => wake(entry));
+            entries.set(spring, entry);
+        }
+        entry.runs = reducedMotion === "run";
+        const mine = { draw };
+        entry.draws.add(mine);
+        if (spring.settled !== true) wake(entry);
+        return function stop() {
+            entry.draws.delete(mine);
+            if (entry.draws.size > 0 || entries.get(spring) !== entry) return;
+            entries.delete(spring);
+            moving.delete(entry);
+            watch(spring, null);
+        };
+    };
+}
+
+export const animate = /* @__PURE__ */ animator();

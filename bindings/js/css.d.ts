@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+import type { SpringParameters } from "./index.js";
+
+/**
+ * The motion of a spring from rest at 0 to 1 as an easing of CSS, for transitions and animations that run off the main thread:
+ * `element.animate(keyframes, linear({ bounce: 0.2 }))`. The error is at most 0.2 % of the way.
+ *
+ * @param velocity of the start, in ways per second; default 0
+ * @returns `duration` in milliseconds, and `easing`: `linear(0, 0.0088 1.65%, ..., 1)`
+ */
+export declare function linear(
+    options?: SpringParameters,
+    velocity?: number,
+): { duration: number; easing: string };

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Settling times: src/spring/settling.c with the same operations, so that the decision whether a value rests is the same on
+// every engine.
+
+/** The first time in (before .. after] at which `holds`, which does not hold at `before`. */
+function firstTime(holds, before, after) {
+    for (;;) {
+        const middle = before + (after - before) / 2;
+        if (!(middle > before && middle < after)) return after;
+        if (holds(middle)) after = middle;
+        else before = middle;
+    }
+}
+
+/** The first time after `from` at which `holds`, which it does from then on, as at infinity. Tests multiples of `step` first. */
+function lastTime(holds, from, step) {
+    let before = 0;
+    let after = 1;
+    for (; !holds(from + after * step); after *= 2) before = after;
+    return firstTime(holds, from + before * step, from + after * step);
+}
+
+const creeps = (p) => p.overdamped || p.split === 0;
+const speedAt = (p, y0, v0, t) => {
+    p.prepare(t);
+    return p.half * (p.G * v0 - p.omega2 * p.H * y0);
+};
+
+/** When the velocity of a spring at a distance y0 from rest changes its sign, or becomes 0. */
+export function turningTime(p, y0, v0) {
+    if (v0 === 0) return 0;
+    const turned = (t) => !(speedAt(p, y0, v0, t) * v0 > 0);
+    return creeps(p) ? lastTime(turned, 0, 1 / p.b) : firstTime(turned, 0, Math.PI / p.split);
+}
+
+/** The time after which a spring that starts at a distance y0 from rest with the velocity v0 stays within `tolerance`. */
+export function timeWithin(p, y0, v0, tolerance) {
+    const free = p.omega2 === 0;
+    if (tolerance === 0 || (free && p.b === 0)) return v0 || (y0 && !free) ? Infinity : 0;
+    const within = (t) => {
+        const speed = speedAt(p, y0, v0, t);
+        return !(Math.abs(free ? speed * p.reach : p.half * (p.F * y0 + p.H * v0)) > tolerance);
+    };
+    // Between turning points, which have equal distances in time, the spring comes closer or goes away.
+    const first = turningTime(p, y0, v0);
+    if (within(first)) return within(0) ? 0 : firstTime(within, 0, first);
+    if (creeps(p)) return lastTime(within, first, 1 / p.b);
+    return p.b === 0 ? Infinity : lastTime(within, first, Math.PI / p.split);
+}
+
+/** The time after which distance and velocity both stay within their tolerances. */
+export const restTime = (p, y, v, restDelta, restSpeed) =>
+    Math.max(timeWithin(p, y, v, restDelta), timeWithin(p, v, -p.omega2 * y - 2 * p.b * v, restSpeed));

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// Who is told when a spring may begin to move: the loop of animate.js.
+
+const listeners = new WeakMap();
+
+/** Calls `listener` whenever a spring may begin to move; null: no longer. */
+export function watch(spring, listener) {
+    if (listener && listeners.get(spring)) throw new TypeError("the spring is animated by another loop");
+    listeners.set(spring, listener);
+}
+
+export const changed = (spring) => listeners.get(spring)?.();
