@@ -7,7 +7,7 @@ const flags = { editable: 1, noUndo: 2, tensionOnly: 8, heldForces: 16 };
 const forceIgnoresVelocity = 4;
 const names = [
     ..."axes position velocity mass pinned links gravity drag maxSpeed methods".split(" "),
-    ..."force forceUsesVelocity component base colliders particleRadius".split(" "),
+    ..."force forceUsesVelocity component base colliders particleRadius count".split(" "),
     ...Object.keys(flags),
 ];
 
@@ -238,12 +238,22 @@ export function define(take, definition) {
     const { axes = 3, position, velocity, mass = 1, pinned, links = [] } = definition;
     const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
     const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
-    const { colliders = 0, particleRadius = 0 } = definition;
+    const { colliders = 0, particleRadius = 0, count } = definition;
     check([1, 2, 3].includes(axes), "axes", "1, 2 or 3", axes);
     checkArray("position", position);
     const { length } = position;
     check(length > 0 && length % axes === 0, "position.length", `a multiple of ${axes}`, length);
     const particles = length / axes;
+    if (count !== undefined) {
+        checkArray("count", count, 3);
+        check(
+            count[0] * count[1] * count[2] === particles,
+            "count",
+            "that of all particles",
+            String(count),
+            RangeError,
+        );
+    }
     if (velocity) checkArray("velocity", velocity, position.length);
     if (pinned) checkArray("pinned", pinned, particles);
     if (typeof mass === "number") check(mass > 0, "mass", wanted.mass, mass);
@@ -286,6 +296,7 @@ export function define(take, definition) {
         force,
         forceUsesVelocity,
         component,
+        count,
         base: optional(base, "float32", 4),
     };
 }

@@ -56,6 +56,7 @@ export function grid(definition) {
         grid_fill(position, pins, link);
         const made = {
             axes,
+            count: [x, y, z],
             position: memory.float64(position, particles * axes).slice(),
             pinned: memory.uint8(pins, particles).slice(),
             links: linksAt(link, links),
@@ -69,6 +70,36 @@ export function grid(definition) {
         }
         return made;
     });
+}
+
+/** Triangles of a sheet, or of the surface of a solid: counterclockwise from outside, or from the positive side of a sheet. */
+export function triangles(count) {
+    const strides = [1, count[0], count[0] * count[1]];
+    const indices = [];
+    const face = (start, u, v) => {
+        for (let j = 0; j < count[v] - 1; j++)
+            for (let i = 0; i < count[u] - 1; i++) {
+                const a = start + i * strides[u] + j * strides[v];
+                const c = a + strides[u] + strides[v];
+                indices.push(a, a + strides[u], c, a, c, a + strides[v]);
+            }
+    };
+    for (let axis = 0; axis < 3; axis++) {
+        const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+        face((count[axis] - 1) * strides[axis], u, v);
+        if (count[axis] > 1) face(0, v, u);
+    }
+    return Uint32Array.from(indices);
+}
+
+/** From 0 to 1 along x and y. */
+export function textureCoordinates([x, y, z]) {
+    const coordinates = new Float32Array(2 * x * y * z);
+    for (let k = 0; k < x * y * z; k++) {
+        coordinates[2 * k] = (k % x) / Math.max(1, x - 1);
+        coordinates[2 * k + 1] = (Math.floor(k / x) % y) / Math.max(1, y - 1);
+    }
+    return coordinates;
 }
 
 /** The links of a definition, with less stiffness where leapfrog would need steps shorter than dt. */

@@ -1,30 +1,28 @@
 // SPDX-License-Identifier: MIT
 // The one instance of the WebAssembly module, which all scenes share, and memory in it. Nothing is compiled before first use.
-import { binary } from "./binary.js";
-import { inflated } from "./inflate.js";
+import { hasSimd } from "./simd.js";
 
 let calls; // exports of the instance
 let forceOf; // what the callback of the scene that is being called does
 
 const imports = { springstep: { force: (...pointers) => forceOf(...pointers) } };
 
-// A function that returns a SIMD vector.
-const probe = Uint8Array.of(
-    ...[0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15],
-    ...[253, 98, 11],
-);
+let embedded = null; // the module in hexadecimal digits, which compress better than base64
 
-/** Whether the engine has SIMD for WebAssembly. */
-export const hasSimd = () => typeof WebAssembly === "object" && WebAssembly.validate(probe);
+export const embed = (digits) => (embedded = digits);
 
-const needed =
-    "springstep/scenes needs SIMD for WebAssembly: Chrome 91, Firefox 89, Safari 16.4, Node 16.4 or later";
-// Without any WebAssembly, as where pages are rendered on a server, only the first use fails.
-if (typeof WebAssembly === "object" && !hasSimd()) throw new Error(needed);
+const digit = (code) => code - (code < 58 ? 48 : 87);
 
-function bytes() {
-    if (!hasSimd()) throw new Error(needed);
-    return inflated(binary);
+function inside() {
+    if (!hasSimd())
+        throw new Error(
+            "springstep/scenes needs SIMD for WebAssembly: Chrome 91, Firefox 89, Safari 16.4, Node 16.4 or later",
+        );
+    if (embedded === null) throw new Error("springstep/scenes/bare: first await ready() with scenes.wasm");
+    const bytes = new Uint8Array(embedded.length / 2);
+    for (let i = 0; i < bytes.length; i++)
+        bytes[i] = 16 * digit(embedded.charCodeAt(2 * i)) + digit(embedded.charCodeAt(2 * i + 1));
+    return bytes;
 }
 
 function start(instance) {
@@ -33,18 +31,21 @@ function start(instance) {
     calls._initialize?.();
 }
 
-/** Compiles in the background. */
-export async function ready() {
+/** Compiles in the background: a response with the module, its bytes, or the module; by default the module inside. */
+export async function ready(module) {
     if (calls) return;
-    const code = bytes();
-    start((await WebAssembly.instantiate(code, imports)).instance);
+    let given = (await module) ?? inside();
+    if (given.ok === false) throw new Error(`scenes.wasm: ${given.status} ${given.statusText}`);
+    if (given.arrayBuffer) given = await given.arrayBuffer();
+    const made = await WebAssembly.instantiate(given, imports);
+    start(made.instance ?? made);
 }
 
 /** The functions of the module. */
 export function library() {
     if (!calls) {
-        const code = bytes();
-        start(new WebAssembly.Instance(new WebAssembly.Module(code), imports));
+        const bytes = inside();
+        start(new WebAssembly.Instance(new WebAssembly.Module(bytes), imports));
     }
     return calls;
 }

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// <reference lib="esnext.disposable" />
 
-/** Compiles the WebAssembly in the background. Without it, the first use compiles and waits. */
-export declare function ready(): Promise<void>;
+/** The WebAssembly of scenes: a response of fetch(), bytes, or a compiled module. */
+export type Module = Response | BufferSource | WebAssembly.Module;
+
+/**
+ * Compiles the WebAssembly in the background: that inside the package, or `springstep/scenes.wasm`. Without it, the first use
+ * compiles and waits.
+ */
+export declare function ready(module?: Module | Promise<Module>): Promise<void>;
 
 /** Whether the engine has SIMD for WebAssembly, which scenes require. Compiles nothing. */
 export declare function hasSimd(): boolean;
@@ -113,6 +119,8 @@ export interface FrameOptions {
 }
 
 export interface SceneDefinition {
+    /** particles along x, y, z of a grid, for triangles() and textureCoordinates() */
+    count?: readonly number[];
     /** default 3 */
     axes?: 1 | 2 | 3;
     /** [axes per particle] [m] x0, y0, z0, x1, ... */
@@ -177,6 +185,7 @@ export interface GridDefinition {
 
 export interface Grid {
     axes: 1 | 2 | 3;
+    count: [number, number, number];
     position: Float64Array;
     pinned: Uint8Array;
     links: LinkArrays;
@@ -223,6 +232,12 @@ export declare class Scene {
     advance(method: Method, dt: number, steps?: number): void;
 
     /**
+     * Takes the steps that are due after `elapsed` more seconds, and returns their number: by default with leapfrog, and with
+     * steps of 1/240 s, or half of the stable step if this is less.
+     */
+    frame(elapsed: number, options?: FrameOptions & { method?: Method; dt?: number }): number;
+
+    /**
      * Takes the steps of dt that are due after `elapsed` more seconds and returns their number. A negative time counts as 0.
      * `positions` are interpolated between the last two steps. The last argument may be `mostSteps` alone. If a step fails, the
      * scene is as before the frame, and the time of the frame is dropped.
@@ -241,6 +256,11 @@ export declare class Scene {
     /** A copy of the values of `count` particles, by default of all from `first` on, in double precision. */
     get(quantity: Quantity, first?: number, count?: number): Float64Array;
     set(quantity: Quantity, values: ArrayLike<number>, first?: number): void;
+
+    /** Indices of triangles of a grid: of a sheet, or of the surface of a solid. */
+    triangles(): Uint32Array;
+    /** Two for each particle of a grid: from 0 to 1 along x and y */
+    textureCoordinates(): Float32Array;
 
     /** Moves all particles by an affine map: the rows of [A b], 12 numbers, or the 16 elements of a Matrix4 of three.js. */
     transform(matrix: ArrayLike<number>): void;

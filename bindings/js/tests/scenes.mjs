@@ -57,14 +57,14 @@ await test("an import compiles nothing, the first use does, ready() once more do
     await ready();
     assert.equal(compiled, 1);
 });
-await test("an engine without SIMD is told what is needed; without WebAssembly the first use is, and springs work", () => {
+await test("in an engine without SIMD the first use of a scene tells what is needed, and springs work", () => {
     const [scenes, springs] = ["scenes.js", "index.js"].map((file) =>
         JSON.stringify(new URL(`../${file}`, import.meta.url)),
     );
     const needed = /Error: springstep\/scenes needs SIMD for WebAssembly: .*Node 16.4 or later/;
     for (const [without, prints, fails] of [
         ["", "spring scenes used ", undefined],
-        ["WebAssembly.validate = () => false", "spring ", needed],
+        ["WebAssembly.validate = () => false", "spring scenes ", needed],
         ["delete globalThis.WebAssembly", "spring scenes ", needed],
     ]) {
         const program = `${without};
@@ -76,6 +76,88 @@ await test("an engine without SIMD is told what is needed; without WebAssembly t
         assert.equal(stdout, prints);
         if (fails) assert.match(stderr, fails);
     }
+});
+
+await test("the module by file: a response, bytes, a compiled module", () => {
+    const local = (name) => JSON.stringify(new URL(`../${name}`, import.meta.url));
+    const bytes = `readFileSync(new URL(${local("scenes.wasm")}))`;
+    for (const [module, prints] of [
+        ["", "springstep/scenes/bare: first await ready() with scenes.wasm"],
+        [`await ready(Promise.resolve(new Response(${bytes})))`, "2"],
+        [`await ready(${bytes})`, "2"],
+        [`await ready(new WebAssembly.Module(${bytes})); await ready()`, "2"],
+        [
+            'await ready(new Response("", { status: 404, statusText: "Not Found" }))',
+            "scenes.wasm: 404 Not Found",
+        ],
+        ["await ready()", "springstep/scenes/bare: first await ready() with scenes.wasm"],
+    ]) {
+        const program = `import { readFileSync } from "node:fs";
+            import { grid, ready } from ${local("bare.js")};
+            try { ${module}; console.log(grid({ count: [2], spacing: 1, stiffness: 1 }).position.length / 3); }
+            catch (error) { console.log(error.message); }`;
+        const how = ["--input-type=module", "--eval", program];
+        const { stdout, stderr } = spawnSync(process.execPath, how, { encoding: "utf8" });
+        assert.equal(stdout + stderr, `${prints}\n`, module);
+    }
+});
+
+await test("triangles of grids: areas, orientation, texture coordinates", () => {
+    for (const [count, area] of [
+        [[4, 3], 3 * 2],
+        [[3, 4, 5], 2 * (2 * 3 + 2 * 4 + 3 * 4)],
+        [[5], 0],
+    ]) {
+        const scene = new Scene(grid({ count, spacing: 1, stiffness: 1 }));
+        const { positions: p } = scene;
+        const triangles = scene.triangles();
+        const all = [0, 0, 0]; // sum of normals times area
+        let sum = 0;
+        let volume = 0;
+        for (let i = 0; i < triangles.length; i += 3) {
+            const [a, b, c] = [...triangles.subarray(i, i + 3)].map((k) => [...p.subarray(3 * k, 3 * k + 3)]);
+            const [u, v] = [b, c].map((q) => q.map((x, k) => x - a[k]));
+            const normal = [0, 1, 2].map(
+                (k) => (u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]) / 2,
+            );
+            normal.forEach((x, k) => (all[k] += x));
+            sum += Math.hypot(...normal);
+            volume += normal.reduce((dot, x, k) => dot + x * a[k], 0) / 3;
+        }
+        assert.ok(Math.abs(sum - area) < 1e-9, `${count}: ${sum}`);
+        if (count.length === 2) assert.deepEqual(all, [0, 0, area]);
+        if (count.length === 3) assert.ok(Math.abs(volume - 2 * 3 * 4) < 1e-9, "outwards");
+        const uv = scene.textureCoordinates();
+        for (let k = 0; k < scene.particles; k++)
+            for (const axis of [0, 1]) {
+                const width = (count[axis] ?? 1) - 1;
+                assert.ok(Math.abs(uv[2 * k + axis] * width - (width && p[3 * k + axis])) < 1e-6);
+            }
+    }
+    refused(
+        () => new Scene({ position: [0, 0, 0] }).triangles(),
+        "TypeError: the scene is defined without the count of a grid",
+    );
+    refused(
+        () => new Scene({ ...grid({ count: [3], spacing: 1, stiffness: 1 }), count: [2, 1, 1] }),
+        'RangeError: count must be that of all particles, got "2,1,1"',
+    );
+});
+
+await test("frame(elapsed) has defaults for method and step", () => {
+    const sheet = grid({ count: [9, 9], spacing: 0.1, stiffness: 400, pinned: ["lastY"] });
+    const [a, b] = [1, 2].map(() => new Scene({ ...sheet, mass: 0.01, gravity: [0, -9.81, 0] }));
+    const dt = 1 / 60 / Math.ceil(2 / 60 / a.stableStep());
+    for (let i = 0; i < 30; i++) assert.equal(a.frame(1 / 50), b.frame("leapfrog", dt, 1 / 50));
+    assert.deepEqual(a.positions, b.positions);
+    assert.equal(a.frame(-1), 0);
+    assert.equal(a.frame(0.1, { dt: 0.001, mostSteps: 5 }), 5);
+    let moved = 0;
+    assert.equal(a.frame(0.01, { method: "symplectic-euler", dt: 0.001, move: () => moved++ }), 10);
+    assert.equal(moved, 1);
+    assert.equal(new Scene({ position: [0, 0, 0] }).frame(1 / 60 + 1e-9), 4, "steps of 1/240 s");
+    refused(() => a.frame(0.1, { steps: 3 }), "TypeError: the option steps is unknown");
+    refused(() => a.frame(NaN), "RangeError: elapsed must be a finite number, got NaN");
 });
 
 const steps = { rope: 7, cloth: 19, jelly: 9, chain: 5, water: 13 };

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// @ts-self-types="./bare.d.ts"
+// Scenes without the WebAssembly module, which ready() gets.
+export { methods } from "./definition.js";
+export { components, grid, soften } from "./grid.js";
+export { ready } from "./module.js";
+export { Scene } from "./scene.js";
+export { hasSimd } from "./simd.js";

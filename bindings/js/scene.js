@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: MIT
+// Mass-spring systems: the scenes of the C library.
+import {
+    checkArray,
+    checkCount,
+    checkKnown,
+    define,
+    lend,
+    lendColliders,
+    lendLinks,
+    linksAt,
+    methodNumber,
+} from "./definition.js";
+import { components, textureCoordinates, triangles } from "./grid.js";
+import { borrowed, library, memory, NoMemory, withForce } from "./module.js";
+import { check, checkFinite, isNumber } from "./options.js";
+
+const quantities = ["position", "velocity", "force"];
+const notFinite = 2;
+const disabled = 7;
+const outOfRange = 5;
+const unsupported = 6;
+const unstable = 12;
+const stepFailures = {
+    [notFinite]: ["a position or velocity would not be finite", "SPRING_ENONFINITE"],
+    [unstable]: ["a particle would be faster than maxSpeed", "SPRING_EUNSTABLE"],
+};
+
+const lost = new FinalizationRegistry((pointer) => library().scene_free(pointer));
+const snapshots = new WeakMap(); // of a snapshot: { scene, bytes, force }
+
+export class Scene {
+    #pointer = 0; // of what wasm/scenes.c calls shown
+    #scene = 0; // of the scene of the C library
+    #force;
+    #usesVelocity;
+    #busy = false;
+    #moving = false; // during a frame
+    #error; // of the callback
+    #views = { buffer: null }; // for the callback, by pointer
+    #heldForces;
+    #count; // of a grid
+
+    constructor(definition) {
+        borrowed((take) => {
+            const made = define(take, definition);
+            const { axes, particles, links, component, base } = made;
+            this.#force = made.force;
+            this.#usesVelocity = made.forceUsesVelocity;
+            this.#heldForces = Boolean(definition.heldForces);
+            this.#count = made.count;
+            this.#pointer = withForce(this.#callback, () => library().scene_new(component, base));
+            if (this.#pointer === 0)
+                throw new RangeError(`no memory for a scene of ${particles} particles and ${links} links`);
+            this.#scene = library().scene_of(this.#pointer);
+            const fixed = { axes, particles, links, positions: new Float32Array(3 * particles) };
+            for (const [name, value] of Object.entries(fixed))
+                Object.defineProperty(this, name, { value, enumerable: true });
+        });
+        if (new.target === Scene) Object.seal(this); // `scene.gravity = [0, 0, 0]` throws
+        lost.register(this, this.#pointer, this);
+        this.#show(library().scene_show(this.#pointer));
+    }
+
+    free() {
+        if (this.#busy || this.#moving) throw new TypeError("a callback must not call its own scene");
+        if (this.#pointer === 0) return;
+        lost.unregister(this);
+        library().scene_free(this.#pointer);
+        this.#pointer = this.#scene = 0;
+    }
+
+    [Symbol.dispose ?? Symbol.for("Symbol.dispose")]() {
+        this.free();
+    }
+
+    // --- steps ------------------------------------------------------------------------------------------------------
+
+    advance(method, dt, steps = 1) {
+        const number = methodNumber(method);
+        checkFinite("dt", dt);
+        checkCount("steps", steps);
+        this.#checked(this.#call("scene_advance", this.#pointer, number, dt, steps), method, dt);
+        this.#show(library().scene_moved(this.#pointer));
+    }
+
+    frame(...values) {
+        if (typeof values[0] === "number") {
+            const [elapsed, { method = "leapfrog", dt = this.#usualStep(method), ...options } = {}] = values;
+            return this.#frame(method, dt, elapsed, options);
+        }
+        const [method, dt, elapsed, options = {}] = values;
+        return this.#frame(
+            method,
+            dt,
+            elapsed,
+            typeof options === "number" ? { mostSteps: options } : options,
+        );
+    }
+
+    /** A part of 1/60 s: at most 1/240 s and half of the stable step. */
+    #usualStep(method) {
+        const most = Math.min(1 / 240, this.stableStep(method) / 2);
+        return 1 / 60 / Math.ceil(1 / 60 / most);
+    }
+
+    #frame(method, dt, elapsed, options) {
+        const number = methodNumber(method);
+        check(isNumber(dt) && dt > 0, "dt", "a finite number > 0", dt);
+        checkFinite("elapsed", elapsed);
+        checkKnown(options, ["mostSteps", "move"]);
+        const { mostSteps = Math.max(1, Math.floor(0.25 / dt)), move = null } = options;
+        const few = Number.isInteger(mostSteps) && mostSteps >= 1 && mostSteps < 2 ** 32;
+        check(few, "mostSteps", "an integer >= 1 and < 2^32", mostSteps);
+        check(move === null || typeof move === "function", "move", "a function or null", move, TypeError);
+        if (this.#moving) throw new TypeError("move must not call frame() of its own scene");
+        const seconds = Math.max(elapsed, 0); // the time of a frame may be earlier than that of the event that starts it
+        return borrowed((take) => {
+            const pointer = take(16);
+            const steps = this.#call("scene_begin_frame", this.#pointer, seconds, dt, mostSteps, pointer);
+            if (steps < 0) throw new NoMemory(library().scene_bytes(this.#pointer));
+            const [time, dropped] = memory.float64(pointer, 2);
+            if (steps > 0)
+                this.#take(number, dt, steps, seconds, move && (() => move(time, dropped)), method);
+            this.#show(library().scene_end_frame(this.#pointer));
+            return steps;
+        });
+    }
+
+    /** The steps of a frame, or none of them. */
+    #take(number, dt, steps, seconds, move, method) {
+        const force = this.#force;
+        this.#moving = true;
+        try {
+            move?.();
+            this.#checked(this.#call("scene_take_frame", this.#pointer, number, dt, steps), method, dt);
+        } catch (error) {
+            this.#show(library().scene_undo_frame(this.#pointer, seconds));
+            this.#force = force;
+            throw error;
+        } finally {
+            this.#moving = false;
+        }
+    }
+
+    stableStep(method = "leapfrog") {
+        return this.#call("spring_scene_stable_step", this.#scene, methodNumber(method));
+    }
+
+    get time() {
+        return this.#call("spring_scene_time", this.#scene);
+    }
+
+    get energy() {
+        return borrowed((take) => {
+            const pointer = take(24);
+            this.#call("spring_scene_energy", pointer, this.#scene);
+            const [kinetic, elastic, gravity] = memory.float64(pointer, 3);
+            return { kinetic, elastic, gravity, total: kinetic + elastic + gravity };
+        });
+    }
+
+    atRest(speed, acceleration) {
+        checkFinite("speed", speed);
+        checkFinite("acceleration", acceleration);
+        return this.#call("spring_scene_at_rest", this.#scene, speed, acceleration) !== 0;
+    }
+
+    // --- state ------------------------------------------------------------------------------------------------------
+
+    get(quantity, first = 0, count = this.particles - first) {
+        const number = this.#quantity(quantity);
+        this.#checkRange(first, count, this.particles);
+        return borrowed((take) => {
+            const pointer = take(8 * this.axes * count);
+            this.#changed(this.#call("spring_scene_get", this.#scene, number, pointer, 0, first, count));
+            return memory.float64(pointer, this.axes * count).slice();
+        });
+    }
+
+    set(quantity, values, first = 0) {
+        const number = this.#quantity(quantity);
+        checkArray(quantity, values);
+        const count = values.length / this.axes;
+        check(Number.isInteger(count), `${quantity}.length`, `a multiple of ${this.axes}`, values.length);
+        this.#checkRange(first, count, this.particles);
+        for (let i = 0; i < values.length; i++) checkFinite(`${quantity}[${i}]`, values[i]);
+        borrowed((take) => {
+            const pointer = lend(take, values);
+            this.#changed(this.#call("spring_scene_set", this.#scene, number, pointer, 0, first, count));
+        });
+        if (number === 0) this.#show(library().scene_moved(this.#pointer));
+    }
+
+    triangles() {
+        return triangles(this.#gridCount());
+    }
+
+    textureCoordinates() {
+        return textureCoordinates(this.#gridCount());
+    }
+
+    #gridCount() {
+        if (!this.#count) throw new TypeError("the scene is defined without the count of a grid");
+        return this.#count;
+    }
+
+    transform(matrix) {
+        checkArray("matrix", matrix);
+        check([12, 16].includes(matrix.length), "matrix.length", "12 or 16", matrix.length);
+        for (let i = 0; i < matrix.length; i++) checkFinite(`matrix[${i}]`, matrix[i]);
+        const rows =
+            matrix.length === 12
+                ? matrix
+                : Array.from({ length: 12 }, (_, k) => matrix[4 * (k % 4) + Math.floor(k / 4)]);
+        borrowed((take) =>
+            this.#checked(this.#call("spring_scene_transform", this.#scene, lend(take, rows))),
+        );
+        this.#show(library().scene_moved(this.#pointer));
+    }
+
+    setGravity(gravity) {
+        checkArray("gravity", gravity);
+        for (let i = 0; i < gravity.length; i++) checkFinite(`gravity[${i}]`, gravity[i]);
+        const [x = 0, y = 0, z = 0] = gravity;
+        borrowed((take) => this.#call("spring_scene_set_gravity", this.#scene, lend(take, [x, y, z])));
+    }
+
+    get force() {
+        return this.#force;
+    }
+
+    set force(force) {
+        check(force === null || typeof force === "function", "force", "a function or null", force, TypeError);
+        this.#checked(this.#call("scene_set_force", this.#pointer, force !== null));
+        this.#force = force;
+    }
+
+    snapshot() {
+        const size = this.#call("scene_bytes", this.#pointer);
+        const snapshot = Object.freeze({ time: this.time });
+        const bytes = memory.uint8(this.#scene, size).slice();
+        const [clock, before] = this.#frames().map((array) => array.slice());
+        const positions = this.positions.slice();
+        snapshots.set(snapshot, { scene: this, bytes, force: this.#force, clock, before, positions });
+        return snapshot;
+    }
+
+    restore(snapshot) {
+        const kept = snapshots.get(snapshot);
+        check(kept?.scene === this, "snapshot", "a snapshot of this scene", snapshot, TypeError);
+        memory.uint8(this.#scene, this.#call("scene_bytes", this.#pointer)).set(kept.bytes);
+        this.#force = kept.force;
+        library().scene_moved(this.#pointer);
+        const [clock, before] = this.#frames();
+        clock.set(kept.clock);
+        before.set(kept.before);
+        this.positions.set(kept.positions);
+    }
+
+    /** The clock of frames, and the state before the last step, which is empty before the first frame. */
+    #frames() {
+        const before = library().scene_before(this.#pointer);
+        return [
+            memory.float64(library().scene_clock(this.#pointer), 2),
+            memory.float64(before, before ? this.axes * this.particles : 0),
+        ];
+    }
+
+    // --- pins, masses, links ----------------------------------------------------------------------------------------
+
+    pin(first, count = 1) {
+        this.#pins(first, count, 1);
+    }
+
+    unpin(first, count = 1) {
+        this.#pins(first, count, 0);
+    }
+
+    #pins(first, count, pinned) {
+        this.#checkRange(first, count, this.particles);
+        borrowed((take) => {
+            const pointer = lend(take, Array(count).fill(pinned), "uint8", 1);
+            this.#changed(this.#call("spring_scene_set_pinned", this.#scene, first, count, pointer));
+        });
+    }
+
+    drive(particle, target, duration = 1) {
+        this.#checkIndex("particle", particle, this.particles);
+        if (target !== null) {
+            checkArray("target", target, this.axes);
+            for (let i = 0; i < this.axes; i++) checkFinite(`target[${i}]`, target[i]);
+            check(isNumber(duration) && duration > 0, "duration", "a finite number > 0", duration);
+        }
+        borrowed((take) => {
+            const pointer = target === null ? 0 : lend(take, target);
+            const status = this.#call("spring_scene_drive", this.#scene, particle, pointer, duration);
+            check(status === 0, "particle", "pinned, and its velocity finite", particle, RangeError);
+        });
+    }
+
+    setMass(mass, first = 0) {
+        checkArray("mass", mass);
+        this.#checkRange(first, mass.length, this.particles);
+        for (let i = 0; i < mass.length; i++)
+            check(isNumber(mass[i]) && mass[i] > 0, `mass[${i}]`, "a finite number > 0", mass[i]);
+        borrowed((take) => {
+            const pointer = lend(take, mass);
+            this.#changed(this.#call("spring_scene_set_mass", this.#scene, first, mass.length, pointer));
+        });
+    }
+
+    getLink(index) {
+        this.#checkIndex("link", index, this.links);
+        return borrowed((take) => {
+            const pointer = take(32);
+            this.#call("spring_scene_get_link", this.#scene, index, pointer);
+            const [a, b] = memory.uint32(pointer, 2);
+            const [rest, stiffness, damping] = memory.float64(pointer + 8, 3);
+            return { a, b, rest, stiffness, damping };
+        });
+    }
+
+    getLinks() {
+        return borrowed((take) => {
+            const pointer = take(32 * this.links);
+            this.#call("scene_links", this.#pointer, pointer);
+            return linksAt(pointer, this.links);
+        });
+    }
+
+    setLink(index, changes) {
+        this.setLinks([{ ...this.getLink(index), ...changes }], index);
+    }
+
+    setLinks(links, first = 0) {
+        borrowed((take) => {
+            const [pointer, count] = lendLinks(take, links);
+            this.#checkRange(first, count, this.links);
+            this.#changed(this.#call("spring_scene_set_links", this.#scene, first, count, pointer));
+        });
+    }
+
+    cut(index) {
+        this.setLink(index, { stiffness: 0, damping: 0 });
+    }
+
+    tear(stretch) {
+        const limits = typeof stretch !== "number";
+        if (limits) checkArray("stretch", stretch, this.links);
+        for (const each of limits ? stretch : [stretch]) check(each >= 0, "stretch", "a number >= 0", each);
+        return borrowed((take) => {
+            const torn = take(4 * this.links);
+            const count = take(4);
+            const limit = limits ? lend(take, stretch) : 0;
+            const one = limits ? 0 : stretch;
+            this.#changed(this.#call("spring_scene_tear", this.#scene, one, limit, torn, this.links, count));
+            return memory.uint32(torn, memory.uint32(count, 1)[0]).slice();
+        });
+    }
+
+    components() {
+        return components(this.particles, this.getLinks());
+    }
+
+    findLink(a, b) {
+        this.#checkIndex("a", a, this.particles);
+        this.#checkIndex("b", b, this.particles);
+        return this.#call("spring_scene_find_link", this.#scene, a, b) | 0; // -1: none
+    }
+
+    tension(link) {
+        this.#checkIndex("link", link, this.links);
+        return this.#call("spring_scene_tension", this.#scene, link);
+    }
+
+    // --- contacts ---------------------------------------------------------------------------------------------------
+
+    setColliders(colliders) {
+        checkArray("colliders", colliders);
+        const list = Array.from(colliders);
+        borrowed((take) => {
+            const pointer = lendColliders(take, list);
+            const status = this.#call("spring_scene_set_colliders", this.#scene, pointer, list.length);
+            if (status === disabled) throw new TypeError("the scene is defined without colliders");
+            check(status !== outOfRange, "colliders.length", "at most what the definition has", list.length);
+            if (status === 0) return;
+            const index = take(4);
+            this.#call("spring_scene_check_colliders", this.#scene, pointer, list.length, 0, index);
+            const i = memory.uint32(index, 1)[0]; // all else has been checked
+            const [axes, what] = [list[i].axes, "orthonormal to 1e-3"];
+            check(false, `colliders[${i}].axes`, what, axes ? Array.from(axes).join() : axes, RangeError);
+        });
+    }
+
+    touching(first = 0, count = this.particles - first) {
+        this.#checkRange(first, count, this.particles);
+        return borrowed((take) => {
+            const pointer = take(4 * count);
+            const status = this.#call("spring_scene_touching", this.#scene, pointer, first, count);
+            if (status === disabled) throw new TypeError("the scene is defined without colliders");
+            return memory.uint32(pointer, count).slice();
+        });
+    }
+
+    // --- how this calls the library ---------------------------------------------------------------------------------
+
+    #call(name, ...values) {
+        if (this.#pointer === 0) throw new TypeError("the scene has been freed");
+        if (this.#busy) throw new TypeError("a callback must not call its own scene");
+        this.#busy = true;
+        this.#error = undefined;
+        try {
+            return withForce(this.#callback, () => library()[name](...values));
+        } finally {
+            this.#busy = false;
+            const error = this.#error;
+            this.#error = undefined;
+            // eslint-disable-next-line no-unsafe-finally -- what the callback threw is the reason for all else
+            if (error) throw error.thrown;
+        }
+    }
+
+    #callback = (t, position, velocity, force) => {
+        const arrays = (pointers) =>
+            Array.from(memory.uint32(pointers, this.axes), (pointer) => this.#viewOf(pointer));
+        const forces = arrays(force);
+        try {
+            this.#force(t, arrays(position), forces, this.#usesVelocity ? arrays(velocity) : undefined);
+        } catch (thrown) {
+            this.#error ??= { thrown };
+            // The step fails, so that the scene stays as it was. Memory may have grown meanwhile.
+            for (const each of arrays(force)) each.fill(NaN);
+        }
+    };
+
+    #viewOf(pointer) {
+        const { buffer } = library().memory;
+        if (this.#views.buffer !== buffer) this.#views = { buffer };
+        return (this.#views[pointer] ??= new Float64Array(buffer, pointer, this.particles));
+    }
+
+    #show(pointer) {
+        this.positions.set(memory.float32(pointer, 3 * this.particles));
+    }
+
+    #quantity(name) {
+        const number = quantities.indexOf(name);
+        check(number >= 0, "quantity", `one of ${quantities.join(", ")}`, name, TypeError);
+        if (number === 2 && !this.#heldForces) throw new TypeError("the scene is defined without heldForces");
+        return number;
+    }
+
+    #checkIndex(name, index, count) {
+        check(Number.isInteger(index) && index >= 0 && index < count, name, `an index below ${count}`, index);
+    }
+
+    #checkRange(first, count, all) {
+        checkCount("first", first);
+        checkCount("count", count);
+        check(first + count <= all, "first + count", `at most ${all}`, first + count);
+    }
+
+    /** The status of a change. */
+    #changed(status) {
+        if (status === disabled) throw new TypeError("the scene is defined without editable");
+        if (status !== 0) throw new RangeError("the values are not valid for this scene");
+    }
+
+    /** The status of steps. */
+    #checked(status, method, dt) {
+        if (status === 0) return;
+        if (status === disabled) throw new TypeError(`the scene is defined without the method ${method}`);
+        if (status === unsupported)
+            throw new TypeError(
+                method === "euler"
+                    ? "the method euler does not support colliders"
+                    : `the method ${method} requires forces that do not depend on velocities`,
+            );
+        if (dt === undefined) throw new RangeError(stepFailures[notFinite][0]);
+        const [what, code] = stepFailures[status] ?? ["the step is not valid"];
+        const stable = this.stableStep(method);
+        const error = new RangeError(`${what}; dt is ${dt}, the stable step of ${method} is ${stable}`);
+        throw code ? Object.assign(error, { code }) : error;
+    }
+}
