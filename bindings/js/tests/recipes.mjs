@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+// The recipes of README and of docs/javascript.md, in Chromium. Prints TAP.
+//     recipes.mjs PROJECT README JAVASCRIPT.MD     PROJECT has springstep, react, react-dom, svelte, vue, three, esbuild and
+//                                                  playwright-core, and receives the programs
+import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { done, test } from "./tap.mjs";
+
+const [project, readme, page_] = process.argv.slice(2);
+const required = createRequire(join(project, "package.json"));
+const { buildSync } = required("esbuild");
+const { chromium } = required("playwright-core");
+
+/** The program of a section, the n-th of its kind. */
+function program(file, heading, kind, n = 0) {
+    const text = readFileSync(file, "utf8");
+    const section = text.slice(text.search(new RegExp(`^#+ ${heading}$`, "m"))).replace(/^#.*\n/, "");
+    const end = section.search(/^#/m);
+    const programs = section
+        .slice(0, end < 0 ? undefined : end)
+        .split("```")
+        .filter((_, i) => i % 2 === 1);
+    const found = programs.filter((each) => each.startsWith(`${kind}\n`))[n];
+    assert.ok(found, `${heading}: no program`);
+    return found.slice(kind.length + 1);
+}
+
+/** A page with an element for each id, and a program that may export something to `recipe`. */
+async function opened(name, code, { kind = "js", html = "", more = "", policy = "", ...context } = {}) {
+    writeFileSync(join(project, `${name}.${kind}`), `${code}\n`);
+    writeFileSync(
+        join(project, `${name}-page.${kind}`),
+        `import * as recipe from "./${name}";\nObject.assign(window, { recipe });\n${more}\n`,
+    );
+    const { outputFiles } = buildSync({
+        absWorkingDir: project,
+        entryPoints: [`${name}-page.${kind}`],
+        bundle: true,
+        write: false,
+        format: "iife",
+        jsx: "automatic",
+        define: { "process.env.NODE_ENV": '"development"' },
+        logLevel: "error",
+    });
+    const opened = await browser.newPage({ ...context, viewport: { width: 800, height: 600 } });
+    opened.setDefaultTimeout(10000);
+    opened.errors = [];
+    opened.on("pageerror", (error) => opened.errors.push(`${error}`));
+    opened.on("console", (message) => message.type() === "error" && opened.errors.push(message.text()));
+    const files = {
+        "/": `<!doctype html><link rel="icon" href="data:,"><style>body { margin: 0 } div { width: 50px; height: 50px }</style>
+            <body>${html}<script src="/page.js"></script>`,
+        "/page.js": outputFiles[0].text,
+        "/scenes.wasm": readFileSync(required.resolve("springstep/scenes.wasm")),
+    };
+    const types = { "/": "text/html", "/page.js": "text/javascript", "/scenes.wasm": "application/wasm" };
+    await opened.route("http://recipe.test/**", (route) => {
+        const { pathname } = new URL(route.request().url());
+        const headers = { "content-type": types[pathname], "content-security-policy": policy };
+        return route.fulfill({ body: files[pathname], headers });
+    });
+    await opened.goto("http://recipe.test/");
+    return opened;
+}
+
+/** Moves the pointer from a place, evenly for a number of ms, and lets go. */
+async function flick(page, [x, y], [vx, vy], ms) {
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    const begin = Date.now();
+    for (let t = 0; t < ms; t = Date.now() - begin) await page.mouse.move(x + vx * t, y + vy * t);
+    await page.mouse.up();
+}
+
+const placeOf = (page, selector) =>
+    page.evaluate((one) => getComputedStyle(document.querySelector(one)).translate, selector);
+const rests = (page, selector, place) =>
+    page.waitForFunction(
+        ([one, at]) => getComputedStyle(document.querySelector(one)).translate === at,
+        [selector, place],
+    );
+
+const flags = "--no-sandbox --disable-gpu --enable-unsafe-swiftshader --disable-background-networking".split(
+    " ",
+);
+const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: flags,
+});
+
+await test("50 animations that are started by clicks: no step backwards, each settles and starts again", async () => {
+    const code = `const box = document.querySelector("#box");\n${program(readme, "springstep", "js")}\nexport { x };`;
+    const more = `
+        const { x } = recipe;
+        window.seen = [];
+        const step = x.step;
+        x.constructor.prototype.step = function (dt) {
+            const before = this.value;
+            const value = step.call(this, dt);
+            seen.push([dt, before, value, this.target]);
+            return value;
+        };`;
+    const html = '<div id="box"></div>';
+    const page = await opened("loop", code, { html, more });
+    for (let i = 0; i < 50; i++) {
+        // Two animations run to their end, the others are interrupted.
+        await page.evaluate(() => document.querySelector("#box").click());
+        if (i % 25 === 24) await page.evaluate(() => recipe.x.finished);
+        else await page.waitForTimeout(20 + ((i * 37) % 60));
+    }
+    const steps = await page.evaluate(() => window.seen);
+    assert.ok(steps.length > 150 && steps.every(([dt]) => dt >= 0), `${steps.length} steps`);
+    assert.equal(await page.evaluate(() => recipe.x.settled && recipe.x.value === recipe.x.target), true);
+    const idle = steps.length;
+    await page.waitForTimeout(100);
+    assert.equal(await page.evaluate(() => seen.length), idle, "the loop stops");
+    assert.deepEqual(page.errors, []);
+    const reduced = await opened("loop", code, { html, more, reducedMotion: "reduce" });
+    await reduced.evaluate(() => document.querySelector("#box").click());
+    await rests(reduced, "#box", "100px");
+    assert.equal(await reduced.evaluate(() => seen.length), 0, "it jumps");
+});
+
+await test("drag: the element follows the pointer, keeps its velocity, and returns", async () => {
+    const more = `
+        import { Spring } from "springstep";
+        import { animate } from "springstep/animate";
+        const box = document.querySelector("#box");
+        const [x, y] = [0, 0].map(() => new Spring(0, { duration: 0.4, bounce: 0.3 }));
+        const place = () => (box.style.translate = x.value + "px " + y.value + "px");
+        animate(x, place);
+        animate(y, place);
+        recipe.makeDraggable(box, x, y);
+        box.addEventListener("pointerup", () => (window.released = [x.value, x.velocity, y.velocity]));
+        Object.assign(window, { x, y });`;
+    const page = await opened("drag", program(readme, "Drag", "ts"), {
+        kind: "ts",
+        html: '<div id="box"></div>',
+        more,
+    });
+    const flicks = [];
+    const good = ([left, vx, vy]) => left > 50 && vx > 500 && vx < 1500 && vy > 0.4 * vx && vy < 0.6 * vx;
+    // A busy machine may hold the pointer still before it lets go.
+    while (flicks.length < 5 && !flicks.some(good)) {
+        await flick(page, [20, 20], [1, 0.5], 150);
+        flicks.push(await page.evaluate(() => window.released));
+        await rests(page, "#box", "0px");
+    }
+    assert.ok(flicks.some(good), JSON.stringify(flicks));
+    assert.equal(await page.evaluate(() => x.settled && y.settled), true);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("React: in StrictMode, on a server, and after it is unmounted", async () => {
+    const code = `import { makeDraggable } from "./drag";\n${program(readme, "React", "tsx")}`;
+    const more = `
+        import { StrictMode } from "react";
+        import { createRoot } from "react-dom/client";
+        import { renderToString } from "react-dom/server";
+        window.server = renderToString(<recipe.Card />);
+        const root = createRoot(document.querySelector("#root")!);
+        root.render(<StrictMode><recipe.Card /></StrictMode>);
+        Object.assign(window, { root });`;
+    const page = await opened("react", code, { kind: "tsx", html: '<main id="root"></main>', more });
+    await page.waitForSelector(".card");
+    assert.match(await page.evaluate(() => window.server), /class="card"/);
+    await flick(page, [20, 20], [1, 0], 120);
+    const place = await placeOf(page, ".card");
+    assert.ok(parseFloat(place) > 20, place);
+    await rests(page, ".card", "0px");
+    await flick(page, [20, 20], [1, 0], 50);
+    await page.evaluate(() => window.root.unmount());
+    await page.waitForTimeout(100);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("Svelte: a store", async () => {
+    const more = `
+        const store = recipe.springStore(0, { duration: 0.2 });
+        window.seen = [];
+        window.stop = store.subscribe((value) => seen.push(value));
+        store.set(5);
+        window.store = store;`;
+    const page = await opened("svelte", program(page_, "Svelte", "js"), { more });
+    await page.waitForFunction(() => window.seen.at(-1) === 5);
+    assert.ok((await page.evaluate(() => seen.length)) > 5);
+    await page.evaluate(() => (stop(), store.set(9)));
+    await page.waitForTimeout(100);
+    assert.equal(await page.evaluate(() => seen.at(-1)), 5, "nobody subscribes");
+    await page.evaluate(() => store.subscribe((value) => seen.push(value)));
+    await page.waitForFunction(() => window.seen.at(-1) === 9);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("Vue: a ref", async () => {
+    const more = `
+        import { createApp, h } from "vue";
+        const app = createApp({
+            setup() {
+                const { spring, value } = recipe.useSpring(0, { duration: 0.2 });
+                window.spring = spring;
+                return () => h("p", value.value);
+            },
+        });
+        app.mount("#root");
+        window.app = app;`;
+    const page = await opened("vue", program(page_, "Vue", "js"), { html: '<main id="root"></main>', more });
+    await page.evaluate(() => (spring.target = 5));
+    await page.waitForFunction(() => document.querySelector("p").textContent === "5");
+    await page.evaluate(() => (app.unmount(), (spring.target = 7)));
+    await page.waitForTimeout(100);
+    assert.equal(await page.evaluate(() => spring.value), 5, "it is unmounted");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("a list of 50", async () => {
+    const html = Array.from(
+        { length: 50 },
+        (_, i) => `<div id="i${i}" style="position: absolute"></div>`,
+    ).join("");
+    const more = 'window.sort = recipe.sortable([...document.querySelectorAll("div")], 40);';
+    const page = await opened("list", program(page_, "A list", "js"), { html, more });
+    await rests(page, "#i49", "0px 1960px");
+    await page.evaluate(() => sort(Array.from({ length: 50 }, (_, i) => 49 - i)));
+    await rests(page, "#i49", "0px");
+    await rests(page, "#i0", "0px 1960px");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("a sheet: a flick dismisses it, a slow drag does not", async () => {
+    const html = '<div id="sheet" style="position: absolute; top: 300px; width: 300px; height: 200px"></div>';
+    const more = 'recipe.sheet(document.querySelector("#sheet"), () => (window.dismissed = true));';
+    const page = await opened("sheet", program(page_, "A sheet", "js"), { html, more });
+    await flick(page, [100, 320], [0, 0.1], 200);
+    await rests(page, "#sheet", "0px");
+    assert.equal(await page.evaluate(() => window.dismissed), undefined);
+    for (let i = 0; i < 5 && !(await page.evaluate(() => window.dismissed)); i++) {
+        await flick(page, [100, 320], [0, 1.2], 60);
+        await page.waitForFunction(() => ["0px", "0px 200px"].includes(getComputedStyle(sheet).translate));
+    }
+    assert.equal(await page.evaluate(() => window.dismissed), true);
+    assert.equal(await placeOf(page, "#sheet"), "0px 200px");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("a canvas: the rope hangs from the pointer", async () => {
+    const html = '<canvas width="400" height="400"></canvas>';
+    const more = 'window.rope = recipe.hangRope(document.querySelector("canvas"));';
+    const page = await opened("canvas", program(page_, "A canvas", "js"), { html, more });
+    await page.mouse.move(100, 60);
+    await page.waitForFunction(
+        () => Math.abs(rope.positions[0] - 100) < 1 && Math.abs(rope.positions[1] - 60) < 1,
+    );
+    const hangs = () => Math.hypot(...[0, 1].map((k) => rope.positions[87 + k] - rope.positions[k])) < 260;
+    await page.waitForFunction(hangs);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("CSS: an easing that Chromium accepts", async () => {
+    const code = `const box = document.querySelector("#box");\n${program(readme, "CSS", "js")}`;
+    const page = await opened("css", code, { html: '<div id="box"></div>' });
+    await rests(page, "#box", "100px");
+    assert.deepEqual(page.errors, []);
+});
+
+await test("three.js: cloth", async () => {
+    const before = `
+        import * as THREE from "three";
+        const geometry = new THREE.BufferGeometry();
+        const [world, camera] = [new THREE.Scene(), new THREE.PerspectiveCamera(60, 1, 0.1, 10)];
+        camera.position.set(1.2, 1, 3);
+        world.add(new THREE.Mesh(geometry, new THREE.MeshNormalMaterial({ side: THREE.DoubleSide })));
+        const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
+        renderer.setSize(200, 200);
+        document.body.append(renderer.domElement);`;
+    const code = `${before}\n${program(readme, "Scenes", "js")}\nexport { cloth, renderer };`;
+    const page = await opened("three", code);
+    assert.deepEqual(page.errors, []);
+    await page.waitForFunction(() => recipe.cloth.time > 0.2);
+    const covered = await page.evaluate(() => {
+        const gl = recipe.renderer.getContext();
+        const pixels = new Uint8Array(4 * 200 * 200);
+        gl.readPixels(0, 0, 200, 200, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        return pixels.filter((value, i) => i % 4 === 3 && value > 0).length;
+    });
+    assert.ok(covered > 4000, `${covered} pixels`);
+    assert.deepEqual(page.errors, []);
+});
+
+await test("scenes by file, under a content security policy", async () => {
+    const [head] = program(readme, "Scenes", "js", 1).split('import wasm from "springstep/scenes.wasm?url";');
+    const code = `${head}
+        export const time = ready(fetch("/scenes.wasm")).then(() => {
+            const rope = new Scene(grid({ count: [3], spacing: 1, stiffness: 1 }));
+            return rope.frame(0.1), rope.time;
+        });`;
+    const script = "script-src 'self'";
+    const page = await opened("bare", code, { policy: `${script} 'wasm-unsafe-eval'` });
+    assert.ok((await page.evaluate(() => recipe.time)) > 0);
+    const strict = await opened("bare", code, { policy: script });
+    await assert.rejects(
+        strict.evaluate(() => recipe.time),
+        /wasm-unsafe-eval|Content Security Policy/,
+    );
+});
+
+await browser.close();
+done();
