@@ -17,6 +17,7 @@ export class Spring {
     #settled = true;
     #resting = false; // during onRest()
     #size = 0; // of the motion since the target or the velocity was set
+    #tolerances; // of distance and speed in this motion
     #finished = null; // the promise
     #finish;
     clamp;
@@ -35,8 +36,9 @@ export class Spring {
 
     #moves() {
         this.#settled = false;
-        const { p } = this.#settings;
+        const { p, tolerances } = this.#settings;
         this.#size = sizeOf(p, this.#target - this.#value, this.#velocity - this.#targetVelocity);
+        this.#tolerances = tolerances(this.#size);
         changed(this);
     }
 
@@ -95,6 +97,7 @@ export class Spring {
     set(options) {
         const { restDelta, restSpeed } = this.#settings;
         this.#settings = settings({ restDelta, restSpeed, ...options });
+        this.#tolerances = this.#settings.tolerances(this.#size);
         if (!this.#settled) changed(this);
         else if (this.#value !== this.#target) this.#moves(); // it had no stiffness
     }
@@ -122,10 +125,10 @@ export class Spring {
     settlingTime() {
         if (this.#settled) return 0;
         if (this.#targetVelocity !== 0) return Infinity;
-        const { p, tolerances } = this.#settings;
+        const { p } = this.#settings;
         const y = this.#value - this.#target;
         const v = this.#velocity;
-        const time = restTime(p, y, v, ...tolerances(this.#size));
+        const time = restTime(p, y, v, ...this.#tolerances);
         if (!this.clamp || p.omega2 === 0) return time;
         // It stops where it reaches the target. The distance is a velocity, of its integral.
         return Math.min(time, turningTime(p, -(v + 2 * p.b * y) / p.omega2, y));
@@ -137,7 +140,7 @@ export class Spring {
         const target = this.#target;
         const speed = this.#targetVelocity;
         if (this.#value === target && this.#velocity === 0 && speed === 0) return this.#place(target);
-        const { p, tolerances } = this.#settings;
+        const { p } = this.#settings;
         p.prepare(dt);
         const attracts = p.omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const moved = speed && speed * dt;
@@ -155,7 +158,7 @@ export class Spring {
             const on = speed && 4 * epsilon * (abs(target) + abs(moved));
             stops ||= abs(y0) <= abs(on) || (y0 > 0 ? y <= 0 : y >= 0) || p.angle >= Math.PI;
         }
-        const [restDelta, restSpeed] = tolerances(this.#size);
+        const [restDelta, restSpeed] = this.#tolerances;
         const left = attracts && x - target;
         if (abs(left) <= restDelta && abs(u) <= restSpeed)
             stops ||= restTime(p, left, u, restDelta, restSpeed) === 0;

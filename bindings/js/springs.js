@@ -27,6 +27,10 @@ function settingsOf(options, count, others) {
     });
 }
 
+/** Whether a value was on its target during a step: its distance was y0, and is y. */
+const stopsAt = (y0, y, goal, moved) =>
+    (y0 > 0 ? y <= 0 : y >= 0) || abs(y0) <= abs(moved && 4 * epsilon * (abs(goal) + abs(moved)));
+
 export class Springs {
     #settings; // of all values, or an array
     #given; // options, of which set() keeps the tolerances
@@ -37,6 +41,7 @@ export class Springs {
     #targets; // of the last step
     #sizes; // of the motions to these targets
     #failed = -1; // first value that has kept its state in a step
+    #steered = false; // whether targets may have velocities
     #rested = []; // values that came to rest in a step
     clamp;
     onRest;
@@ -78,6 +83,7 @@ export class Springs {
     }
 
     get targetVelocity() {
+        this.#steered = true;
         changed(this);
         return this.#targetVelocity;
     }
@@ -185,6 +191,7 @@ export class Springs {
         const wH = omega2 * H;
         const attracts = omega2 > 0; // without stiffness, only the velocity of a target has an effect
         const clamp = this.clamp && dt > 0 && attracts;
+        const steered = this.#steered;
         const turns = angle >= Math.PI;
         const tells = this.onRest !== null;
         // A spring with |y| > slope |target| + least neither lands nor settles: see follow_limit in src/kernels.
@@ -192,7 +199,7 @@ export class Springs {
         const least = attracts ? (slope / epsilon) * leastNormal + 2 * mostDelta : Infinity;
         for (let i = from; i < end; i++) {
             const goal = target[i];
-            const speed = targetVelocity[i];
+            const speed = steered ? targetVelocity[i] : 0;
             const moved = speed !== 0 ? speed * dt : 0;
             const to = attracts ? goal : moved;
             const u0 = velocity[i] - speed;
@@ -201,11 +208,7 @@ export class Springs {
             const u = half * (G * u0 - wH * y0);
             const x = to + y;
             const v = speed !== 0 ? speed + u : u;
-            const passed =
-                clamp &&
-                (turns ||
-                    (y0 > 0 ? y <= 0 : y >= 0) ||
-                    abs(y0) <= (speed !== 0 ? 4 * epsilon * (abs(goal) + abs(moved)) : 0));
+            const passed = clamp && (turns || stopsAt(y0, y, goal, moved));
             if (passed || !(abs(y) > slope * abs(to) + least && abs(x + v) < Infinity)) {
                 if (!isNumber(0 * x + 0 * v + 0 * goal)) {
                     if (this.#failed < 0) this.#failed = i;

@@ -2,10 +2,7 @@
 // The package for JavaScript: bits, landing, errors, callbacks. Prints TAP.
 //     run.mjs JS_STATES VERSION.H [SPRINGS]     so many springs are compared with C, instead of 100000
 import assert from "node:assert";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { readFileSync } from "node:fs";
 import { inspect } from "node:util";
 import { animate, animator } from "../animate.js";
 import { linear } from "../css.js";
@@ -508,53 +505,6 @@ await test("a step as short as a rounding error does not move a value to its tar
     note(`a step of ${(1 - t).toPrecision(2)} s from ${value} to ${s.step(1 - t)}`);
     assert.strictEqual(set.step(1 - t), 1);
     assert(Math.abs(s.value - value) < 1e-12 && set.value[0] === s.value);
-});
-
-/** Imports a program of README as users would. */
-async function imported(program) {
-    const folder = mkdtempSync(join(tmpdir(), "springstep-"));
-    mkdirSync(join(folder, "node_modules"));
-    symlinkSync(fileURLToPath(new URL("..", import.meta.url)), join(folder, "node_modules/springstep"));
-    writeFileSync(join(folder, "program.mjs"), program);
-    await import(pathToFileURL(join(folder, "program.mjs")));
-    rmSync(folder, { recursive: true });
-}
-
-await test("the loop of README: started by a click, again after rest, first frames before the click", async () => {
-    let time = 0; // [ms]
-    let callback = null;
-    const { performance } = globalThis;
-    Object.defineProperty(globalThis, "performance", { value: { now: () => time }, configurable: true });
-    globalThis.element = { style: {} };
-    globalThis.requestAnimationFrame = (frame) => (callback = frame);
-    await imported(/```js\n([^]*?)```/.exec(local("README.md"))[1]);
-    const { style } = globalThis.element;
-    let earlier = 0;
-    for (let click = 0; click < 40; click++) {
-        time += uniform(0, 30000);
-        const [from, to] = click % 2 ? [100, 0] : [0, 100];
-        const reference = new Spring(from, { duration: 0.5, bounce: 0.2 });
-        reference.target = to;
-        globalThis.element.onclick();
-        let before = time;
-        time += uniform(-16, 16);
-        earlier += time < before;
-        let frames = 0;
-        for (; callback; frames++) {
-            const frame = callback;
-            callback = null;
-            frame(time);
-            reference.step(Math.max(0, time - before) / 1000);
-            assert.strictEqual(style.translate, `${reference.value}px`, `click ${click}, frame ${frames}`);
-            before = time;
-            time += 1000 / 60;
-        }
-        assert(reference.settled && frames > 30, `the loop stopped after ${frames} frames`);
-        const again = reference.step(1 / 60); // no further frame is due
-        assert.strictEqual(again, to);
-    }
-    assert(earlier > 10, `${earlier} first frames are earlier than the click`);
-    Object.defineProperty(globalThis, "performance", { value: performance, configurable: true });
 });
 
 await test("a motion of any size settles after the same frames, without a jump", () => {
