@@ -364,7 +364,7 @@ static size_t follow_part(const spring_batch *b, const scalar *target, const sca
     uint8_t failed[largest_group];
     bool valid[largest_group];
     for (size_t i = 0; i < b->count; i++) {
-        valid[i] = spring_valid(b, target, i) && (speeds == NULL || scalar_finite(speeds[i]));
+        valid[i] = spring_valid(b, target, i); /* a velocity that is not finite gives a state that is not */
         const moving_target none = {0, 0, 0};
         moving_to[i] = valid[i] ? target_of(b, target, speeds, i, run->t) : none;
         y[i] = valid[i] ? b->x[i] - moving_to[i].from : 0;

@@ -79,6 +79,8 @@ static void check_questions(const input *in, spring_method m)
     must(known ? limit >= 0 : isnan(limit) || !good, "a stable step is a time, 0 or infinite; NaN for no method");
     must(good || isnan(settling), "no settling time from bad input");
     must(!good || !(in->x_tol >= 0) || settling >= 0, "a settling time is a time, 0 or infinite");
+    const double rest = spring_rest_time(&in->s, &in->p, in->x_tol, in->v_tol);
+    must(good && in->x_tol >= 0 && in->v_tol >= 0 ? rest >= settling : isnan(rest), "both tolerances, or bad input");
     must(good || !spring_at_rest(&in->s, &in->p, in->x_tol, in->v_tol), "nothing is at rest from bad input");
     const double duration = in->x_tol, tolerance = in->v_tol;
     const double step = spring_accurate_step(&in->p, m, duration, tolerance);

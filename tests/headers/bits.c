@@ -373,8 +373,8 @@ static void print_follow(void)
 
 static void print_follow_batches(const char *name, bool damped, bool loaded, uint32_t shared)
 {
-    static double x[count], v[count], w[count], g[count], a[count], target[count];
-    static float xf[count], vf[count], wf[count], gf[count], af[count], targetf[count];
+    static double x[count], v[count], w[count], g[count], a[count], target[count], v_target[count];
+    static float xf[count], vf[count], wf[count], gf[count], af[count], targetf[count], vf_target[count];
     for (int i = 0; i < count; i++) {
         xf[i] = (float)(x[i] = (i - 70) / 83.0);
         vf[i] = (float)(v[i] = (30 - i) / 59.0);
@@ -382,6 +382,7 @@ static void print_follow_batches(const char *name, bool damped, bool loaded, uin
         gf[i] = (float)(g[i] = i % 5 == 1 ? 0 : i % 5 == 2 ? 250 : (i % 11 + 1) * 2.5);
         af[i] = (float)(a[i] = (i % 13 - 6) / 1.7);
         targetf[i] = (float)(target[i] = (i % 29 - 14) / 0.3);
+        vf_target[i] = (float)(v_target[i] = i % 3 == 0 ? 0 : i % 31 - 15);
     }
     const spring_batch b = {count, x, v, w, damped ? g : NULL, loaded ? a : NULL, shared};
     const spring_batchf bf = {count, xf, vf, wf, damped ? gf : NULL, loaded ? af : NULL, shared};
@@ -399,6 +400,21 @@ static void print_follow_batches(const char *name, bool damped, bool loaded, uin
         }
     }
     printf("follow-batch %s %016" PRIx64 ", float %016" PRIx64 "\n", name, hash, hashf);
+    hash = hashf = no_digest;
+    for (int frame = 0; frame < 100; frame++) {
+        size_t moving = 0, movingf = 0;
+        for (int i = 0; i < count; i++)
+            targetf[i] = (float)(target[i] = target[i] + v_target[i] / 64);
+        spring_batch_follow_moving(&b, target, v_target, 1.0 / 64, 0.01, 0.01, &moving);
+        spring_batchf_follow_moving(&bf, targetf, vf_target, 1.0 / 64, 0.01, 0.01, &movingf);
+        hash = digest_bits(hash, moving, 4);
+        hashf = digest_bits(hashf, movingf, 4);
+        for (int i = 0; i < count; i++) {
+            hash = digest(digest(hash, &x[i], 1), &v[i], 1);
+            hashf = digestf(digestf(hashf, xf[i]), vf[i]);
+        }
+    }
+    printf("follow-batch-moving %s %016" PRIx64 ", float %016" PRIx64 "\n", name, hash, hashf);
 }
 
 static void print_params(spring_params p)
@@ -441,6 +457,8 @@ int main(void)
         const spring_state s = {0.83, -0.59};
         printf("%s settles", cases[i].name);
         print(spring_settling_time(&s, &cases[i].p, 1e-3));
+        printf("\n%s rests", cases[i].name);
+        print(spring_rest_time(&s, &cases[i].p, 1e-3, 1e-4));
         printf("\n");
     }
 
