@@ -20,17 +20,15 @@ const checkPositive = (name, value) =>
 
 const twoPi = 2 * Math.PI;
 
-// Ways to describe a spring: the option that each requires, and the one that goes with it.
+// Ways to describe a spring: the option that each requires, and those that go with it.
 const ways = {
-    stiffness: "damping",
-    response: "dampingFraction",
-    duration: "bounce",
-    hertz: "dampingRatio",
-    halfLife: "dampingRatio",
-    settling: "dampingRatio",
+    stiffness: ["damping", "mass"],
+    response: ["dampingFraction"],
+    duration: ["bounce"],
+    hertz: ["dampingRatio"],
+    halfLife: ["dampingRatio"],
+    settling: ["dampingRatio", "tolerance"],
 };
-// The option that may be added to these two.
-const thirds = { stiffness: "mass", settling: "tolerance" };
 
 /** The decay rate of the slowest mode, in units of omega. */
 const slowest = (ratio) => (ratio <= 1 ? ratio : 1 / (ratio + Math.sqrt(ratio - 1) * Math.sqrt(ratio + 1)));
@@ -60,9 +58,9 @@ export function settings(options, others = []) {
         rest.duration = 0.5;
     }
     if (!way) throw new TypeError(`options must have one of ${Object.keys(ways).join(", ")}`);
-    const second = ways[way];
+    const [second] = ways[way];
     for (const name of given)
-        if (name !== way && name !== second && name !== thirds[way])
+        if (name !== way && !ways[way].includes(name))
             throw new TypeError(`the option ${name} does not go with ${way}`);
     let { stiffness, damping, mass = 1 } = rest;
     if (way !== "stiffness") {

@@ -36,7 +36,7 @@ await test("sets of springs have the bits of spring_batch_follow()", () => {
 });
 
 await test("targets with velocities and new parameters have the bits of spring_follow()", () => {
-    const springs = Math.max(count / 5, 20000);
+    const springs = Math.max(count / 20, 20000);
     const { one, many, landed, steps } = compareSteered(program, springs);
     note(`of ${steps} steps ${one} of Spring and ${many} of Springs differ, ${landed} end on a target`);
     assert.deepStrictEqual([one, many], [0, 0]);
