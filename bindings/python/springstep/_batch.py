@@ -133,18 +133,21 @@ class Batch:
             error.failed = failed
             raise
 
+    def _status_of_follow(self, target: np.ndarray, target_velocity: np.ndarray | None, dt: float, x_tol: float = 0,
+                          v_tol: float = 0, moving: Any = ffi.NULL) -> int:
+        goals = self._as_lent("target", target)
+        if target_velocity is None:
+            return self._follows(self._batch, goals, dt, x_tol, v_tol, moving)
+        speeds = self._as_lent("target_velocity", target_velocity)
+        return self._follows_moving(self._batch, goals, speeds, dt, x_tol, v_tol, moving)
+
     def _follow(self, target: np.ndarray, target_velocity: np.ndarray | None, dt: float, x_tol: float,
                 v_tol: float) -> tuple[int, int, np.ndarray | None]:
         """The status, the number of springs that move and, after an error, the indices of springs that have kept their
         state: those that are where they were, and fail again alone."""
         moving = ffi.new("size_t *")
         x, v = self._x.copy(), self._v.copy()
-        goals = self._as_lent("target", target)
-        if target_velocity is None:
-            status = self._follows(self._batch, goals, dt, x_tol, v_tol, moving)
-        else:
-            speeds = self._as_lent("target_velocity", target_velocity)
-            status = self._follows_moving(self._batch, goals, speeds, dt, x_tol, v_tol, moving)
+        status = self._status_of_follow(target, target_velocity, dt, x_tol, v_tol, moving)
         if status == lib.SPRING_OK:
             return status, moving[0], None
         if status != lib.SPRING_EPARTIAL:
@@ -160,7 +163,7 @@ class Batch:
             return values if values is None or not values.ndim else values[index:index + 1]
 
         one = Batch(part(self._x).copy(), part(self._v).copy(), *map(part, self._parameters.values()))
-        return one._follow(part(target), part(target_velocity), dt, 0, 0)[0] != lib.SPRING_OK
+        return one._status_of_follow(part(target), part(target_velocity), dt) != lib.SPRING_OK
 
     def _target(self, field: str, target: np.ndarray | float) -> np.ndarray:
         """Return an array like x that does not share its memory."""
