@@ -4,7 +4,6 @@
  */
 #include "../kernels/batch_kernels.h"
 #include "../simd/targets.h"
-#include "../spring/follow_formula_tmpl.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -334,25 +333,11 @@ typedef struct moving_target {
 static moving_target target_of(const spring_batch *b, const scalar *target, const scalar *speeds, size_t i, double dt)
 {
     const scalar speed = speeds != NULL ? speeds[i] : 0;
-    const scalar moved = speed != 0 ? (scalar)(speed * dt) : 0;
+    const scalar moved = speed != 0 ? (scalar)((double)speed * dt) : 0;
     if (element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0) /* a target has no effect, but its velocity */
         return (moving_target){0, moved, speed};
     const scalar rest = rest_position(b, target, i);
     return (moving_target){rest - moved, rest, speed};
-}
-
-/* Where a spring may land, the rule of follow_formula_tmpl.h. The propagator is NULL if springs have their own. */
-static bool lands(const spring_params *p, scalar x, scalar y, scalar u, scalar rest, double dt,
-                  const spring_propagator *shared)
-{
-    const bool single = sizeof(scalar) == sizeof(float);
-    follow_coefficients c = {.omega2 = (scalar)p->stiffness, .fraction = follow_least_fraction(single)};
-    if (!(p->stiffness > 0) || !follow_lands(x, rest, y, u, &c, single))
-        return false;
-    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, 1);
-    const spring_propagator own = shared != NULL ? *shared : spring_propagator_of(&r, dt, false);
-    c = follow_prepare(exact_prepare(&own), (scalar)p->stiffness, (scalar)dt, single);
-    return follow_lands(x, rest, y, u, &c, single);
 }
 
 /* At most largest_group springs that follow moving targets. Their motion relative to the targets is advanced as a batch. */
@@ -365,8 +350,7 @@ static size_t follow_part(const spring_batch *b, const scalar *target, const sca
     bool valid[largest_group];
     for (size_t i = 0; i < b->count; i++) {
         valid[i] = spring_valid(b, target, i); /* a velocity that is not finite gives a state that is not */
-        const moving_target none = {0, 0, 0};
-        moving_to[i] = valid[i] ? target_of(b, target, speeds, i, run->t) : none;
+        moving_to[i] = valid[i] ? target_of(b, target, speeds, i, run->t) : (moving_target){0, 0, 0};
         y[i] = valid[i] ? b->x[i] - moving_to[i].from : 0;
         u[i] = valid[i] ? b->v[i] - moving_to[i].speed : 0;
         const bool is_free = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0;
@@ -390,7 +374,9 @@ static size_t follow_part(const spring_batch *b, const scalar *target, const sca
         if (!stays) {
             const scalar rest = rest_position(b, target, i);
             rests = fabs((double)(x - rest)) <= run->landing.x_tol && fabs((double)u[i]) <= run->landing.v_tol;
-            if (rests || lands(&p, x, y[i], u[i], to->to, run->t, run->propagator)) {
+            const spring_quotients r = spring_quotients_of(p.stiffness, p.damping, 1);
+            const bool single = sizeof(scalar) == sizeof(float);
+            if (rests || spring_lands((double)x, (double)to->to, (double)y[i], (double)u[i], &r, run->t, single)) {
                 x = rest;
                 v = to->speed;
                 rests = v == 0;
