@@ -325,34 +325,48 @@ spring_status spring_batch_advance_marked(const spring_batch *b, spring_method m
     return status;
 }
 
-/* Where the target of a spring is at the end of a step, relative to which its motion is computed: see spring_follow(). */
+/* A spring that follows a moving target, as in spring_follow(): its motion is computed relative to `from`, and ends
+   relative to `to`. */
 typedef struct moving_target {
-    scalar from, to, speed;
+    scalar from, to, rest, speed;
 } moving_target;
 
 static moving_target target_of(const spring_batch *b, const scalar *target, const scalar *speeds, size_t i, double dt)
 {
     const scalar speed = speeds != NULL ? speeds[i] : 0;
-    const scalar moved = speed != 0 ? (scalar)((double)speed * dt) : 0;
+    const scalar moved = speed != 0 ? (scalar)((double)speed * dt) : 0, rest = rest_position(b, target, i);
     if (element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0) /* a target has no effect, but its velocity */
-        return (moving_target){0, moved, speed};
-    const scalar rest = rest_position(b, target, i);
-    return (moving_target){rest - moved, rest, speed};
+        return (moving_target){scalar_finite(target[i]) ? 0 : (scalar)NAN, moved, rest, speed};
+    return (moving_target){rest - moved, rest, rest, speed};
 }
 
-/* At most largest_group springs that follow moving targets. Their motion relative to the targets is advanced as a batch. */
+/* Adds the target of a spring to its relative state y, u, or places it on its target. Returns whether it rests there. */
+static bool add_target(const spring_params *p, const moving_target *m, const batch_run *run, scalar y, scalar u,
+                       scalar *x, scalar *v)
+{
+    *x = m->to + y;
+    *v = m->speed != 0 ? m->speed + u : u;
+    const exact_landing *landing = &run->landing;
+    const bool near = fabs((double)(*x - m->rest)) <= landing->x_tol && fabs((double)u) <= landing->v_tol;
+    if (!near && !spring_lands(p, (double)*x, (double)m->to, (double)y, (double)u, run->t, sizeof *x == sizeof(float)))
+        return false;
+    *x = m->rest;
+    *v = m->speed;
+    return m->speed == 0;
+}
+
+/* At most largest_group springs that follow moving targets. Their motion relative to the targets is advanced as a batch.
+   A spring with invalid numbers fails there. */
 static size_t follow_part(const spring_batch *b, const scalar *target, const scalar *speeds, const batch_run *run,
                           bool *all)
 {
     scalar y[largest_group], u[largest_group], accel[largest_group];
     moving_target moving_to[largest_group];
     uint8_t failed[largest_group];
-    bool valid[largest_group];
     for (size_t i = 0; i < b->count; i++) {
-        valid[i] = spring_valid(b, target, i); /* a velocity that is not finite gives a state that is not */
-        moving_to[i] = valid[i] ? target_of(b, target, speeds, i, run->t) : (moving_target){0, 0, 0};
-        y[i] = valid[i] ? b->x[i] - moving_to[i].from : 0;
-        u[i] = valid[i] ? b->v[i] - moving_to[i].speed : 0;
+        moving_to[i] = target_of(b, target, speeds, i, run->t);
+        y[i] = b->x[i] - moving_to[i].from;
+        u[i] = b->v[i] - moving_to[i].speed;
         const bool is_free = element(b->omega2, i, is_shared(b, SPRING_SHARED_OMEGA2)) == 0;
         accel[i] = is_free ? element(b->accel, i, is_shared(b, SPRING_SHARED_ACCEL)) : 0;
     }
@@ -366,30 +380,16 @@ static size_t follow_part(const spring_batch *b, const scalar *target, const sca
     advance_part(&relative, run, failed);
     size_t moving = 0;
     for (size_t i = 0; i < b->count; i++) {
-        const moving_target *to = &moving_to[i];
         const spring_params p = spring_at(b, i);
-        scalar x = to->to + y[i], v = to->speed != 0 ? to->speed + u[i] : u[i];
-        const bool stays = !valid[i] || failed[i] != SPRING_OK;
-        bool rests = false;
+        scalar x, v;
+        const bool rests = add_target(&p, &moving_to[i], run, y[i], u[i], &x, &v);
+        const bool stays = failed[i] != SPRING_OK || !scalar_finite(x) || !scalar_finite(v);
         if (!stays) {
-            const scalar rest = rest_position(b, target, i);
-            rests = fabs((double)(x - rest)) <= run->landing.x_tol && fabs((double)u[i]) <= run->landing.v_tol;
-            const spring_quotients r = spring_quotients_of(p.stiffness, p.damping, 1);
-            const bool single = sizeof(scalar) == sizeof(float);
-            if (rests || spring_lands((double)x, (double)to->to, (double)y[i], (double)u[i], &r, run->t, single)) {
-                x = rest;
-                v = to->speed;
-                rests = v == 0;
-            }
-        }
-        if (stays || !scalar_finite(x) || !scalar_finite(v)) {
-            *all = false;
-            rests = false;
-        } else {
             b->x[i] = x;
             b->v[i] = v;
         }
-        moving += !rests;
+        *all &= !stays;
+        moving += stays || !rests;
     }
     return moving;
 }

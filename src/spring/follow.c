@@ -38,12 +38,13 @@ spring_status spring_follow(spring_state *s, const spring_params *p, double targ
     return SPRING_OK;
 }
 
-bool spring_lands(double x, double rest, double y, double u, const spring_quotients *r, double dt, bool single)
+bool spring_lands(const spring_params *p, double x, double rest, double y, double u, double dt, bool single)
 {
-    follow_coefficients c = {.omega2 = r->omega2, .fraction = follow_least_fraction(single)};
-    if (!(r->omega2 > 0) || !follow_lands(x, rest, y, u, &c, single)) /* most springs are too far away */
+    follow_coefficients c = {.omega2 = p->stiffness, .fraction = follow_least_fraction(single)};
+    if (!(p->stiffness > 0) || !follow_lands(x, rest, y, u, &c, single)) /* most springs are too far away */
         return false;
-    const spring_propagator propagator = spring_propagator_of(r, dt, false);
-    c = follow_prepare(exact_prepare(&propagator), r->omega2, dt, single);
+    const spring_quotients r = spring_quotients_of(p->stiffness, p->damping, 1);
+    const spring_propagator propagator = spring_propagator_of(&r, dt, false);
+    c = follow_prepare(exact_prepare(&propagator), r.omega2, dt, single);
     return follow_lands(x, rest, y, u, &c, single);
 }

@@ -20,9 +20,9 @@ typedef struct spring_propagator {
 SPRING_INTERNAL spring_propagator spring_propagator_of(const spring_quotients *r, double t,
                                                        bool loaded); /* without loaded, P = 0 */
 
-/* Whether a spring that follows a target lands after a step of dt: the rule of follow_formula_tmpl.h. y, u: relative to the
-   rest position and its velocity. single: x is a float. */
-SPRING_INTERNAL bool spring_lands(double x, double rest, double y, double u, const spring_quotients *r, double dt,
+/* Whether a spring of 1 kg that follows a target lands after a step of dt: the rule of follow_formula_tmpl.h. y, u:
+   relative to the rest position and its velocity. single: x is a float. */
+SPRING_INTERNAL bool spring_lands(const spring_params *p, double x, double rest, double y, double u, double dt,
                                   bool single);
 
 /* spring_step_exact(), by value. */
