@@ -72,7 +72,7 @@ export function animator({
             } catch (error) {
                 report(error);
             }
-        // Springs cannot tell whether somebody has written to their arrays.
+        // The callbacks may have written to the arrays of Springs.
         if (typeof spring.settled === "function") return spring.step(0) > 0;
         return entry.stale || !spring.settled;
     }

@@ -65,7 +65,7 @@ export class Springs {
         if (new.target === Springs) Object.seal(this);
     }
 
-    // Who gets an array may write to it.
+    // A caller that reads an array may write to it.
 
     get value() {
         changed(this);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Who is told when a spring may begin to move: the loop of animate.js.
+// Listeners of springs that may begin to move. The loop of animate.js is one.
 
 const listeners = new WeakMap();
 
