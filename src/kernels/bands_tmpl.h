@@ -192,29 +192,137 @@ SPRING_NOINLINE void damped_tile_on_3_axes(const scene_links *s, const scene_ban
     tile_forces(s, band, x, v, t, slots, force, axis, 3, true, false);
 }
 
-/* Like tile_forces(), for damping alone along frozen directions d: the force is d (d . relative velocity). */
-SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *v, ptrdiff_t t,
-                                       size_t slots, scalar *force, size_t axis, uint32_t axes)
+/* Like tile_forces(), for an exponential kick: the rate of a link is lowered by its turning term. Stores the turning
+   terms, and the factors by which the vectors between its ends become directions. Two loops, since a processor overlaps
+   more iterations of a short loop. */
+SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                        ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
-    const size_t stride = s->stride;
-    const scalar *const direction = band->direction + (t - band->start), *const lower = v + t,
-                        *const upper = lower + band->offset;
-    const size_t stride_d = band->direction_stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t stride = s->stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
+    const int8_t *const occupied = band->occupied + slot;
+    const scalar *const stiffness = band->stiffness + slot * stride_c,
+                        *const rest_length = band->rest + slot * stride_c, *const roots = band->root + slot;
+    scalar *const scales = band->direction_scale + slot, *const turnings = band->turning + slot;
+    const bool tension_only = s->tension_only;
+    const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
+    const size_t together = links_together(axes);
+    size_t j = 0;
+    for (; j < count; j += together * lanes) {
+        real inverse[most_together];
+        mask joined[most_together];
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++) {
+            joined[m] = vec_load_mask(occupied + j + m * lanes);
+            inverse[m] = splat(0);
+            SPRING_UNROLL
+            for (uint32_t a = 0; a < axes; a++) {
+                const scalar *const at = x + a * stride + t + j + m * lanes;
+                const real delta = vec_load(at + offset) - vec_load(at);
+                inverse[m] += delta * delta;
+            }
+        }
+        vec_inverse_sqrt(inverse, joined, (int)together);
+        SPRING_UNROLL
+        for (size_t m = 0; m < together; m++)
+            vec_store(scales + j + m * lanes, inverse[m]);
+    }
+    const size_t end = j;
+    for (j = 0; j < end; j += lanes) {
+        const ptrdiff_t number = (ptrdiff_t)j * stride_c;
+        const real root = vec_load(roots + j), c = root * root, inverse = vec_load(scales + j);
+        real delta[3], square = splat(0), rate = splat(0), speed_square = splat(0);
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            const scalar *const at = x + a * stride + t + j, *const with = v + a * stride + t + j;
+            const real relative = vec_load(with + offset) - vec_load(with);
+            delta[a] = vec_load(at + offset) - vec_load(at);
+            square += delta[a] * delta[a];
+            rate += delta[a] * relative;
+            speed_square += relative * relative;
+        }
+        const real stretch = 1 - vec_load(rest_length + number) * inverse;
+        mask acts = vec_load_mask(occupied + j);
+        if (tension_only)
+            acts &= not_mask(stretch <= 0);
+        const real inverse_square = inverse * inverse, unit = root * inverse;
+        real scale = vec_load(stiffness + number) * stretch + c * (rate * inverse_square);
+        if (span > 0) {
+            const real across = vec_not_negative(speed_square * square - rate * rate); /* |delta x relative|^2 */
+            const real angle = span * inverse_square, turned = vec_min(angle * angle * across, splat(1));
+            const real turning = (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * inverse_span;
+            vec_store(turnings + j, select_real(acts, turning * (2 * unit * square), splat(0)));
+            scale -= c * turning;
+        }
+        vec_store(scales + j, select_real(acts, unit, splat(0)));
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++)
+            vec_store(force + a * axis + j, select_real(acts, scale * delta[a], splat(0)));
+    }
+}
+
+/* On one axis, the factors are the roots. As many slots as damping tiles read are stored. */
+SPRING_NOINLINE void freezing_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
+                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    (void)s, (void)axis;
+    const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const size_t together = links_together(1) * lanes;
+    for (size_t j = 0; j < (count + together - 1) / together * together; j += lanes) {
+        const ptrdiff_t i = slot + (ptrdiff_t)j;
+        const mask joined = vec_load_mask(band->occupied + i);
+        const real k = vec_load(band->stiffness + i * stride_c), rest = vec_load(band->rest + i * stride_c);
+        const real root = vec_load(band->root + i);
+        const scalar *const at = x + t + j, *const with = v + t + j;
+        const real delta = vec_load(at + offset) - vec_load(at), relative = vec_load(with + offset) - vec_load(with);
+        vec_store(band->direction_scale + i, select_real(joined, root, splat(0)));
+        vec_store(force + j, select_real(joined, k * (delta - rest) + root * root * relative, splat(0)));
+    }
+}
+
+SPRING_NOINLINE void freezing_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_freezing_forces(s, band, x, v, t, slots, force, axis, 2);
+}
+
+SPRING_NOINLINE void freezing_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
+                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    tile_freezing_forces(s, band, x, v, t, slots, force, axis, 3);
+}
+
+/* Like tile_forces(), for damping alone along stored directions d: the force is d (d . relative velocity + turning).
+   On one axis d is direction_scale, otherwise this times the vector between the ends. */
+SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                       ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes)
+{
+    const size_t stride = s->stride, left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const ptrdiff_t offset = band->offset;
+    const scalar *const scales = band->direction_scale + (t - band->start), *const turnings =
+                                                                                band->turning + (t - band->start);
+    const scalar weight = axes > 1 ? s->turning_weight : 0;
     const size_t together = links_together(axes);
     for (size_t j = 0; j < count; j += together * lanes) {
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
-            real d[3], rate;
+            const real scale = vec_load(scales + i);
+            real delta[3], rate = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
-                d[a] = vec_load(direction + a * stride_d + i);
-                const real along = d[a] * (vec_load(upper + a * stride + i) - vec_load(lower + a * stride + i));
-                rate = a == 0 ? along : rate + along;
+                const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
+                const real relative = vec_load(with + offset) - vec_load(with);
+                delta[a] = axes > 1 ? vec_load(at + offset) - vec_load(at) : splat(1);
+                rate += axes > 1 ? delta[a] * relative : relative;
             }
+            rate *= scale;
+            if (weight != 0)
+                rate += weight * vec_load(turnings + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++)
-                vec_store(force + a * axis + i, d[a] * rate);
+                vec_store(force + a * axis + i, scale * rate * delta[a]);
         }
     }
 }
@@ -222,22 +330,19 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
 SPRING_NOINLINE void damping_tile_on_1_axis(const scene_links *s, const scene_band *band, const scalar *x,
                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    (void)x;
-    tile_damping_forces(s, band, v, t, slots, force, axis, 1);
+    tile_damping_forces(s, band, x, v, t, slots, force, axis, 1);
 }
 
 SPRING_NOINLINE void damping_tile_on_2_axes(const scene_links *s, const scene_band *band, const scalar *x,
                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    (void)x;
-    tile_damping_forces(s, band, v, t, slots, force, axis, 2);
+    tile_damping_forces(s, band, x, v, t, slots, force, axis, 2);
 }
 
 SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_band *band, const scalar *x,
                                             const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
-    (void)x;
-    tile_damping_forces(s, band, v, t, slots, force, axis, 3);
+    tile_damping_forces(s, band, x, v, t, slots, force, axis, 3);
 }
 
 /* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
@@ -372,7 +477,8 @@ SPRING_INLINE void inlined_tile_on_1_axis(const scene_links *s, const scene_band
     else if (s->terms == STIFFNESS_AND_DAMPING_TERM)
         linear_tile(s, band, x, v, t, slots, force, axis, true);
     else
-        damping_tile_on_1_axis(s, band, x, v, t, slots, force, axis);
+        (s->terms == FREEZING_TERMS ? freezing_tile_on_1_axis : damping_tile_on_1_axis)(s, band, x, v, t, slots, force,
+                                                                                        axis);
 }
 
 SPRING_NOINLINE void inlined_forces_on_1_axis(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
@@ -388,6 +494,8 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
     static tile_kernel *const undamped[] = {inlined ? NULL : tile_on_1_axis, tile_on_2_axes, tile_on_3_axes};
     static tile_kernel *const damped[] = {inlined ? NULL : damped_tile_on_1_axis, damped_tile_on_2_axes,
                                           damped_tile_on_3_axes};
+    static tile_kernel *const freezing[] = {inlined ? NULL : freezing_tile_on_1_axis, freezing_tile_on_2_axes,
+                                            freezing_tile_on_3_axes};
     static tile_kernel *const damping[] = {inlined ? NULL : damping_tile_on_1_axis, damping_tile_on_2_axes,
                                            damping_tile_on_3_axes};
     static gather_kernel *const gathers[] = {inlined ? NULL : gather_on_1_axis, gather_on_2_axes, gather_on_3_axes};
@@ -396,7 +504,8 @@ static void compute_band_forces(const scene_links *s, const scalar *x, const sca
         inlined_forces_on_1_axis(s, x, v, out, from, to);
         return;
     }
-    tile_kernel *const forces = s->terms == DAMPING_TERM                                    ? damping[axes - 1]
+    tile_kernel *const forces = s->terms == FREEZING_TERMS                                  ? freezing[axes - 1]
+                                : s->terms == DAMPING_TERM                                  ? damping[axes - 1]
                                 : s->terms == STIFFNESS_AND_DAMPING_TERM && !SPRING_COMPACT ? damped[axes - 1]
                                                                                             : undamped[axes - 1];
     for_each_tile(s, x, v, out, from, to, axes, forces, repeat_tile, gathers[axes - 1]);

@@ -42,7 +42,7 @@ enum {
 enum { most_kept = 3 }; /* contacts */
 
 /* Fractions of a step up to this size are rounding errors. */
-static const scalar least_fraction = 64 * (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON);
+static const scalar least_fraction = 64 * SCALAR_EPSILON;
 
 /* Contacts of a vector of particles at one time, by collider. Only the first few are kept, so that the stack stays
    small; others are computed again. */
@@ -372,17 +372,24 @@ SPRING_NOINLINE void stop_at_colliders(const scene_contacts *t, lane_bits touche
         }
 }
 
-/* See normal_kernel. */
-static void find_contact_normal(const scene_collider *c, const scalar x[3], scalar normal[3])
+static void first_lane3(real3 from, scalar to[3])
+{
+    scalar each[lanes];
+    vec_store(each, from.x);
+    to[0] = each[0];
+    vec_store(each, from.y);
+    to[1] = each[0];
+    vec_store(each, from.z);
+    to[2] = each[0];
+}
+
+/* See surface_kernel. */
+static void find_contact_surface(const scene_collider *c, const scalar x[3], scalar normal[3], scalar velocity[3])
 {
     contact_point p;
     find_contact(c, DRIFT_START, splat(0), &(const real3){splat(x[0]), splat(x[1]), splat(x[2])}, &p);
-    scalar each[3][lanes];
-    vec_store(each[0], p.normal.x);
-    vec_store(each[1], p.normal.y);
-    vec_store(each[2], p.normal.z);
-    for (int a = 0; a < 3; a++)
-        normal[a] = each[a][0];
+    first_lane3(p.normal, normal);
+    first_lane3(surface_velocity(c, &p), velocity);
 }
 
 #endif

@@ -117,7 +117,7 @@ SPRING_INLINE mask near_colliders(const scene_contacts *t, const particle_vector
 /* ------------------------------------------------------------------------------------------------------- the queue */
 
 /* The queued quantities of a motion: x0, v0 and, for kick_drift, the acceleration without drag; for
-   implicit_kick_drift, the acceleration of the kick; for last_stage, the free position and velocity after the motion.
+   implicit_kick_drift, the acceleration of the kick; for last_stage and drift_kick_drift, the free position and velocity after the motion.
    For implicit_kick they are x and v after the free motion. */
 enum { QUEUED_X0, QUEUED_V0, QUEUED_THIRD, QUEUED_FOURTH, queued_quantities, queue_size = 2 * lanes };
 
@@ -319,6 +319,7 @@ typedef enum contact_motion {
     END_KICK_DRIFT, /* after the implicit kick that ends the previous step */
     IMPLICIT_KICK_DRIFT,
     LAST_STAGE,
+    DRIFT_KICK_DRIFT,
     IMPLICIT_KICK /* a kick of 0 only removes the velocity components into colliders */
 } contact_motion;
 
@@ -344,14 +345,16 @@ SPRING_INLINE mask advance_freely(const scene_particles *s, const scene_motion *
     const uint32_t *const before = t->before + p->first;
     real3 v0 = start, third = free, x, v, d; /* v: after the motion */
     mask wrong = {0}, queued = {0}, fast = {0};
-    if (motion == LAST_STAGE) {
+    const bool whole = motion == LAST_STAGE || motion == DRIFT_KICK_DRIFT; /* a whole step, not a drift */
+    if (motion == DRIFT_KICK_DRIFT) {
+        const real drift = splat(m->drift);
+        v = load_axes(p, m->stage->v);
+        x = plus_scaled3(plus_scaled3(x0, drift, v0), drift, v);
+    } else if (motion == LAST_STAGE) {
         const real3 dx = load_axes(p, m->stage->v), dv = minus_drag(p, free, dx);
         const real weight = splat(m->stage->weight);
         x = plus_scaled3(x0, splat(m->drift), plus_scaled3(load_axes(p, m->stage->sum_x), weight, dx));
         v = plus_scaled3(v0, splat(m->kick), plus_scaled3(load_axes(p, m->stage->sum_v), weight, dv));
-        d = minus3(x, x0);
-        third = x;
-        fast = too_fast3(m, p, v);
     } else {
         if (motion != KICK_DRIFT) {
             v0 = kicked_implicitly3(m, p, start, free);
@@ -370,11 +373,15 @@ SPRING_INLINE mask advance_freely(const scene_particles *s, const scene_motion *
         d = times3(splat(m->drift), v);
         x = plus3(x0, d);
     }
+    if (whole) {
+        d = minus3(x, x0);
+        third = x;
+        fast = too_fast3(m, p, v);
+    }
     queued |= near_colliders(t, p, x0, d);
     if (SPRING_UNLIKELY(any(queued)))
-        enqueue(q, p, before, queued, motion == LAST_STAGE ? 4 : 3, (const real3 *const[]){&x0, &v0, &third, &v});
-    if (!t->adds)
-        memset(t->touched + p->first, 0, lanes * sizeof *t->touched);
+        enqueue(q, p, before, queued, whole ? 4 : 3, (const real3 *const[]){&x0, &v0, &third, &v});
+    memset(t->touched + p->first, 0, lanes * sizeof *t->touched);
     store_axes(p, m->x, x);
     store_axes(p, m->v, v);
     wrong |= not_finite3(x) | not_finite3(v) | (fast & not_mask(queued));
@@ -396,6 +403,7 @@ SPRING_INLINE mask resolve(const scene_motion *m, const particle_vector *p, cons
     case IMPLICIT_KICK_DRIFT:
         return resolve_implicit_kick_drift(m, p, q);
     case LAST_STAGE:
+    case DRIFT_KICK_DRIFT:
         return resolve_last_stage(m, p, q);
     default:
         return resolve_kick_drift(m, p, q, motion == END_KICK_DRIFT);
@@ -449,6 +457,11 @@ static bool move_implicit_kick_contact(const scene_particles *p, const scene_mot
 static bool move_implicit_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return move_with_contacts(p, m, from, to, IMPLICIT_KICK_DRIFT);
+}
+
+static bool move_drift_kick_drift_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return move_with_contacts(p, m, from, to, DRIFT_KICK_DRIFT);
 }
 
 static bool move_last_stage_contact(const scene_particles *p, const scene_motion *m, size_t from, size_t to)

@@ -136,37 +136,72 @@ static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, si
     return for_each_vector(p, m, from, to, update_nystrom_end, 0, true);
 }
 
-/* ------------------------------------------------------------------------------------------------ Chebyshev damping */
+/* ------------------------------------------------------------------------------------------------ exponential kick */
 
-/* A term of Clenshaw's recurrence, from the damping forces of the previous term. In the last term, a pinned particle
-   keeps its velocity. */
-SPRING_INLINE mask update_damping_term(const scene_motion *m, const coordinates *c, unsigned last)
+SPRING_INLINE mask update_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
-    const scene_chebyshev *const p = m->damping_term;
+    (void)variant;
+    const real x = vec_load(m->x0 + c->at) + m->drift * vec_load(m->v0 + c->at);
+    vec_store(m->x + c->at, x);
+    return not_finite(x);
+}
+
+static bool move_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_drift, 0, false);
+}
+
+/* The mass divided by its increase by drag in a time h, mass'. */
+SPRING_INLINE real mass_ratio(const coordinates *c, scalar h)
+{
+    const real q = h * c->drag;
+    return c->dragged ? 1 / (1 + q * ((scalar)0.5 + q / (12 + 2 * q))) : splat(1);
+}
+
+SPRING_INLINE mask update_residual(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const real residual = mass_ratio(c, m->kick) * acceleration(m, c, vec_load(m->v0 + c->at));
+    vec_store(m->v + c->at, residual);
+    return not_finite(residual);
+}
+
+static bool move_residual(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_residual, 0, true);
+}
+
+/* A term of Clenshaw's recurrence. The residual of a pinned particle is 0, so its terms are 0, too. */
+SPRING_INLINE mask update_series_term(const scene_motion *m, const coordinates *c, unsigned last)
+{
+    const scene_series *const s = m->series;
     const mask free = c->inverse_mass > 0;
-    const real accel = select_real(free, c->inverse_mass * vec_load(m->force + c->at), splat(0));
-    const real v0 = vec_load(m->v0 + c->at), change = p->before_weight * vec_load(p->before + c->at) -
-                                                      p->second_weight * vec_load(p->second_before + c->at) +
-                                                      m->kick * accel;
-    const real term = p->coefficient * v0 + change;
-    vec_store(m->v + c->at, last ? select_real(free, term, v0) : term);
-    return last ? not_finite(term) : (mask){0};
+    const real inverse_mass = mass_ratio(c, s->h) * c->inverse_mass;
+    const real accel = select_real(free, inverse_mass * vec_load(m->force + c->at), splat(0));
+    const real term = s->coefficient * vec_load(s->residual + c->at) +
+                      (s->before_weight * vec_load(s->before + c->at) -
+                       s->second_weight * vec_load(s->second_before + c->at) + s->force_weight * accel);
+    if (!last) {
+        vec_store(m->v + c->at, term);
+        return (mask){0};
+    }
+    const real v0 = vec_load(m->v0 + c->at), v = select_real(free, v0 + m->kick * term, v0);
+    vec_store(m->v + c->at, v);
+    if (m->x == NULL)
+        return too_fast(m, c, v);
+    const real x = vec_load(m->x0 + c->at) + m->drift * v;
+    vec_store(m->x + c->at, x);
+    return not_finite(x) | too_fast(m, c, v);
 }
 
-SPRING_NOINLINE bool move_any_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to,
-                                           unsigned last)
+static bool move_series_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_damping_term, last, false);
+    return for_each_vector(p, m, from, to, update_series_term, 0, false);
 }
 
-static bool move_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+static bool move_last_series_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return move_any_damping_term(p, m, from, to, 0);
-}
-
-static bool move_last_damping_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
-{
-    return move_any_damping_term(p, m, from, to, 1);
+    return for_each_vector(p, m, from, to, update_series_term, 1, false);
 }
 
 /* -------------------------------------------------------------------------------- kicks, and drifts with exact drag */

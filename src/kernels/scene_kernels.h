@@ -23,9 +23,10 @@ _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
 /* Which terms of the law of a link are computed. */
 typedef enum link_terms {
-    STIFFNESS_TERM,             /* no link is damped, or damping is applied separately */
+    STIFFNESS_TERM,             /* no link is damped */
     STIFFNESS_AND_DAMPING_TERM, /* of scene_band.damping and unbanded_links.damping */
-    DAMPING_TERM                /* alone, along frozen directions */
+    FREEZING_TERMS,             /* the same for an exponential kick; stores direction_scale and turning */
+    DAMPING_TERM                /* alone, along the directions at the same positions */
 } link_terms;
 
 /* A band: links whose upper end is `offset` particles after the lower end. A band has a slot for each particle of the
@@ -38,9 +39,10 @@ typedef struct scene_band {
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    const scalar *direction; /* [(N s/m)^(1/2)] sqrt(damping) times the frozen unit vector from the lower to the upper
-                                end (on one axis 1); by axis and slot; 0 without a link. NULL: the scene has none */
-    size_t direction_stride; /* from axis to axis */
+    /* Of an exponential kick, by slot; NULL: the scene has none. */
+    const scalar *root;      /* [(N s/m)^(1/2)] square root of the damping, which may be saturated */
+    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act */
+    scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
     ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots */
     ptrdiff_t back;          /* offset modulo ring */
@@ -51,7 +53,8 @@ typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
     const scalar *stiffness, *rest, *damping; /* as in scene_band */
-    const scalar *direction;                  /* likewise, a quad for each link */
+    const scalar *root;
+    scalar *direction_scale, *turning;
 } unbanded_links;
 
 typedef struct scene_links {
@@ -63,6 +66,9 @@ typedef struct scene_links {
     const scene_band *band;
     unbanded_links unbanded;
     bool tension_only; /* links pull and never push */
+    /* Further arguments of an exponential kick. */
+    scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
+    scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */
 } scene_links;
 
 /* Outputs of the kernels of links. */
@@ -78,8 +84,6 @@ typedef struct scene_forces {
 typedef void band_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *, size_t from, size_t to);
 typedef void unbanded_kernel(const scene_links *, const scalar *x, const scalar *v, scene_forces *);
 
-/* Computes scene_band.direction of all bands at positions x. direction: the array of the first band. */
-typedef void direction_kernel(const scene_links *, const scalar *x, scalar *direction);
 /* Returns whether a link of the bands is longer than `stretch` times its rest length, except for cut links and links of
    rest length 0. May return true if a link is at most 1e-5 of this length shorter. 0 <= stretch <= 1e9. */
 typedef bool stretch_kernel(const scene_links *, const scalar *x, scalar stretch);
@@ -116,11 +120,14 @@ typedef struct scene_nystrom {
                                             e^(-drag kick/2) - 1 */
 } scene_nystrom;
 
-/* Further arguments of a term of a Chebyshev series that is applied to velocities. */
-typedef struct scene_chebyshev {
-    const scalar *before, *second_before; /* [m/s] the two previous terms */
+/* Further arguments of a term of the series of an exponential kick. */
+typedef struct scene_series {
+    const scalar *residual;               /* [m/s^2] */
+    const scalar *before, *second_before; /* [m/s^2] the two previous terms */
     scalar coefficient, before_weight, second_weight;
-} scene_chebyshev;
+    scalar force_weight; /* [s] */
+    scalar h;            /* [s] the time step */
+} scene_series;
 
 /* Further arguments of a drift with drag, by mass. */
 typedef struct scene_damped_drift {
@@ -142,15 +149,15 @@ typedef struct scene_collider {
     scalar inverse_square;         /* [1/m^2] capsule: 1/(length of its axis)^2 at the start */
 } scene_collider;
 
-/* Computes the normal at the surface point nearest to x, for the pose at the start of the step. */
-typedef void normal_kernel(const scene_collider *, const scalar x[3], scalar normal[3]);
+/* Computes the normal at the surface point nearest to x, and the velocity of the surface there, for the pose at the
+   start of the step. */
+typedef void surface_kernel(const scene_collider *, const scalar x[3], scalar normal[3], scalar velocity[3]);
 
 /* The contacts of a step. */
 typedef struct scene_contacts {
     unsigned count;                 /* of colliders */
     const scene_collider *collider; /* [count] */
     uint32_t axes;
-    bool adds;              /* keep the bits of `touched`: the second drift of a step */
     scalar h;               /* [s] */
     const scalar *x;        /* [m] positions at the end of the step */
     const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
@@ -168,10 +175,10 @@ typedef struct scene_motion {
     /* kick_drift */
     bool ends_previous; /* begin with the implicit kick that ends the previous step */
     scalar *predicted;  /* written: velocities at the end of the step; may be `force`. NULL: none */
-    /* Further arguments: of Euler and RK4, of RKN8, of the series for link damping, and of drifts with drag. */
+    /* Further arguments: of Euler and RK4, of RKN8, of an exponential kick, and of drifts with drag. */
     const scene_stage *stage;
     const scene_nystrom *nystrom;
-    const scene_chebyshev *damping_term;
+    const scene_series *series;
     const scene_damped_drift *damped_drift;
 } scene_motion;
 
@@ -183,7 +190,6 @@ typedef bool particle_kernel(const scene_particles *, const scene_motion *, size
 typedef struct common_kernels {
     unbanded_kernel *unbanded_forces; /* the forces of unbanded links, added to those of bands if the scene has any */
     unbanded_kernel *record_forces;   /* the same for many unbanded links, on two or three axes */
-    direction_kernel *band_directions;
     /* v = v0 + kick a(v0);  x = x0 + drift v;  predicted = v + kick a(predicted). With ends_previous, v0 is first
        replaced by the solution u of u = v0 + kick a(u). */
     particle_kernel *kick_drift;
@@ -196,12 +202,16 @@ typedef struct common_kernels {
                                              x = x0 + drift (sum_x + weight stage.v) */
     particle_kernel *nystrom_stage;       /* accel[number - 1] = a;  x = x0 + drift v0 + square sum weight_x accel */
     particle_kernel *nystrom_end;         /* the same, and v = v0 + kick sum weight_v accel */
-    particle_kernel *damping_term;        /* v = coefficient v0 + before_weight before - second_weight second_before
-                                             + kick force/mass */
-    particle_kernel *last_damping_term;   /* the same, but pinned particles keep v0 */
+    particle_kernel *drift;               /* x = x0 + drift v0 */
+    particle_kernel *residual;            /* v = a(v0)/(1 + q/2 + q^2/(12 + 2q)), q = kick drag/mass */
+    particle_kernel *series_term;         /* v = b = coefficient residual + before_weight before
+                                             - second_weight second_before + force_weight force/mass', where
+                                             mass' = mass (1 + q/2 + q^2/(12 + 2q)), q = h drag/mass */
+    particle_kernel *last_series_term;    /* v = v0 + kick b and, unless x is NULL, x = x0 + drift v */
+    particle_kernel *drift_kick_drift;    /* with colliders: v = stage.v;  x = x0 + drift v0 + drift v */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
     stretch_kernel *stretched;            /* see above */
-    normal_kernel *contact_normal;        /* see above */
+    surface_kernel *contact_surface;      /* see above */
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain

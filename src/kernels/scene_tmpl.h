@@ -18,7 +18,6 @@
 
 #if SPRING_VECTOR < 64
 #include "contact_loops_tmpl.h"
-#include "directions_tmpl.h"
 #include "particles_tmpl.h"
 #include "stretch_tmpl.h"
 #include "unbanded_tmpl.h"
@@ -26,7 +25,6 @@
 SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .unbanded_forces = compute_unbanded_forces,
     .record_forces = compute_record_forces,
-    .band_directions = compute_band_directions,
     .kick_drift = move_kick_drift,
     .implicit_kick = move_implicit_kick,
     .implicit_kick_drift = move_implicit_kick_drift,
@@ -36,11 +34,14 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .last_stage = move_last_stage,
     .nystrom_stage = move_nystrom_stage,
     .nystrom_end = move_nystrom_end,
-    .damping_term = move_damping_term,
-    .last_damping_term = move_last_damping_term,
+    .drift = move_drift,
+    .residual = move_residual,
+    .series_term = move_series_term,
+    .last_series_term = move_last_series_term,
+    .drift_kick_drift = move_drift_kick_drift_contact,
     .kick_damped_drift = move_kick_damped_drift,
     .stretched = any_stretched,
-    .contact_normal = find_contact_normal,
+    .contact_surface = find_contact_surface,
 };
 #endif
 

@@ -31,6 +31,7 @@
 #define spring_scene_drive           spring_scenef_drive
 #define spring_scene_energy          spring_scenef_energy
 #define spring_scene_find_bounds     spring_scenef_find_bounds
+#define spring_scene_find_roots      spring_scenef_find_roots
 #define spring_scene_find_link       spring_scenef_find_link
 #define spring_scene_force_fn        spring_scenef_force_fn
 #define spring_scene_get             spring_scenef_get

@@ -126,39 +126,85 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         one_quad_link(l, j, x, v, force, stride, damped, tension_only);
 }
 
-/* --------------------------------------------------------------------------- damping alone, along frozen directions */
+/* ------------------------------------------------------------------------------------- links of an exponential kick */
 
-/* The force on the first end; the force on the second end is opposite. */
-SPRING_INLINE quad damping_pull(const unbanded_links *l, size_t j, quad relative)
-{
-    const quad d = quad_load(l->direction + quad_size * j);
-    return quad_times(quad_all(quad_dot(d, relative)), d);
-}
-
-/* Quantities have an array for each axis. */
-SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *v, scene_forces *out, uint32_t axes)
+/* Like all_unbanded(), with the terms of freezing tiles in bands_tmpl.h. */
+SPRING_NOINLINE void all_unbanded_freezing(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const unbanded_links *const l = &s->unbanded;
+    const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
-        scalar relative[quad_size] = {0};
-        for (uint32_t a = 0; a < axes; a++)
-            relative[a] = v[a * s->stride + to] - v[a * s->stride + from];
-        const quad pull = damping_pull(l, j, quad_load(relative));
-        for (uint32_t a = 0; a < axes; a++) {
-            out->force[a * s->stride + from] += quad_at(pull, (int)a);
-            out->force[a * s->stride + to] -= quad_at(pull, (int)a);
+        const scalar root = l->root[j], c = root * root;
+        scalar delta[3], square = 0, rate = 0, across = 0, scale = 1;
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const scalar relative = v[a * s->stride + to] - v[a * s->stride + from];
+            delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
+            square += delta[a] * delta[a];
+            rate += delta[a] * relative;
+            across += relative * relative;
+        }
+        l->direction_scale[j] = l->turning[j] = 0;
+        if (!link_acts(l, j, true))
+            continue;
+        if (s->axes == 1) {
+            l->direction_scale[j] = root;
+            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]) + c * (v[to] - v[from]);
+        } else {
+            const scalar inverse = 1 / scalar_sqrt(square), stretch = 1 - l->rest[j] * inverse;
+            if (square == 0 || (s->tension_only && stretch <= 0))
+                continue;
+            const scalar inverse_square = inverse * inverse;
+            scale = l->stiffness[j] * stretch + c * (rate * inverse_square);
+            l->direction_scale[j] = root * inverse;
+            if (span > 0) {
+                const scalar angle = span * inverse_square, turn = angle * angle * (across * square - rate * rate);
+                const scalar turned = turn < 0 ? 0 : turn > 1 ? 1 : turn;
+                const scalar turning =
+                    (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * inverse_span;
+                l->turning[j] = turning * (2 * (root * inverse) * square);
+                scale -= c * turning;
+            }
+        }
+        for (uint32_t a = 0; a < s->axes; a++) {
+            out->force[a * s->stride + from] += scale * delta[a];
+            out->force[a * s->stride + to] -= scale * delta[a];
         }
     }
 }
 
-/* Quantities are quads, as in quad_links(). */
-SPRING_INLINE void quad_damping(const unbanded_links *links, const scalar *v, scalar *force, size_t stride)
+/* Damping alone, as in damping tiles. Quantities have an array for each axis. */
+SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                        uint32_t axes)
 {
-    const unbanded_links own = *links, *const l = &own;
+    const unbanded_links *const l = &s->unbanded;
+    for (size_t j = 0; j < l->count; j++) {
+        const size_t from = l->a[j], to = l->b[j];
+        const scalar scale = l->direction_scale[j];
+        scalar delta[3] = {1}, rate = 0;
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = axes > 1 ? x[a * s->stride + to] - x[a * s->stride + from] : 1;
+            rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
+        }
+        const scalar pull = scale * (scale * rate + s->turning_weight * l->turning[j]);
+        for (uint32_t a = 0; a < axes; a++) {
+            out->force[a * s->stride + from] += pull * delta[a];
+            out->force[a * s->stride + to] -= pull * delta[a];
+        }
+    }
+}
+
+/* The same with quads, as in quad_links(). */
+SPRING_INLINE void quad_damping(const scene_links *s, const scalar *x, const scalar *v, scalar *force, size_t stride)
+{
+    const unbanded_links own = s->unbanded, *const l = &own;
+    const scalar weight = s->turning_weight;
     for (size_t j = 0; j < l->count; j++) {
         const size_t a = stride * l->a[j], b = stride * l->b[j];
-        const quad pull = damping_pull(l, j, quad_minus(quad_load(v + b), quad_load(v + a)));
+        const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+        const scalar rate = quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a)));
+        const scalar scale = l->direction_scale[j];
+        const quad pull = quad_times(quad_all(scale * (scale * rate + weight * l->turning[j])), delta);
         quad_store(force + a, quad_plus(quad_load(force + a), pull));
         quad_store(force + b, quad_minus(quad_load(force + b), pull));
     }
@@ -208,7 +254,7 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
     else
         fill_records(s, x, v, out, 2, damped);
     if (s->terms == DAMPING_TERM)
-        quad_damping(&s->unbanded, records + quad_size, records + at_force, stride);
+        quad_damping(s, records, records + quad_size, records + at_force, stride);
     else
         quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, s->tension_only);
     if (s->axes == 3)
@@ -252,8 +298,10 @@ static void compute_unbanded_forces(const scene_links *s, const scalar *x, const
     if (s->bands == 0)
         for (uint32_t a = 0; a < s->axes; a++)
             memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
-    if (s->terms == DAMPING_TERM)
-        all_unbanded_damping(s, v, out, s->axes);
+    if (s->terms == FREEZING_TERMS)
+        all_unbanded_freezing(s, x, v, out);
+    else if (s->terms == DAMPING_TERM)
+        all_unbanded_damping(s, x, v, out, s->axes);
     else if (s->tension_only || SPRING_COMPACT)
         any_unbanded(s, x, v, out);
     else

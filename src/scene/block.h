@@ -35,14 +35,15 @@ typedef enum scene_array {
     ARRAY_LINK_DAMPING,   /* [N s/m] */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
-    ARRAY_BAND_DIRECTIONS, /* see scene_band.direction */
-    ARRAY_LINK_DIRECTIONS,
-    ARRAY_DAMPING_TERMS, /* three quantities; see chebyshev.h */
-    ARRAY_SUMS,          /* work space of the stable step, by particle */
-    ARRAY_HELD,          /* [N] held forces: no call but spring_scene_set() changes them */
-    ARRAY_COLLIDERS,     /* spring_collider, as set */
-    ARRAY_PLACED,        /* scene_collider, in the current step */
-    ARRAY_TOUCHED_0,     /* by particle: bits of the colliders that it touches in buffer 0 */
+    ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
+    ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
+    ARRAY_KICK,    /* three quantities; see kick_storage() */
+    ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */
+    ARRAY_SUMS,    /* by particle: work space of the stable step */
+    ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
+    ARRAY_COLLIDERS, /* spring_collider, as set */
+    ARRAY_PLACED,    /* scene_collider, in the current step */
+    ARRAY_TOUCHED_0, /* by particle: bits of the colliders that it touches in buffer 0 */
     ARRAY_TOUCHED_1,
     ARRAY_COUNT
 } scene_array;
@@ -55,6 +56,15 @@ typedef struct band_layout {
     size_t slots, coefficients, ring_start;
     size_t ring, back; /* see scene_band */
 } band_layout;
+
+/* A particle that colliders press during an exponential kick. Its normal accelerations are kept out of the series, as
+   all accelerations of a pinned particle are, since colliders carry its load. */
+typedef struct pressed_particle {
+    uint32_t particle;
+    enum { FREE_BUT_NORMAL, FREE_ALONG_LINE, HELD } freedom;
+    scalar line[3]; /* unit vector: the normal, or the line along which the particle is free */
+    scalar load[3]; /* [m/s^2] component of the residual in which it is not free */
+} pressed_particle;
 
 typedef struct scene_layout {
     uint32_t axes, flags, methods, colliders;
@@ -85,9 +95,8 @@ typedef struct scene_bounds {
    write the array and set this value; scene_drop_forces() clears it when something changes on which forces depend. */
 typedef enum cached_force {
     NO_FORCE,
-    FORCE,           /* at the positions and velocities of the state */
-    PREDICTED_FORCE, /* at its positions and at velocities that leapfrog predicted; part of the state */
-    ELASTIC_FORCE    /* at its positions, without link damping */
+    FORCE,          /* at the positions and velocities of the state */
+    PREDICTED_FORCE /* at its positions and at velocities that leapfrog predicted; part of the state */
 } cached_force;
 
 struct spring_scene {
@@ -105,6 +114,7 @@ struct spring_scene {
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
     bool bounds_known;
+    double roots_dt;        /* [s] step for which ARRAY_ROOTS is known; 0: none */
     uint32_t colliders;     /* at most layout.colliders */
     double colliders_set;   /* [s] time of their poses */
     double particle_radius; /* [m] */
@@ -118,6 +128,11 @@ SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, do
    static friction does not balance. */
 SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t particle,
                                              double accel[3]);
+
+/* Computes ARRAY_ROOTS, the square roots of the damping of links. The damping saturates: a link takes the smaller factor
+   of its ends, by which the sum of 2 damping/mass over the links of a particle (damping/mass to a pin) is at most `most`
+   [1/s]. */
+SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double most);
 
 /* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
@@ -188,8 +203,8 @@ static inline void scene_drop_forces(spring_scene *s)
     s->force_cache = NO_FORCE;
 }
 
-/* An array for forces outside of a step, which is not the array of cached forces at predicted velocities or without
-   damping. A scene that caches such forces has two arrays. */
+/* An array for forces outside of a step, which is not the array of cached forces at predicted velocities. A scene that
+   caches such forces has two arrays. */
 static inline scalar *scene_spare_forces(spring_scene *s)
 {
     return scene_axis(s, forces_in(1 - s->buffer), 0);

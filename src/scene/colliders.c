@@ -278,8 +278,8 @@ double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s
     for (uint32_t k = 0; k < s->colliders; k++) {
         if ((touched[i] >> k & 1) == 0)
             continue;
-        scalar n[3];
-        kernels->common->contact_normal(&placed[k], at, n);
+        scalar n[3], velocity[3];
+        kernels->common->contact_surface(&placed[k], at, n, velocity);
         for (int a = 0; a < 3; a++)
             normal[count][a] = (double)n[a];
         friction[count++] = (double)placed[k].friction;

@@ -164,7 +164,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool damped = editable || has_damped_links(def);
     const bool velocity_used = damped || (l->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     const storage_needs needs = needs_of(l->methods);
-    const bool predicts = needs.predicts && velocity_used, series = needs.predicts && damped;
+    const bool predicts = needs.predicts && velocity_used, kicks = needs.predicts && damped;
     const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
     const bool collides = l->colliders > 0;
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
@@ -193,9 +193,10 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
-        [ARRAY_BAND_DIRECTIONS] = {number, l->axes * l->band_slots, series && l->bands > 0},
-        [ARRAY_LINK_DIRECTIONS] = {number, quad_size * l->unbanded, series && l->unbanded > 0},
-        [ARRAY_DAMPING_TERMS] = {number, 3 * quantity, series},
+        [ARRAY_ROOTS] = {number, l->band_slots + unbanded, kicks},
+        [ARRAY_FROZEN] = {number, 2 * (l->band_slots + unbanded), kicks},
+        [ARRAY_KICK] = {number, (collides ? 4 : 3) * quantity, kicks},
+        [ARRAY_PRESSED] = {sizeof(pressed_particle), l->particles, kicks && collides},
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},

@@ -7,14 +7,13 @@
 
 #include <string.h>
 
-/* See chebyshev.h. */
-typedef struct chebyshev_series {
-    unsigned terms; /* 0: links are damped explicitly */
-    double rho;
-    double last, beyond_last; /* coefficients of the last term, and of the first omitted term */
-    double more;              /* added to the last coefficient */
-    double kick;              /* [s] duration of the damping forces in one application of Y */
-} chebyshev_series;
+/* The series of an exponential kick; see exponential_kick.h. */
+typedef struct damping_series {
+    unsigned terms;           /* s; 0: links are damped explicitly */
+    double rho;               /* the following are for s > 2 */
+    double last, beyond_last; /* I_s and I_{s+1}, divided by I_0 */
+    double weight[3];         /* a, b, e */
+} damping_series;
 
 /* One step, from the state in one buffer to the state in the other or the same buffer. */
 struct scene_step {
@@ -30,7 +29,7 @@ struct scene_step {
     double t0, dt, done; /* the step starts at the time t0 + done dt */
     cached_force cached; /* the forces at the start */
     bool predicts;       /* see scene_stepper */
-    chebyshev_series damping;
+    damping_series damping;
     scene_contacts contacts;
 };
 
@@ -71,10 +70,10 @@ static inline scalar *predicted_velocities(const scene_step *s)
     return scene_has(s->scene, ARRAY_PREDICTED) ? scene_axis(s->scene, ARRAY_PREDICTED, 0) : force_at(s, s->to);
 }
 
-/* Array i of ARRAY_DAMPING_TERMS: the forces of damping, and two terms. */
-static inline scalar *damping_storage(const scene_step *s, unsigned i)
+/* Array i of ARRAY_KICK: [m/s^2] the residual, two terms of the series and, with colliders, [m] positions. */
+static inline scalar *kick_storage(const scene_step *s, unsigned i)
 {
-    return scene_axis(s->scene, ARRAY_DAMPING_TERMS, 0) + i * s->scene->layout.quantity;
+    return scene_axis(s->scene, ARRAY_KICK, 0) + i * s->scene->layout.quantity;
 }
 
 /* Prepares a step from the state in buffer `from` to the state in buffer `to`. */
@@ -101,15 +100,14 @@ static inline double time_at(const scene_step *s, double fraction)
     return s->t0 + (s->done + fraction) * s->dt;
 }
 
-/* Places the colliders for a drift between two fractions of the step, and prepares the arguments of its contacts. */
-static inline void prepare_contacts(scene_step *s, double from, double to)
+/* Places the colliders for the step, and prepares the arguments of its contacts. */
+static inline void prepare_contacts(scene_step *s)
 {
     scene_contacts *const c = &s->contacts;
     if (c->count == 0)
         return;
-    spring_scene_place_colliders(s->scene, time_at(s, from), time_at(s, to));
-    c->h = s->h * (scalar)(to - from);
-    c->adds = from > 0;
+    spring_scene_place_colliders(s->scene, time_at(s, 0), time_at(s, 1));
+    c->h = s->h;
     c->x = x_at(s, s->to);
     c->before = scene_read(s->scene, touched_in(s->from));
     c->touched = scene_memory(s->scene, touched_in(s->to));
@@ -139,13 +137,16 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
 }
 
 /* band: memory for the bands. */
-static inline scene_links scene_prepare_links(const spring_scene *s, scene_band band[most_bands])
+static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[most_bands])
 {
     const scene_layout *l = &s->layout;
     const bool damped = s->damped_links > 0;
     const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
     const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
-    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING), *direction = scene_read(s, ARRAY_BAND_DIRECTIONS);
+    const scalar *damping = scene_read(s, ARRAY_BAND_DAMPING);
+    const scalar *const root = scene_read(s, ARRAY_ROOTS);
+    scalar *const frozen = scene_memory(s, ARRAY_FROZEN);
+    const size_t all_slots = l->band_slots + l->unbanded + padding;
     for (uint32_t i = 0; i < l->bands; i++) {
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
@@ -157,8 +158,9 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
-            .direction = direction != NULL ? direction + b->slots : NULL,
-            .direction_stride = l->band_slots,
+            .root = root != NULL ? root + b->slots : NULL,
+            .direction_scale = frozen != NULL ? frozen + b->slots : NULL,
+            .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
             .ring = (ptrdiff_t)b->ring,
             .back = (ptrdiff_t)b->back,
@@ -179,7 +181,9 @@ static inline scene_links scene_prepare_links(const spring_scene *s, scene_band 
                 .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
-                .direction = scene_read(s, ARRAY_LINK_DIRECTIONS),
+                .root = root != NULL ? root + l->band_slots : NULL,
+                .direction_scale = frozen != NULL ? frozen + l->band_slots : NULL,
+                .turning = frozen != NULL ? frozen + all_slots + l->band_slots : NULL,
             },
         .tension_only = scene_tension_only(s),
     };
@@ -211,7 +215,8 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
     if (links->bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
     if (links->bands == 0 || links->unbanded.count > 0)
-        (out->records != NULL ? common->record_forces : common->unbanded_forces)(links, x, v, out);
+        (out->records != NULL && links->terms != FREEZING_TERMS ? common->record_forces
+                                                                : common->unbanded_forces)(links, x, v, out);
 }
 
 /* The same, with the forces of the callback at time t. */
@@ -233,8 +238,7 @@ static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, dou
 static inline void find_start_force(scene_step *s)
 {
     s->whole.force = force_at(s, s->from);
-    if (s->damping.terms > 0 ? s->cached == ELASTIC_FORCE
-                             : s->cached == FORCE || (s->cached == PREDICTED_FORCE && s->predicts))
+    if (s->cached == FORCE || (s->cached == PREDICTED_FORCE && s->predicts))
         return;
     evaluate(s, s->whole.x0, s->whole.v0, 0);
     s->whole.force = s->forces.force; /* predicted forces stay in the other array, for a rollback */

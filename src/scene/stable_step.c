@@ -58,12 +58,12 @@ static int largest_exponent(const spring_scene *s, link_coefficient which, doubl
     return largest > lowest ? largest : 0;
 }
 
-/* The largest sum over the links of a free particle: twice the coefficient of each link, or once if its other end is
-   pinned, plus `own`; by_mass: multiplied by the inverse mass. */
-static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
+/* Sums a coefficient over the links of each particle: twice the coefficient, or once if the other end is pinned. Returns
+   the exponent by which the sums, and with by_mass also the inverse masses, are scaled. */
+static int add_up_links(spring_scene *s, link_coefficient which, double own, bool by_mass)
 {
     const int exponent = largest_exponent(s, which, own, by_mass);
-    scalar *sum = scene_memory(s, ARRAY_SUMS);
+    scalar *const sum = scene_memory(s, ARRAY_SUMS);
     memset(sum, 0, s->layout.particles * sizeof *sum);
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);
@@ -74,15 +74,40 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
         sum[link.a] += (scalar)ldexp(value, twice_a + mass_exponent(s, link.a, by_mass) - exponent);
         sum[link.b] += (scalar)ldexp(value, twice_b + mass_exponent(s, link.b, by_mass) - exponent);
     }
+    return exponent;
+}
+
+/* The sum of a particle plus `own`, scaled by the exponent of add_up_links(); by_mass: multiplied by the inverse mass.
+   0 for pinned particles. */
+static double sum_of_particle(const spring_scene *s, size_t i, int exponent, double own, bool by_mass)
+{
+    const scalar *const sum = scene_read(s, ARRAY_SUMS);
+    const double inverse = inverse_mass_at(s, i);
+    const int unit = mass_exponent(s, i, by_mass);
+    return inverse > 0 ? ((double)sum[i] + ldexp(own, unit - exponent)) * (by_mass ? ldexp(inverse, -unit) : 1) : 0;
+}
+
+/* The largest of these sums. */
+static double largest_sum(spring_scene *s, link_coefficient which, double own, bool by_mass)
+{
+    const int exponent = add_up_links(s, which, own, by_mass);
     double largest = 0;
-    for (size_t i = 0; i < s->layout.particles; i++) {
-        const double inverse = inverse_mass_at(s, i);
-        const int unit = mass_exponent(s, i, by_mass);
-        if (inverse > 0)
-            largest =
-                fmax(largest, ((double)sum[i] + ldexp(own, unit - exponent)) * (by_mass ? ldexp(inverse, -unit) : 1));
-    }
+    for (size_t i = 0; i < s->layout.particles; i++)
+        largest = fmax(largest, sum_of_particle(s, i, exponent, own, by_mass));
     return ldexp(largest, exponent);
+}
+
+void spring_scene_find_roots(spring_scene *s, double most)
+{
+    const int exponent = add_up_links(s, DAMPING, 0, true);
+    scalar *const factor = scene_memory(s, ARRAY_SUMS), *const root = scene_memory(s, ARRAY_ROOTS);
+    for (size_t i = 0; i < s->layout.particles; i++)
+        factor[i] = (scalar)fmin(1, ldexp(most / sum_of_particle(s, i, exponent, 0, true), -exponent));
+    for (size_t i = 0; i < s->layout.links; i++) {
+        const stored_link link = scene_link(s, i);
+        const double least = fmin((double)factor[link.a], (double)factor[link.b]);
+        root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * least);
+    }
 }
 
 static double least_inverse_mass(const spring_scene *s) /* of the free particles; 0: there are none */
@@ -111,6 +136,7 @@ const scene_bounds *spring_scene_find_bounds(spring_scene *s)
     if (!s->bounds_known) {
         s->bounds = bounds_of(s);
         s->bounds_known = true;
+        s->roots_dt = 0;
     }
     return &s->bounds;
 }

@@ -6,7 +6,7 @@
  *           buffer. Further steps read and write the other buffer, which becomes the state when the call succeeds. So a
  *           rollback copies nothing. Without rollback there is one buffer.
  */
-#include "chebyshev.h"
+#include "exponential_kick.h"
 #include "../spring/roots.h"
 
 static const scene_kernels *best_scene_kernels(void)
@@ -73,7 +73,7 @@ static cached_force take_scene_steps(scene_step *step, step_function *take, uint
         step->last = i + 1 == n;
         if (i == 1)
             prepare_step(step, step->to, step->to);
-        prepare_contacts(step, 0, 1);
+        prepare_contacts(step);
         const scene_outcome outcome = take(step);
         *finite = outcome.finite;
         if (!outcome.finite)
@@ -83,15 +83,22 @@ static cached_force take_scene_steps(scene_step *step, step_function *take, uint
     return step->cached;
 }
 
-/* The series that damps links once a step, if dt is beyond the limit of explicit damping. A negative dt is not. */
-static chebyshev_series series_of(spring_scene *s, const scene_stepper *stepper, double dt)
+/* Chooses an exponential kick if dt is beyond the limit of explicit damping. A negative dt is not. */
+static void choose_damping(scene_step *step, scene_links *links, const scene_stepper *stepper)
 {
+    spring_scene *const s = step->scene;
     if (s->damped_links == 0 || stepper->explicit_limit == NULL)
-        return (chebyshev_series){.terms = 0};
-    const scene_bounds *bounds = spring_scene_find_bounds(s);
-    if (dt <= stepper->explicit_limit(bounds))
-        return (chebyshev_series){.terms = 0};
-    return chebyshev_for(dt, bounds->link_damping);
+        return;
+    const scene_bounds *const bounds = spring_scene_find_bounds(s);
+    if (step->dt <= stepper->explicit_limit(bounds))
+        return;
+    const double reach = step->dt * bounds->link_damping;
+    step->damping = damping_series_for(fmin(reach, most_damping));
+    links->terms = FREEZING_TERMS;
+    if (s->roots_dt != step->dt)
+        spring_scene_find_roots(s, most_damping / step->dt);
+    s->roots_dt = step->dt;
+    links->turning_time = step->damping.terms > 2 ? step->h : 0;
 }
 
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
@@ -111,9 +118,6 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
     scene_links links = scene_prepare_links(s, band);
-    const chebyshev_series damping = series_of(s, &spring_scene_steppers[m], dt);
-    if (damping.terms > 0)
-        links.terms = STIFFNESS_TERM;
     scene_step step = {
         .kernels = kernels,
         .scene = s,
@@ -124,8 +128,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         .t0 = t0,
         .dt = dt,
         .predicts = spring_scene_steppers[m].predicts,
-        .damping = damping,
         .contacts = {.count = s->colliders, .collider = scene_read(s, ARRAY_PLACED), .axes = s->layout.axes}};
+    choose_damping(&step, &links, &spring_scene_steppers[m]);
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
     const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m].step, before, n, &finite);

@@ -19,7 +19,7 @@ typedef struct scene_stepper {
     step_function *step; /* NULL: the method is not for scenes */
     double (*stable_step)(const scene_bounds *b);
     bool predicts; /* stores predicted velocities, and the forces at these, if forces depend on velocities */
-    double (*explicit_limit)(const scene_bounds *b); /* beyond, a Chebyshev series damps links (chebyshev.h) */
+    double (*explicit_limit)(const scene_bounds *b); /* of dt; beyond, kicks are exponential: exponential_kick.h */
     unsigned stages;                                 /* quantities of all particles that it stores for its stages */
     unsigned mass_factors;                           /* numbers that it stores for each mass, with drag */
 } scene_stepper;

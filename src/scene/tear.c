@@ -64,7 +64,7 @@ static bool any_unbanded_longer(const spring_scene *s, double stretch)
 }
 
 /* Returns whether a link may be longer than `stretch` times its rest length; false only if none is. */
-static bool any_longer(const scene_kernels *kernels, const spring_scene *s, double stretch)
+static bool any_longer(const scene_kernels *kernels, spring_scene *s, double stretch)
 {
     const double largest = 1e9; /* beyond it, (stretch rest)^2 could overflow in the kernel */
     if (stretch == (double)INFINITY)

@@ -19,6 +19,8 @@ typedef int64_t scalar_bits;
 /* The largest finite number. */
 #define SCALAR_MAX (sizeof(scalar) == sizeof(float) ? (scalar)FLT_MAX : (scalar)DBL_MAX)
 
+#define SCALAR_EPSILON (sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON)
+
 static inline bool scalar_finite(scalar a)
 {
     return a - a == 0;

@@ -344,16 +344,16 @@ static void bytes_of_a_link(void)
         cost cost;
     } cases[] = {
         {0, 0, 0, {"where it lies, and that it is there", 0, 4 + 1}},
-        {0, 0.7, 0, {"damping is shared, too; its direction", 3, 4 + 1}},
+        {0, 0.7, 0, {"damping is shared, too; its root, and two numbers of a kick", 3, 4 + 1}},
         {1, 0, 0, {"its own stiffness and rest length", 2, 4 + 1}},
-        {1, 0.7, 0, {"and damping, and its direction", 3 + 3, 4 + 1}},
+        {1, 0.7, 0, {"and damping, its root, and two numbers of a kick", 3 + 3, 4 + 1}},
         {0,
          0,
          SPRING_SCENE_EDITABLE,
-         {"editable: its own stiffness, rest length, damping and direction", 3 + 3, 4 + 1}},
+         {"editable: its own stiffness, rest length and damping, and the same", 3 + 3, 4 + 1}},
         {2, 0, 0, {"its ends, stiffness and rest length; where it lies is plain", 2, 8}},
-        {2, 0.7, 0, {"and damping, and its direction, in a quad", 3 + 4, 8}},
-        {2, 0, SPRING_SCENE_EDITABLE, {"the same when editable", 3 + 4, 8}},
+        {2, 0.7, 0, {"and damping, and the same", 3 + 3, 8}},
+        {2, 0, SPRING_SCENE_EDITABLE, {"the same when editable", 3 + 3, 8}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         const double want = cases[i].cost.numbers * sizeof(scalar) + cases[i].cost.bytes;

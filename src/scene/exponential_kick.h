@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Leapfrog with heavy link damping: drift, exponential kick, drift.
+ *
+ * Method    With the directions of links frozen, damping alone changes velocities by v' = r - Z (v - v0), where
+ *           Z = M^-1 C and r is the acceleration at the middle of the step and the velocity v0. The exact change in the
+ *           time h is h p(hZ) r with p(z) = (1 - e^-z)/z:
+ *
+ *               x' = x0 + h/2 v0;   v1 = v0 + h p(hZ) r(x', v0);   x1 = x' + h/2 v1
+ *
+ *           p is computed as a polynomial of degree s - 1. For s = 2 it is 1 - z/2. Otherwise let
+ *           rho >= (h G)/2, where G bounds the spectrum of Z, and Y = 1 - hZ/rho. A sum of Chebyshev polynomials with
+ *           positive coefficients approximates e^-z, and has its value, slope and second derivative at 0:
+ *
+ *               R = c_0 + 2 sum c_k T_k(Y),   c_k = I_k(rho) (a + b K + e K^2),   K = k^2/rho
+ *
+ *           I_k: modified Bessel functions, by their downward recurrence (Miller). Then
+ *
+ *               p = (1 - R)/z = d_0/2 + sum d_k T_k(Y),   d_k = (4/rho) sum_{j>k} (j - k) c_j
+ *               m = (1 - p)/z = e_0/2 + sum e_k T_k(Y),   e_k = (2/rho) sum_{j>k} (j - k) d_j
+ *
+ *           Clenshaw's recurrence b_k = d_k r - e_k r2 + 2 Y b_{k+1} - b_{k+2} requires s - 1 evaluations of damping
+ *           forces. The result p r - m r2 is its last b_0, with d_0/2, e_0/2 and Y in place of 2 Y.
+ * Turning   Directions of links turn during a step. A relative velocity V across a link of length l adds
+ *           delta = l/(2h) t (1 + t/4 + t^2/8), t = min(1, (h V/l)^2), to its rate until the middle of the step and
+ *           takes it away before, as in a steady rotation to third order. So the rate in r is lower by delta, and r2 is the acceleration by
+ *           damping at the rate -2 delta. Without it, damping would multiply the inertia along turning links. On one
+ *           axis there is none. With s = 2 it would be of third order, and is left out.
+ * Drag      M is replaced by M (1 + q/2 + q^2/(12 + 2q)), q = h drag/M, and r includes -drag v0. For drag alone, this
+ *           is a Pade approximant of e^-q.
+ * Limit     For constant Z and stiffness K, stable if h^2 M^-1 K < 4, as without damping: the energy
+ *           (v.(W - h^2 K/4) v + x.K x)/2, W = M (p(hZ)^-1 - hZ/2), never grows, and is positive if p(z) (1 + z/2) <= 1.
+ *           Z and K need not commute.
+ * Accuracy  0 < p(z) and p(z) (1 + z/2) <= 1 + 1e-12 for 0 <= z <= h G: tests/scene/test_damping.c
+ * Source    Hochbruck, Ostermann, Exponential integrators, Acta Numerica 19 (2010); Abramowitz, Stegun, Handbook of
+ *           Mathematical Functions (1964), 9.6.26 and 9.12; Clenshaw, A note on the summation of Chebyshev series, Math.
+ *           Tables 9 (1955)
+ */
+#ifndef SPRINGSTEP_EXPONENTIAL_KICK_H
+#define SPRINGSTEP_EXPONENTIAL_KICK_H
+
+#include "pass.h"
+
+#include <math.h>
+
+/* The largest h G. Beyond, the damping of each link saturates: see spring_scene_find_roots(). */
+static const double most_damping = 3e4;
+
+/* One step of the recurrence I_{k-1} = I_{k+1} + 2 k/rho I_k, downwards. */
+static inline void bessel_step(double rho, unsigned k, double *above, double *here)
+{
+    const double below = *above + 2 * k / rho * *here;
+    *above = *here;
+    *here = below;
+}
+
+/* Solves the symmetric system for the weights (a, b, e), which make the moments of K over c_-s ... c_s equal to those
+   of e^-z: 1, 1 and 3 + 1/rho. m: the moments of I_k. */
+static inline void solve_moments(const double m[5], double rho, double weight[3])
+{
+    const double right[3] = {1, 1, 3 + 1 / rho};
+    const double c00 = m[2] * m[4] - m[3] * m[3], c01 = m[2] * m[3] - m[1] * m[4], c02 = m[1] * m[3] - m[2] * m[2],
+                 c11 = m[0] * m[4] - m[2] * m[2], c12 = m[1] * m[2] - m[0] * m[3], c22 = m[0] * m[2] - m[1] * m[1];
+    const double determinant = m[0] * c00 + m[1] * c01 + m[2] * c02;
+    weight[0] = (c00 * right[0] + c01 * right[1] + c02 * right[2]) / determinant;
+    weight[1] = (c01 * right[0] + c11 * right[1] + c12 * right[2]) / determinant;
+    weight[2] = (c02 * right[0] + c12 * right[1] + c22 * right[2]) / determinant;
+}
+
+/* The series for steps whose h G is `reach`, 0 <= reach <= most_damping. */
+static inline damping_series damping_series_for(double reach)
+{
+    if (reach <= 0.6)
+        return (damping_series){.terms = 2};
+    const double rho = reach * 0.5 * (1 + 0x1p-10); /* a little more, for rounding errors of the bound */
+    const unsigned wanted = (unsigned)ceil(spring_sqrt(2.6 * reach + 1)), terms = wanted < 3 ? 3 : wanted;
+    const unsigned from = 20 + (unsigned)(10 * spring_sqrt(rho)), start = from > terms + 10 ? from : terms + 10;
+    double above = 0, here = 1e-30; /* I_start < 1e-21 I_0 */
+    damping_series p = {.terms = terms, .rho = rho};
+    double moment[5] = {0};
+    for (unsigned k = start; k + 1 > 0; k--) {
+        if (k == terms) {
+            p.last = here;
+            p.beyond_last = above;
+        }
+        double term = k <= terms ? (k > 0 ? 2 * here : here) : 0;
+        for (int j = 0; j < 5; j++) {
+            moment[j] += term;
+            term *= (double)k * k / rho;
+        }
+        if (k > 0)
+            bessel_step(rho, k, &above, &here);
+    }
+    /* in units of I_0 */
+    p.last /= here;
+    p.beyond_last /= here;
+    for (int j = 0; j < 5; j++)
+        moment[j] /= here;
+    solve_moments(moment, rho, p.weight);
+    return p;
+}
+
+/* The coefficients of term k, and what those of term k - 1 follow from. */
+typedef struct series_term {
+    unsigned k;
+    double above, here; /* I_{k+1} and I_k */
+    double c, d, e;
+    double sum_c, sums_c, sum_d, sums_d; /* of terms k + 1 ... s, and of such sums */
+} series_term;
+
+static inline void find_series_term(const damping_series *p, series_term *t)
+{
+    const double K = (double)t->k * t->k / p->rho;
+    t->c = t->here * (p->weight[0] + K * (p->weight[1] + K * p->weight[2]));
+    t->d = 4 / p->rho * t->sums_c;
+    t->e = 2 / p->rho * t->sums_d;
+}
+
+static inline series_term last_series_term(const damping_series *p)
+{
+    series_term t = {.k = p->terms, .above = p->beyond_last, .here = p->last};
+    find_series_term(p, &t);
+    return t;
+}
+
+static inline void previous_series_term(const damping_series *p, series_term *t)
+{
+    t->sum_c += t->c;
+    t->sums_c += t->sum_c;
+    t->sum_d += t->d;
+    t->sums_d += t->sum_d;
+    bessel_step(p->rho, t->k--, &t->above, &t->here);
+    find_series_term(p, t);
+}
+
+/* ------------------------------------------------------------------------------------------------ pressed particles */
+
+typedef struct pressed_list {
+    pressed_particle *list;
+    size_t count;
+} pressed_list;
+
+/* The component of a vector in which a pressed particle is free. */
+static inline void free_component(const pressed_particle *p, uint32_t axes, scalar vector[3])
+{
+    scalar along = 0;
+    for (uint32_t a = 0; a < axes; a++)
+        along += vector[a] * p->line[a];
+    for (uint32_t a = 0; a < axes; a++)
+        vector[a] = p->freedom == HELD              ? 0
+                    : p->freedom == FREE_ALONG_LINE ? along * p->line[a]
+                                                    : vector[a] - along * p->line[a];
+}
+
+/* Takes away the freedom of a particle along a further normal, unless it is nearly parallel to the others. */
+static inline void add_normal(pressed_particle *p, uint32_t axes, const scalar normal[3])
+{
+    const scalar parallel = (scalar)1e-3; /* sine */
+    scalar free[3] = {normal[0], normal[1], axes > 2 ? normal[2] : 0};
+    free_component(p, axes, free);
+    const double size = spring_sqrt((double)(free[0] * free[0] + free[1] * free[1] + free[2] * free[2]));
+    if (size < (double)parallel)
+        return;
+    if (p->freedom == FREE_ALONG_LINE || axes == 2) {
+        p->freedom = HELD;
+        return;
+    }
+    const scalar n[3] = {p->line[0], p->line[1], p->line[2]};
+    for (int a = 0; a < 3; a++)
+        p->line[a] = (n[(a + 1) % 3] * free[(a + 2) % 3] - n[(a + 2) % 3] * free[(a + 1) % 3]) / (scalar)size;
+    p->freedom = FREE_ALONG_LINE;
+}
+
+/* How a collider that particle i touched in the last step acts on it. It presses if the particle does not leave the
+   surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide. */
+typedef enum pressing { NOT_PRESSED, PRESSED, PRESSED_AND_HELD } pressing;
+
+static inline pressing pressing_of(const scene_step *s, const scene_collider *c, size_t i, const scalar *residual,
+                                   scalar normal[3])
+{
+    const size_t stride = s->scene->layout.stride;
+    scalar at[3] = {0}, surface[3], leaving = 0, pressed = 0, speed = 0;
+    for (uint32_t a = 0; a < s->contacts.axes; a++)
+        at[a] = s->whole.x0[a * stride + i];
+    s->kernels->common->contact_surface(c, at, normal, surface);
+    for (uint32_t a = 0; a < s->contacts.axes; a++) {
+        const scalar v = s->whole.v0[a * stride + i];
+        leaving += (v - surface[a]) * normal[a];
+        speed += (scalar)(fabs((double)v) + fabs((double)surface[a]));
+        pressed -= residual[a * stride + i] * normal[a];
+    }
+    const scalar rounding = 64 * SCALAR_EPSILON * speed, limit = c->friction * pressed;
+    if (!(pressed > 0) || leaving > rounding)
+        return NOT_PRESSED;
+    scalar sliding = 0, friction = 0; /* squares */
+    for (uint32_t a = 0; a < s->contacts.axes; a++) {
+        const scalar along = s->whole.v0[a * stride + i] - surface[a] - leaving * normal[a];
+        const scalar force = residual[a * stride + i] + pressed * normal[a];
+        sliding += along * along;
+        friction += force * force;
+    }
+    return sliding <= rounding * rounding && friction <= limit * limit ? PRESSED_AND_HELD : PRESSED;
+}
+
+/* Finds the pressed particles, and takes their loads out of the residual. */
+static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
+{
+    pressed_list found = {.list = scene_memory(s->scene, ARRAY_PRESSED)};
+    const uint32_t axes = s->contacts.axes;
+    const size_t stride = s->scene->layout.stride;
+    for (size_t i = 0; s->contacts.count > 0 && i < s->particles.count; i++) {
+        if (s->contacts.before[i] == 0)
+            continue;
+        pressed_particle *const p = &found.list[found.count];
+        bool pressed = false;
+        for (unsigned k = 0; k < s->contacts.count; k++) {
+            scalar normal[3];
+            const pressing how = (s->contacts.before[i] >> k & 1) == 0
+                                     ? NOT_PRESSED
+                                     : pressing_of(s, &s->contacts.collider[k], i, residual, normal);
+            if (how == NOT_PRESSED)
+                continue;
+            if (pressed)
+                add_normal(p, axes, normal);
+            else
+                *p = (pressed_particle){.particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}};
+            if (how == PRESSED_AND_HELD)
+                p->freedom = HELD;
+            pressed = true;
+        }
+        if (!pressed)
+            continue;
+        scalar free[3];
+        for (uint32_t a = 0; a < axes; a++)
+            free[a] = residual[a * stride + i];
+        free_component(p, axes, free);
+        for (uint32_t a = 0; a < axes; a++) {
+            p->load[a] = residual[a * stride + i] - free[a];
+            residual[a * stride + i] = free[a];
+        }
+        found.count++;
+    }
+    return found;
+}
+
+/* Removes the components of b - from in which pressed particles are not free. from: NULL: 0 */
+static inline void project_pressed(const scene_step *s, const pressed_list *pressed, const scalar *from, scalar *b)
+{
+    const size_t stride = s->scene->layout.stride;
+    for (size_t j = 0; j < pressed->count; j++) {
+        const pressed_particle *const p = &pressed->list[j];
+        scalar vector[3];
+        for (uint32_t a = 0; a < s->contacts.axes; a++)
+            vector[a] = b[a * stride + p->particle] - (from != NULL ? from[a * stride + p->particle] : 0);
+        free_component(p, s->contacts.axes, vector);
+        for (uint32_t a = 0; a < s->contacts.axes; a++)
+            b[a * stride + p->particle] = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
+    }
+}
+
+/* Accelerates pressed particles by their loads, until their contacts are computed. A load is that of the residual, with
+   damping at the velocities v1 at the end of the kick: at v0, damping forces may be many times larger than their mean.
+   x: positions of the kick. */
+static inline void load_pressed(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
+{
+    const scene_particles *const p = &s->particles;
+    const uint32_t axes = p->axes;
+    scalar *const change = kick_storage(s, 2);
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t i = a * p->stride; i < a * p->stride + p->count; i++)
+            change[i] = v1[i] - s->whole.v0[i];
+    scene_links links = *s->links;
+    links.terms = DAMPING_TERM;
+    evaluate_links(s->kernels, &links, x, change, &s->forces);
+    for (size_t j = 0; j < pressed->count; j++) {
+        const pressed_particle *const one = &pressed->list[j];
+        const double inverse_mass = inverse_mass_at(s->scene, one->particle),
+                     q = (double)(s->h * p->drag) * inverse_mass;
+        const scalar weight = (scalar)(inverse_mass / (1 + q * (0.5 + q / (12 + 2 * q))));
+        scalar accel[3], free[3];
+        for (uint32_t a = 0; a < axes; a++)
+            free[a] = accel[a] = weight * s->forces.force[a * p->stride + one->particle];
+        free_component(one, axes, free);
+        for (uint32_t a = 0; a < axes; a++)
+            v1[a * p->stride + one->particle] += s->h * (one->load[a] + (accel[a] - free[a]));
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- the series */
+
+/* Evaluates the damping forces at positions x and velocities v, then advances all particles by them. The results are those of
+   evaluate_links() and move(). If all links lie in bands, it is one fused pass. */
+static inline bool damping_term(scene_step *s, const scene_links *links, const scalar *x, const scalar *v,
+                                particle_kernel *kernel, const scene_motion *m)
+{
+    const scene_layout *l = &s->scene->layout;
+    if (l->unbanded > 0) {
+        evaluate_links(s->kernels, links, x, v, &s->forces);
+        return move(s, kernel, m);
+    }
+    for (size_t i = 0; i < l->particles; i += chunk) {
+        const size_t end = i + chunk < l->particles ? i + chunk : l->particles;
+        s->kernels->band_forces(links, x, v, &s->forces, i, end);
+        if (!kernel(&s->particles, m, i, end))
+            return false;
+    }
+    return true;
+}
+
+/* v1 = v0 + span p(hZ) r, at positions x and with the residual r in kick_storage(s, 0); and x1 = x + h/2 v1 unless x1 is
+   NULL. Returns false if a result is not finite, or faster than max_speed. */
+static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed, const scalar *x, scalar span,
+                                      scalar *v1, scalar *x1, scalar max_speed)
+{
+    const common_kernels *const kernels = s->kernels->common;
+    const damping_series *const p = &s->damping;
+    scalar *const residual = kick_storage(s, 0), *const storage[] = {kick_storage(s, 1), kick_storage(s, 2)};
+    scene_links links = *s->links;
+    links.terms = DAMPING_TERM;
+    scene_series term = {.residual = residual, .before = residual, .second_before = residual, .h = s->h};
+    scene_motion m = s->whole;
+    m.force = s->forces.force;
+    m.series = &term;
+    m.kick = span;
+    m.drift = s->h / 2;
+    m.x0 = x;
+    m.x = x1;
+    m.max_speed = max_speed;
+    /* b_{s-1} = d_{s-1} r is not stored: the terms that follow from it use r. For s = 2, p = 1 - z/2. */
+    const bool two = p->terms == 2;
+    series_term t = {0};
+    if (!two) {
+        t = last_series_term(p);
+        previous_series_term(p, &t);
+    }
+    const double last = t.d;
+    for (unsigned k = p->terms - 1; k-- > 0;) {
+        if (!two)
+            previous_series_term(p, &t);
+        const bool first = k + 2 == p->terms, second = k + 3 == p->terms;
+        const double share = k > 0 ? 1 : 0.5, times = k > 0 ? 2 : 1;
+        const double weight = two ? (double)s->h / 2 : times * (first ? last : 1) * (double)s->h / p->rho;
+        term.coefficient = (scalar)(two      ? 1
+                                    : first  ? share * t.d + times * last
+                                    : second ? share * t.d - last
+                                             : share * t.d);
+        term.before_weight = (scalar)(first ? 0 : times);
+        term.second_weight = first || second ? 0 : 1;
+        term.force_weight = (scalar)weight;
+        links.turning_weight = s->links->turning_time > 0 ? (scalar)(share * t.e / weight) : 0;
+        m.v = k > 0 ? storage[k % 2] : v1;
+        if (!damping_term(s, &links, x, term.before, k > 0 ? kernels->series_term : kernels->last_series_term, &m))
+            return false;
+        project_pressed(s, pressed, k > 0 ? NULL : m.v0, m.v);
+        term.second_before = first ? residual : term.before;
+        term.before = m.v;
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------- the step */
+
+/* See above. A callback that uses velocities is called twice, with v0 and with the mean v* of v0 and v1. The kick is
+   repeated with its forces at v*. */
+SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
+{
+    const common_kernels *const kernels = s->kernels->common;
+    const bool collides = s->contacts.count > 0, predicts = scene_callback_uses_velocity(s->scene);
+    const scene_outcome failed = {.finite = false};
+    scene_motion drift = s->whole, residual = s->whole, end = s->whole;
+    drift.drift = end.drift = s->h / 2;
+    drift.x = collides ? kick_storage(s, 3) : s->whole.x; /* contacts require x0 */
+    residual.v = kick_storage(s, 0);
+    residual.force = end.force = s->forces.force;
+    scalar *const v1 = collides ? kick_storage(s, 1) : s->whole.v;
+    pressed_list pressed;
+    if (predicts) {
+        const size_t bytes = s->scene->layout.axes * s->scene->layout.stride * sizeof(scalar);
+        scalar *const of_links = force_at(s, 1 - s->to), *const predicted = kick_storage(s, 1);
+        if (!move(s, kernels->drift, &drift))
+            return failed;
+        evaluate_links(s->kernels, s->links, drift.x, s->whole.v0, &s->forces);
+        memcpy(of_links, s->forces.force, bytes);
+        call_back(s->scene, drift.x, s->whole.v0, time_at(s, 0.5), s->forces.force);
+        if (!move(s, kernels->residual, &residual))
+            return failed;
+        pressed = find_pressed(s, residual.v);
+        if (!kick_exponentially(s, &pressed, drift.x, s->h / 2, predicted, NULL, SCALAR_MAX))
+            return failed;
+        memcpy(s->forces.force, of_links, bytes);
+        call_back(s->scene, drift.x, predicted, time_at(s, 0.5), s->forces.force);
+        if (!move(s, kernels->residual, &residual))
+            return failed;
+    } else if (!move_evaluate_move(s, kernels->drift, &drift, s->whole.v0, 0.5, kernels->residual, &residual)) {
+        return failed;
+    }
+    pressed = find_pressed(s, residual.v);
+    if (!collides)
+        return (scene_outcome){.finite =
+                                   kick_exponentially(s, &pressed, drift.x, s->h, v1, s->whole.x, s->whole.max_speed)};
+    if (!kick_exponentially(s, &pressed, drift.x, s->h, v1, NULL, SCALAR_MAX))
+        return failed;
+    if (pressed.count > 0)
+        load_pressed(s, &pressed, drift.x, v1);
+    const scene_stage kicked = {.v = v1};
+    end.stage = &kicked;
+    return (scene_outcome){.finite = move(s, kernels->drift_kick_drift, &end)};
+}
+
+#endif

@@ -1,0 +1,568 @@
+/* SPDX-License-Identifier: MIT */
+/* Leapfrog with an exponential kick: against a plain loop over links, creep, turning, saturation, energy, contacts. */
+#include <stdio.h>
+
+#include "test_scene.h"
+#include "scene/exponential_kick.h"
+
+/* ---------------------------------------------------------------------------------------------------- a plain step */
+
+/* The step of scene/exponential_kick.h in double, by a loop over links and sums of T_k(Y) r. */
+typedef struct plain_kick {
+    const spring_scene_def *def;
+    uint32_t axes;
+    double h, root[most_links], scale[most_links], turning[most_links], weight[most]; /* 1/mass' */
+    double r[3 * most], r2[3 * most];
+} plain_kick;
+
+static bool tension_only(const spring_scene_def *def)
+{
+    return (def->flags & SPRING_SCENE_TENSION_ONLY) != 0;
+}
+
+/* sqrt(damping), saturated. Returns the largest h G. */
+static double find_roots(plain_kick *k)
+{
+    const spring_scene_def *def = k->def;
+    static double sum[most];
+    double reach = 0;
+    memset(sum, 0, sizeof sum);
+    for (size_t j = 0; j < def->links; j++) {
+        const spring_link *l = &def->link[j];
+        sum[l->a] += (double)(scalar)l->damping * (pinned_in(def, l->b) ? 1 : 2);
+        sum[l->b] += (double)(scalar)l->damping * (pinned_in(def, l->a) ? 1 : 2);
+    }
+    for (size_t i = 0; i < def->particles; i++) {
+        sum[i] = pinned_in(def, i) ? 0 : k->h * sum[i] / mass_in(def, i);
+        reach = fmax(reach, sum[i]);
+    }
+    for (size_t j = 0; j < def->links; j++) {
+        const spring_link *l = &def->link[j];
+        const double most_of_ends = fmax(sum[l->a], sum[l->b]);
+        k->root[j] = sqrt((double)(scalar)l->damping * fmin(1, most_damping / most_of_ends));
+    }
+    return fmin(reach, most_damping);
+}
+
+/* r and r2 at x and v. force: of the callback, added. */
+static void find_residual(plain_kick *k, const double *x, const double *v, const double *force, bool turns)
+{
+    const spring_scene_def *def = k->def;
+    const uint32_t axes = k->axes;
+    memset(k->r2, 0, sizeof k->r2);
+    memcpy(k->r, force, 3 * def->particles * sizeof *force);
+    for (size_t j = 0; j < def->links; j++) {
+        const spring_link *l = &def->link[j];
+        double delta[3] = {0}, relative[3] = {0}, square = 0, dot = 0, speed = 0;
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = x[l->b * axes + a] - x[l->a * axes + a];
+            relative[a] = v[l->b * axes + a] - v[l->a * axes + a];
+            square += delta[a] * delta[a];
+            dot += delta[a] * relative[a];
+            speed += relative[a] * relative[a];
+        }
+        double length = sqrt(square), rate = dot / length, tension, turned = 0;
+        k->scale[j] = k->turning[j] = 0;
+        if ((l->stiffness == 0 && l->damping == 0) || (axes > 1 && tension_only(def) && length <= l->rest))
+            continue;
+        k->scale[j] = k->root[j] / length;
+        if (axes == 1) {
+            length = delta[0];
+            rate = relative[0];
+            k->scale[j] = k->root[j];
+            delta[0] = 1;
+        } else if (turns) {
+            const double t = fmin(1, fmax(0, k->h * k->h * (speed - rate * rate) / square));
+            turned = length / (2 * k->h) * t * (1 + t / 4 + t * t / 8);
+        }
+        k->turning[j] = 2 * k->root[j] * turned;
+        tension = l->stiffness * (length - l->rest) + k->root[j] * k->root[j] * (rate - turned);
+        for (uint32_t a = 0; a < axes; a++) {
+            const double along = axes == 1 ? 1 : delta[a] / length, push = -k->root[j] * k->turning[j];
+            k->r[l->a * axes + a] += tension * along;
+            k->r[l->b * axes + a] -= tension * along;
+            k->r2[l->a * axes + a] += push * along;
+            k->r2[l->b * axes + a] -= push * along;
+        }
+    }
+    for (size_t i = 0; i < def->particles; i++) {
+        const double mass = mass_in(def, i), q = k->h * def->drag / mass;
+        k->weight[i] = pinned_in(def, i) ? 0 : 1 / (mass * (1 + q / 2 + q * q / (12 + 2 * q)));
+        for (uint32_t a = 0; a < axes; a++) {
+            double *r = &k->r[i * axes + a];
+            *r = k->weight[i] * (*r - def->drag * v[i * axes + a] + mass * def->gravity[a]);
+            k->r2[i * axes + a] *= k->weight[i];
+        }
+    }
+}
+
+/* out = Y u, Y = 1 - h Z/rho */
+static void apply_y(const plain_kick *k, double rho, const double *x, const double *u, double *out)
+{
+    const spring_scene_def *def = k->def;
+    const uint32_t axes = k->axes;
+    memcpy(out, u, axes * def->particles * sizeof *u);
+    for (size_t j = 0; j < def->links; j++) {
+        const spring_link *l = &def->link[j];
+        double delta[3] = {1}, rate = 0;
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[a] = axes > 1 ? x[l->b * axes + a] - x[l->a * axes + a] : 1;
+            rate += delta[a] * (u[l->b * axes + a] - u[l->a * axes + a]);
+        }
+        for (uint32_t a = 0; a < axes; a++) {
+            const double pull = k->h / rho * k->scale[j] * k->scale[j] * rate * delta[a];
+            out[l->a * axes + a] += k->weight[l->a] * pull;
+            out[l->b * axes + a] -= k->weight[l->b] * pull;
+        }
+    }
+}
+
+/* sum = p r - m r2 */
+static void sum_series(plain_kick *k, double reach, const double *x, double *sum)
+{
+    static double before[3 * most], now[3 * most], next[3 * most];
+    static double d[512], e[512];
+    const size_t count = k->axes * k->def->particles;
+    const damping_series p = damping_series_for(reach);
+    const double rho = p.terms == 2 ? 1 : p.rho;
+    memset(e, 0, sizeof e);
+    if (p.terms == 2) { /* 1 - z/2 = 1/2 + Y/2 for rho = 1 */
+        d[0] = 1;
+        d[1] = 0.5;
+    } else {
+        series_term t = last_series_term(&p);
+        while (t.k > 0) {
+            previous_series_term(&p, &t);
+            d[t.k] = t.d;
+            e[t.k] = t.e;
+        }
+    }
+    memset(sum, 0, count * sizeof *sum);
+    for (int which = 0; which < 2; which++) {
+        const double *c = which == 0 ? d : e, sign = which == 0 ? 1 : -1;
+        memcpy(now, which == 0 ? k->r : k->r2, count * sizeof *now);
+        for (unsigned n = 0; n < p.terms; n++) {
+            for (size_t i = 0; i < count; i++)
+                sum[i] += sign * (n == 0 ? c[0] / 2 : c[n]) * now[i];
+            apply_y(k, rho, x, now, next);
+            for (size_t i = 0; i < count; i++) {
+                const double t = n == 0 ? next[i] : 2 * next[i] - before[i];
+                before[i] = now[i];
+                now[i] = t;
+            }
+        }
+    }
+}
+
+/* A callback: a uniform field, or one that turns velocities. */
+typedef struct field {
+    uint32_t axes;
+    double strength, magnetic;
+} field;
+
+static void add_field(void *user, double t, size_t particles, const scalar *const x[3], const scalar *const v[3],
+                      scalar *const force[3])
+{
+    const field *f = user;
+    (void)x;
+    for (size_t i = 0; i < particles; i++) {
+        force[0][i] += (scalar)(f->strength * (1 + t) + f->magnetic * (double)v[f->axes - 1][i]);
+        force[f->axes - 1][i] -= (scalar)(f->magnetic * (double)v[0][i]);
+    }
+}
+
+static void plain_field(const field *f, double t, size_t particles, const double *v, double *force)
+{
+    memset(force, 0, 3 * particles * sizeof *force);
+    for (size_t i = 0; i < particles; i++) {
+        force[i * f->axes] += f->strength * (1 + t) + f->magnetic * v[i * f->axes + f->axes - 1];
+        force[i * f->axes + f->axes - 1] -= f->magnetic * v[i * f->axes];
+    }
+}
+
+/* One step from the state y. Returns the number of terms. */
+static unsigned plain_step(plain_kick *k, const field *f, bool repeats, state *y)
+{
+    static double change[3 * most], force[3 * most], mean[3 * most];
+    const double reach = find_roots(k);
+    const unsigned terms = damping_series_for(reach).terms;
+    const size_t count = k->axes * k->def->particles;
+    for (size_t i = 0; i < count; i++)
+        y->x[i] += k->h / 2 * y->v[i];
+    memcpy(mean, y->v, sizeof mean);
+    for (int round = 0; round < (repeats ? 2 : 1); round++) {
+        plain_field(f, k->h / 2, k->def->particles, mean, force);
+        find_residual(k, y->x, y->v, force, terms > 2);
+        sum_series(k, reach, y->x, change);
+        for (size_t i = 0; i < count; i++)
+            mean[i] = y->v[i] + k->h / 2 * change[i];
+    }
+    for (size_t i = 0; i < count; i++) {
+        y->v[i] += k->h * change[i];
+        y->x[i] += k->h / 2 * y->v[i];
+    }
+    return terms;
+}
+
+/* Random scenes of every layout and with every feature, against the plain step. */
+static void plain_steps(void)
+{
+    static const uint32_t grids[][3] = {{3, 1, 1}, {4, 3, 1}, {9, 7, 1}, {4, 3, 3}, {70, 1, 1}};
+    static const double reaches[] = {0.45, 0.7, 5, 60, 990, 1e6};
+    static model m;
+    static plain_kick k;
+    static state want, got;
+    unsigned saturated = 0, two = 0;
+    for (unsigned number = 0; number < 600; number++) {
+        const uint32_t axes = 1 + number % 3;
+        build(&m, grids[number / 3 % 5], axes, (number * 389) % feature_masks | DAMPED);
+        const bool damped_callback = number % 7 == 0, called = number % 7 < 3;
+        field f = {axes, called ? 3.1 : 0, damped_callback && axes > 1 ? 0.7 : 0};
+        m.def.methods = 1u << SPRING_LEAPFROG;
+        m.def.flags |= (number % 4 == 0 && axes > 1 ? SPRING_SCENE_TENSION_ONLY : 0u) |
+                       (damped_callback ? 0u : SPRING_SCENE_FORCE_IGNORES_VELOCITY);
+        m.def.force = called ? add_field : NULL;
+        m.def.user = &f;
+        spring_scene *s = scene_of(&m.def);
+        const scene_bounds *b = spring_scene_find_bounds(s);
+        const double h = fmin(0.3 * spring_scene_stable_step(s, SPRING_LEAPFROG), 10);
+        const double more = reaches[number % 6] / (h * b->link_damping);
+        free(s);
+        if (!(more < INFINITY)) /* no damped link between free particles */
+            continue;
+        for (size_t j = 0; j < m.def.links; j++)
+            m.link[j].damping *= more;
+        s = scene_of(&m.def);
+        get_state(s, m.def.particles, &want);
+        k.def = &m.def;
+        k.axes = axes;
+        k.h = (double)(scalar)h;
+        const unsigned terms = plain_step(&k, &f, damped_callback, &want);
+        CHECK(spring_scene_advance(s, SPRING_LEAPFROG, k.h, 1) == SPRING_OK, "one step");
+        get_state(s, m.def.particles, &got);
+        double speed = 1, place = 1;
+        for (size_t i = 0; i < axes * m.def.particles; i++) {
+            speed = fmax(speed, fabs(want.v[i]));
+            place = fmax(place, fabs(want.x[i]));
+        }
+        double shortest = place; /* link: the rounding errors of positions turn it most */
+        for (size_t j = 0; j < m.def.links && axes > 1; j++)
+            shortest = fmin(shortest, k.scale[j] > 0 ? k.root[j] / k.scale[j] : shortest);
+        /* The residual is as large as h Z v, and the terms of the series cancel. */
+        const double reach = fmin(reaches[number % 6], most_damping);
+        const double bound = 4 * EPS * (speed + place / h) * (1 + reach * place / shortest);
+        for (size_t i = 0; i < axes * m.def.particles; i++) {
+            CHECK_CLOSE(got.v[i], want.v[i], bound, "rounding errors of the residual and of the series");
+            CHECK_CLOSE(got.x[i], want.x[i], h * bound + 4 * EPS * place, "the same, in half a step");
+        }
+        saturated += reaches[number % 6] > most_damping;
+        two += terms == 2;
+        free(s);
+    }
+    CHECK(saturated > 50 && two > 50, "with few terms, and with saturated links");
+}
+
+/* ------------------------------------------------------------------------------------------------- creep and turning */
+
+/* A particle on one overdamped link relaxes at the rate of the exact solution. Beyond saturation it relaxes faster than
+   that, in most_damping/(h^2 omega2) steps. */
+static void creep(void)
+{
+    static const double damping[] = {100, 1000, 1e5, 1e9}, most_error[] = {0.03, 0.005, 0.001, 1e-6};
+    const double stiffness = 100, mass = 1, dt = 0.05;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int i = 0; i < 4; i++) {
+            double x[6] = {0}, v[6];
+            x[2 * axes - 1] = 1.5; /* the length, along the last axis */
+            const uint8_t pinned[] = {1, 0};
+            const spring_link link = {.a = 0, .b = 1, .rest = 1, .stiffness = stiffness, .damping = damping[i]};
+            const spring_scene_def def = {.axes = axes,
+                                          .particles = 2,
+                                          .links = 1,
+                                          .position = x,
+                                          .pinned = pinned,
+                                          .link = &link,
+                                          .mass_all = mass};
+            spring_scene *s = scene_of(&def);
+            const double saturated = fmin(damping[i], most_damping / dt * mass), half = saturated / 2 / mass;
+            const double omega2 = stiffness / mass, exact = omega2 / (half + sqrt(half * half - omega2));
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 40) == SPRING_OK, "stable");
+            spring_scene_get(s, SPRING_POSITION, x, 0, 0, 2);
+            spring_scene_get(s, SPRING_VELOCITY, v, 0, 0, 2);
+            const double left = x[2 * axes - 1] - 1, rate = -v[2 * axes - 1] / left;
+            const double rounding = 4 * EPS * saturated * dt / (exact * dt * dt); /* of positions, per step */
+            CHECK_CLOSE(rate, exact, (most_error[i] + rounding) * exact, "as the study of the scheme measured");
+            CHECK(left > 0 && left < 0.5, "towards the rest length");
+            free(s);
+        }
+}
+
+/* Two particles on a link turn about each other by 0.1 rad per step. The stretch is that of the centripetal force. */
+static void turning_dumbbell(void)
+{
+    const double dt = 0.01, turns = 10, length = 1, mass = 1.7, stretch = 0.02;
+    for (double reach = 1; reach < 2e4; reach *= 10) {
+        const double x[] = {-length / 2, 0, 0, length / 2, 0, 0};
+        const double v[] = {0, -turns * length / 2, 0, 0, turns * length / 2, 0};
+        const spring_link link = {.a = 0,
+                                  .b = 1,
+                                  .rest = length - stretch,
+                                  .stiffness = mass * turns * turns * length / 2 / stretch,
+                                  .damping = reach / dt * mass / 2};
+        const spring_scene_def def = {
+            .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = mass, .link = &link};
+        spring_scene *s = scene_of(&def);
+        const double start = total_energy(s), momentum = mass * turns * length * length / 2;
+        for (int i = 0; i < 2000; i++) {
+            double y[6], w[6];
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 1) == SPRING_OK, "stable");
+            spring_scene_get(s, SPRING_POSITION, y, 0, 0, 2);
+            spring_scene_get(s, SPRING_VELOCITY, w, 0, 0, 2);
+            const double now = hypot(y[3] - y[0], y[4] - y[1]) - link.rest;
+            const double angular = mass * (y[0] * w[1] - y[1] * w[0] + y[3] * w[4] - y[4] * w[3]);
+            CHECK_CLOSE(now, stretch, 0.1 * stretch, "4.2 times at dt G = 10 without the turning term");
+            CHECK_BELOW(total_energy(s), 1.01 * start, "1.2 times without");
+            CHECK_CLOSE(angular, momentum, (sizeof(scalar) == 4 ? 1e-3 : 1e-9) * momentum, "forces are central");
+        }
+        free(s);
+    }
+}
+
+#ifndef SPRING_FLOAT
+
+static double mean_strain(const spring_scene *s, const model *m)
+{
+    static state y;
+    double sum = 0;
+    get_state(s, m->def.particles, &y);
+    for (size_t j = 0; j < m->def.links; j++) {
+        double square = 0;
+        for (size_t a = 0; a < 3; a++)
+            square += pow(y.x[3 * m->link[j].b + a] - y.x[3 * m->link[j].a + a], 2);
+        sum += sqrt(square) / m->link[j].rest - 1;
+    }
+    return sum / (double)m->def.links;
+}
+
+/* A cloth that spins in its plane by 0.05 rad per step, heavily damped: the mean strain is that of RK4. */
+static void spinning_cloth(void)
+{
+    static model m;
+    build(&m, (uint32_t[]){8, 8, 1}, 3, 0);
+    const spring_grid g = {.count = {8, 8, 1}, .spacing = 1.0 / 7, .families = 7, .stiffness = 30};
+    spring_grid_fill(&g, m.position, NULL, m.link);
+    m.def.mass = NULL;
+    m.def.mass_all = 1.0 / 49;
+    m.def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4;
+    spring_scene *s = scene_of(&m.def);
+    const double dt = 0.5 * spring_scene_stable_step(s, SPRING_LEAPFROG), turns = 0.05 / dt;
+    free(s);
+    for (size_t j = 0; j < m.def.links; j++)
+        m.link[j].damping = 1;
+    s = scene_of(&m.def);
+    const double more = 1000 / dt / spring_scene_find_bounds(s)->link_damping;
+    free(s);
+    for (size_t j = 0; j < m.def.links; j++)
+        m.link[j].damping = more;
+    for (size_t i = 0; i < m.def.particles; i++) {
+        m.velocity[3 * i] = -turns * (m.position[3 * i + 1] - 0.5);
+        m.velocity[3 * i + 1] = turns * (m.position[3 * i] - 0.5);
+        m.velocity[3 * i + 2] = 0;
+    }
+    s = scene_of(&m.def);
+    spring_scene *reference = scene_of(&m.def);
+    const uint64_t steps = 150, fine = steps * 600; /* dt G = 1.7 */
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, steps) == SPRING_OK &&
+              spring_scene_advance(reference, SPRING_RK4, (double)steps * dt / (double)fine, fine) == SPRING_OK,
+          "stable");
+    const double want = mean_strain(reference, &m);
+    CHECK_CLOSE(mean_strain(s, &m), want, 0.02 * want, "3.8 times for a splitting of leapfrog and damping");
+    CHECK(want > 0.005, "so that it shows");
+    free(s), free(reference);
+}
+
+#endif
+
+/* ------------------------------------------------------------------------------------------------------------ energy */
+
+/* A random net in motion, of any layout: links near their rest lengths, most of them damped, pinned particles at rest.
+   A link turns by about `turn` per step. Returns the step, a fraction of the stable step. */
+static double build_net(model *m, unsigned number, double fraction, double turn)
+{
+    static const uint32_t grids[][3] = {{4, 3, 1}, {6, 1, 1}, {9, 7, 1}, {3, 3, 3}, {40, 1, 1}};
+    const uint32_t axes = 2 + number % 2;
+    build(m, grids[number % 5], axes,
+          (number * 37) % feature_masks & (SHUFFLED | REVERSED | STRAY | PINNED | EDITABLE));
+    const double damping = random_log(1e-3, 1e5);
+    m->def.mass = m->mass;
+    m->def.mass_all = 0;
+    for (size_t i = 0; i < m->def.particles; i++)
+        m->mass[i] = random_log(0.1, 10);
+    double shortest = INFINITY;
+    for (size_t j = 0; j < m->def.links; j++) {
+        spring_link *l = &m->link[j];
+        double square = 0;
+        for (uint32_t a = 0; a < axes; a++)
+            square += pow(m->position[l->a * axes + a] - m->position[l->b * axes + a], 2);
+        l->rest = sqrt(square) * random_uniform(0.9, 1.1);
+        l->stiffness = random_log(1, 1000);
+        l->damping = random_bits() % 5 ? damping * random_log(1, 1000) : 0;
+        shortest = fmin(shortest, sqrt(square));
+    }
+    m->def.flags |= number / 2 % 2 ? SPRING_SCENE_TENSION_ONLY : 0u;
+    m->def.methods = 1u << SPRING_LEAPFROG;
+    spring_scene *s = scene_of(&m->def);
+    const double dt = fraction * fmin(spring_scene_stable_step(s, SPRING_LEAPFROG), 10);
+    free(s);
+    for (size_t i = 0; i < axes * m->def.particles; i++)
+        m->velocity[i] = pinned_in(&m->def, i / axes) ? 0 : turn * shortest / dt / sqrt(2) * random_uniform(-1, 1);
+    return dt;
+}
+
+/* The largest energy of a run relative to its start. */
+static double growth_of(const model *m, double dt, int steps)
+{
+    spring_scene *s = scene_of(&m->def);
+    const double start = total_energy(s);
+    double largest = start;
+    for (int i = 0; i < steps; i += 10) {
+        if (spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) != SPRING_OK)
+            largest = INFINITY;
+        largest = fmax(largest, total_energy(s));
+    }
+    free(s);
+    return largest / start;
+}
+
+/* SPRINGSTEP_SCENES=3000 SPRINGSTEP_STEPS=10000 in the environment: more of them, for longer. */
+static void damping_adds_no_energy(void)
+{
+    static model m;
+    const char *scenes = getenv("SPRINGSTEP_SCENES"), *steps = getenv("SPRINGSTEP_STEPS");
+    const int count = scenes != NULL ? atoi(scenes) : 100, length = steps != NULL ? atoi(steps) : 1000;
+    const struct {
+        double fraction, most, exceptions; /* links that are compressed to half exceed the stable step: scene.h */
+    } cases[] = {{0.5, 1.05, 0}, {0.9, 1.3, 0.01}};
+    for (int c = 0; c < 2; c++) {
+        double worst = 0;
+        int exponential = 0, grown = 0;
+        for (int number = 0; number < count; number++) {
+            const double dt = build_net(&m, (unsigned)number, cases[c].fraction, number / 4 % 2 ? 0.03 : 0.3);
+            spring_scene *s = scene_of(&m.def);
+            const bool beyond = dt * spring_scene_find_bounds(s)->link_damping > 0.4;
+            free(s);
+            const double growth = growth_of(&m, dt, length);
+            for (size_t j = 0; j < m.def.links; j++)
+                m.link[j].damping = 0;
+            const double undamped = growth_of(&m, dt, length);
+            if (!beyond || undamped > cases[c].most) /* the step is too long for this net even without damping */
+                continue;
+            exponential++;
+            worst = fmax(worst, growth);
+            grown += growth > cases[c].most;
+        }
+        printf("# dt %g of the bound: energy at most %.3f of the start in %d nets\n", cases[c].fraction, worst,
+               exponential);
+        CHECK(grown <= cases[c].exceptions * exponential, "damping adds no energy");
+        CHECK(exponential > count / 2, "most of these scenes use it");
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- contacts */
+
+/* A block of jelly on a plane, whose weight its links carry to the floor. */
+static spring_scene *block_on_plane(model *m, double damping, double friction, const double normal[3])
+{
+    const spring_grid g = {
+        .count = {4, 4, 4}, .spacing = 0.25 / 3, .families = 3, .stiffness = 4000, .damping = damping};
+    build(m, (uint32_t[]){4, 4, 4}, 3, 0);
+    size_t particles, links;
+    spring_grid_size(&g, &particles, &links);
+    spring_grid_fill(&g, m->position, NULL, m->link);
+    memset(m->velocity, 0, sizeof m->velocity);
+    m->def = (spring_scene_def){.particles = particles,
+                                .links = links,
+                                .position = m->position,
+                                .velocity = m->velocity,
+                                .link = m->link,
+                                .mass_all = 1.0 / 64,
+                                .gravity = {0, 0, -9.81},
+                                .colliders = 1,
+                                .methods = 1u << SPRING_LEAPFROG};
+    spring_scene *s = scene_of(&m->def);
+    const spring_collider plane = {
+        .shape = SPRING_PLANE, .axis = {{normal[0], normal[1], normal[2]}}, .friction = friction};
+    CHECK(spring_scene_set_colliders(s, &plane, 1) == SPRING_OK, "a plane");
+    return s;
+}
+
+/* It comes to rest where it does with light damping, with friction and without, and does not sink at any damping. */
+static void rests_as_without_damping(void)
+{
+    static model m;
+    const double up[] = {0, 0, 1}, dt = 0.0003;
+    static const double damping[] = {0.3, 6, 600};
+    for (int rough = 0; rough < 2; rough++) {
+        double top[3];
+        for (int i = 0; i < 3; i++) {
+            spring_scene *s = block_on_plane(&m, damping[i], rough ? 0.5 : 0, up);
+            static state y;
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 7000) == SPRING_OK, "stable");
+            CHECK(spring_scene_at_rest(s, 1e-3, sizeof(scalar) == 4 ? 0.3 : 0.02),
+                  "the forces on every particle are in balance");
+            get_state(s, m.def.particles, &y);
+            top[i] = 0;
+            for (size_t p = 0; p < m.def.particles; p++)
+                top[i] = fmax(top[i], y.x[3 * p + 2]);
+            CHECK_CLOSE(top[i], 0.2499, 1e-4, "the weight compresses it by 0.1 mm; it has not sunk into itself");
+            free(s);
+        }
+        for (int i = 1; i < 3; i++)
+            CHECK_CLOSE(top[i], top[0], 2e-5, "not quite to equal places: friction holds it where it stops");
+    }
+}
+
+/* On a slope it slides as a rigid body: with g (sin - mu cos), and not at all if friction is larger. */
+static void slides_down_a_slope(void)
+{
+    static model m;
+    const double slope = 0.3, up[] = {sin(slope), 0, cos(slope)}, dt = 0.0003;
+    const uint64_t third = 700;
+    static const double friction[] = {0, 0.2, 0.5};
+    for (int i = 0; i < 3; i++) {
+        spring_scene *s = block_on_plane(&m, 600, friction[i], up);
+        for (size_t p = 0; p < m.def.particles; p++) { /* stand on the slope */
+            const double x = m.position[3 * p], z = m.position[3 * p + 2];
+            m.position[3 * p] = x * cos(slope) + z * sin(slope);
+            m.position[3 * p + 2] = z * cos(slope) - x * sin(slope);
+        }
+        spring_scene_set(s, SPRING_POSITION, m.position, 0, 0, m.def.particles);
+        double speed[2] = {0}; /* after a third of the time, when it has settled, and at the end */
+        for (int part = 0; part < 2; part++) {
+            static state y;
+            CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, part == 0 ? third : 2 * third) == SPRING_OK, "stable");
+            get_state(s, m.def.particles, &y);
+            for (size_t p = 0; p < m.def.particles; p++)
+                speed[part] += (y.v[3 * p] * cos(slope) - y.v[3 * p + 2] * sin(slope)) / (double)m.def.particles;
+        }
+        const double accel = (speed[1] - speed[0]) / (2 * (double)third * dt);
+        CHECK_CLOSE(accel, fmax(0, 9.81 * (sin(slope) - friction[i] * cos(slope))), 0.003 * 9.81, "as a rigid body");
+        free(s);
+    }
+}
+
+int main(void)
+{
+    static const test tests[] = {
+        {"a step", plain_steps},
+        {"creep", creep},
+        {"turning", turning_dumbbell},
+#ifndef SPRING_FLOAT
+        {"spinning cloth", spinning_cloth},
+#endif
+        {"energy", damping_adds_no_energy},
+        {"rests on a floor", rests_as_without_damping},
+        {"slides down a slope", slides_down_a_slope},
+    };
+    return RUN_TESTS("scene_exponential_kick", tests);
+}
