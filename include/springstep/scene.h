@@ -116,8 +116,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
    it has no tension and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so
-   damping does not push either. (Exception: beyond the limit of explicit link damping, see spring_scene_advance(), the
-   damping of a taut link that becomes shorter may push.) Requires two or three axes. Leapfrog and RK4 have order 2
+   damping does not push either. (Exception: where leapfrog damps links by an exponential kick, see
+   spring_scene_advance(), the damping of a taut link that becomes shorter may push.) Requires two or three axes. Leapfrog and RK4 have order 2
    where a link becomes taut or slack. */
 #define SPRING_SCENE_TENSION_ONLY UINT32_C(8)
 
@@ -242,16 +242,21 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * is the acceleration by the forces of the first half kick and by the implicit drag at v*. Leapfrog is still second
  * order. Held forces act like gravity, in every kick and stage.
  *
- * Leapfrog with heavy link damping. Explicit link damping is stable for dt <= 2/(G + sqrt(G^2 + L)), with L and G as in
- * spring_scene_stable_step(). For a larger dt, one step is leapfrog without link damping for dt/2, link damping for dt,
- * and leapfrog without link damping for dt/2. Link damping for a time dt multiplies the velocities by the exponential
- * of -dt M^-1 C (M: masses, C: damping matrix of the links in their directions at dt/2), computed as a Chebyshev
- * series. Leapfrog is therefore stable for dt < 2/sqrt(L) at any link damping, and damping never adds energy. The step
- * has order 2 for dt G up to about 3. For larger dt G, motion that is strongly damped has an error of order 1: a link
- * that creeps at the rate stiffness/damping creeps faster by about dt stiffness/(2 mass), for one pinned end. A step
- * costs two force evaluations, and about 1.4 sqrt(dt G) evaluations of damping alone, each half as expensive as a force
- * evaluation. At most 12 500 evaluations of damping are made (single precision: 760). For dt G above 8e7 (single
- * precision: 3e5), damping therefore acts for a shorter time than dt.
+ * Leapfrog with heavy link damping. Explicit link damping is used for dt G <= 0.4 and dt D <= 0.9 (1 - dt^2 L/4), with L
+ * as in spring_scene_stable_step(). G is the same sum of the damping of links, and D = G plus the largest drag/mass. For
+ * a larger dt, a step is a drift for dt/2, one kick, and a drift for dt/2. The kick is v1 = v0 + dt p(dt Z) r, where r
+ * is the acceleration at the positions after the first drift and at v0, Z is the damping matrix of the links in their
+ * directions there, divided by the masses, and p(z) approximates (1 - e^-z)/z by a Chebyshev series. A correction for
+ * the rotation of links during the step is included. Leapfrog is therefore stable for dt < 2/sqrt(L) at any link
+ * damping, damping adds no energy, and a link that creeps does so at the rate stiffness/damping. The step has order 2
+ * for dt G up to about 3. Beyond, the order falls to 1 (tests/scene/test_damping.c). A step evaluates forces once, and
+ * damping alone once for dt G <= 0.6, and about 1.6 sqrt(dt G) times beyond. Positions, velocities and time are then the
+ * whole state: no force is kept. Callbacks are called at t + dt/2. A callback that may use velocities is called twice,
+ * with v0 and with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
+ *
+ * The damping of links saturates, so that dt G <= 30000 and at most 279 evaluations of damping are made: the damping of
+ * a link is reduced by the larger excess of its ends. Such a link relaxes no slower than in about 30000 dt^-2
+ * mass/stiffness steps.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
@@ -264,9 +269,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * needs fewer force evaluations than leapfrog, and about as many as RKN8. Drag is solved exactly together with the
  * drift, so the order is still 6.
  *
- * Force evaluations per step: one for both Euler methods and leapfrog (two with heavy link damping), four for RK4,
+ * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
  * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
- * next step. With damped links, leapfrog keeps the forces at v*. These forces are then part of the state, and a
+ * next step. With explicitly damped links, leapfrog keeps the forces at v*. These forces are then part of the state, and a
  * snapshot contains them. They are evaluated again, at v, after spring_scene_set() and spring_scene_transform(), after
  * a change of links, pins, masses, the callback or the velocity of a pinned particle, and after steps of another
  * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """spring-plan: methods and steps for an error and a duration."""
 import math
+import re
 
 import pytest
 from test_methods import SCENES, SPRINGS, TABLE
@@ -86,6 +87,15 @@ def test_a_scene(scene):
         assert float(row['measured_error']) <= 0.05
         assert float(row['uncertainty']) <= 0.05 / 20
         assert int(row['steps']) % 18 == 0, 'whole numbers of steps in a frame'
+
+
+@pytest.mark.parametrize('damping', ['0', '1e-4', '0.03', '1'])
+def test_cost_of_damped_links(damping):
+    text = run(PLAN, *f'--error 0.05 --duration 0.1 --size 6 --scene jelly --damping {damping}'.split()).stdout
+    said = re.findall(r'# damping: dt G = (\S+), .* damping alone (\d+) time', text)
+    assert len(said) == (damping != '0')
+    for reach, times in said:
+        assert int(times) in ([0, 1] if float(reach) <= 0.6 else [max(2, math.ceil(math.sqrt(2.6 * float(reach) + 1)) - 1)])
 
 
 def test_a_scene_that_a_method_is_not_for():

@@ -34,6 +34,10 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
 
 uint64_t plan_scene_frames(const plan_scene *s);
 
+/** How often a step of leapfrog evaluates the damping of links alone, in addition to the forces: see "Leapfrog with
+    heavy link damping" in scene.h. *reach: dt G. */
+unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach);
+
 /** The running time [s] of `steps` steps from the start of a scene, without setup: the shortest of two to ten runs. */
 double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps);
 

@@ -231,3 +231,29 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
         row.time = plan_time(s->preset, m, s->frame / (double)enough, enough * s->frames);
     return row;
 }
+
+unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach)
+{
+    const spring_scene_def *const def = &scene->def;
+    double *const sum = calloc(def->particles, sizeof *sum), largest = 0, drag = 0;
+    if (sum == NULL)
+        cli_fail(CLI_FAILED, "out of memory");
+    for (size_t i = 0; i < def->links; i++) {
+        const spring_link *const l = &def->link[i];
+        sum[l->a] += l->damping * (def->pinned != NULL && def->pinned[l->b] ? 1 : 2);
+        sum[l->b] += l->damping * (def->pinned != NULL && def->pinned[l->a] ? 1 : 2);
+    }
+    for (size_t i = 0; i < def->particles; i++) {
+        const double each = def->mass != NULL ? def->mass[i] : def->mass_all == 0 ? 1 : def->mass_all;
+        if (def->pinned != NULL && def->pinned[i])
+            continue;
+        largest = fmax(largest, sum[i] / each);
+        drag = fmax(drag, def->drag / each);
+    }
+    free(sum);
+    *reach = dt * largest;
+    const double part = dt / start_stable_step(scene, SPRING_LEAPFROG), saturated = fmin(*reach, 30000);
+    if (*reach == 0 || (*reach <= 0.4 && *reach + dt * drag <= 0.9 * (1 - part * part)))
+        return 0;
+    return saturated <= 0.6 ? 1 : (unsigned)fmax(3, ceil(sqrt(2.6 * saturated + 1))) - 1;
+}

@@ -84,7 +84,7 @@ static const cli_program program = {
                "accurate comes first. A comment states the recommendation. A method without a sufficient number of\n"
                "steps comes last, with 0 steps, because its rounding error would be too large or the runs would take\n"
                "too long. force_evaluations counts one evaluation per step for leapfrog in scenes. With heavily\n"
-               "damped links, a step takes two force evaluations, and evaluations of damping. time_s includes them.\n\n"
+               "damped links, a step also evaluates damping alone. A comment has the number. time_s includes it.\n\n"
                "With --presets: scene, method, error, substeps (per frame; 0: not known), dt_s, measured_error,\n"
                "uncertainty and stable_substeps (the fewest whose step is below the stable step; 0: none).\n\n"
                "With --sag: limit (scene or link, whose stretch is S or at most 0.1 % of S less), stiffness_N_per_m,\n"
@@ -368,10 +368,28 @@ static void say(cli_table *table)
                     steps);
 }
 
-static void write_plan(cli_table *table)
+/* Prints the cost of damped links in a step of leapfrog. */
+static void say_damping(cli_table *table, const preset *scene)
+{
+    for (int i = 0; i < row_count; i++) {
+        double reach;
+        if (rows[i].method != SPRING_LEAPFROG || !(rows[i].steps > 0))
+            continue;
+        const unsigned evaluations = plan_damping_evaluations(scene, rows[i].dt, &reach);
+        if (reach > 0)
+            cli_comment(
+                table,
+                "damping: dt G = %.3g, so a step of leapfrog evaluates the forces once and damping alone %u times",
+                reach, evaluations, evaluations == 1 ? "" : "s");
+    }
+}
+
+static void write_plan(cli_table *table, const preset *scene)
 {
     sort_rows();
     say(table);
+    if (scene != NULL)
+        say_damping(table, scene);
     cli_columns(table, program.columns);
     for (int i = 0; i < row_count; i++) {
         const plan_row *r = &rows[i];
@@ -425,7 +443,7 @@ static void write_spring(void)
     cli_table *table = cli_open_output();
     timing_stamp(table);
     plan_one_spring(&p);
-    write_plan(table);
+    write_plan(table, NULL);
 }
 
 static void write_sag(cli_table *table, preset *scene)
@@ -464,7 +482,7 @@ static void write_scene(void)
         write_sag(table, &scene);
     } else {
         plan_one_scene(&scene);
-        write_plan(table);
+        write_plan(table, &scene);
     }
     disturbances_free(poke);
     preset_clear(&scene);
