@@ -4,11 +4,13 @@
 
     declarations.py python OUTPUT INCLUDE-DIRECTORY - COMPILER...           the C source of springstep._native, by cffi
     declarations.py types OUTPUT INCLUDE-DIRECTORY - COMPILER...            its types, for type checkers
-    declarations.py lua OUTPUT INCLUDE-DIRECTORY TEMPLATE COMPILER...       springstep.lua
+    declarations.py lua OUTPUT INCLUDE-DIRECTORY TEMPLATE LUA-DIRECTORY LIBRARY-DIRECTORY COMPILER...   springstep.lua, and
+                                                               the directories to which it and the library are installed
 
 So a new function of a header is there by itself. What cffi takes for the size of a structure and the place of a field is
 checked against the compiler's when the module is compiled and loaded; for LuaJIT bindings/lua/test.lua does so.
 """
+import os
 import re
 import subprocess
 import sys
@@ -179,9 +181,11 @@ def types(include, _, compiler, output):
     output.write_text(TYPES + "\n".join(sorted(lines)) + "\n\nffi: FFI\nlib: Lib\n")
 
 
-def lua(include, template, compiler, output):
+def lua(include, template, directories_and_compiler, output):
+    module, library, *compiler = directories_and_compiler
     constants = "".join(f"\n  {name} = {value}," for name, value in numbers(include))
-    fields = {"DECLARATIONS": f"{declarations(include, compiler)}\nenum {{{constants}\n}};",
+    fields = {"LIBRARY_FOLDER": os.path.relpath(library, module).replace("\\", "/"),
+              "DECLARATIONS": f"{declarations(include, compiler)}\nenum {{{constants}\n}};",
               **dict(macros(include, '"(.*)"'))}
     output.write_text(re.sub(r"@(\w+)@", lambda field: fields[field[1]], Path(template).read_text()))
 

@@ -12,7 +12,7 @@ import springstep
 from scenes import rope
 
 PAGE = (Path(__file__).parents[3] / "docs/python.md").read_text()
-IN_C = {"numba": "numba", "ctypes": None, "cffi": None, "SciPy": "scipy"}  # and the package that it needs
+IN_C = {"numba": "numba", "ctypes": "ctypes", "cffi": "cffi", "SciPy": "scipy"}  # and the package that it needs
 
 
 def programs(language="python"):
@@ -40,8 +40,7 @@ def test_it_runs(heading, tmp_path):
 @pytest.mark.parametrize("heading", IN_C)
 def test_forces_in_c(heading, tmp_path, monkeypatch):
     """All have the bits of the same force in Python."""
-    if IN_C[heading]:
-        pytest.importorskip(IN_C[heading])
+    pytest.importorskip(IN_C[heading])
     monkeypatch.chdir(tmp_path)
     (tmp_path / "wind.c").write_text(dict(programs("c"))["numba"])
     subprocess.run(dict(programs("sh"))["numba"], shell=True, check=True)
