@@ -33,8 +33,15 @@ class LowLevelCallable(Protocol):
     def signature(self) -> str: ...
 
 
+class CFunc(Protocol):
+    """A function in C, as numba.cfunc returns it."""
+
+    @property
+    def native_name(self) -> str: ...
+
+
 #: A force in Python, or a C function of scene.h: numba.cfunc, scipy.LowLevelCallable, or a function of ctypes or cffi.
-AnyForce = Union[Force, LowLevelCallable]
+AnyForce = Union[Force, LowLevelCallable, CFunc]
 
 
 class PythonForce:

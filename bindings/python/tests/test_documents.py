@@ -11,14 +11,14 @@ import pytest
 import springstep
 from scenes import rope
 
-PAGE = (Path(__file__).parents[3] / "docs/python.md").read_text()
+PAGE = Path(__file__).parents[3] / "docs/python.md"
 IN_C = {"numba": "numba", "ctypes": "ctypes", "cffi": "cffi", "SciPy": "scipy"}  # and the package that it needs
 
 
 def programs(language="python"):
     """Yield (heading, program) of the page, each with the last heading or bold word before it."""
     heading = ""
-    for found in re.finditer(r"^## (.+)\n|^\*\*(.+?)\*\*|^```(\w+)\n((?:.*\n)*?)```", PAGE, re.M):
+    for found in re.finditer(r"^## (.+)\n|^\*\*(.+?)\*\*|^```(\w+)\n((?:.*\n)*?)```", PAGE.read_text(), re.M):
         heading = found[1] or found[2] or heading
         if found[3] == language:
             yield heading, found[4]
@@ -53,6 +53,43 @@ def test_forces_in_c(heading, tmp_path, monkeypatch):
     other = springstep.Scene.from_grid(cloth, mass=0.01, force=wind)
     other.advance(1 / 960, 480)
     assert (scene.position() == other.position()).all() and scene.time == other.time
+
+
+EXAMPLES = PAGE.parents[1] / "bindings/python/examples"
+DATA = PAGE.parent / "data/gallery"
+
+
+def columns(file):
+    header, *rows = [line.split("\t") for line in file.read_text().splitlines() if not line.startswith("#")]
+    return dict(zip(header, zip(*rows)))
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.py") if path.stem != "gallery"))
+def test_examples(name, tmp_path):
+    """They draw more than an empty frame, which takes a few kB, and data of the gallery are those that they write."""
+    pytest.importorskip("matplotlib")
+    program, picture, data = EXAMPLES / f"{name}.py", tmp_path / "picture.png", tmp_path / "data.tsv"
+    if not (DATA / f"{name}.tsv").exists():
+        subprocess.run([sys.executable, "-B", program, picture], check=True)
+    else:
+        subprocess.run([sys.executable, "-B", program, "--write", data], check=True)
+        subprocess.run([sys.executable, "-B", program, "--read", DATA / f"{name}.tsv", picture], check=True)
+        kept, now = columns(DATA / f"{name}.tsv"), columns(data)
+        assert [*kept] == [*now]
+        for values, others in zip(kept.values(), now.values()):
+            if re.search("[a-z]{3}", values[0]):
+                assert values == others
+            else:
+                old, new = np.array(values, float), np.array(others, float)
+                assert new == pytest.approx(old, rel=0, abs=1e-3 * np.ptp(old))
+    assert picture.stat().st_size > 20000
+
+
+def test_the_gallery_has_all_its_pictures():
+    page = (PAGE.parent / "gallery.md").read_text()
+    names = sorted(path.stem for path in DATA.glob("*.tsv"))
+    assert sorted(re.findall(r"\(pictures/gallery/(\w+)\.svg\)", page)) == names and len(names) >= 5
+    assert sorted(path.stem for path in (PAGE.parent / "pictures/gallery").iterdir()) == names
 
 
 def test_the_first_program():
