@@ -28,7 +28,7 @@ def springs() -> springstep.Batch[np.float64]:
 
 def measure(method: springstep.MethodName, steps: int, exact: springstep.Batch[np.float64]) -> tuple[float, float]:
     """[s] for one step of one spring, and the largest error [m], infinite where springs have blown up."""
-    least = np.inf
+    least, batch = np.inf, springs()
     for _ in range(3):
         batch = springs()
         start = time.perf_counter()

@@ -25,8 +25,8 @@ class Clock:
     def __init__(self, dt: float, max_steps: int = 8) -> None:
         if finite("dt", dt) <= 0:
             invalid("dt", dt)
-        self.dt = dt
-        self.max_steps = step_count(max_steps)
+        self.dt: float = dt
+        self.max_steps: int = step_count(max_steps)
         self._clock: Any = ffi.new("spring_clock *")
         self._alpha = ffi.new("double *")
 

@@ -51,7 +51,10 @@ class SpringError(Exception):
 
     def __init__(self, status: int, field: str | None = None, value: object = None, index: int | None = None,
                  reason: str | None = None) -> None:
-        self.status, self.field, self.value, self.index = status, field, value, index
+        self.status: int = status
+        self.field: str | None = field
+        self.value: object = value
+        self.index: int | None = index
         message = reason or _text(lib.spring_status_string(status))
         if field is not None:
             place = "" if index is None else f"[{index}]"

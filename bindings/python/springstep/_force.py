@@ -6,15 +6,12 @@ import ctypes
 import re
 import types
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, Union
+from typing import Any, Protocol, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from springstep._native import ffi, lib
-
-if TYPE_CHECKING:
-    from springstep._scene import Scene
 
 #: A force in Python: force(t, position, velocity, force) writes forces [N] to the array force[axis, particle], which starts
 #: at 0 and is added to the forces of links. It returns None. position[axis, particle] [m] and velocity[axis, particle] [m/s]
@@ -47,7 +44,7 @@ AnyForce = Union[Force, LowLevelCallable, CFunc]
 class PythonForce:
     """A force in Python, as C calls it."""
 
-    def __init__(self, function: Force, scene: Scene[Any]) -> None:
+    def __init__(self, function: Force, scene: Any) -> None:
         self.function, self.shape = function, (scene.axes, len(scene))
         self.unseen = scene._unseen_velocity
         self.memory = scene._memory.view(scene.dtype)
@@ -158,7 +155,7 @@ def _is_force(signature: str, number: str) -> bool:
     return result == "void" and user.endswith("*") and t == "double" and counts and arrays == [f"{number}**"] * 3
 
 
-def called_force(force: AnyForce, data: NDArray[Any] | None, scene: Scene[Any]) -> PythonForce | CForce:
+def called_force(force: AnyForce, data: NDArray[Any] | None, scene: Any) -> PythonForce | CForce:
     """Return a force as C calls it."""
     found = _function_in_c(force)
     if found is None:
