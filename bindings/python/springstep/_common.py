@@ -47,7 +47,7 @@ class SpringError(Exception):
     failed: NDArray[np.intp] | Sequence[int] = ()
     dt: float | None = None
     stable_step: float | None = None
-    recorded: tuple[NDArray[Any], ...] | None = None
+    recorded: tuple[NDArray[np.float64] | NDArray[np.float32], ...] | None = None
 
     def __init__(self, status: int, field: str | None = None, value: object = None, index: int | None = None,
                  reason: str | None = None) -> None:
@@ -64,7 +64,7 @@ class SpringError(Exception):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled with all fields, so that errors of worker processes arrive."""
-        kept = {name: getattr(self, name) for name in ("failed", "dt", "stable_step")}
+        kept = {name: getattr(self, name) for name in ("failed", "dt", "stable_step", "recorded")}
         return type(self), self._arguments, kept
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterable, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -51,14 +51,14 @@ def _bits(field: str, names: Iterable[str], known: Sequence[str]) -> int:
     return bits
 
 
-def grid(count: Sequence[int], spacing: float, stiffness: float, damping: float = 0.0, *,
+def grid(count: Iterable[SupportsIndex], spacing: float, stiffness: float, damping: float = 0.0, *,
          families: Iterable[Family] = ("structural",), pinned: Iterable[Face] = (), stretch: float = 1.0, axes: int = 3,
          height: bool = False) -> Grid:
     """Return the particles at the corners of a grid, and its links: a row is a rope, a layer a sheet, more a block.
 
     Parameters
     ----------
-    count : sequence of int
+    count : iterable of int
         One to three numbers, the particles along x, y and z. Particle (i, j, k) has index i + count[0] (j + count[1] k).
     spacing : float
         Distance from one particle to the next > 0 [m].
@@ -125,17 +125,20 @@ def _columns(links: Any) -> dict[str, NDArray[Any]]:
         except ValueError:
             raise ValueError("links: rows of different lengths") from None
     if names := links.dtype.names:
-        missing = [name for name in ("a", "b") if name not in names]
-        unknown = [name for name in names if name not in LINK.names]  # type: ignore[operator]
+        columns = {name: links[name] for name in names}
+        if (ends := columns.pop("ends", None)) is not None and ends.shape == (len(links), 2):
+            columns["a"], columns["b"] = ends.T
+        missing = [name for name in ("a", "b") if name not in columns]
+        unknown = [name for name in columns if name not in LINK.names]  # type: ignore[operator]
         if missing or unknown or links.ndim != 1:
             raise ValueError(f"links: missing fields {missing}, unknown fields {unknown}, shape {links.shape}")
-        return {name: links[name] for name in names}
+        return columns
     if links.dtype == object:
         return _columns(links.tolist())
     if links.size == 0:
         links = np.empty((0, 5))
     if links.dtype.kind not in "iuf" or links.ndim != 2 or links.shape[1] not in (2, 5):
-        raise ValueError(f"links: an array of {links.dtype} and shape {links.shape}, neither (links, 2), (links, 5) nor structured")
+        raise ValueError(f"links: an array of {links.dtype} and shape {links.shape}, not (links, 2), (links, 5) or structured")
     return dict(zip(_COLUMNS, links.T))
 
 

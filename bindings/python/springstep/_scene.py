@@ -93,7 +93,7 @@ class Scene(Generic[F]):
         [m], (particles, axes); (particles,) for one axis.
     links : array_like
         One row per link: (links, 5) with a, b, rest [m], stiffness [N/m] and damping [N s/m]; or (links, 2) with the indices
-        a and b of its particles; or a structured array with fields `a` and `b` and any of the others, such as `LINK`.
+        a and b of its particles; or a structured array with fields `a` and `b`, or `ends` for both, and any of the others.
     rest, stiffness, damping : array_like, optional
         What `links` does not have, for all links or for each. By default the rest length is the initial length, and
         the damping 0.

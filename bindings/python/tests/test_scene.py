@@ -154,6 +154,8 @@ VALUES = dict(zip(["rest", "stiffness", "damping"], zip(*[link[2:] for link in L
     (ENDS, VALUES), (np.array(ENDS), {**VALUES, "rest": 0.3, "stiffness": 2.7}), (np.array(ENDS, float), VALUES),
     (structured(["damping", "stiffness", "b", "rest", "a"]), {}), (list(structured(["damping", "stiffness", "b", "rest", "a"])), {}),
     (np.rec.array(structured(["damping", "stiffness", "b", "rest", "a"])), {}),
+    (np.array([(ends, *rest) for ends, rest in zip(ENDS, zip(*VALUES.values()))],
+              [("ends", int, 2), ("rest", float), ("stiffness", float), ("damping", float)]), {}),
     (structured(["b", "a"]), VALUES), (structured(["a", "b", "stiffness", "rest"]), {"damping": VALUES["damping"]}),
 ])
 def test_every_form_of_links_is_the_same_scene(links, values):
@@ -190,6 +192,7 @@ def test_what_links_do_not_have_follows_from_the_positions(axes):
     (np.array([True, False]), {}, ValueError, "links: an array of bool"),
     ([("0", "1")], {"stiffness": 1}, ValueError, "links: an array of <U1"),
     (structured(["a", "rest", "stiffness", "damping"]), {}, ValueError, r"links: missing fields \['b'\], unknown fields \[\]"),
+    (np.zeros(2, [("ends", int, 3)]), {}, ValueError, r"links: missing fields \['a', 'b'\]"),
     (structured(["a", "b", "k"]), {}, ValueError, r"links: missing fields \[\], unknown fields \['k'\]"),
     (structured(["a", "b", "k"], []), {}, ValueError, r"links: missing fields \[\], unknown fields \['k'\]"),
 ])
