@@ -45,7 +45,8 @@ def simulate() -> gallery.Table:
         while not scene.at_rest(1e-4, 0.5):
             scene.advance(dt, 2000)
         now = scene.position()
-        load = sum(-scene.tension(i) * (now[links[i][1]] - now[0])[0] / np.linalg.norm(now[links[i][1]] - now[0]) for i in (0, 1))
+        directions = (now[[1, 2]] - now[0]) / np.linalg.norm(now[[1, 2]] - now[0], axis=1, keepdims=True)
+        load = -scene.tension(0) * directions[0, 0] - scene.tension(1) * directions[1, 0]
         middle = [now[0], *(now[1:-1:2] + now[2:-1:2]) / 2, now[end]]
         rows += [(shortening, load, *point) for point in middle]
     columns = np.array(rows).T
@@ -68,7 +69,7 @@ def draw(table: gallery.Table) -> Figure:
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.4), layout="constrained", gridspec_kw={"width_ratios": [1.5, 1]})
     for shortening, colour in zip(SHAPES, gallery.COLOURS):
         own = np.isclose(table["shortening"], SHORTENINGS[np.abs(SHORTENINGS - shortening).argmin()])
-        left.plot(table["x_m"][own], np.abs(table["y_m"][own]), color=colour, label=f"shortened by {100 * table['shortening'][own][0]:.0f} %")
+        left.plot(table["x_m"][own], np.abs(table["y_m"][own]), color=colour, label=f"shortened by {100 * shortening:.0f} %")
     left.plot([0, 1], [0, 0], color="#767676", linewidth=1.2, label="straight")
     left.set(xlabel="x / m", ylabel="y / m", aspect="equal", ylim=(-0.04, 0.52))
     left.legend(loc="upper right", fontsize=9)

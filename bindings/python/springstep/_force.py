@@ -108,6 +108,7 @@ class CForce:
 
 
 def _ctypes_name(kind: Any) -> str:
+    """Return the name in C of a type of ctypes: double ** for LP_LP_c_double."""
     if kind is None or kind is ctypes.c_void_p:
         return "void" if kind is None else "void *"
     name: str = kind.__name__
@@ -116,13 +117,11 @@ def _ctypes_name(kind: Any) -> str:
 
 
 def _of_capsule(capsule: object) -> tuple[int, int, str | None]:
-    api = ctypes.pythonapi
-    api.PyCapsule_GetName.restype = ctypes.c_char_p
-    for function in (api.PyCapsule_GetPointer, api.PyCapsule_GetContext):
-        function.restype = ctypes.c_void_p
-    name = api.PyCapsule_GetName(ctypes.py_object(capsule))
-    address = api.PyCapsule_GetPointer(ctypes.py_object(capsule), ctypes.c_char_p(name))
-    return address, api.PyCapsule_GetContext(ctypes.py_object(capsule)) or 0, name and name.decode()
+    """Return the address, the context and the name of a PyCapsule, as SciPy stores a function."""
+    name = ctypes.PYFUNCTYPE(ctypes.c_char_p, ctypes.py_object)(("PyCapsule_GetName", ctypes.pythonapi))(capsule)
+    pointer = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)(("PyCapsule_GetPointer", ctypes.pythonapi))
+    context = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object)(("PyCapsule_GetContext", ctypes.pythonapi))
+    return pointer(capsule, name), context(capsule) or 0, name and name.decode()
 
 
 def _function_in_c(force: Any) -> tuple[int, int, str | None] | None:
@@ -150,8 +149,9 @@ def _is_force(signature: str, number: str) -> bool:
     if len(arguments) != 6:
         return False
     user, t, particles, *arrays = arguments
-    count = getattr(ctypes, f"c_{re.sub('unsigned', 'u', particles).removesuffix('_t')}", None)
-    counts = particles in ("size_t", "uintptr_t") or count is not None and count(-1).value == ctypes.c_size_t(-1).value
+    count = particles.replace("unsigned", "u").removesuffix("_t")
+    counts = count in ("size", "uintptr") or (
+        count.startswith("u") and ctypes.sizeof(getattr(ctypes, f"c_{count}", ctypes.c_byte)) == ctypes.sizeof(ctypes.c_size_t))
     return result == "void" and user.endswith("*") and t == "double" and counts and arrays == [f"{number}**"] * 3
 
 

@@ -147,6 +147,8 @@ def joined(links: Any, position: NDArray[np.float64] | None, **given: ArrayLike 
     columns = links if isinstance(links, dict) else _columns(links)
     count = len(columns["a"])
     result = np.zeros(count, LINK)
+    if count == 0:
+        return result
     for name in ("a", "b"):
         ends = columns[name]
         if (fractions := np.flatnonzero(~np.equal(np.floor(ends), ends))).size:

@@ -422,10 +422,12 @@ class Scene(Generic[F]):
 
         Parameters
         ----------
-        dt, steps, method
+        dt, steps
             As in `advance`, with bit-identical results.
         every : int, optional
             Number of steps from one recorded frame to the next; None: 1. The start and the end are always recorded.
+        method : str
+            As in `advance`.
         velocities : bool
             Also record velocities.
         progress : callable, optional

@@ -382,6 +382,8 @@ def test_user_data_of_scipy(library):
     ("void(*)(void *, double, size_t, double *, double *, double *)", False),
     ("void(*)(void *, float, size_t, double **, double **, double **)", False),
     ("void(*)(void *, double, int, double **, double **, double **)", False),
+    ("void(*)(void *, double, char, double **, double **, double **)", False),
+    ("void(*)(void *, double, uint16_t, double **, double **, double **)", False),
     ("void(*)(long, double, size_t, double **, double **, double **)", False),
     ("int(*)(void *, double, size_t, double **, double **, double **)", False),
     ("void *", False),

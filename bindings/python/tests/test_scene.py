@@ -171,7 +171,7 @@ def test_what_links_do_not_have_follows_from_the_positions(axes):
     for i, (a, b) in enumerate(edges):
         assert scene.link(i) == (a, b, pytest.approx(np.linalg.norm(position[b] - position[a]), rel=1e-15), 10 * (i + 1), 0)
     assert scene.at_rest(0, 1e-12)
-    assert Scene(position, []).links == Scene(position, np.empty((0, 2))).links == 0
+    assert Scene(position, []).links == Scene(position, np.empty((0, 2)), stiffness=3).links == Scene(position, (), rest=[]).links == 0
 
 
 @pytest.mark.parametrize("links, values, kind, named", [

@@ -127,9 +127,11 @@ def test_processes():
 
 
 @pytest.mark.parametrize("kind, named, options", [
-    (TypeError, "measure: ", {"measure": ()}), (TypeError, "measure: ", {"measure": "steps"}), (TypeError, "measure: ", {"measure": {"a": 1}}),
+    (TypeError, "measure: ", {"measure": ()}), (TypeError, "measure: ", {"measure": "steps"}),
+    (TypeError, "measure: ", {"measure": {"a": 1}}),
     (springstep.InvalidError, "method = 'verlet': not one of euler, ", {"methods": "verlet"}),
-    (springstep.InvalidError, "over = 'size=1:2'", {"over": {"size": "1:2"}}), (springstep.InvalidError, "processes = 0", {"processes": 0}),
+    (springstep.InvalidError, "over = 'size=1:2'", {"over": {"size": "1:2"}}),
+    (springstep.InvalidError, "processes = 0", {"processes": 0}),
     (TypeError, ".*unexpected keyword argument 'length'", {"over": {"length": 2}}),
 ])
 def test_what_own_scenes_refuse(kind, named, options):

@@ -2,6 +2,7 @@
 """A user's program for type checkers, which must accept it, and reject the lines that have an ignored error. It also runs."""
 from __future__ import annotations
 
+import ctypes
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -34,8 +35,8 @@ def sheet(stiffness: float) -> Scene[np.float64]:
 
 grid = springstep.grid((5, 5), spacing=0.1, stiffness=300)
 assert_type(grid.position, Doubles)
-scene = Scene(grid.position, grid.links, pinned=grid.pinned, mass=0.01, gravity=[0, 0, -9.81], force=wind, editable=True, colliders=2,
-              held_forces=True)
+scene = Scene(grid.position, grid.links, pinned=grid.pinned, mass=0.01, gravity=[0, 0, -9.81], force=wind, editable=True,
+              colliders=2, held_forces=True)
 assert_type(scene, Scene[np.float64])
 assert_type(scene.position(), Doubles)
 assert_type(scene.time, float)
@@ -76,7 +77,14 @@ state = ffi.new("spring_state *", [1, 0])
 assert_type(lib.spring_energy(state, ffi.new("spring_params *", [1, 40, 0, 0])), float)
 assert_type(lib.SPRING_OK, int)
 
+if TYPE_CHECKING:  # forces in C
+    scene.set_force(ctypes.CDLL("./wind.so").wind, np.zeros(3))
+    scene.set_force(ctypes.CFUNCTYPE(None, ctypes.c_void_p)())
+    scene.set_force(ffi.cast("spring_scene_force_fn *", 0))
+
 if TYPE_CHECKING:  # each line is an error
+    scene.set_force(3)  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
+    Scene.from_grid(grid, force=lambda t, x: None)  # type: ignore[arg-type, misc]  # pyright: ignore
     scene.advance(0.01, method="verlet")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     scene.advance("0.01")  # type: ignore[arg-type]  # pyright: ignore[reportArgumentType]
     Scene(*grid)  # type: ignore[call-overload]  # pyright: ignore[reportCallIssue, reportArgumentType]
