@@ -7,18 +7,20 @@ access to the C functions with cffi.
 """
 from springstep._batch import Batch
 from springstep._clock import Clock
-from springstep._common import (InvalidError, Method, NonFiniteError, RangeError, SpringError, UnstableError,
-                                UnsupportedError, methods, self_test)
+from springstep._colliders import Collider, box, capsule, plane, sphere
+from springstep._common import (InvalidError, Method, MethodName, NonFiniteError, RangeError, SpringError, UnstableError,
+                                UnsupportedError, _text, methods, self_test)
+from springstep._force import Force
+from springstep._links import LINK, Grid, components, grid
 from springstep._native import ffi, lib
-from springstep._scene import (LINK, Collider, Energies, Grid, Scene, Snapshot, box, capsule, components, grid, plane,
-                               sphere)
+from springstep._scene import Energies, Scene, Snapshot
 from springstep._spring import Spring
 from springstep._sweep import sweep
 
-__version__: str = ffi.string(lib.spring_version()).decode()
+__version__ = _text(lib.spring_version())
 
 __all__ = [
-    "Batch", "Clock", "Collider", "Energies", "Grid", "InvalidError", "LINK", "Method", "NonFiniteError",
+    "Batch", "Clock", "Collider", "Energies", "Force", "Grid", "InvalidError", "LINK", "Method", "MethodName", "NonFiniteError",
     "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "UnstableError", "UnsupportedError", "box", "capsule",
     "components", "ffi", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep",
 ]

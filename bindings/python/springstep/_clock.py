@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from springstep._common import finite, invalid, step_count
 from springstep._native import ffi, lib
@@ -11,23 +12,38 @@ from springstep._native import ffi, lib
 class Clock:
     """Divides frames of variable duration into fixed steps.
 
-    dt: length of a step > 0 [s]
-    max_steps: largest number of steps per frame; further whole steps are dropped
+    Parameters
+    ----------
+    dt : float
+        Length of a step > 0 [s].
+    max_steps : int
+        Largest number of steps per frame; further whole steps are dropped.
     """
 
-    def __init__(self, dt: float, max_steps: int = 8):
+    __slots__ = ("dt", "max_steps", "_clock", "_alpha", "__weakref__")
+
+    def __init__(self, dt: float, max_steps: int = 8) -> None:
         if finite("dt", dt) <= 0:
             invalid("dt", dt)
-        self.dt = dt
-        self.max_steps = step_count(max_steps)
-        self._clock = ffi.new("spring_clock *")
+        self.dt: float = dt
+        self.max_steps: int = step_count(max_steps)
+        self._clock: Any = ffi.new("spring_clock *")
         self._alpha = ffi.new("double *")
 
     def tick(self, frame_dt: float) -> tuple[int, float]:
-        """Add a frame of frame_dt >= 0 [s].
+        """Add a frame.
 
-        Returns the number of steps to take now, and alpha in [0, 1): the remaining fraction of a step, for interpolation
-        between the last two states.
+        Parameters
+        ----------
+        frame_dt : float
+            Duration of the frame >= 0 [s].
+
+        Returns
+        -------
+        steps : int
+            Number of steps to take now.
+        alpha : float
+            In [0, 1): the remaining fraction of a step, for interpolation between the last two states.
         """
         if finite("frame_dt", frame_dt) < 0:
             invalid("frame_dt", frame_dt)
@@ -39,28 +55,34 @@ class Clock:
     @property
     def pending(self) -> float:
         """[s] time carried over to the next frame; always less than one step"""
-        return self._clock.pending
+        return float(self._clock.pending)
 
     @property
     def dropped(self) -> float:
         """[s] total time dropped because frames required more than max_steps steps"""
-        return self._clock.dropped
+        return float(self._clock.dropped)
 
     @property
     def skipped(self) -> float:
         """[s] time that the last tick dropped, usually 0"""
-        return self._clock.skipped
+        return float(self._clock.skipped)
 
     def snapshot(self) -> tuple[float, float]:
-        """pending and dropped, for restore()."""
+        """Return pending and dropped time, for `restore`."""
         return self.pending, self.dropped
 
     def restore(self, snapshot: tuple[float, float]) -> None:
-        """Return to a snapshot."""
+        """Return to a snapshot.
+
+        Parameters
+        ----------
+        snapshot : tuple of float
+            See `snapshot`.
+        """
         self._clock.pending, self._clock.dropped = snapshot
         self._clock.skipped = 0
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent clocks."""
         return Clock, (self.dt, self.max_steps), self.snapshot()
 

@@ -5,41 +5,71 @@ from __future__ import annotations
 import math
 import operator
 import threading
-from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple, NoReturn, TypeVar
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from springstep._native import ffi, lib
+
+#: Names of methods, see methods().
+MethodName = Literal["euler", "symplectic-euler", "leapfrog", "rk4", "srkn6", "rkn8", "exact"]
+
+
+def _text(characters: Any) -> str:
+    """Return a string of C."""
+    text: bytes = ffi.string(characters)
+    return text.decode()
 
 
 class SpringError(Exception):
     """An error of the library.
 
-    status: status of the C function, such as lib.SPRING_EINVAL
-    field: name of the argument or field that is invalid, such as "mass" or "link.a", or None
-    value: the invalid value
-    index: of the particle, link or spring; None where there are not many
-    failed: of a batch, the indices of the springs that have kept their state
+    Attributes
+    ----------
+    status : int
+        Status of the C function, such as ``lib.SPRING_EINVAL``.
+    field : str or None
+        Name of the invalid argument or field, such as ``"mass"`` or ``"link.a"``.
+    value : object
+        The invalid value.
+    index : int or None
+        Index of the particle, link or spring.
+    failed : sequence of int
+        Of a batch: indices of the springs that have kept their state.
+    dt, stable_step : float or None
+        Of a step that failed: its length and the stable step of its method [s].
+    recorded : tuple or None
+        Of `Scene.run`: the frames before the error, as `run` returns them.
     """
 
-    failed: Sequence[int] = ()
+    failed: NDArray[np.intp] | Sequence[int] = ()
+    dt: float | None = None
+    stable_step: float | None = None
+    recorded: tuple[NDArray[np.float64] | NDArray[np.float32], ...] | None = None
 
-    def __init__(self, status: int, field: str | None = None, value: Any = None, index: int | None = None,
-                 reason: str | None = None):
-        self.status, self.field, self.value, self.index = status, field, value, index
-        message = reason or ffi.string(lib.spring_status_string(status)).decode()
+    def __init__(self, status: int, field: str | None = None, value: object = None, index: int | None = None,
+                 reason: str | None = None) -> None:
+        self.status: int = status
+        self.field: str | None = field
+        self.value: object = value
+        self.index: int | None = index
+        message = reason or _text(lib.spring_status_string(status))
         if field is not None:
             place = "" if index is None else f"[{index}]"
             message = f"{field}{place} = {value!r}: {message}"
         super().__init__(message)
         self._arguments = status, field, value, index, reason
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         """Pickled with all fields, so that errors of worker processes arrive."""
-        return type(self), self._arguments, {"failed": self.failed}
+        kept = {name: getattr(self, name) for name in ("failed", "dt", "stable_step", "recorded")}
+        return type(self), self._arguments, kept
 
 
 class InvalidError(SpringError, ValueError):
-    """Bad input: the field and its value are named."""
+    """Invalid input, with its field and value."""
 
 
 class RangeError(SpringError, IndexError):
@@ -55,7 +85,7 @@ class UnstableError(NonFiniteError):
 
 
 class UnsupportedError(SpringError):
-    """Not supported for this kind of system, or not enabled when it was made."""
+    """Not supported for this kind of system, or not enabled when it was created."""
 
 
 _CLASSES = {
@@ -68,26 +98,38 @@ _CLASSES = {
 }
 
 
-def fail(status: int, field: str | None = None, value: Any = None, index: int | None = None) -> NoReturn:
-    """Raise what belongs to a status."""
+def fail(status: int, field: str | None = None, value: object = None, index: int | None = None) -> NoReturn:
+    """Raise the exception of a status."""
     raise _CLASSES.get(status, SpringError)(status, field, value, index)
 
 
-def invalid(field: str, value: Any, index: int | None = None, reason: str | None = None) -> NoReturn:
-    """Raise InvalidError. The reason says what was expected, where the name of the field does not."""
+def invalid(field: str, value: object, index: int | None = None, reason: str | None = None) -> NoReturn:
+    """Raise InvalidError. The reason states what was expected, where the name of the field does not."""
     raise InvalidError(lib.SPRING_EINVAL, field, value, index, reason)
 
 
+def fail_step(status: int, dt: float, method: str, stable_step: float, field: str = "dt", value: object = None,
+              index: int | None = None) -> NoReturn:
+    """Raise the exception of a step that failed, with its length and the stable step."""
+    reason = f"{_text(lib.spring_status_string(status))} (dt {dt!r} s, stable step of {method} {stable_step!r} s)"
+    error = _CLASSES[status](status, field, dt if field == "dt" else value, index, reason)
+    error.dt, error.stable_step = dt, stable_step
+    raise error
+
+
 Result = TypeVar("Result")
+Name = TypeVar("Name", bound=str)
 
 
 class Guard:
-    """Keeps the calls on one object apart, which C does not do and which run without Python's global lock.
+    """Separates the calls on one object, which run without Python's global lock.
 
     Short calls of several threads wait for each other. While a long call runs, every other call raises RuntimeError.
     """
 
-    def __init__(self, refusal: str):
+    __slots__ = ("_refusal", "_lock", "_busy")
+
+    def __init__(self, refusal: str) -> None:
         self._refusal = refusal
         self._lock = threading.RLock()  # a signal handler may call again, between the instructions of a short call
         self._busy = False
@@ -116,22 +158,23 @@ class Guard:
 
 
 class Method(NamedTuple):
-    """What there is to know of a method."""
+    """Properties of a method."""
 
-    name: str
-    label: str  #: as in a text: "RK4"
-    order: int  #: error C dt^order; 0: no error but rounding
-    forces_per_step: int  #: evaluations; of scenes without forces that depend on velocities
+    name: MethodName  #: for the functions of this package
+    label: str  #: for texts: "RK4"
+    order: int  #: error C dt^order; 0: exact, except for rounding error
+    forces_per_step: int  #: force evaluations; of scenes without forces that depend on velocities
     symplectic: bool  #: without damping: bounded energy error of smooth motion over any time
-    springs: bool  #: offered for one spring and batches
-    scenes: bool  #: offered for scenes
+    springs: bool  #: available for single springs and batches
+    scenes: bool  #: available for scenes
     positions_only: bool  #: not for scenes with damped links or with a force that may use velocities
 
 
 def _describe(number: int) -> Method:
-    info = lib.spring_method_describe(number)
-    text = {field: ffi.string(getattr(info, field)).decode() for field in ("name", "label")}
-    return Method(**text, **{field: getattr(info, field) for field in Method._fields if field not in text})
+    info: Any = lib.spring_method_describe(number)
+    fields = [getattr(info, field) for field in Method._fields]
+    texts: list[Any] = [field if isinstance(field, int) else _text(field) for field in fields]
+    return Method(*texts)
 
 
 _NUMBERS = {}
@@ -142,34 +185,34 @@ for _place in range(lib.SPRING_METHOD_COUNT):
 
 
 def methods() -> tuple[Method, ...]:
-    """The methods, in the order in which tables show them."""
+    """Return the methods, in the order of tables."""
     return tuple(_METHODS)
 
 
-def method_number(name: str) -> int:
-    """The number of a method in C."""
+def method_number(name: MethodName) -> int:
+    """Return the number of a method in C."""
     if name not in _NUMBERS:
-        invalid("method", name)
+        invalid("method", name, reason=f"not one of {', '.join(_NUMBERS)}")
     return _NUMBERS[name]
 
 
-def names_of(field: str, names: Any) -> tuple[str, ...]:
+def names_of(field: str, names: Iterable[Name]) -> tuple[Name, ...]:
     """The names in a list of names: a string is not taken for the list of its letters."""
     if isinstance(names, str):
         invalid(field, names, reason=f"not a list of names, such as [{names!r}]")
     return tuple(names)
 
 
-def springs_method(name: str) -> int:
-    """The number of a method that is offered for one spring and batches."""
+def springs_method(name: MethodName) -> int:
+    """Return the number of a method for single springs and batches."""
     number = method_number(name)
-    if not lib.spring_method_describe(number).springs:
+    if not next(method for method in _METHODS if method.name == name).springs:
         fail(lib.SPRING_EUNSUPPORTED, "method", name)
     return number
 
 
 def step_count(steps: int) -> int:
-    """A number of steps that C can count."""
+    """Return a number of steps that C can count."""
     steps = operator.index(steps)
     if not 0 <= steps < 2**64:
         invalid("steps", steps)
@@ -177,13 +220,19 @@ def step_count(steps: int) -> int:
 
 
 def finite(field: str, value: float) -> float:
-    """A number that is finite."""
+    """Return a finite number."""
     if not math.isfinite(value):
         invalid(field, value)
     return value
 
 
 def self_test() -> None:
-    """Has the library the arithmetic here that its bits depend on? SpringError if not."""
+    """Check that the floating-point environment of this thread gives reproducible results.
+
+    Raises
+    ------
+    SpringError
+        If it does not.
+    """
     if status := lib.spring_self_test():
         fail(status)

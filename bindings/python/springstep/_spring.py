@@ -4,49 +4,73 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any
+from typing import Any, overload
 
-from springstep._common import fail, finite, invalid, method_number, springs_method, step_count
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from springstep._common import MethodName, fail, fail_step, finite, invalid, method_number, springs_method, step_count
 from springstep._native import ffi, lib
 
 
-def _state(field: str, doc: str) -> property:
-    return property(lambda self: getattr(self._state, field), lambda self, to: setattr(self._state, field, to), doc=doc)
+class _Number:
+    """A number of the state or the parameters of a spring, as an attribute."""
 
+    def __init__(self, part: str, name: str, doc: str) -> None:
+        self.part, self.name, self.__doc__ = part, name, doc
 
-def _parameter(field: str, doc: str) -> property:
-    return property(lambda self: getattr(self._params, field), lambda self, to: setattr(self._params, field, to), doc=doc)
+    @overload
+    def __get__(self, spring: None, owner: type[Spring]) -> _Number: ...
+
+    @overload
+    def __get__(self, spring: Spring, owner: type[Spring]) -> float: ...
+
+    def __get__(self, spring: Spring | None, owner: type[Spring]) -> float | _Number:
+        return self if spring is None else getattr(getattr(spring, self.part), self.name)
+
+    def __set__(self, spring: Spring, value: float) -> None:
+        setattr(getattr(spring, self.part), self.name, value)
 
 
 class Spring:
     """One spring: mass x'' = load - stiffness x - damping x'.
 
-    stiffness: [N/m] >= 0; 0 is a free particle
-    mass: [kg] > 0
-    damping: [N s/m] >= 0; critical at 2 sqrt(mass stiffness)
-    load: [N] a force held constant over the step
-    x: [m] displacement from the unloaded rest position; with follow() the value itself
-    v: [m/s] velocity
+    All parameters are attributes. They may be changed at any time, and are checked where they are used.
 
-    All may be changed at any time, and are checked where they are used.
+    Parameters
+    ----------
+    stiffness : float
+        [N/m] >= 0; 0 is a free particle.
+    mass : float
+        [kg] > 0.
+    damping : float
+        [N s/m] >= 0; critical at 2 sqrt(mass stiffness).
+    load : float
+        Force [N], constant during a step.
+    x : float
+        Displacement from the unloaded rest position [m]; with `follow` the value itself.
+    v : float
+        Velocity [m/s].
     """
 
-    x = _state("x", "[m] displacement from the unloaded rest position")
-    v = _state("v", "[m/s] velocity, at the same time as x")
-    mass = _parameter("mass", "[kg] > 0")
-    stiffness = _parameter("stiffness", "[N/m] >= 0; 0 is a free particle")
-    damping = _parameter("damping", "[N s/m] >= 0; critical at 2 sqrt(mass stiffness)")
-    load = _parameter("load", "[N] a force held constant over the step")
+    __slots__ = ("_params", "_state", "__weakref__")
+
+    x: _Number = _Number("_state", "x", "[m] displacement from the unloaded rest position")
+    v: _Number = _Number("_state", "v", "[m/s] velocity, at the same time as x")
+    mass: _Number = _Number("_params", "mass", "[kg] > 0")
+    stiffness: _Number = _Number("_params", "stiffness", "[N/m] >= 0; 0 is a free particle")
+    damping: _Number = _Number("_params", "damping", "[N s/m] >= 0; critical at 2 sqrt(mass stiffness)")
+    load: _Number = _Number("_params", "load", "[N] a force, constant during a step")
 
     def __init__(self, stiffness: float, mass: float = 1.0, damping: float = 0.0, load: float = 0.0, *,
-                 x: float = 0.0, v: float = 0.0):
+                 x: float = 0.0, v: float = 0.0) -> None:
         self._params = ffi.new("spring_params *", [mass, stiffness, damping, load])
         self._state = ffi.new("spring_state *", [x, v])
         self._check_parameters()
 
     @classmethod
     def _made(cls, params: Any, x: float, v: float, *arguments: tuple[str, float, bool]) -> Spring:
-        """The spring of parameters that C has made; if it has refused the arguments, the first that is not good is named."""
+        """Return a spring of parameters that C has made. If C has refused its arguments, the first invalid one is named."""
         for field, value, good in arguments if math.isnan(params.mass) else ():
             if not good:
                 invalid(field, value)
@@ -54,35 +78,84 @@ class Spring:
 
     @classmethod
     def hertz(cls, hertz: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
-        """A spring of 1 kg from its undamped frequency >= 0 [Hz] and its damping ratio >= 0; 1 is critical."""
-        return cls._made(lib.spring_params_hertz(hertz, damping_ratio), x, v, ("damping_ratio", damping_ratio, 0 <= damping_ratio < math.inf),
-                         ("hertz", hertz, False))
+        """Return a spring of 1 kg from a frequency.
+
+        Parameters
+        ----------
+        hertz : float
+            Undamped frequency >= 0 [Hz].
+        damping_ratio : float
+            >= 0; 1 is critical.
+        x, v : float
+            As in `Spring`.
+        """
+        return cls._made(lib.spring_params_hertz(hertz, damping_ratio), x, v,
+                         ("damping_ratio", damping_ratio, 0 <= damping_ratio < math.inf), ("hertz", hertz, False))
 
     @classmethod
     def half_life(cls, half_life: float, damping_ratio: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
-        """A spring of 1 kg from the time in which its envelope halves > 0 [s] and its damping ratio > 0."""
-        return cls._made(lib.spring_params_half_life(half_life, damping_ratio), x, v, ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
-                         ("half_life", half_life, False))
+        """Return a spring of 1 kg from a half-life.
+
+        Parameters
+        ----------
+        half_life : float
+            Time in which the envelope halves > 0 [s].
+        damping_ratio : float
+            > 0; 1 is critical.
+        x, v : float
+            As in `Spring`.
+        """
+        return cls._made(lib.spring_params_half_life(half_life, damping_ratio), x, v,
+                         ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf), ("half_life", half_life, False))
 
     @classmethod
     def response(cls, response: float, damping_fraction: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
-        """A spring of 1 kg from a response > 0 [s] and a damping fraction >= 0, as in SwiftUI."""
-        return cls._made(lib.spring_params_response(response, damping_fraction), x, v, ("damping_fraction", damping_fraction, 0 <= damping_fraction < math.inf),
+        """Return a spring of 1 kg from a response, as in SwiftUI.
+
+        Parameters
+        ----------
+        response : float
+            > 0 [s].
+        damping_fraction : float
+            >= 0; 1 is critical.
+        x, v : float
+            As in `Spring`.
+        """
+        return cls._made(lib.spring_params_response(response, damping_fraction), x, v,
+                         ("damping_fraction", damping_fraction, 0 <= damping_fraction < math.inf),
                          ("response", response, False))
 
     @classmethod
     def bounce(cls, duration: float, bounce: float, *, x: float = 0.0, v: float = 0.0) -> Spring:
-        """A spring of 1 kg from a duration > 0 [s] and a bounce, -1 < bounce <= 1, as in SwiftUI."""
+        """Return a spring of 1 kg from a duration and a bounce, as in SwiftUI.
+
+        Parameters
+        ----------
+        duration : float
+            > 0 [s].
+        bounce : float
+            -1 < bounce <= 1.
+        x, v : float
+            As in `Spring`.
+        """
         return cls._made(lib.spring_params_bounce(duration, bounce), x, v, ("bounce", bounce, -1 < bounce <= 1),
                          ("duration", duration, False))
 
     @classmethod
     def settling(cls, time: float, damping_ratio: float, tolerance: float = 1e-3, *, x: float = 0.0,
                  v: float = 0.0) -> Spring:
-        """A spring of 1 kg from its settling time > 0 [s] and its damping ratio > 0.
+        """Return a spring of 1 kg from a settling time.
 
-        Released at rest, it stays within tolerance times the initial distance from the target from then on;
-        0 < tolerance < 1.
+        Parameters
+        ----------
+        time : float
+            Settling time > 0 [s]. A spring that is released at rest then stays within the tolerance.
+        damping_ratio : float
+            > 0; 1 is critical.
+        tolerance : float
+            Distance from the target, relative to the initial distance, between 0 and 1.
+        x, v : float
+            As in `Spring`.
         """
         return cls._made(lib.spring_params_settling(time, damping_ratio, tolerance), x, v,
                          ("damping_ratio", damping_ratio, 0 < damping_ratio < math.inf),
@@ -102,8 +175,24 @@ class Spring:
                 invalid(field, getattr(self, field))
         fail(lib.SPRING_EINVAL)
 
-    def advance(self, dt: float, steps: int = 1, method: str = "leapfrog") -> None:
-        """Advance by a number of steps of dt [s]; a negative dt integrates backwards. An error changes nothing."""
+    def advance(self, dt: float, steps: int = 1, method: MethodName = "leapfrog") -> None:
+        """Advance by a number of steps. After an error the spring is unchanged.
+
+        Parameters
+        ----------
+        dt : float
+            Length of a step [s]; a negative step integrates backwards.
+        steps : int
+            Number of steps.
+        method : str
+            Name of the method, see `methods`.
+
+        Raises
+        ------
+        NonFiniteError
+            If the state would become infinite or NaN. The attributes `dt` and `stable_step` of the exception tell whether the
+            step was too long.
+        """
         number = method_number(method)
         status = lib.spring_advance(self._state, self._params, number, dt, step_count(steps))
         if status == lib.SPRING_EINVAL:
@@ -111,18 +200,47 @@ class Spring:
             finite("x", self.x)
             finite("v", self.v)
             self._check_parameters()
+        if status == lib.SPRING_ENONFINITE:
+            fail_step(status, dt, method, self.stable_step(method))
         if status:
             fail(status, "method" if status == lib.SPRING_EUNSUPPORTED else None, method)
 
+    def at(self, times: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return displacements and velocities at any times, by the exact solution. The spring is unchanged.
+
+        Parameters
+        ----------
+        times : array_like
+            [s] from now; negative times are in the past.
+
+        Returns
+        -------
+        x, v : ndarray
+            [m] and [m/s], of the shape of `times`, bit-identical to ``advance(time, 1, "exact")``.
+        """
+        t = np.asarray(times, np.float64)
+        x, v = np.empty(t.shape), np.empty(t.shape)
+        spring = Spring(self.stiffness, self.mass, self.damping, self.load)
+        for index, time in enumerate(t.flat):
+            spring.restore((self.x, self.v))
+            spring.advance(float(time), 1, "exact")
+            x.flat[index], v.flat[index] = spring.x, spring.v
+        return x, v
+
     def follow(self, target: float, dt: float, target_velocity: float = 0.0) -> None:
-        """Advance by dt [s] towards a target [m], by the exact solution. A damped spring lands on it, at rest,
-        from a distance below 2e-11 of its value. If its half-life is longer than 45 000 steps, rounding error may stop it
-        before.
+        """Advance towards a target, by the exact solution. After an error the spring is unchanged.
 
-        target: [m] position of the target at the end of the step
-        target_velocity: [m/s] mean velocity of the target during the step; 0 for a target that jumps
+        A damped spring lands on its target, at rest, from a distance below 2e-11 of its value. If its half-life is longer
+        than 45 000 steps, rounding error may stop it before.
 
-        After an error nothing has changed.
+        Parameters
+        ----------
+        target : float
+            Position of the target at the end of the step [m].
+        dt : float
+            Length of the step [s].
+        target_velocity : float
+            Mean velocity of the target during the step [m/s]; 0 for a target that jumps.
         """
         status = lib.spring_follow(self._state, self._params, target, target_velocity, dt)
         if status == lib.SPRING_EINVAL:
@@ -134,18 +252,31 @@ class Spring:
             fail(status)
 
     def energy(self) -> float:
-        """Energy m v^2/2 + k x^2/2 - load x [J]."""
+        """Return the energy m v^2/2 + k x^2/2 - load x [J]."""
         return lib.spring_energy(self._state, self._params)
 
-    def stable_step(self, method: str = "leapfrog") -> float:
-        """The stability limit [s]: 0 if no step is stable, infinity if every step is."""
+    def stable_step(self, method: MethodName = "leapfrog") -> float:
+        """Return the stability limit [s]: 0 if no step is stable, infinity if every step is.
+
+        Parameters
+        ----------
+        method : str
+            Name of the method.
+        """
         self._check_parameters()
         return lib.spring_stable_step(self._params, springs_method(method))
 
-    def accurate_step(self, duration: float, tolerance: float, method: str = "leapfrog") -> float:
-        """The longest step [s] with which the error within duration > 0 [s] is at most tolerance, relative to the start.
+    def accurate_step(self, duration: float, tolerance: float, method: MethodName = "leapfrog") -> float:
+        """Return the longest accurate step [s], or 0 if there is none.
 
-        0: there is none.
+        Parameters
+        ----------
+        duration : float
+            > 0 [s].
+        tolerance : float
+            Largest error within the duration > 0, relative to the start.
+        method : str
+            Name of the method.
         """
         number = springs_method(method)
         self._check_parameters()
@@ -154,8 +285,18 @@ class Spring:
                 invalid(field, value)
         return lib.spring_accurate_step(self._params, number, duration, tolerance)
 
-    def step_error(self, duration: float, dt: float, method: str = "leapfrog") -> float:
-        """The largest error within duration [s] with a step of dt > 0 [s], relative to the start."""
+    def step_error(self, duration: float, dt: float, method: MethodName = "leapfrog") -> float:
+        """Return the largest error, relative to the start.
+
+        Parameters
+        ----------
+        duration : float
+            [s].
+        dt : float
+            Length of a step > 0 [s].
+        method : str
+            Name of the method.
+        """
         number = springs_method(method)
         self._check_parameters()
         if finite("dt", dt) <= 0:
@@ -166,12 +307,27 @@ class Spring:
         return error
 
     def at_rest(self, x_tol: float, v_tol: float) -> bool:
-        """Whether the spring is within x_tol [m] of its rest position and not faster than v_tol [m/s]."""
+        """Return whether the spring is at rest.
+
+        Parameters
+        ----------
+        x_tol : float
+            Largest distance from the rest position [m].
+        v_tol : float
+            Largest speed [m/s].
+        """
         return lib.spring_at_rest(self._state, self._params, x_tol, v_tol)
 
     def settling_time(self, x_tol: float, v_tol: float = math.inf) -> float:
-        """Time [s] from which on the exact solution stays within x_tol >= 0 [m] of the rest position, and not faster than
-        v_tol >= 0 [m/s], or infinity."""
+        """Return the time [s] from which on the exact solution stays at rest, or infinity.
+
+        Parameters
+        ----------
+        x_tol : float
+            Largest distance from the rest position >= 0 [m].
+        v_tol : float
+            Largest speed >= 0 [m/s].
+        """
         self._check_parameters()
         time = lib.spring_rest_time(self._state, self._params, x_tol, v_tol)
         if math.isnan(time):
@@ -181,14 +337,20 @@ class Spring:
         return time
 
     def snapshot(self) -> tuple[float, float]:
-        """The state, x and v, for restore()."""
+        """Return x and v, for `restore`."""
         return self.x, self.v
 
     def restore(self, snapshot: tuple[float, float]) -> None:
-        """Return to a snapshot."""
+        """Return to a snapshot.
+
+        Parameters
+        ----------
+        snapshot : tuple of float
+            See `snapshot`.
+        """
         self.x, self.v = snapshot
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         """Copies are independent springs."""
         values = self.stiffness, self.mass, self.damping, self.load
         return functools.partial(Spring, x=self.x, v=self.v), values

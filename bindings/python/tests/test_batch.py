@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Many springs."""
 import copy
+import math
 import pickle
 import threading
 
@@ -112,6 +113,8 @@ def test_springs_that_fail_are_named_and_all_others_advance():
     with pytest.raises(springstep.NonFiniteError, match=r"^x\[500\]") as caught:
         batch.advance(1.0, 100)
     assert caught.value.failed.tolist() == [500] and caught.value.status == lib.SPRING_ENONFINITE
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert (error.dt, error.stable_step) == (1.0, pytest.approx(2 / math.sqrt(1e9))) and "(dt 1.0 s, stable step" in str(error)
     batch.x[900] = np.nan
     with pytest.raises(springstep.InvalidError, match=r"^x\[900\] = nan: ") as caught:
         batch.advance(1.0, 100)

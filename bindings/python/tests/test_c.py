@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The package has the whole library, as the C compiler sees it."""
+import inspect
 import re
 import subprocess
+import typing
 from pathlib import Path
+
+import numpy as np
+import pytest
 
 import springstep
 from springstep import ffi, lib
@@ -61,3 +66,46 @@ def test_methods_are_the_table():
     text = subprocess.run("spring-methods", capture_output=True, text=True, check=True).stdout
     rows = [line.split("\t") for line in text.splitlines() if not line.startswith("#")]
     assert [method.name for method in springstep.methods()] == [row[rows[0].index("method")] for row in rows[1:]]
+
+
+# --- what Python adds
+
+
+def test_names_of_methods_are_a_type():
+    assert typing.get_args(springstep.MethodName) == tuple(method.name for method in springstep.methods())
+
+
+OBJECTS = [springstep.Spring(1.0), springstep.Batch(np.ones(100), np.ones(100), 1.0), springstep.Scene(np.ones((100, 3))),
+           springstep.Scene([1.0]).snapshot(), springstep.Clock(1.0), springstep.sphere([0, 0, 0], 1.0),
+           springstep.grid([10, 10], 0.1, 1.0), springstep.methods()[0]]
+
+
+@pytest.mark.parametrize("thing", OBJECTS, ids=lambda thing: type(thing).__name__)
+def test_objects_have_no_other_attributes_and_short_reprs(thing):
+    with pytest.raises(AttributeError):
+        thing.stifness = 300
+    assert not hasattr(thing, "__dict__") and len(repr(thing)) < 300 and "array(" not in repr(thing)
+
+
+def documented():
+    """Yield (name, object with a docstring, function) of every public function, class and method."""
+    for name in springstep.__all__:
+        value = getattr(springstep, name)
+        if inspect.isfunction(value):
+            yield name, value, value
+        elif name in ("Spring", "Batch", "Scene", "Clock"):
+            yield name, value, value.__init__
+            for part in vars(value):
+                if not part.startswith("_") and callable(method := getattr(value, part)):
+                    yield f"{name}.{part}", method, method
+
+
+@pytest.mark.parametrize("documented, function", [pytest.param(*rest, id=name) for name, *rest in documented()])
+def test_parameters_are_documented_as_numpydoc_has_it(documented, function):
+    """All of them, and no others."""
+    text = inspect.getdoc(documented)
+    assert re.match(r"[A-Z].*[.:]", text)
+    section = re.search(r"^Parameters\n-+\n((?:.*\n?)*?)(?=\n\w+\n-+\n|\Z)", text, re.M)
+    names = re.findall(r"^\*{0,2}(\w+(?:, \w+)*)(?: : .*)?$", section[1] if section else "", re.M)
+    wanted = [name for name in inspect.signature(function).parameters if name not in ("self", "misplaced")]
+    assert sorted(name for row in names for name in row.split(", ")) == sorted(wanted)

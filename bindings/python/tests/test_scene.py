@@ -1,53 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Particles joined by springs."""
 import copy
-import gc
 import math
 import pickle
-import re
 import subprocess
-import sys
 import threading
-import weakref
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import springstep
+from scenes import FLOATS, OF_SCENES, cloth, fnv, rope
 from springstep import Scene, ffi, grid, lib
 from springstep._common import Guard
-
-OF_SCENES = [method.name for method in springstep.methods() if method.scenes]
-FLOATS = pytest.mark.parametrize("dtype", [np.float64, np.float32])
-
-
-def cloth(n=25, length=2.0, **options):
-    """The cloth of spring-scene."""
-    g = grid([n, n], length / (n - 1), 500.0, families=["structural", "shear", "bend"])
-    g.pinned[[0, n - 1]] = True
-    return Scene(g.position, g.links, **{"pinned": g.pinned, "mass": 0.01, "drag": 0.01, "gravity": [0, 0, -9.81], **options})
-
-
-def rope(**options):
-    """Six particles, hung at the first, with links that are damped."""
-    g = grid([6], 0.3, 170.0, 0.2, pinned=["first_x"])
-    return Scene(g.position, g.links, **{"pinned": g.pinned, "mass": 0.13, "gravity": [0, -9.81, 0.4], **options})
-
-
-def program_of_the_documents(heading):
-    """The names of the first Python program of docs/python.md behind a heading, after it has run."""
-    page = (Path(__file__).parents[3] / "docs/python.md").read_text()
-    names = {}
-    exec(re.search(heading + r".*?```python\n(.*?)```", page, re.S)[1], names)
-    return names
-
-
-def fnv(scene):
-    digest = 0xCBF29CE484222325
-    for byte in scene.position().tobytes() + scene.velocity().tobytes():
-        digest = (digest ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
-    return f"{digest:016x}"
 
 
 @pytest.mark.parametrize("method", OF_SCENES)
@@ -102,28 +67,6 @@ def test_a_snapshot_brings_back_what_was(dtype):
         cloth(dtype=dtype, editable=True).restore(before)
     with pytest.raises(TypeError, match="not copied"):
         copy.copy(scene)
-
-
-def test_the_programs_in_the_documents():
-    names = program_of_the_documents("")
-    assert names["scene"].time == 100 * names["dt"] and len(names["scene"]) == 625
-    assert program_of_the_documents("## Colliders\n")["scene"].touching().tolist() == [1]
-    names = program_of_the_documents("## Forces in Python\n")
-    scene, air = names["scene"], names["AIR"]
-    wind = scene.velocity().mean(axis=0)
-    assert 0.5 * air[0] < wind[0] < air[0] and abs(wind[1]) < 1e-12 and scene.time == pytest.approx(0.5)
-
-
-def test_the_loop_in_the_documents():
-    names = program_of_the_documents("## Frames\n")
-    assert names["drawn"][0] == pytest.approx([0, 0.5, 0], abs=1e-12)
-    scene, clock = rope(max_speed=100), springstep.Clock(1 / 960, 64)
-    for frame_time, x in ((1 / 60, 0.01), (1.0, 0.02), (1 / 144, 0.03)):  # one frame that is too long
-        names["advance_frame"](scene, clock, frame_time, np.array([x, 0, 0]))
-        assert (scene.position() + clock.pending * scene.velocity())[0] == pytest.approx([x, 0, 0], abs=1e-12)
-    with pytest.raises(springstep.UnstableError):  # the hand jumps, and the scene with it
-        names["advance_frame"](scene, clock, 0.01, np.array([500, 0, 0]))
-    names["advance_frame"](scene, clock, 0.01, np.array([500, 0, 0]))
 
 
 def test_state_goes_in_and_out():
@@ -202,27 +145,123 @@ def structured(names, links=LINKS):
     return array
 
 
-def test_fields_of_links_are_found_by_name():
-    array = structured(["damping", "stiffness", "b", "rest", "a"])
-    for links in (array, list(array), np.rec.array(array), array.astype(springstep.LINK[list(array.dtype.names)])):
-        scene = Scene([[0, 0], [1, 0], [2, 0]], links)
-        assert [scene.link(0), scene.link(1)] == LINKS
+ENDS = [link[:2] for link in LINKS]
+VALUES = dict(zip(["rest", "stiffness", "damping"], zip(*[link[2:] for link in LINKS])))
 
 
-@pytest.mark.parametrize("names, named", [
-    (["a", "b", "rest", "stiffness"], r"missing fields \['damping'\], unknown fields \[\]"),
-    (["a", "b", "rest", "k", "damping"], r"missing fields \['stiffness'\], unknown fields \['k'\]"),
-    (["a", "b", "rest", "stiffness", "damping", "name"], r"missing fields \[\], unknown fields \['name'\]"),
+@pytest.mark.parametrize("links, values", [
+    (LINKS, {}), (np.array(LINKS), {}), (iter(LINKS), {}), (np.array(LINKS, object), {}),
+    (ENDS, VALUES), (np.array(ENDS), {**VALUES, "rest": 0.3, "stiffness": 2.7}), (np.array(ENDS, float), VALUES),
+    (structured(["damping", "stiffness", "b", "rest", "a"]), {}), (list(structured(["damping", "stiffness", "b", "rest", "a"])), {}),
+    (np.rec.array(structured(["damping", "stiffness", "b", "rest", "a"])), {}),
+    (np.array([(ends, *rest) for ends, rest in zip(ENDS, zip(*VALUES.values()))],
+              [("ends", int, 2), ("rest", float), ("stiffness", float), ("damping", float)]), {}),
+    (structured(["b", "a"]), VALUES), (structured(["a", "b", "stiffness", "rest"]), {"damping": VALUES["damping"]}),
 ])
-def test_wrong_fields_of_links_are_named(names, named):
-    for links in (structured(names), structured(names, [])):
-        with pytest.raises(ValueError, match=f"^links: {named}"):
-            Scene([[0, 0], [1, 0], [2, 0]], links)
+def test_every_form_of_links_is_the_same_scene(links, values):
+    scene = Scene([[0, 0], [1, 0], [2, 0]], links, **values)
+    assert [scene.link(i) for i in range(scene.links)] == LINKS
 
 
-def test_numbers_are_no_links():
-    with pytest.raises(ValueError, match="^links: an array of float64"):
-        Scene([[0, 0], [1, 0]], np.array([0., 1, 1, 10, 0]))
+@pytest.mark.parametrize("axes", [1, 2, 3])
+def test_what_links_do_not_have_follows_from_the_positions(axes):
+    position = np.cumsum(np.random.default_rng(3).uniform(0.3, 1, (5, axes)), axis=0)
+    edges = [(0, 1), (1, 4), (2, 3)]
+    scene = Scene(position, edges, stiffness=[10, 20, 30])
+    for i, (a, b) in enumerate(edges):
+        assert scene.link(i) == (a, b, pytest.approx(np.linalg.norm(position[b] - position[a]), rel=1e-15), 10 * (i + 1), 0)
+    assert scene.at_rest(0, 1e-12)
+    assert Scene(position, []).links == Scene(position, np.empty((0, 2)), stiffness=3).links == Scene(position, (), rest=[]).links == 0
+
+
+@pytest.mark.parametrize("links, values, kind, named", [
+    ([(0, 1.5)], {"stiffness": 1}, springstep.InvalidError, r"link.b\[0\] = 1.5: not an integer"),
+    ([(0, 1, 0.3, 2.7, 0), (0.25, 1, 0.3, 2.7, 0)], {}, springstep.InvalidError, r"link.a\[1\] = 0.25: not an integer"),
+    ([(0, math.nan)], {"stiffness": 1}, springstep.InvalidError, r"link.b\[0\] = nan: not an integer"),
+    ([(0, 1), (-1, 2)], {"stiffness": 1}, springstep.RangeError, r"link.a\[1\] = -1"),
+    ([(0, 2**32)], {"stiffness": 1}, springstep.RangeError, r"link.b\[0\] = 4294967296"),
+    ([(0, 3)], {"stiffness": 1}, springstep.RangeError, r"link.b\[0\] = 3"),
+    (structured(["a", "b", "rest"], [(0, 1, 0.3)]), {"stiffness": 1, "rest": 1}, TypeError, "rest: the links have it, too"),
+    (LINKS, {"damping": 0.1}, TypeError, "damping: the links have it, too"),
+    (ENDS, {}, TypeError, "stiffness: missing"),
+    (ENDS, {"stiffness": [1, 2, 3]}, ValueError, r"stiffness: its shape is \(3,\), not \(\) or \(2,\)"),
+    (ENDS, {"stiffness": -1}, springstep.InvalidError, r"link.stiffness\[0\] = -1"),
+    ([(0, 1), (1, 2, 0.3, 2.7, 0)], {}, ValueError, "links: rows of different lengths"),
+    (np.zeros((2, 3)), {}, ValueError, r"links: an array of float64 and shape \(2, 3\)"),
+    (np.array([0., 1, 1, 10, 0]), {}, ValueError, r"links: an array of float64 and shape \(5,\)"),
+    (np.array([True, False]), {}, ValueError, "links: an array of bool"),
+    ([("0", "1")], {"stiffness": 1}, ValueError, "links: an array of <U1"),
+    (structured(["a", "rest", "stiffness", "damping"]), {}, ValueError, r"links: missing fields \['b'\], unknown fields \[\]"),
+    (np.zeros(2, [("ends", int, 3)]), {}, ValueError, r"links: missing fields \['a', 'b'\]"),
+    (structured(["a", "b", "k"]), {}, ValueError, r"links: missing fields \[\], unknown fields \['k'\]"),
+    (structured(["a", "b", "k"], []), {}, ValueError, r"links: missing fields \[\], unknown fields \['k'\]"),
+])
+def test_wrong_links_are_named(links, values, kind, named):
+    with pytest.raises(kind, match=f"^{named}"):
+        Scene([[0, 0], [1, 0], [2, 0]], links, **values)
+
+
+def test_a_scene_from_a_grid():
+    g = grid([4, 3], 0.1, 50.0, pinned=["first_y"])
+    scene, other = Scene.from_grid(g, mass=0.2), Scene(g.position, g.links, pinned=g.pinned, mass=0.2)
+    free, moved = Scene.from_grid(g, pinned=None, dtype=np.float32), Scene.from_grid(g, position=g.position + 1)
+    for each in (scene, other):
+        each.set_gravity([0, -9.81, 0])
+        each.advance(1e-3, 50)
+    free.set_gravity([0, -9.81, 0])
+    free.advance(1e-3, 50)
+    assert fnv(scene) == fnv(other) and (scene.position()[:4] == g.position[:4]).all()
+    assert (free.position()[:4, 1] < g.position[:4, 1]).all() and free.dtype == np.float32
+    assert (moved.position() == g.position + 1).all()
+    for wrong in (lambda: Scene(*g), lambda: Scene(g)):
+        with pytest.raises(TypeError, match="for a grid use Scene.from_grid"):
+            wrong()
+
+
+# --- recording
+
+
+@FLOATS
+@pytest.mark.parametrize("steps, every", [(20, 1), (20, None), (20, 7), (20, 5), (20, 20), (20, 30), (0, 1)])
+def test_a_run_records_what_calls_of_advance_do(steps, every, dtype):
+    scene, other, told = cloth(n=5, dtype=dtype), cloth(n=5, dtype=dtype), []
+    times, positions, velocities = scene.run(1e-3, steps, every, "leapfrog", velocities=True,
+                                             progress=lambda *step: told.append((*step, scene.time)))
+    ends = [*range(0, steps, every or 1), steps]
+    for i, end in enumerate(ends):
+        if i > 0:
+            other.advance(1e-3, end - ends[i - 1])
+        assert times[i] == other.time == pytest.approx(end * 1e-3)
+        assert (positions[i] == other.position()).all() and (velocities[i] == other.velocity()).all()
+    assert len(times) == len(positions) == len(velocities) == len(ends) and positions.dtype == velocities.dtype == dtype
+    assert fnv(scene) == fnv(other) and told == [(end, steps, time) for end, time in zip(ends[1:], times[1:])]
+    assert len(scene.run(1e-3, steps, every)) == 2
+
+
+def test_a_run_that_fails_changes_nothing_and_has_its_frames():
+    scene = rope(max_speed=20.0)
+    before, step = fnv(scene), 3 * scene.stable_step()
+    with pytest.raises(springstep.UnstableError, match="dt .* stable step of leapfrog") as caught:
+        scene.run(step, 1000)
+    times, positions = caught.value.recorded
+    assert (fnv(scene), scene.time) == (before, 0) and (caught.value.dt, caught.value.stable_step) == (step, step / 3)
+    assert 1 < len(times) == len(positions) < 1000
+    scene.advance(step, len(times) - 1)
+    assert scene.time == times[-1] and (scene.position() == positions[-1]).all()
+
+    def stop(done, steps):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    before = fnv(scene)
+    with pytest.raises(KeyboardInterrupt):
+        scene.run(1e-4, 10, progress=stop)
+    assert fnv(scene) == before
+    for field, arguments in (("every", (1e-3, 10, 0)), ("steps", (1e-3, 10, -1)), ("steps", (1e-3, -10)), ("dt", (math.nan, 10)),
+                             ("method", (1e-3, 10, 1, "verlet"))):
+        with pytest.raises(springstep.InvalidError) as caught:
+            scene.run(*arguments)
+        assert caught.value.field == field and fnv(scene) == before
 
 
 @pytest.mark.parametrize("change", [{"position": np.zeros((3, 4))}, {"mass": [1, 2]}, {"pinned": [True]},
@@ -238,7 +277,7 @@ def test_a_shape_that_is_wrong_is_named(change):
     (lambda s: s.advance(1e-3, 1, "rk4"), springstep.UnsupportedError, "method"),
     (lambda s: s.advance(1e-3, 1, "exact"), springstep.UnsupportedError, "method"),
     (lambda s: s.stable_step("exact"), springstep.UnsupportedError, "method"),
-    (lambda s: s.advance(10.0, 1000), springstep.NonFiniteError, None),
+    (lambda s: s.advance(10.0, 1000), springstep.NonFiniteError, "dt"),
     (lambda s: s.set_link(0, stiffness=1), springstep.UnsupportedError, "link"),
     (lambda s: s.set_link(5, stiffness=1), springstep.RangeError, "link"),
     (lambda s: s.set_pinned([True]), springstep.UnsupportedError, "pinned"),
@@ -276,198 +315,6 @@ def test_a_wrong_grid(change, field):
     assert caught.value.field == field
 
 
-# --- forces in Python
-
-
-@FLOATS
-def test_a_force_in_python(dtype):
-    seen = []
-
-    def see(t, position, velocity, force):
-        seen.append((t, position[0][5], velocity[1][5]))
-        assert position.shape == velocity.shape == force.shape == (3, 6) and not force.any()
-        assert position.dtype == velocity.dtype == force.dtype == dtype
-        assert not position.flags.writeable and not velocity.flags.writeable
-
-    scene = rope(dtype=dtype, force=see)
-    scene.advance(1e-3, 100)
-    assert seen[0] == (0, scene.dtype.type(1.5), 0) and len(seen) >= 200 and max(seen)[0] == pytest.approx(0.1)
-    scene.set_force(None)
-    calls = len(seen)
-    scene.advance(1e-3)
-    assert len(seen) == calls
-
-
-@FLOATS
-@pytest.mark.parametrize("axes", [1, 2, 3])
-@pytest.mark.parametrize("particles", [2, 6, 40])
-def test_a_force_is_added_to_the_forces_of_links_however_it_is_written(axes, dtype, particles):
-    g = grid([particles], 0.3, 170.0, axes=axes, pinned=["first_x"])
-    free, assigned, added, held = scenes = [Scene(g.position, g.links, pinned=g.pinned, mass=0.13, dtype=dtype, held_forces=True)
-                                            for _ in range(4)]
-    pull = np.random.default_rng(5).normal(0, 3, (axes, particles)).astype(dtype)
-
-    def assign(t, position, velocity, force):
-        force[:] = 7
-        force[0] = 0
-        force[0] += pull[0]
-        force[1:][:] = pull[1:]
-
-    def add(t, position, velocity, force):
-        for particle in range(particles):
-            force[:, particle] += pull[:, particle]
-
-    assigned.set_force(assign)
-    added.set_force(add)
-    held.set_held_force(pull.T)
-    for scene in scenes:
-        scene.advance(1e-3, 200)
-    assert fnv(assigned) == fnv(added)
-    bound = 1000 * float(np.finfo(dtype).eps)  # rounding of 200 steps
-    assert assigned.position() == pytest.approx(held.position(), abs=bound, rel=bound)
-    assert abs(assigned.position() - free.position()).max() > 1e-3
-
-
-@pytest.mark.parametrize("returned", [np.ones((3, 6)), 0, False, "force"])
-def test_a_force_returns_none(returned):
-    scene = rope(force=lambda *_: returned)
-    before = scene.position()
-    with pytest.raises(TypeError, match=f"^force: returned a {type(returned).__name__}, not None; write to the array force"):
-        scene.advance(1e-3)
-    assert (scene.position() == before).all() and scene.time == 0
-
-
-@FLOATS
-def test_an_exception_in_a_force_comes_back_and_nothing_changed(dtype):
-    def breaks(t, position, velocity, force):
-        if t > 0.005:
-            raise KeyError("mine")
-
-    scene = rope(dtype=dtype, force=breaks)
-    scene.advance(1e-3, 3)
-    before = scene.position(), scene.time
-    with pytest.raises(KeyError, match="mine"):
-        scene.advance(1e-3, 10)
-    assert (scene.position() == before[0]).all() and scene.time == before[1]
-    scene.advance(1e-3)
-    scene.set_force(lambda t, position, velocity, force: force[1].fill(1))
-    scene.advance(1e-3, 10)
-
-
-@pytest.mark.parametrize("pinned", [[], [0], range(6)], ids=["free", "hung", "all_pinned"])
-@pytest.mark.parametrize("method", OF_SCENES)
-def test_an_exception_at_any_evaluation_undoes_the_call(method, pinned):
-    fails_at = math.inf
-    evaluations = 0
-
-    def pull(t, position, velocity, force):
-        nonlocal evaluations
-        evaluations += 1
-        if evaluations == fails_at:
-            raise KeyError("mine")
-        force[1] += 0.3 * position[0]
-
-    g = grid([6], 0.3, 170.0)
-    scene = Scene(g.position, g.links, velocity=np.full((6, 3), 0.1), mass=0.13, pinned=np.isin(range(6), pinned), force=pull,
-                  force_ignores_velocity=True, methods=[method])
-    start = scene.snapshot()
-    scene.advance(1e-3, 2, method)
-    before, state = scene.snapshot(), (scene.position().tobytes(), scene.velocity().tobytes(), scene.time)
-    evaluations = 0
-    scene.advance(1e-3, 3, method)
-    after, count = (scene.position().tobytes(), scene.velocity().tobytes()), evaluations
-    assert count >= 3 and state[0] != after[0]
-    for fails_at in range(1, count + 1):
-        scene.restore(start)
-        scene.restore(before)
-        evaluations = 0
-        with pytest.raises(KeyError):
-            scene.advance(1e-3, 3, method)
-        assert evaluations == fails_at or len(pinned) == 6
-        assert (scene.position().tobytes(), scene.velocity().tobytes(), scene.time) == state
-        evaluations = -math.inf
-        scene.advance(1e-3, 3, method)
-        assert (scene.position().tobytes(), scene.velocity().tobytes()) == after
-
-
-def test_a_force_that_is_not_finite():
-    scene = rope(force=lambda t, position, velocity, force: force[1].fill(math.nan))
-    before = scene.position()
-    with pytest.raises(springstep.NonFiniteError):
-        scene.advance(1e-3, 3)
-    assert (scene.position() == before).all() and scene.time == 0
-
-
-def test_a_force_of_pinned_particles_alone_may_raise():
-    """Also after set_pinned() and restore()."""
-    g = grid([3], 0.3, 170.0)
-    scene = Scene(g.position, g.links, velocity=np.ones((3, 3)), pinned=[True, False, True], editable=True)
-    scene.set_pinned([True], 1)
-    all_pinned = scene.snapshot()
-    for prepare in (lambda: scene.restore(all_pinned), lambda: scene.set_pinned([True], 1)):
-        scene.set_pinned([False], 1)
-        prepare()
-        scene.set_force(lambda *_: 1 / 0)
-        before = scene.position(), scene.velocity()
-        with pytest.raises(ZeroDivisionError):
-            scene.advance(0.5, 2)
-        assert scene.time == 0 and (scene.position() == before[0]).all() and (scene.velocity() == before[1]).all()
-
-
-def test_an_interrupt_at_any_line_of_a_callback_undoes_the_call():
-    """Ctrl-C raises KeyboardInterrupt in whatever line of Python runs, lines of the package included."""
-    scene = rope(force=lambda t, position, velocity, force: force[1].fill(0.1))
-    before, lines, line = scene.position(), 0, 0
-
-    def trace(frame, event, argument):
-        nonlocal lines
-        if event in ("call", "line"):
-            lines += 1
-            if lines == line:
-                raise KeyboardInterrupt
-        return trace
-
-    def trace_callbacks(frame, event, argument):
-        return trace(frame, event, argument) if frame.f_code.co_name == "_callback" or lines > 0 else None
-
-    while True:
-        line, lines = line + 1, 0
-        old = sys.gettrace()
-        sys.settrace(trace_callbacks)
-        try:
-            scene._run("advance", lib.SPRING_LEAPFROG, 1e-3, 1)
-        except KeyboardInterrupt:
-            pass
-        else:
-            break  # there is no such line
-        finally:
-            sys.settrace(old)
-        assert (scene.position() == before).all() and scene.time == 0
-    assert line > 20 and scene.time == 1e-3
-
-
-def test_an_array_kept_by_a_force_outlives_its_scene():
-    kept = []
-    scene = rope(force=lambda t, position, velocity, force: kept.extend([*position, *velocity]))
-    scene.advance(1e-3)
-    values, gone = [array.copy() for array in kept], [weakref.ref(scene), weakref.ref(kept[0].base)]
-    del scene
-    gc.collect()
-    assert gone[0]() is None and gone[1]() is not None and all(array.base is gone[1]() for array in kept)
-    assert all((array == value).all() for array, value in zip(kept, values))
-    kept.clear()
-    gc.collect()
-    assert gone[1]() is None  # and nothing else keeps it
-
-
-def test_velocities_that_a_force_ignores_are_zeros():
-    seen = []
-    scene = rope(velocity=np.full((6, 3), 0.7), force=lambda t, position, velocity, force: seen.extend(velocity),
-                 force_ignores_velocity=True)
-    scene.advance(1e-3, 10)
-    assert len(seen) == 33 and all(len(v) == 6 and not v.any() and not v.flags.writeable for v in seen)
-
-
 def test_many_steps_are_the_bits_of_single_steps():
     """So a long call may be cut in parts, between which Ctrl-C is noticed."""
     whole, parts = cloth(), cloth()
@@ -477,48 +324,11 @@ def test_many_steps_are_the_bits_of_single_steps():
     assert fnv(whole) == fnv(parts) and whole.time == parts.time
 
 
-def test_a_snapshot_has_its_force():
-    broken = []
-
-    def up(t, position, velocity, force):
-        if broken:
-            raise KeyError("mine")
-        force[1] += 5
-
-    scene = rope(force=up, methods=["leapfrog", "rk4"])
-    before = scene.snapshot()
-    scene.advance(1e-3, 20, "rk4")
-    after = scene.position()
-    scene.set_force(None)
-    scene.advance(1e-3, 20, "rk4")
-    scene.restore(before)
-    scene.advance(1e-3, 20, "rk4")
-    assert (scene.position() == after).all()
-    broken.append(True)
-    with pytest.raises(KeyError):
-        scene.advance(1e-3)
-
-
-@pytest.mark.parametrize("ignores, calls", [(False, 20), (True, 11)])  # twice a step, or once, and once at the start
-def test_a_force_without_velocities_is_asked_once_a_step(ignores, calls):
-    seen = []
-    rope(force=lambda t, *_: seen.append(t), force_ignores_velocity=ignores, drag=0.1).advance(1e-3, 10)
-    assert len(seen) == calls
-
-
 def test_without_undo_the_state_is_lost():
     scene = rope(undo=False)
     with pytest.raises(springstep.NonFiniteError):
         scene.advance(10.0, 1000)
     assert np.isnan(scene.position()).all() and scene.nbytes < rope().nbytes
-
-
-def test_a_force_may_not_ask_its_scene():
-    scene = rope()
-    scene.set_force(lambda t, position, velocity, force: scene.advance(1e-3))
-    with pytest.raises(RuntimeError, match="own force"):
-        scene.advance(1e-3)
-    assert scene.time == 0
 
 
 CALLS = [
@@ -750,7 +560,7 @@ def test_every_field_of_a_collider_reaches_c(axes):
                                 radius=0.3, friction=0.4, restitution=0.5, spin=7.0 if axes == 2 else [5, 6, 7])
     given.half, given.velocity, given.velocity_to = ([10 * field + axis for axis in range(axes)] for field in (3, 4, 5))
     given.axis = [[100 * row + column for column in range(axes)] for row in range(3)]
-    drop(axes=axes)._fill_collider(c, given, 0)
+    given._fill(c, axes, 0)
     for field in ("at", "to", "half", "velocity", "velocity_to"):
         assert list(getattr(c, field)) == [*getattr(given, field), 0][:3]
     assert [list(row) for row in c.axis] == [[*row, 0][:3] for row in given.axis]

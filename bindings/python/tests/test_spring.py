@@ -5,6 +5,7 @@ import math
 import pickle
 import subprocess
 
+import numpy as np
 import pytest
 
 import springstep
@@ -54,6 +55,19 @@ def test_questions():
     assert 0.9e-3 < spring.step_error(10, dt, "rk4") <= 1.001e-3  # what the header says
     spring.advance(spring.settling_time(1e-3), 1, "exact")
     assert abs(spring.x - 0.4 / 2.7) <= 1.0001e-3 and not spring.at_rest(1e-2, 0) and spring.at_rest(1e-2, 1e-2)
+
+
+@pytest.mark.parametrize("times", [0.3, [0, 0.1, 2.5, -0.7], np.linspace(-1, 1, 6).reshape(2, 3), []])
+def test_at_is_the_exact_solution(times):
+    spring = example()
+    x, v = spring.at(times)
+    assert x.shape == v.shape == np.shape(times) and repr(spring) == repr(example())
+    for time, *state in zip(np.ravel(times), x.ravel(), v.ravel()):
+        spring = example()
+        spring.advance(time, 1, "exact")
+        assert [spring.x, spring.v] == state
+    with pytest.raises(springstep.InvalidError, match="^dt = nan"):
+        spring.at([0, math.nan])
 
 
 def test_how_it_should_feel():
@@ -118,8 +132,11 @@ def test_a_wrong_argument_is_named(call, field):
 def test_what_fails_changes_nothing():
     spring = example()
     before = spring.snapshot()
-    with pytest.raises(springstep.NonFiniteError):
+    with pytest.raises(springstep.NonFiniteError, match=r"^dt = 1000.0: .*\(dt 1000.0 s, stable step of leapfrog 1.38") as caught:
         spring.advance(1e3, 1000)
+    assert (caught.value.dt, caught.value.stable_step) == (1e3, spring.stable_step())
+    with pytest.raises(springstep.InvalidError, match="^method = 'verlet': not one of euler, symplectic-euler, leapfrog, "):
+        spring.advance(1e-3, 1, "verlet")
     with pytest.raises(springstep.UnsupportedError, match="rkn8"):
         spring.advance(1e-3, 1, "rkn8")
     assert spring.snapshot() == before

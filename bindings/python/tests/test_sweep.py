@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Sweeps: the rows of spring-sweep, by one process, and by the workers of a Dask client of which one is killed."""
+import operator
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import time
 import numpy as np
 import pytest
 
+import scenes
 import springstep
 
 OVER = {"omega_dt": "0.05:3:log:20", "damping_ratio": [0, 0.3, 1.7]}
@@ -90,6 +92,55 @@ def client():
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
             yield client
+
+
+OWN = {"stiffness": "200:800:log:3", "size": [3, 5], "name": ["rope", "cloth"], "duration": 3, "stable_fraction": [0.4, 4]}
+OWN_MEASURES = {"lowest_m": scenes.lowest, "time_s": operator.attrgetter("time")}
+
+
+def own(**options):
+    return springstep.sweep(OWN, ["leapfrog", "rk4"], scene=scenes.hung, measure=OWN_MEASURES, **options)
+
+
+def test_a_function_that_makes_a_scene():
+    rows = own()
+    assert rows.dtype.names == (*OWN, "method", "dt_s", "status", "lowest_m", "time_s") and len(rows) == 3 * 2 * 2 * 2 * 2
+    assert rows["stiffness"][::16] == pytest.approx([200, 400, 800]) and rows["name"][:9:4].tolist() == ["rope", "cloth", "rope"]
+    assert (rows["status"][rows["method"] == "rk4"] == "unsupported").all()
+    for row in rows[rows["method"] == "leapfrog"]:
+        scene = scenes.hung(row["stiffness"], row["size"], row["name"])
+        assert row["dt_s"] == row["stable_fraction"] * scene.stable_step()
+        assert row["status"] == ("finished" if row["stable_fraction"] < 1 else "exploded")
+        if row["status"] == "finished":
+            scene.advance(row["dt_s"], round(3 / row["dt_s"]))
+            assert (row["lowest_m"], row["time_s"]) == (scenes.lowest(scene), scene.time)
+        else:
+            assert np.isnan(row["lowest_m"])
+    rows = springstep.sweep({"steps_per_frame": [16, 32], "duration": [0.5]}, "leapfrog", scene=scenes.hung, measure=scenes.lowest)
+    assert rows["dt_s"].tolist() == [1 / 960, 1 / 1920] and rows.dtype.names[-1] == "lowest"
+    assert len(springstep.sweep({}, scene=scenes.hung, measure=scenes.lowest)) == 6
+
+
+def test_processes():
+    assert own(processes=2).tobytes() == own(processes=2, points_per_task=5).tobytes() == own().tobytes()
+    assert springstep.sweep(OVER, processes=2).tobytes() == springstep.sweep(OVER).tobytes()
+
+
+@pytest.mark.parametrize("kind, named, options", [
+    (TypeError, "measure: ", {"measure": ()}), (TypeError, "measure: ", {"measure": "steps"}),
+    (TypeError, "measure: ", {"measure": {"a": 1}}),
+    (springstep.InvalidError, "method = 'verlet': not one of euler, ", {"methods": "verlet"}),
+    (springstep.InvalidError, "over = 'size=1:2'", {"over": {"size": "1:2"}}),
+    (springstep.InvalidError, "processes = 0", {"processes": 0}),
+    (TypeError, ".*unexpected keyword argument 'length'", {"over": {"length": 2}}),
+])
+def test_what_own_scenes_refuse(kind, named, options):
+    with pytest.raises(kind, match=f"^{named}"):
+        springstep.sweep(**{"over": {"size": 3}, "scene": scenes.hung, "measure": scenes.lowest, **options})
+
+
+def test_own_scenes_of_dask(client):
+    assert own(client=client, points_per_task=3).tobytes() == own().tobytes()
 
 
 def test_dask(client):

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: MIT
+"""Links of scenes, and grids of particles with their links."""
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, NamedTuple, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from springstep._common import fail, invalid, names_of
+from springstep._native import ffi, lib
+
+_FORMATS: dict[str, Any] = {"double": np.float64, "uint32_t": np.uint32}
+
+#: A link, as in C: a and b [indices of particles], rest [m], stiffness [N/m], damping [N s/m].
+LINK: np.dtype[np.void] = np.dtype({
+    "names": [name for name, _ in ffi.typeof("spring_link").fields],
+    "formats": [_FORMATS[field.type.cname] for _, field in ffi.typeof("spring_link").fields],
+    "offsets": [field.offset for _, field in ffi.typeof("spring_link").fields],
+    "itemsize": ffi.sizeof("spring_link"),
+})
+
+Family = Literal["structural", "shear", "bend"]
+Face = Literal["first_x", "last_x", "first_y", "last_y", "first_z", "last_z"]
+
+_FAMILIES = ("structural", "shear", "bend")
+_FACES = ("first_x", "last_x", "first_y", "last_y", "first_z", "last_z")
+_COLUMNS = ("a", "b", "rest", "stiffness", "damping")
+
+
+class Grid(NamedTuple):
+    """The arrays of a grid, which may be changed, for `Scene.from_grid`."""
+
+    position: NDArray[np.float64]  #: [m], (particles, axes)
+    pinned: NDArray[np.bool_]  #: True: pinned
+    links: NDArray[np.void]  #: of LINK
+
+    def __repr__(self) -> str:
+        return f"<Grid of {len(self.position)} particles and {len(self.links)} links on {self.position.shape[1]} axes>"
+
+
+def _bits(field: str, names: Iterable[str], known: Sequence[str]) -> int:
+    """Return names as bits, in the order of the C library."""
+    bits = 0
+    for name in names_of(field, names):
+        if name not in known:
+            invalid(field, name, reason=f"not one of {', '.join(known)}")
+        bits |= 1 << known.index(name)
+    return bits
+
+
+def grid(count: Iterable[SupportsIndex], spacing: float, stiffness: float, damping: float = 0.0, *,
+         families: Iterable[Family] = ("structural",), pinned: Iterable[Face] = (), stretch: float = 1.0, axes: int = 3,
+         height: bool = False) -> Grid:
+    """Return the particles at the corners of a grid, and its links: a row is a rope, a layer a sheet, more a block.
+
+    Parameters
+    ----------
+    count : iterable of int
+        One to three numbers, the particles along x, y and z. Particle (i, j, k) has index i + count[0] (j + count[1] k).
+    spacing : float
+        Distance from one particle to the next > 0 [m].
+    stiffness, damping : float
+        Of every link [N/m], [N s/m].
+    families : iterable of str
+        ``"structural"`` to the next particle, ``"shear"`` across faces, ``"bend"`` to the second next particle.
+    pinned : iterable of str
+        Pinned faces: ``"first_x"``, ``"last_x"``, ``"first_y"`` ...
+    stretch : float
+        Initial length of every link divided by its rest length. Above 1 there is tension.
+    axes : int
+        Number of axes of the positions, 1 to 3.
+    height : bool
+        A height field, with one axis perpendicular to the grid.
+
+    Returns
+    -------
+    Grid
+        Positions, pinned particles and links.
+    """
+    shape = tuple(operator.index(number) for number in count)
+    if not 1 <= len(shape) <= 3:
+        invalid("count", shape, reason="not one to three numbers")
+    if not all(0 <= number < 2**32 for number in shape):
+        fail(lib.SPRING_ERANGE, "count", shape)
+    if axes not in (1, 2, 3):
+        invalid("axes", axes, reason="not 1, 2 or 3")
+    c = ffi.new("spring_grid *", {
+        "count": [*shape, 1, 1][:3], "axes": 1 if height else axes, "height": height, "spacing": spacing, "stretch": stretch,
+        "families": _bits("families", families, _FAMILIES), "stiffness": stiffness, "damping": damping,
+        "pinned": _bits("pinned", pinned, _FACES),
+    })
+    particles, links = ffi.new("size_t *"), ffi.new("size_t *")
+    if status := lib.spring_grid_size(c, particles, links):
+        for field in ("spacing", "stretch"):
+            if not 0 < getattr(c, field) < np.inf:
+                invalid(field, getattr(c, field))
+        for field in ("stiffness", "damping"):
+            if not 0 <= getattr(c, field) < np.inf:
+                invalid(field, getattr(c, field))
+        if status == lib.SPRING_ERANGE:
+            fail(status, "count", shape)
+        if not height and len(shape) > axes and max(shape[axes:]) > 1:
+            invalid("axes", axes, reason=f"fewer than the directions of count = {shape}")
+        invalid("spacing", spacing)
+    result = Grid(np.empty((int(particles[0]), int(c.axes))), np.empty(particles[0], np.bool_), np.empty(links[0], LINK))
+    if status := lib.spring_grid_fill(c, ffi.from_buffer("double[]", result.position),
+                                      ffi.from_buffer("uint8_t[]", result.pinned), as_c(result.links)):
+        fail(status)
+    return result
+
+
+def as_c(links: NDArray[np.void]) -> Any:
+    """Return a pointer to the first link."""
+    return ffi.cast("spring_link *", ffi.from_buffer(links))
+
+
+def _columns(links: Any) -> dict[str, NDArray[Any]]:
+    """Return the columns that links have, by name."""
+    if not isinstance(links, np.ndarray):
+        try:
+            links = np.array(list(links))
+        except ValueError:
+            raise ValueError("links: rows of different lengths") from None
+    if names := links.dtype.names:
+        columns = {name: links[name] for name in names}
+        if (ends := columns.pop("ends", None)) is not None and ends.shape == (len(links), 2):
+            columns["a"], columns["b"] = ends.T
+        missing = [name for name in ("a", "b") if name not in columns]
+        unknown = [name for name in columns if name not in LINK.names]  # type: ignore[operator]
+        if missing or unknown or links.ndim != 1:
+            raise ValueError(f"links: missing fields {missing}, unknown fields {unknown}, shape {links.shape}")
+        return columns
+    if links.dtype == object:
+        return _columns(links.tolist())
+    if links.size == 0:
+        links = np.empty((0, 5))
+    if links.dtype.kind not in "iuf" or links.ndim != 2 or links.shape[1] not in (2, 5):
+        raise ValueError(f"links: an array of {links.dtype} and shape {links.shape}, not (links, 2), (links, 5) or structured")
+    return dict(zip(_COLUMNS, links.T))
+
+
+def joined(links: Any, position: NDArray[np.float64] | None, **given: ArrayLike | None) -> NDArray[np.void]:
+    """Return links, or their columns, as an array of LINK. What they lack is given, or follows from the positions."""
+    columns = links if isinstance(links, dict) else _columns(links)
+    count = len(columns["a"])
+    result = np.zeros(count, LINK)
+    if count == 0:
+        return result
+    for name in ("a", "b"):
+        ends = columns[name]
+        if (fractions := np.flatnonzero(~np.equal(np.floor(ends), ends))).size:
+            row = int(fractions[0])
+            invalid(f"link.{name}", ends[row].item(), row, reason="not an integer")
+        if (outside := np.flatnonzero((ends < 0) | (ends >= 2**32))).size:
+            row = int(outside[0])
+            fail(lib.SPRING_ERANGE, f"link.{name}", ends[row].item(), row)
+    for name, values in columns.items():
+        result[name] = values
+    for name, value in given.items():
+        if value is not None and name in columns:
+            raise TypeError(f"{name}: the links have it, too")
+        if value is not None:
+            if np.shape(value) not in ((), (count,)):
+                raise ValueError(f"{name}: its shape is {np.shape(value)}, not () or {(count,)}")
+            result[name] = value
+    for name in ("rest", "stiffness"):
+        if name not in columns and given.get(name) is None and (name == "stiffness" or position is None):
+            raise TypeError(f"{name}: missing, because the links do not have it")
+    if "rest" not in columns and given.get("rest") is None and position is not None:
+        inside = (result["a"] < len(position)) & (result["b"] < len(position))  # C refuses the others
+        apart = position[result["b"][inside]] - position[result["a"][inside]]
+        result["rest"][inside] = apart[:, 0] if position.shape[1] == 1 else np.linalg.norm(apart, axis=1)
+    return result
+
+
+def components(particles: int, links: ArrayLike) -> tuple[int, NDArray[np.uint32]]:
+    """Return the connected components of particles that links join.
+
+    Parameters
+    ----------
+    particles : int
+        Number of particles.
+    links : array_like
+        As in `Scene`. Pairs of particles will do. Links without stiffness and damping, such as torn ones, do not join.
+
+    Returns
+    -------
+    count : int
+        Number of components.
+    component : ndarray of uint32
+        Of each particle its component, in the order of their first particles.
+    """
+    columns = _columns(links)
+    array = joined(columns, None, **{name: 1.0 for name in ("rest", "stiffness") if name not in columns})
+    component = np.empty(natural("particles", particles), np.uint32)
+    count = lib.spring_links_components(len(component), len(array), as_c(array),
+                                        ffi.cast("uint32_t *", ffi.from_buffer(component)))
+    if count == 0 and len(component) > 0:
+        fail(lib.SPRING_EINVAL, "links")
+    return count, component
+
+
+def natural(field: str, index: int) -> int:
+    """Return an index >= 0: unlike indices of lists, indices of particles do not count from the end."""
+    if index < 0:
+        fail(lib.SPRING_ERANGE, field, index)
+    return index

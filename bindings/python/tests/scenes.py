@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""Scenes that several tests use."""
+import numpy as np
+import pytest
+
+import springstep
+from springstep import Scene, grid
+
+OF_SCENES = [method.name for method in springstep.methods() if method.scenes]
+FLOATS = pytest.mark.parametrize("dtype", [np.float64, np.float32])
+
+
+def cloth(n=25, length=2.0, **options):
+    """The cloth of spring-scene."""
+    g = grid([n, n], length / (n - 1), 500.0, families=["structural", "shear", "bend"])
+    g.pinned[[0, n - 1]] = True
+    return Scene.from_grid(g, **{"mass": 0.01, "drag": 0.01, "gravity": [0, 0, -9.81], **options})
+
+
+def rope(**options):
+    """Six particles, hung at the first, with links that are damped."""
+    g = grid([6], 0.3, 170.0, 0.2, pinned=["first_x"])
+    return Scene.from_grid(g, **{"mass": 0.13, "gravity": [0, -9.81, 0.4], **options})
+
+
+def hung(stiffness=400.0, size=4, name="rope"):
+    """A rope, or a cloth hung along an edge, of so many particles along an edge."""
+    g = grid([size] * (1 if name == "rope" else 2), 1 / size, stiffness, 0.1, pinned=["first_x"])
+    return Scene.from_grid(g, mass=0.1, gravity=[0, -9.81, 0], drag=0.05, max_speed=10)
+
+
+def lowest(scene):
+    return scene.position()[:, 1].min()
+
+
+def fnv(scene):
+    digest = 0xCBF29CE484222325
+    for byte in scene.position().tobytes() + scene.velocity().tobytes():
+        digest = (digest ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return f"{digest:016x}"
