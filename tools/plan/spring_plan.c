@@ -379,7 +379,7 @@ static void say_damping(cli_table *table, const preset *scene)
         if (reach > 0)
             cli_comment(
                 table,
-                "damping: dt G = %.3g, so a step of leapfrog evaluates the forces once and damping alone %u times",
+                "damping: dt G = %.3g, so a step of leapfrog evaluates the forces once and damping alone %u time%s",
                 reach, evaluations, evaluations == 1 ? "" : "s");
     }
 }
