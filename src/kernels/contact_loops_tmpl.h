@@ -117,8 +117,8 @@ SPRING_INLINE mask near_colliders(const scene_contacts *t, const particle_vector
 /* ------------------------------------------------------------------------------------------------------- the queue */
 
 /* The queued quantities of a motion: x0, v0 and, for kick_drift, the acceleration without drag; for
-   implicit_kick_drift, the acceleration of the kick; for last_stage and drift_kick_drift, the free position and velocity after the motion.
-   For implicit_kick they are x and v after the free motion. */
+   implicit_kick_drift, the acceleration of the kick; for last_stage and drift_kick_drift, the free position and
+   velocity after the motion. For implicit_kick they are x and v after the free motion. */
 enum { QUEUED_X0, QUEUED_V0, QUEUED_THIRD, QUEUED_FOURTH, queued_quantities, queue_size = 2 * lanes };
 
 typedef struct contact_queue {

@@ -129,9 +129,9 @@ SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, do
 SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t particle,
                                              double accel[3]);
 
-/* Computes ARRAY_ROOTS, the square roots of the damping of links. The damping saturates: a link takes the smaller factor
-   of its ends, by which the sum of 2 damping/mass over the links of a particle (damping/mass to a pin) is at most `most`
-   [1/s]. */
+/* Computes ARRAY_ROOTS, the square roots of the damping of links. The damping saturates: each particle has a factor by
+   which the sum of 2 damping/mass over its links (damping/mass to a pin) is at most `most` [1/s], and a link takes the
+   smaller factor of its ends. */
 SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double most);
 
 /* The bounds for the current links and masses. */

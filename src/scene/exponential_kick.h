@@ -21,20 +21,21 @@
  *
  *           Clenshaw's recurrence b_k = d_k r - e_k r2 + 2 Y b_{k+1} - b_{k+2} requires s - 1 evaluations of damping
  *           forces. The result p r - m r2 is its last b_0, with d_0/2, e_0/2 and Y in place of 2 Y.
- * Turning   Directions of links turn during a step. A relative velocity V across a link of length l adds
- *           delta = l/(2h) t (1 + t/4 + t^2/8), t = min(1, (h V/l)^2), to its rate until the middle of the step and
- *           takes it away before, as in a steady rotation to third order. So the rate in r is lower by delta, and r2 is the acceleration by
- *           damping at the rate -2 delta. Without it, damping would multiply the inertia along turning links. On one
- *           axis there is none. With s = 2 it would be of third order, and is left out.
+ * Turning   Directions of links turn during a step. If the ends of a link of length l move across it at the relative
+ *           velocity V, its rate changes by delta = l/(2h) t (1 + t/4 + t^2/8), t = min(1, (h V/l)^2), in half a step:
+ *           this is the exact value of a steady rotation, to third order in t. So the rate in r is lower by delta, and
+ *           r2 is the acceleration by damping at the rate -2 delta. Without it, damping would multiply the inertia
+ *           along turning links. On one axis there is none. With s = 2 it would be of third order in h, and is left
+ *           out.
  * Drag      M is replaced by M (1 + q/2 + q^2/(12 + 2q)), q = h drag/M, and r includes -drag v0. For drag alone, this
  *           is a Pade approximant of e^-q.
  * Limit     For constant Z and stiffness K, stable if h^2 M^-1 K < 4, as without damping: the energy
- *           (v.(W - h^2 K/4) v + x.K x)/2, W = M (p(hZ)^-1 - hZ/2), never grows, and is positive if p(z) (1 + z/2) <= 1.
- *           Z and K need not commute.
- * Accuracy  0 < p(z) and p(z) (1 + z/2) <= 1 + 1e-12 for 0 <= z <= h G: tests/scene/test_damping.c
+ *           (v.(W - h^2 K/4) v + x.K x)/2, W = M (p(hZ)^-1 - hZ/2), never grows, and is positive if
+ *           p(z) (1 + z/2) <= 1. Z and K need not commute.
+ * Accuracy  0 < p(z) and p(z) (1 + z/2) <= 1 + 1e-12 for 0 <= z <= h G: tests/scene/test_damping_series.c
  * Source    Hochbruck, Ostermann, Exponential integrators, Acta Numerica 19 (2010); Abramowitz, Stegun, Handbook of
- *           Mathematical Functions (1964), 9.6.26 and 9.12; Clenshaw, A note on the summation of Chebyshev series, Math.
- *           Tables 9 (1955)
+ *           Mathematical Functions (1964), 9.6.26 and 9.12; Clenshaw, A note on the summation of Chebyshev series,
+ *           Math. Tables 9 (1955)
  */
 #ifndef SPRINGSTEP_EXPONENTIAL_KICK_H
 #define SPRINGSTEP_EXPONENTIAL_KICK_H
@@ -288,8 +289,8 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
 
 /* ---------------------------------------------------------------------------------------------------- the series */
 
-/* Evaluates the damping forces at positions x and velocities v, then advances all particles by them. The results are those of
-   evaluate_links() and move(). If all links lie in bands, it is one fused pass. */
+/* Evaluates the damping forces at positions x and velocities v, then advances all particles by them. The results are
+   those of evaluate_links() and move(). If all links lie in bands, it is one fused pass. */
 static inline bool damping_term(scene_step *s, const scene_links *links, const scalar *x, const scalar *v,
                                 particle_kernel *kernel, const scene_motion *m)
 {
@@ -307,8 +308,8 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
     return true;
 }
 
-/* v1 = v0 + span p(hZ) r, at positions x and with the residual r in kick_storage(s, 0); and x1 = x + h/2 v1 unless x1 is
-   NULL. Returns false if a result is not finite, or faster than max_speed. */
+/* v1 = v0 + span p(hZ) r, at positions x and with the residual r in kick_storage(s, 0); and x1 = x + h/2 v1 unless x1
+   is NULL. Returns false if a result is not finite, or faster than max_speed. */
 static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed, const scalar *x, scalar span,
                                       scalar *v1, scalar *x1, scalar max_speed)
 {

@@ -145,8 +145,7 @@ static void order(void)
         slopes(&m, dt, 40, slope);
         printf("# dt G = %g: slope of the error of position %.2f, of velocity %.2f\n", cases[i].reach, slope[0],
                slope[1]);
-        CHECK(slope[0] >= cases[i].least && slope[1] >= cases[i].least,
-              "second order up to dt G = 3, less beyond");
+        CHECK(slope[0] >= cases[i].least && slope[1] >= cases[i].least, "second order up to dt G = 3, less beyond");
     }
 }
 
