@@ -347,8 +347,9 @@ static bool add_target(const spring_params *p, const moving_target *m, const bat
     *x = m->to + y;
     *v = m->speed != 0 ? m->speed + u : u;
     const exact_landing *landing = &run->landing;
-    const bool near = fabs((double)(*x - m->rest)) <= landing->x_tol && fabs((double)u) <= landing->v_tol;
-    if (!near && !spring_lands(p, (double)*x, (double)m->to, (double)y, (double)u, run->t, sizeof *x == sizeof(float)))
+    const bool arrived = fabs((double)(*x - m->rest)) <= landing->x_tol && fabs((double)u) <= landing->v_tol;
+    if (!arrived &&
+        !spring_lands(p, (double)*x, (double)m->to, (double)y, (double)u, run->t, sizeof *x == sizeof(float)))
         return false;
     *x = m->rest;
     *v = m->speed;

@@ -39,7 +39,7 @@ typedef enum scene_array {
     ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
     ARRAY_KICK,    /* three quantities; see kick_storage() */
     ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */
-    ARRAY_SUMS,    /* by particle: work space of the stable step */
+    ARRAY_SUMS,    /* by particle: work space of the stable step and of spring_scene_find_roots() */
     ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COLLIDERS, /* spring_collider, as set */
     ARRAY_PLACED,    /* scene_collider, in the current step */
@@ -57,13 +57,17 @@ typedef struct band_layout {
     size_t ring, back; /* see scene_band */
 } band_layout;
 
+/* In which directions a pressed particle is free. */
+typedef enum freedom { FREE_BUT_NORMAL, FREE_ALONG_LINE, HELD } freedom;
+
 /* A particle that colliders press during an exponential kick. Its normal accelerations are kept out of the series, as
    all accelerations of a pinned particle are, since colliders carry its load. */
 typedef struct pressed_particle {
     uint32_t particle;
-    enum { FREE_BUT_NORMAL, FREE_ALONG_LINE, HELD } freedom;
-    scalar line[3]; /* unit vector: the normal, or the line along which the particle is free */
-    scalar load[3]; /* [m/s^2] component of the residual in which it is not free */
+    freedom freedom;
+    scalar line[3];     /* unit vector: the normal, or the line along which the particle is free */
+    scalar outwards[3]; /* sum of the normals */
+    scalar load[3];     /* [m/s^2] component of the residual in which it is not free */
 } pressed_particle;
 
 typedef struct scene_layout {
@@ -130,9 +134,9 @@ SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const
                                              double accel[3]);
 
 /* Computes ARRAY_ROOTS, the square roots of the damping of links. The damping saturates: each particle has a factor by
-   which the sum of 2 damping/mass over its links (damping/mass to a pin) is at most `most` [1/s], and a link takes the
-   smaller factor of its ends. */
-SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double most);
+   which dt times the sum of 2 damping/mass over its links (damping/mass to a pin), hG, is at most `most`, and a link
+   takes the smaller factor of its ends. Stores 1/(1 + (hG/2)^2) of each particle in ARRAY_SUMS, see damp_bounces(). */
+SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double most);
 
 /* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);

@@ -225,6 +225,8 @@ static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
                 add_normal(p, axes, normal);
             else
                 *p = (pressed_particle){.particle = (uint32_t)i, .line = {normal[0], normal[1], normal[2]}};
+            for (uint32_t a = 0; a < axes; a++)
+                p->outwards[a] += normal[a];
             if (how == PRESSED_AND_HELD)
                 p->freedom = HELD;
             pressed = true;
@@ -259,9 +261,9 @@ static inline void project_pressed(const scene_step *s, const pressed_list *pres
     }
 }
 
-/* Accelerates pressed particles by their loads, until their contacts are computed. A load is that of the residual, with
-   damping at the velocities v1 at the end of the kick: at v0, damping forces may be many times larger than their mean.
-   x: positions of the kick. */
+/* Accelerates pressed particles into their colliders by their loads, until their contacts are computed, so that these
+   stop them with friction. A load is that of the residual, with damping at the velocities v1 at the end of the kick: at
+   v0, damping forces may be many times larger than their mean. x: positions of the kick. */
 static inline void load_pressed(scene_step *s, const pressed_list *pressed, const scalar *x, scalar *v1)
 {
     const scene_particles *const p = &s->particles;
@@ -282,8 +284,36 @@ static inline void load_pressed(scene_step *s, const pressed_list *pressed, cons
         for (uint32_t a = 0; a < axes; a++)
             free[a] = accel[a] = weight * s->forces.force[a * p->stride + one->particle];
         free_component(one, axes, free);
-        for (uint32_t a = 0; a < axes; a++)
-            v1[a * p->stride + one->particle] += s->h * (one->load[a] + (accel[a] - free[a]));
+        scalar along = 0, square = 0;
+        for (uint32_t a = 0; a < axes; a++) {
+            along += one->outwards[a] * (one->load[a] + (accel[a] - free[a]));
+            square += one->outwards[a] * one->outwards[a];
+        }
+        for (uint32_t a = 0; a < axes && along < 0; a++)
+            v1[a * p->stride + one->particle] += s->h * (along / square) * one->outwards[a];
+    }
+}
+
+/* Reduces the velocities with which particles leave colliders with restitution. The kick before this impact has not
+   damped them, and the next would be too late: a body would bounce in every step, and gain elastic energy. */
+static inline void damp_bounces(const scene_step *s)
+{
+    const scalar *const left = scene_read(s->scene, ARRAY_SUMS);
+    const size_t stride = s->scene->layout.stride;
+    for (unsigned k = 0; k < s->contacts.count; k++) {
+        const scene_collider *const c = &s->contacts.collider[k];
+        for (size_t i = 0; c->restitution > 0 && i < s->particles.count; i++) {
+            if ((s->contacts.touched[i] >> k & 1) == 0 || left[i] == 1)
+                continue;
+            scalar at[3] = {0}, normal[3], surface[3], leaving = 0;
+            for (uint32_t a = 0; a < s->contacts.axes; a++)
+                at[a] = s->whole.x[a * stride + i] - s->h * c->velocity[a];
+            s->kernels->common->contact_surface(c, at, normal, surface);
+            for (uint32_t a = 0; a < s->contacts.axes; a++)
+                leaving += (s->whole.v[a * stride + i] - surface[a]) * normal[a];
+            for (uint32_t a = 0; a < s->contacts.axes && leaving > 0; a++)
+                s->whole.v[a * stride + i] -= (1 - left[i]) * leaving * normal[a];
+        }
     }
 }
 
@@ -405,7 +435,10 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
         load_pressed(s, &pressed, drift.x, v1);
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
-    return (scene_outcome){.finite = move(s, kernels->drift_kick_drift, &end)};
+    if (!move(s, kernels->drift_kick_drift, &end))
+        return failed;
+    damp_bounces(s);
+    return (scene_outcome){.finite = true};
 }
 
 #endif

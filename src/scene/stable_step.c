@@ -97,16 +97,20 @@ static double largest_sum(spring_scene *s, link_coefficient which, double own, b
     return ldexp(largest, exponent);
 }
 
-void spring_scene_find_roots(spring_scene *s, double most)
+void spring_scene_find_roots(spring_scene *s, double dt, double most)
 {
     const int exponent = add_up_links(s, DAMPING, 0, true);
-    scalar *const factor = scene_memory(s, ARRAY_SUMS), *const root = scene_memory(s, ARRAY_ROOTS);
-    for (size_t i = 0; i < s->layout.particles; i++)
-        factor[i] = (scalar)fmin(1, ldexp(most / sum_of_particle(s, i, exponent, 0, true), -exponent));
+    scalar *const sum = scene_memory(s, ARRAY_SUMS), *const root = scene_memory(s, ARRAY_ROOTS);
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);
-        const double least = fmin((double)factor[link.a], (double)factor[link.b]);
-        root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * least);
+        const double larger =
+            fmax(sum_of_particle(s, link.a, exponent, 0, true), sum_of_particle(s, link.b, exponent, 0, true));
+        const double factor = fmin(1, ldexp(most / (dt * larger), -exponent));
+        root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * factor);
+    }
+    for (size_t i = 0; i < s->layout.particles; i++) {
+        const double reach = dt * ldexp(sum_of_particle(s, i, exponent, 0, true), exponent);
+        sum[i] = (scalar)(1 / (1 + reach * reach / 4));
     }
 }
 

@@ -96,7 +96,7 @@ static void choose_damping(scene_step *step, scene_links *links, const scene_ste
     step->damping = damping_series_for(fmin(reach, most_damping));
     links->terms = FREEZING_TERMS;
     if (s->roots_dt != step->dt)
-        spring_scene_find_roots(s, most_damping / step->dt);
+        spring_scene_find_roots(s, step->dt, most_damping);
     s->roots_dt = step->dt;
     links->turning_time = step->damping.terms > 2 ? step->h : 0;
 }

@@ -559,6 +559,36 @@ static void slides_down_a_slope(void)
     }
 }
 
+/* A turned block that falls on a plane with restitution: impacts add no energy, however stiff the dampers. */
+static void impacts_add_no_energy(void)
+{
+    static model m;
+    const double up[] = {0, 0, 1}, dt = 0.0004;
+    static const double damping[] = {2, 6, 600};
+    for (int i = 0; i < 3; i++)
+        for (int rough = 0; rough < 2; rough++) {
+            spring_scene *s = block_on_plane(&m, damping[i], rough ? 0.4 : 0, up);
+            const spring_collider plane = {
+                .shape = SPRING_PLANE, .axis = {{0, 0, 1}}, .friction = rough ? 0.4 : 0, .restitution = 0.6};
+            spring_scene_set_colliders(s, &plane, 1);
+            for (size_t p = 0; p < m.def.particles; p++) {
+                const double x = m.position[3 * p], z = m.position[3 * p + 2];
+                m.position[3 * p] = 0.8 * x - 0.6 * z;
+                m.position[3 * p + 2] = 0.6 * x + 0.8 * z + 0.1;
+                m.velocity[3 * p + 2] = -2;
+            }
+            spring_scene_set(s, SPRING_POSITION, m.position, 0, 0, m.def.particles);
+            spring_scene_set(s, SPRING_VELOCITY, m.velocity, 0, 0, m.def.particles);
+            const double start = total_energy(s);
+            for (int part = 0; part < 300; part++) {
+                CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_OK, "stable");
+                CHECK_BELOW(total_energy(s), start * (1 + 1000 * EPS), "at most what it started with");
+            }
+            CHECK_BELOW(total_energy(s), 0.6 * start, "and much is dissipated");
+            free(s);
+        }
+}
+
 int main(void)
 {
     static const test tests[] = {
@@ -571,6 +601,7 @@ int main(void)
         {"energy", damping_adds_no_energy},
         {"rests on a floor", rests_as_without_damping},
         {"slides down a slope", slides_down_a_slope},
+        {"impacts", impacts_add_no_energy},
     };
     return RUN_TESTS("scene_exponential_kick", tests);
 }

@@ -133,8 +133,8 @@ static work_result run_softened(const work *w, const work_solver *s, uint64_t st
         def.link = link;
         spring_scene *fresh = start_definition(&def, &bytes), *moved = start_definition(&def, &bytes);
         r = run_scene_of(w, moved, fresh, bytes, s->method, steps, runs, y);
-        const uint64_t each = w->damped ? 2 : 1; /* as counted by work_count() */
-        r.evaluations = each * steps + 1;
+        r.evaluations =
+            w->damped ? steps : steps + 1; /* as counted by work_count(): heavily damped, no force is kept */
         free(fresh);
         free(moved);
     }
