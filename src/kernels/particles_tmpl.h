@@ -194,14 +194,20 @@ SPRING_INLINE mask update_series_term(const scene_motion *m, const coordinates *
     return not_finite(x) | too_fast(m, c, v);
 }
 
+SPRING_NOINLINE bool move_any_series_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to,
+                                          unsigned last)
+{
+    return for_each_vector(p, m, from, to, update_series_term, last, false);
+}
+
 static bool move_series_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_series_term, 0, false);
+    return move_any_series_term(p, m, from, to, 0);
 }
 
 static bool move_last_series_term(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    return for_each_vector(p, m, from, to, update_series_term, 1, false);
+    return move_any_series_term(p, m, from, to, 1);
 }
 
 /* -------------------------------------------------------------------------------- kicks, and drifts with exact drag */

@@ -44,6 +44,9 @@
 
 #include <math.h>
 
+/* The time of a step is that of its kernels. */
+#include "../simd/size_begin.h"
+
 /* The largest h G. Beyond, the damping of each link saturates: see spring_scene_find_roots(). */
 static const double most_damping = 3e4;
 
@@ -440,5 +443,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
     damp_bounces(s);
     return (scene_outcome){.finite = true};
 }
+
+#include "../simd/size_end.h"
 
 #endif

@@ -229,13 +229,13 @@ static inline void scene_evaluate(const scene_kernels *kernels, spring_scene *s,
 }
 
 /* Evaluates the forces at x and v, at a fraction of the step, and stores them in s->forces. */
-static inline void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
+SPRING_NOINLINE void evaluate(scene_step *s, const scalar *x, const scalar *v, double fraction)
 {
     scene_evaluate(s->kernels, s->scene, s->links, x, v, time_at(s, fraction), &s->forces);
 }
 
 /* Sets s->whole.force: the forces at the start of the step. They are evaluated unless they are cached. */
-static inline void find_start_force(scene_step *s)
+SPRING_NOINLINE void find_start_force(scene_step *s)
 {
     s->whole.force = force_at(s, s->from);
     if (s->cached == FORCE || (s->cached == PREDICTED_FORCE && s->predicts))
