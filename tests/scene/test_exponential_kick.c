@@ -213,7 +213,7 @@ static void plain_steps(void)
     static plain_kick k;
     static state want, got;
     unsigned saturated = 0, two = 0;
-    for (unsigned number = 0; number < 600; number++) {
+    for (unsigned number = 0; number < 240; number++) {
         const uint32_t axes = 1 + number % 3;
         build(&m, grids[number / 3 % 5], axes, (number * 389) % feature_masks | DAMPED);
         const bool damped_callback = number % 7 == 0, called = number % 7 < 3;
@@ -267,7 +267,7 @@ static void plain_steps(void)
               "positions and velocities are the whole state");
         free(s), free(other);
     }
-    CHECK(saturated > 50 && two > 50, "with few terms, and with saturated links");
+    CHECK(saturated > 20 && two > 20, "with few terms, and with saturated links");
 }
 
 /* ------------------------------------------------------------------------------------------------- creep and turning */
@@ -447,7 +447,7 @@ static void damping_adds_no_energy(void)
 {
     static model m;
     const char *scenes = getenv("SPRINGSTEP_SCENES"), *steps = getenv("SPRINGSTEP_STEPS");
-    const int count = scenes != NULL ? atoi(scenes) : 100, length = steps != NULL ? atoi(steps) : 1000;
+    const int count = scenes != NULL ? atoi(scenes) : 40, length = steps != NULL ? atoi(steps) : 1000;
     const struct {
         double fraction, most, exceptions; /* links that are compressed to half exceed the stable step: scene.h */
     } cases[] = {{0.5, 1.05, 0}, {0.9, 1.3, 0.01}};
@@ -509,10 +509,10 @@ static void rests_as_without_damping(void)
 {
     static model m;
     const double up[] = {0, 0, 1}, dt = 0.0003;
-    static const double damping[] = {0.3, 6, 600};
+    static const double damping[] = {0.3, 600};
     for (int rough = 0; rough < 2; rough++) {
-        double top[3];
-        for (int i = 0; i < 3; i++) {
+        double top[2];
+        for (int i = 0; i < 2; i++) {
             spring_scene *s = block_on_plane(&m, damping[i], rough ? 0.5 : 0, up);
             static state y;
             CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 7000) == SPRING_OK, "stable");
@@ -525,8 +525,7 @@ static void rests_as_without_damping(void)
             CHECK_CLOSE(top[i], 0.2499, 1e-4, "the weight compresses it by 0.1 mm; it has not sunk into itself");
             free(s);
         }
-        for (int i = 1; i < 3; i++)
-            CHECK_CLOSE(top[i], top[0], 2e-5, "not quite to equal places: friction holds it where it stops");
+        CHECK_CLOSE(top[1], top[0], 2e-5, "not quite to equal places: friction holds it where it stops");
     }
 }
 
@@ -580,7 +579,7 @@ static void impacts_add_no_energy(void)
             spring_scene_set(s, SPRING_POSITION, m.position, 0, 0, m.def.particles);
             spring_scene_set(s, SPRING_VELOCITY, m.velocity, 0, 0, m.def.particles);
             const double start = total_energy(s);
-            for (int part = 0; part < 300; part++) {
+            for (int part = 0; part < 150; part++) {
                 CHECK(spring_scene_advance(s, SPRING_LEAPFROG, dt, 10) == SPRING_OK, "stable");
                 CHECK_BELOW(total_energy(s), start * (1 + 1000 * EPS), "at most what it started with");
             }
