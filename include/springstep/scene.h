@@ -117,8 +117,8 @@ typedef void spring_scenef_force_fn(void *user, double t, size_t particles, cons
 /** Links pull and never push, as in a rope, a net or a sail. A link that is not longer than its rest length is slack:
    it has no tension and no energy. A longer link has the tension max(0, stiffness (length - rest) + damping rate), so
    damping does not push either. (Exception: where leapfrog damps links by an exponential kick, see
-   spring_scene_advance(), the damping of a taut link that becomes shorter may push.) Requires two or three axes. Leapfrog and RK4 have order 2
-   where a link becomes taut or slack. */
+   spring_scene_advance(), the damping of a taut link that becomes shorter may push.) Requires two or three axes.
+   Leapfrog and RK4 have order 2 where a link becomes taut or slack. */
 #define SPRING_SCENE_TENSION_ONLY UINT32_C(8)
 
 /** Enables held forces, see SPRING_FORCE. */
@@ -255,8 +255,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * with v0 and with (v0 + v1)/2, and the series is computed twice. A negative dt always uses explicit damping.
  *
  * The damping of links saturates, so that dt G <= 30000 and at most 279 evaluations of damping are made: the damping of
- * a link is reduced by the larger excess of its ends. Such a link relaxes no slower than in about 30000 dt^-2
- * mass/stiffness steps.
+ * a link is reduced by the larger excess of its ends. Such a link relaxes within about
+ * 30000 mass/(stiffness dt^2) steps.
  *
  * RKN8 has order 8. It requires links without damping and a callback that does not use velocities. With drag, the
  * method is applied to y = e^(drag t/(2 mass)) (x - x0), so the order is still 8: with drag alone, the error is 3e-11
@@ -271,8 +271,8 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  *
  * Force evaluations per step: one for both Euler methods and leapfrog, four for RK4,
  * eight for RKN8, eleven for SRKN6. Leapfrog, RKN8 and SRKN6 keep the forces at the end of a step for the start of the
- * next step. With explicitly damped links, leapfrog keeps the forces at v*. These forces are then part of the state, and a
- * snapshot contains them. They are evaluated again, at v, after spring_scene_set() and spring_scene_transform(), after
+ * next step. With explicitly damped links, leapfrog keeps the forces at v*. These forces are then part of the state,
+ * and a snapshot contains them. They are evaluated again, at v, after spring_scene_set() and spring_scene_transform(), after
  * a change of links, pins, masses, the callback or the velocity of a pinned particle, and after steps of another
  * method. With a callback that may use velocities, leapfrog keeps no forces and evaluates them twice per step, because
  * the data of the callback may change between steps; see SPRING_SCENE_FORCE_IGNORES_VELOCITY.

@@ -239,7 +239,8 @@ SPRING_API spring_status spring_advance(spring_state *s, const spring_params *p,
  * position. A spring is therefore placed from at most 73 728 ulps away, and the result is a continuous function of dt
  * to within this distance, less than 1.7e-11 of the larger of |x| and |rest position|. If slow dt < 2^-16, rounding
  * error may stop the spring before this, up to 1.2/(slow dt) ulps from its rest position. This concerns half-lives above
- * 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the velocity to T', and the position of the target has no effect.
+ * 757 s at 60 Hz, 189 s at 240 Hz and 0.94 s at 48 kHz. Without stiffness, damping brings the velocity to T', and the
+ * position of the target has no effect.
  *
  * @param[in,out] s                state; unchanged unless SPRING_OK is returned
  * @param[in]     p                parameters
