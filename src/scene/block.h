@@ -37,7 +37,7 @@ typedef enum scene_array {
     ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
     ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
     ARRAY_FROZEN,  /* direction_scale, then turning, likewise */
-    ARRAY_KICK,    /* three quantities; see kick_storage() */
+    ARRAY_KICK,    /* see kick_storage() */
     ARRAY_PRESSED, /* pressed_particle: see exponential_kick.h */
     ARRAY_SUMS,    /* by particle: work space of the stable step and of spring_scene_find_roots() */
     ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
@@ -58,7 +58,7 @@ typedef struct band_layout {
 } band_layout;
 
 /* In which directions a pressed particle is free. */
-typedef enum freedom { FREE_BUT_NORMAL, FREE_ALONG_LINE, HELD } freedom;
+typedef enum freedom { FREE_IN_PLANE, FREE_ALONG_LINE, HELD } freedom;
 
 /* A particle that colliders press during an exponential kick. Its normal accelerations are kept out of the series, as
    all accelerations of a pinned particle are, since colliders carry its load. */

@@ -375,7 +375,7 @@ static void heavy_damping(void)
     spring_scene_set_colliders(s, &ground, 1);
     CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 0.01, 300) == SPRING_OK, "stable");
     uint32_t mask[most];
-    CHECK(count_touching(s, m.def.particles) >= 3, "stands on the floor, as stiff as a board");
+    CHECK(count_touching(s, m.def.particles) >= 3, "stands on the floor; it is nearly rigid");
     spring_scene_touching(s, mask, 0, m.def.particles);
     for (size_t i = 0; i < m.def.particles; i++) {
         double x[3], v[3];
