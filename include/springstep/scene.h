@@ -129,8 +129,24 @@ typedef enum spring_shape {
     SPRING_PLANE,   /**< a half-space */
     SPRING_SPHERE,  /**< a solid sphere */
     SPRING_CAPSULE, /**< all points within a distance `radius` of a line segment */
-    SPRING_BOX      /**< a box in any orientation; with a radius its edges are rounded */
+    SPRING_BOX,     /**< a box in any orientation; with a radius its edges are rounded */
+    SPRING_CUSTOM   /**< a body of any form, which a function describes */
 } spring_shape;
+
+/** Computes the signed distance of a point from the surface of a SPRING_CUSTOM body, and the outward unit normal there.
+ *
+ * Writes one to three contacts, and returns their number. Return two or three where several parts of the surface are
+ * near, as in a valley. The gap is negative inside, however deep. It may be a lower bound of the size of the distance
+ * with the right sign, if it changes by at most the way of the point (Lipschitz constant 1), as a height field divided by
+ * sqrt(1 + slope^2) does. Far away, one contact with any lower bound is enough. The function must depend only on its
+ * arguments and on data that does not change during a call.
+ *
+ * @param[in]  user    the pointer of the collider
+ * @param[in]  point   [m] in the frame of the body. With two axes, [2] is 0
+ * @param[out] gap     [m] the distances
+ * @param[out] normal  in the frame of the body. With two axes, [2] is ignored
+ */
+typedef uint32_t spring_gap_fn(void *user, const double point[3], double gap[3], double normal[3][3]);
 
 /** A convex body that free particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored.
  * With two axes, the third elements are ignored too, except spin[2]. */
@@ -151,6 +167,18 @@ typedef struct spring_collider {
     double spin[3];
     double friction;    /**< Coulomb coefficient >= 0 */
     double restitution; /**< 0 to 1: ratio of the normal speeds after and before an impact */
+    double acceleration[3];      /**< [m/s^2] of `at` and `to`: at + velocity t + acceleration t^2/2 */
+    double spin_acceleration[3]; /**< [rad/s^2] turned by the vector spin t + spin_acceleration t^2/2 */
+    double surface[3];           /**< [m/s] further velocity of the surface in the frame of the body, as of a conveyor
+                                    belt. Its normal part is ignored. The frame of a plane, a sphere or a capsule has
+                                    the axes of the scene at the time of the call */
+    uint32_t mask;               /**< particles collide if this and their mask have a common bit; 0 means all bits */
+    spring_gap_fn *gap;          /**< SPRING_CUSTOM: its surface. `axis` is its frame; all 0: the axes of the scene.
+                                    `radius` is added to the body */
+    void *user;                  /**< SPRING_CUSTOM: passed to gap */
+    double thickness;            /**< [m] SPRING_CUSTOM: least thickness of the body, > 0 */
+    double bound;                /**< [m] SPRING_CUSTOM: radius of a sphere about `at` that contains the body without its
+                                    radius; 0: none, as for terrain and hollow bodies */
 } spring_collider;
 
 /** The definition of a scene. Set the fields of unused features to zero. Every array is copied. */
@@ -174,6 +202,9 @@ typedef struct spring_scene_def {
                                      fails with SPRING_EUNSTABLE; 0: no limit */
     uint32_t colliders;           /**< maximum number of colliders, at most 32; 0: none */
     double particle_radius;       /**< [m] >= 0, radius of every particle in contacts */
+    const double *radius;         /**< [particles] [m] >= 0, instead of particle_radius; NULL: equal */
+    const double *friction;       /**< [particles] >= 0: factor of the friction of colliders; NULL: 1 */
+    const uint32_t *mask;         /**< [particles] see spring_collider; NULL: all bits; 0: it never collides */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */
@@ -506,6 +537,26 @@ SPRING_API spring_status spring_scene_check_colliders(const spring_scene *s, con
  */
 SPRING_API spring_status spring_scene_touching(const spring_scene *s, uint32_t *mask, size_t first, size_t count);
 
+/** What particles gave to a collider. */
+typedef struct spring_impulse {
+    double linear[3];  /**< [N s] */
+    double angular[3]; /**< [N m s] about `at` at the end of the call */
+} spring_impulse;
+
+/** Copies the impulses that particles gave to colliders first ... first + count - 1 in the last successful call of
+ * spring_scene_advance().
+ *
+ * They are 0 after a call without steps, spring_scene_init() and spring_scene_set_colliders(). A failed call keeps them.
+ * The angular impulse of a capsule or a custom body is about its `at`, too. Impulses are not part of the state: no step
+ * reads them. Sums of several calls differ from those of one call in rounding errors.
+ *
+ * @param[out] out  [count]
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the scene does not have these colliders now; SPRING_EDISABLED:
+ *         `colliders` of the definition is 0
+ */
+SPRING_API spring_status spring_scene_impulses(const spring_scene *s, spring_impulse *out, uint32_t first,
+                                               uint32_t count);
+
 /** Changes the callback and its user pointer. A NULL callback removes it. Returns SPRING_EINVAL if the scene is
     NULL. */
 SPRING_API spring_status spring_scene_set_force(spring_scene *s, spring_scene_force_fn *force, void *user);
@@ -650,6 +701,9 @@ typedef struct spring_scenef_def {
     uint32_t colliders;
     double particle_radius;
     /** @} */
+    const double *radius;
+    const double *friction;
+    const uint32_t *mask;
 } spring_scenef_def;
 
 /** A single-precision scene. */
@@ -693,6 +747,8 @@ SPRING_API spring_status spring_scenef_set_colliders(spring_scenef *s, const spr
 SPRING_API spring_status spring_scenef_check_colliders(const spring_scenef *s, const spring_collider *c, uint32_t count,
                                                        const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t *mask, size_t first, size_t count);
+SPRING_API spring_status spring_scenef_impulses(const spring_scenef *s, spring_impulse *out, uint32_t first,
+                                                uint32_t count);
 /** @} */
 
 /** @} */

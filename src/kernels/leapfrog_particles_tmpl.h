@@ -38,7 +38,7 @@ SPRING_INLINE real free_acceleration(const scene_motion *m, const coordinates *c
     return select_real(c->inverse_mass > 0, free, splat(0));
 }
 
-SPRING_INLINE real acceleration(const scene_motion *m, const coordinates *c, real v)
+SPRING_INLINE real dragged_acceleration(const scene_motion *m, const coordinates *c, real v)
 {
     const real free = free_acceleration(m, c);
     return c->dragged ? free - c->drag * v : free;
@@ -124,7 +124,7 @@ SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c
     return wrong | not_finite(predicted);
 }
 
-/* Without colliders and held forces. */
+/* Without held forces. */
 static bool move_kick_drift_free(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     if (m->predicted == NULL)
@@ -142,7 +142,7 @@ SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates
     return too_fast(m, c, v);
 }
 
-/* Without colliders and held forces. */
+/* Without held forces. */
 static bool move_implicit_kick_free(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
     return for_each_vector(p, m, from, to, update_implicit_kick, 0, false);
@@ -151,9 +151,6 @@ static bool move_implicit_kick_free(const scene_particles *p, const scene_motion
 /* --------------------------------------------------------------------------------------------------------- kernels */
 
 #if SPRING_VECTOR < 64
-
-/* Defined in contact_loops_tmpl.h, with all axes of a particle at once. */
-static particle_kernel move_kick_drift_contact, move_implicit_kick_contact;
 
 /* Leapfrog has separate loops for held forces, so that they cost other scenes nothing. */
 SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
@@ -164,8 +161,6 @@ SPRING_NOINLINE bool move_kick_drift_held(const scene_particles *p, const scene_
 
 static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    if (m->contacts != NULL)
-        return move_kick_drift_contact(p, m, from, to);
     return p->held_stride != 0 || SPRING_COMPACT ? move_kick_drift_held(p, m, from, to)
                                                  : move_kick_drift_free(p, m, from, to);
 }
@@ -177,25 +172,22 @@ SPRING_NOINLINE bool move_implicit_kick_held(const scene_particles *p, const sce
 
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    if (m->contacts != NULL)
-        return move_implicit_kick_contact(p, m, from, to);
     return p->held_stride != 0 || SPRING_COMPACT ? move_implicit_kick_held(p, m, from, to)
                                                  : move_implicit_kick_free(p, m, from, to);
 }
 
 #else
 
-/* With colliders or held forces: the kernels for shorter vectors. */
+/* With held forces: the kernels for shorter vectors. */
 static bool move_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    const bool here = m->contacts == NULL && p->held_stride == 0;
-    return here ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
+    return p->held_stride == 0 ? move_kick_drift_free(p, m, from, to) : SPRING_COMMON_TABLE.kick_drift(p, m, from, to);
 }
 
 static bool move_implicit_kick(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    const bool here = m->contacts == NULL && p->held_stride == 0;
-    return here ? move_implicit_kick_free(p, m, from, to) : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
+    return p->held_stride == 0 ? move_implicit_kick_free(p, m, from, to)
+                               : SPRING_COMMON_TABLE.implicit_kick(p, m, from, to);
 }
 
 #endif

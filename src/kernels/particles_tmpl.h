@@ -8,9 +8,6 @@
 
 #include "leapfrog_particles_tmpl.h"
 
-/* Defined in contact_loops_tmpl.h, with all axes of a particle at once. */
-static particle_kernel move_implicit_kick_drift_contact, move_last_stage_contact;
-
 SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
@@ -21,8 +18,6 @@ SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coord
 
 static bool move_implicit_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    if (m->contacts != NULL)
-        return move_implicit_kick_drift_contact(p, m, from, to);
     return for_each_vector(p, m, from, to, update_implicit_kick_drift, 0, true);
 }
 
@@ -33,7 +28,7 @@ enum { NO_SUM, FIRST_SUM, NEXT_SUM };
 SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const scene_stage *const s = m->stage;
-    const real dx = vec_load(s->v + c->at), dv = acceleration(m, c, dx);
+    const real dx = vec_load(s->v + c->at), dv = dragged_acceleration(m, c, dx);
     if (variant == FIRST_SUM) {
         vec_store(s->sum_x + c->at, dx);
         vec_store(s->sum_v + c->at, dv);
@@ -67,15 +62,13 @@ SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c
 {
     (void)variant;
     const scene_stage *const s = m->stage;
-    const real dx = vec_load(s->v + c->at), dv = acceleration(m, c, dx);
+    const real dx = vec_load(s->v + c->at), dv = dragged_acceleration(m, c, dx);
     return store_end(m, c, vec_load(m->x0 + c->at) + m->drift * (vec_load(s->sum_x + c->at) + s->weight * dx),
                      vec_load(m->v0 + c->at) + m->kick * (vec_load(s->sum_v + c->at) + s->weight * dv));
 }
 
 static bool move_last_stage(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
 {
-    if (m->contacts != NULL)
-        return move_last_stage_contact(p, m, from, to);
     return for_each_vector(p, m, from, to, update_last_stage, 0, true);
 }
 
@@ -151,6 +144,20 @@ static bool move_drift(const scene_particles *p, const scene_motion *m, size_t f
     return for_each_vector(p, m, from, to, update_drift, 0, false);
 }
 
+/* The drift before the kick, which contacts replace, and the drift after it. */
+SPRING_INLINE mask update_drift_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+{
+    (void)variant;
+    const real v = vec_load(m->stage->v + c->at);
+    const real middle = vec_load(m->x0 + c->at) + m->drift * vec_load(m->v0 + c->at);
+    return store_end(m, c, middle + m->drift * v, v);
+}
+
+static bool move_drift_kick_drift(const scene_particles *p, const scene_motion *m, size_t from, size_t to)
+{
+    return for_each_vector(p, m, from, to, update_drift_kick_drift, 0, false);
+}
+
 /* The mass divided by its increase by drag in a time h, mass'. */
 SPRING_INLINE real mass_ratio(const coordinates *c, scalar h)
 {
@@ -161,7 +168,7 @@ SPRING_INLINE real mass_ratio(const coordinates *c, scalar h)
 SPRING_INLINE mask update_residual(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
-    const real residual = mass_ratio(c, m->kick) * acceleration(m, c, vec_load(m->v0 + c->at));
+    const real residual = mass_ratio(c, m->kick) * dragged_acceleration(m, c, vec_load(m->v0 + c->at));
     vec_store(m->v + c->at, residual);
     return not_finite(residual);
 }

@@ -5,6 +5,7 @@
 #ifndef SPRINGSTEP_SCENE_KERNELS_H
 #define SPRINGSTEP_SCENE_KERNELS_H
 
+#include "../scene/contact.h"
 #include "../simd/scalar.h"
 #include "../simd/targets.h"
 #include "single_precision.h"
@@ -13,11 +14,11 @@
 #include <stddef.h>
 
 enum {
-    padding = 16,        /* elements of the longest SIMD vector; every array has as many before and after it */
-    most_colliders = 32, /* bits of a mask */
-    most_bands = 32,     /* a block with shear and bend springs has 16 */
-    nystrom_stages = 7,  /* of a Runge-Kutta-Nystrom method, after the first */
-    tile = 64            /* slots of a band whose forces are computed together; they fit the first-level cache */
+    padding = 16,       /* elements of the longest SIMD vector; every array has as many before and after it */
+    most_bands = 32,    /* a block with shear and bend springs has 16 */
+    nystrom_stages = 7, /* of a Runge-Kutta-Nystrom method, after the first */
+    tile = 64,          /* slots of a band whose forces are computed together; they fit the first-level cache */
+    contact_chunk = 32  /* particles whose contacts are found together */
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
@@ -135,34 +136,36 @@ typedef struct scene_damped_drift {
     const scalar *loss; /* e^(-drag drift) - 1 */
 } scene_damped_drift;
 
-/* A collider during a step, or during one of its drifts. Radius and offset include the radius of particles. */
-typedef struct scene_collider {
-    spring_shape shape;
-    bool spins;
-    scalar at[3], to[3], at_end[3], to_end[3]; /* [m] at the start and at the end of the step */
-    scalar shift[3], shift_to[3];              /* [m] the differences */
-    scalar offset, offset_end, offset_shift;   /* [m] plane: normal . at, plus the radius */
-    scalar axis[3][3], half[3], radius;
-    scalar velocity[3], velocity_to[3], spin[3];
-    scalar friction, restitution;
-    scalar reach_fast, reach_slow; /* [m^2] see may_touch() */
-    scalar inverse_square;         /* [1/m^2] capsule: 1/(length of its axis)^2 at the start */
-} scene_collider;
+/* A bound on a collider during a drift, by which particles are found that may touch it: see contact_body. */
+typedef struct collider_bound {
+    spring_shape shape;                               /* SPRING_SPHERE for custom bodies */
+    scalar at[3], shift[3];                           /* [m] at the start of the drift, and its displacement */
+    scalar axis[3][3], half[3];                       /* box; plane: normal at the start and at the end */
+    scalar offset[2];                                 /* [m] plane: normal . at, at the start and at the end */
+    scalar segment[3], inverse_square;                /* capsule, at the start */
+    scalar reach, growth_squared;
+} collider_bound;
 
-/* Computes the normal at the surface point nearest to x, and the velocity of the surface there, for the pose at the
-   start of the step. */
-typedef void surface_kernel(const scene_collider *, const scalar x[3], scalar normal[3], scalar velocity[3]);
+typedef struct collider_bounds {
+    unsigned count;
+    scalar turning;                                         /* largest of contact_body.turning */
+    scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, with the radius of particles */
+    collider_bound each[most_colliders];
+} collider_bounds;
 
-/* The contacts of a step. */
-typedef struct scene_contacts {
-    unsigned count;                 /* of colliders */
-    const scene_collider *collider; /* [count] */
-    uint32_t axes;
-    scalar h;               /* [s] */
-    const scalar *x;        /* [m] positions at the end of the step */
-    const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
-    uint32_t *touched;      /* written: the same for this step; may be `before` */
-} scene_contacts;
+/* A copy of what a motion overwrites. */
+typedef struct kept_motion {
+    scalar x0[3][contact_chunk], v0[3][contact_chunk], force[3][contact_chunk];
+} kept_motion;
+
+/* Which contacts a motion has. */
+typedef enum contact_motion {
+    NO_CONTACTS,
+    KICK_DRIFT_CONTACTS,
+    IMPLICIT_KICK_CONTACTS, /* it stops at the colliders that are touched */
+    IMPLICIT_KICK_DRIFT_CONTACTS,
+    WHOLE_STEP_CONTACTS
+} contact_motion;
 
 /* A motion of all particles, from x0 and v0 to x and v. */
 typedef struct scene_motion {
@@ -171,7 +174,7 @@ typedef struct scene_motion {
     const scalar *x0, *v0; /* read */
     scalar *x, *v;         /* written */
     scalar max_speed;      /* [m/s] largest |v| of a free particle at the end of a step; SCALAR_MAX: no limit */
-    const scene_contacts *contacts; /* NULL: no colliders */
+    contact_motion contacts;
     /* kick_drift */
     bool ends_previous; /* begin with the implicit kick that ends the previous step */
     scalar *predicted;  /* written: velocities at the end of the step; may be `force`. NULL: none */
@@ -185,6 +188,15 @@ typedef struct scene_motion {
 /* Advances particles from ... to - 1, both multiples of tile or the end. Returns false if a result is infinite or NaN,
    or if a velocity at the end of a step is above max_speed. */
 typedef bool particle_kernel(const scene_particles *, const scene_motion *, size_t from, size_t to);
+
+/* Copies x0, v0 and force of particles first ... first + contact_chunk - 1, and further ones of the padding. */
+typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t first, size_t count, kept_motion *);
+
+/* Sets bit k of near[i] if particle first + i may touch collider k on its way from kept.x0 to x. Returns whether it sets
+   a bit. radius: [m] of particles, or of all if radius_stride is 0 */
+typedef bool near_kernel(const collider_bounds *, const scene_particles *, const kept_motion *, const scalar *x,
+                         const scalar *radius, size_t radius_stride, size_t first, size_t count,
+                         uint32_t near[contact_chunk]);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {
@@ -208,10 +220,11 @@ typedef struct common_kernels {
                                              - second_weight second_before + force_weight force/mass', where
                                              mass' = mass (1 + q/2 + q^2/(12 + 2q)), q = h drag/mass */
     particle_kernel *last_series_term;    /* v = v0 + kick b and, unless x is NULL, x = x0 + drift v */
-    particle_kernel *drift_kick_drift;    /* with colliders: v = stage.v;  x = x0 + drift v0 + drift v */
+    particle_kernel *drift_kick_drift;    /* v = stage.v;  x = x0 + drift v0 + drift v */
     particle_kernel *kick_damped_drift;   /* v' = v0 + kick a;  x = x0 + span v';  v = v' + loss v' */
     stretch_kernel *stretched;            /* see above */
-    surface_kernel *contact_surface;      /* see above */
+    keep_kernel *keep_motion;             /* see above */
+    near_kernel *find_near;
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain

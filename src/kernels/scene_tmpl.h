@@ -17,7 +17,7 @@
 #include "leapfrog_particles_tmpl.h"
 
 #if SPRING_VECTOR < 64
-#include "contact_loops_tmpl.h"
+#include "contact_near_tmpl.h"
 #include "particles_tmpl.h"
 #include "stretch_tmpl.h"
 #include "unbanded_tmpl.h"
@@ -38,10 +38,11 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .residual = move_residual,
     .series_term = move_series_term,
     .last_series_term = move_last_series_term,
-    .drift_kick_drift = move_drift_kick_drift_contact,
+    .drift_kick_drift = move_drift_kick_drift,
     .kick_damped_drift = move_kick_damped_drift,
     .stretched = any_stretched,
-    .contact_surface = find_contact_surface,
+    .keep_motion = keep_motion,
+    .find_near = find_near,
 };
 #endif
 

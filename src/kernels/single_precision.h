@@ -30,6 +30,9 @@
 #define spring_scene_def             spring_scenef_def
 #define spring_scene_drive           spring_scenef_drive
 #define spring_scene_energy          spring_scenef_energy
+#define spring_scene_begin_impulses  spring_scenef_begin_impulses
+#define spring_scene_end_impulses    spring_scenef_end_impulses
+#define spring_scene_impulses        spring_scenef_impulses
 #define spring_scene_find_bounds     spring_scenef_find_bounds
 #define spring_scene_find_roots      spring_scenef_find_roots
 #define spring_scene_find_link       spring_scenef_find_link

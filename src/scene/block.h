@@ -42,7 +42,13 @@ typedef enum scene_array {
     ARRAY_SUMS,    /* by particle: work space of the stable step and of spring_scene_find_roots() */
     ARRAY_HELD,    /* [N] held forces: no call but spring_scene_set() changes them */
     ARRAY_COLLIDERS, /* spring_collider, as set */
-    ARRAY_PLACED,    /* scene_collider, in the current step */
+    ARRAY_PLACED,    /* contact_body, in the current step */
+    ARRAY_BOUNDS,    /* one collider_bounds: the same, to find particles that are near */
+    ARRAY_IMPULSES,  /* spring_impulse of each collider, in the last call, then in the present call */
+    ARRAY_ORIGINS,   /* [m] points that impulses of the present call are about: double[3] of each collider */
+    ARRAY_RADIUS,    /* [m] by particle; absent: particle_radius */
+    ARRAY_FRICTION,  /* by particle: factor of the friction of colliders */
+    ARRAY_BITS,      /* by particle: which colliders it may touch */
     ARRAY_TOUCHED_0, /* by particle: bits of the colliders that it touches in buffer 0 */
     ARRAY_TOUCHED_1,
     ARRAY_COUNT
@@ -120,18 +126,22 @@ struct spring_scene {
     bool bounds_known;
     double roots_dt;        /* [s] step for which ARRAY_ROOTS is known; 0: none */
     uint32_t colliders;     /* at most layout.colliders */
-    double colliders_set;   /* [s] time of their poses */
-    double particle_radius; /* [m] */
+    double colliders_elapsed; /* [s] since they were set, at step colliders_since; see scene_elapsed() */
+    uint64_t colliders_since;
+    scalar particle_radius; /* [m] */
+    scalar largest_radius;  /* [m] of a particle */
     scene_bounds bounds;
 };
 
-/* Places the colliders for a drift from t0 to t1, into ARRAY_PLACED. */
-SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
+/* Places the colliders for a drift from t0 to t1, in seconds since they were set. all: not only those that move. */
+SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all);
 
-/* Adds the accelerations by the touched colliders to the acceleration of a particle. Returns the size of the rest that
-   static friction does not balance. */
-SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t particle,
-                                             double accel[3]);
+/* Begins and ends the sums of impulses of a call. t: [s] since the colliders were set */
+SPRING_INTERNAL void spring_scene_begin_impulses(spring_scene *s, double t);
+SPRING_INTERNAL void spring_scene_end_impulses(spring_scene *s, double t);
+
+/* The size of the acceleration of a particle that the touched colliders do not balance. */
+SPRING_INTERNAL double spring_scene_balanced(const spring_scene *s, size_t particle, const double accel[3]);
 
 /* Computes ARRAY_ROOTS, the square roots of the damping of links. The damping saturates: each particle has a factor by
    which dt times the sum of 2 damping/mass over its links (damping/mass to a pin), hG, is at most `most`, and a link
@@ -222,6 +232,13 @@ static inline void scene_clear_touched(spring_scene *s, size_t first, size_t cou
         memset(touched + first, 0, count * sizeof *touched);
 }
 
+static inline void scene_clear_impulses(spring_scene *s)
+{
+    void *const sums = scene_memory(s, ARRAY_IMPULSES);
+    if (sums != NULL)
+        memset(sums, 0, s->layout.colliders * sizeof(spring_impulse));
+}
+
 /* The array that holds a quantity of the state. */
 static inline scene_array state_array(const spring_scene *s, spring_quantity q)
 {
@@ -245,6 +262,26 @@ static inline double inverse_mass_at(const spring_scene *s, size_t i)
 {
     const scalar *each = scene_read(s, ARRAY_INVERSE_MASS);
     return each != NULL ? (double)each[i] : 1 / s->mass_all;
+}
+
+/* [s] Time since the colliders were set, after `steps` steps of the present run. It is never a difference of times of
+   the scene, so it does not depend on them. */
+static inline double scene_elapsed(const spring_scene *s, uint64_t steps)
+{
+    return s->colliders_elapsed + (double)(steps - s->colliders_since) * s->dt;
+}
+
+/* What contacts of particle i depend on besides its state. */
+static inline contact_particle scene_contact_particle(const spring_scene *s, size_t i)
+{
+    const scalar *const radius = scene_read(s, ARRAY_RADIUS), *const friction = scene_read(s, ARRAY_FRICTION);
+    const uint32_t *const bits = scene_read(s, ARRAY_BITS);
+    return (contact_particle){
+        .radius = (double)(radius != NULL ? radius[i] : s->particle_radius),
+        .inverse_mass = inverse_mass_at(s, i),
+        .friction = friction != NULL ? (double)friction[i] : 1,
+        .bits = bits != NULL ? bits[i] : UINT32_MAX,
+    };
 }
 
 static inline bool scene_callback_uses_velocity(const spring_scene *s)

@@ -79,6 +79,10 @@ static def_error check_particles(const spring_scene_def *def)
             return invalid("mass", i);
         if (!scene_fits(def->drag * (double)inverse_mass_of(def, i)))
             return invalid("drag", i);
+        if (def->colliders > 0 && def->radius != NULL && !scene_not_negative(def->radius[i]))
+            return invalid("radius", i);
+        if (def->colliders > 0 && def->friction != NULL && !scene_not_negative(def->friction[i]))
+            return invalid("friction", i);
     }
     return no_error;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Colliders of a scene: setting them, their poses during a step, and balance at rest. kernels/contact_collide_tmpl.h
-   has the formulas of contacts. */
+/* Colliders of a scene: setting them, their poses during a step, and balance at rest. contact.c has the
+   formulas of contacts. */
 #include "block.h"
 #include "../spring/roots.h"
 
@@ -30,7 +30,11 @@ static double dot_of(const double a[3], const double b[3], uint32_t axes)
 /* The number of axes that a shape uses. */
 static uint32_t axes_of_shape(const spring_collider *c, uint32_t axes)
 {
-    return c->shape == SPRING_PLANE ? 1 : c->shape == SPRING_BOX ? axes : 0;
+    bool given = c->shape == SPRING_BOX;
+    for (uint32_t i = 0; i < axes && c->shape == SPRING_CUSTOM; i++)
+        for (uint32_t a = 0; a < axes; a++)
+            given = given || c->axis[i][a] != 0;
+    return c->shape == SPRING_PLANE ? 1 : given ? axes : 0;
 }
 
 /* The largest difference between a dot product of two of these axes and that of unit vectors at right angles. NaN if
@@ -67,12 +71,18 @@ static void orthonormalise(spring_collider *c, uint32_t count, uint32_t axes)
     }
 }
 
-/* The name of the first field that is not valid; NULL: none. */
-static const char *invalid_field(const spring_collider *c, double thickness, uint32_t axes)
+static bool fits_angles(const double v[3], uint32_t axes)
+{
+    return axes == 2 ? scalar_finite((scalar)v[2]) : fits3(v, axes);
+}
+
+/* The name of the first field that is not valid; NULL: none. radius: of particles, the largest */
+static const char *invalid_field(const spring_collider *c, double radius, uint32_t axes)
 {
     const double tolerance = 1e-3; /* of axes; products of many matrices of floats have errors of 1e-6 */
-    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
-    if (!plane && !capsule && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
+    const bool capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE,
+               custom = c->shape == SPRING_CUSTOM;
+    if (!plane && !capsule && !custom && c->shape != SPRING_SPHERE && c->shape != SPRING_BOX)
         return "shape";
     if (!fits3(c->at, axes))
         return "at";
@@ -80,113 +90,139 @@ static const char *invalid_field(const spring_collider *c, double thickness, uin
         return "to";
     if (!(orthonormality_error(c, axes_of_shape(c, axes), axes) <= tolerance))
         return "axis";
-    if (plane && !scalar_finite((scalar)(dot_of(c->axis[0], c->at, axes) + thickness)))
+    if (plane && !scalar_finite((scalar)(dot_of(c->axis[0], c->at, axes) + radius)))
         return "at";
     for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
         if (!fits_not_negative(c->half[a]))
             return "half";
-    if (!plane && !(c->radius >= 0 && fits_not_negative(c->radius + thickness)))
+    if (!plane && !(c->radius >= 0 && fits_not_negative(c->radius + radius)))
         return "radius";
     if (!fits3(c->velocity, axes))
         return "velocity";
     if (capsule && !fits3(c->velocity_to, axes))
         return "velocity_to";
-    if (axes == 2 ? !scalar_finite((scalar)c->spin[2]) : !fits3(c->spin, axes))
+    if (!fits_angles(c->spin, axes))
         return "spin";
     if (!fits_not_negative(c->friction))
         return "friction";
-    return c->restitution >= 0 && c->restitution <= 1 ? NULL : "restitution";
+    if (!(c->restitution >= 0 && c->restitution <= 1))
+        return "restitution";
+    if (!fits3(c->acceleration, axes))
+        return "acceleration";
+    if (!fits_angles(c->spin_acceleration, axes))
+        return "spin_acceleration";
+    if (!fits3(c->surface, axes))
+        return "surface";
+    if (custom && c->gap == NULL)
+        return "gap";
+    if (custom && !(c->thickness > 0 && scalar_finite((scalar)c->thickness)))
+        return "thickness";
+    return custom && !fits_not_negative(c->bound) ? "bound" : NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ poses */
 
-/* The position of a point after `time`, in the precision of the scene. */
-static void place_point(const double at[3], const double velocity[3], double time, uint32_t axes, scalar out[3])
+static void copy3(scalar to[3], vector3 from)
 {
-    for (uint32_t a = 0; a < 3; a++)
-        out[a] = a < axes ? (scalar)(at[a] + time * velocity[a]) : 0;
+    to[0] = (scalar)from.x;
+    to[1] = (scalar)from.y;
+    to[2] = (scalar)from.z;
 }
 
-static scalar plane_offset(const spring_collider *c, double time, double thickness, uint32_t axes)
+static double dot_of_vectors(vector3 a, vector3 b)
 {
-    return (scalar)(dot_of(c->axis[0], c->at, axes) + time * dot_of(c->axis[0], c->velocity, axes) + thickness);
+    return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static scalar length_of_shift(const scalar shift[3])
+/* A finite bound for loops with SIMD, where infinity times 0 would be NaN. */
+static scalar bounded(double value)
 {
-    const double square =
-        (double)shift[0] * (double)shift[0] + (double)shift[1] * (double)shift[1] + (double)shift[2] * (double)shift[2];
-    return (scalar)spring_sqrt(square);
+    return value > (double)SCALAR_MAX ? SCALAR_MAX : value < -(double)SCALAR_MAX ? -SCALAR_MAX : (scalar)value;
 }
 
-/* Copies shape and material in the precision of the scene. With two axes, third components get neutral values. */
-static void copy_shape(scene_collider *to, const spring_collider *c, double thickness, uint32_t axes)
+/* Bound k: a body in the precision of the scene. Its reach grows by more than the rounding errors of coordinates. */
+static void place_bound(collider_bounds *bounds, unsigned k, const contact_body *b, scalar largest_radius)
 {
-    const bool flat = axes == 2;
-    to->shape = c->shape;
-    to->radius = (scalar)((c->shape == SPRING_PLANE ? 0 : c->radius) + thickness);
-    to->friction = (scalar)c->friction;
-    to->restitution = (scalar)c->restitution;
-    for (uint32_t i = 0; i < 3; i++) {
-        for (uint32_t a = 0; a < 3; a++)
-            to->axis[i][a] = flat && (i == 2 || a == 2) ? (scalar)(i == a) : (scalar)c->axis[i][a];
-        to->half[i] = flat && i == 2 ? SCALAR_MAX : (scalar)c->half[i];
-        to->velocity[i] = flat && i == 2 ? 0 : (scalar)c->velocity[i];
-        to->velocity_to[i] = flat && i == 2 ? 0 : (scalar)c->velocity_to[i];
-        to->spin[i] = flat && i < 2 ? 0 : (scalar)c->spin[i];
+    const double rounding = 64 * (double)SCALAR_EPSILON * (b->size + (double)largest_radius);
+    collider_bound *const to = &bounds->each[k];
+    to->shape = b->shape == SPRING_CUSTOM ? SPRING_SPHERE : b->shape;
+    copy3(to->at, b->start.at);
+    copy3(to->shift, (vector3){b->end.at.x - b->start.at.x, b->end.at.y - b->start.at.y, b->end.at.z - b->start.at.z});
+    for (int i = 0; i < 3; i++) {
+        copy3(to->axis[i], b->start.axis[i]);
+        to->half[i] = bounded(b->half[i]);
     }
-    to->spins = to->spin[0] != 0 || to->spin[1] != 0 || to->spin[2] != 0;
-}
-
-/* [m] A bound on contact_slop() of particles at the collider. */
-static scalar rounding_error_at(const scene_collider *c, uint32_t axes)
-{
-    const scalar eps = sizeof(scalar) == sizeof(float) ? (scalar)FLT_EPSILON : (scalar)DBL_EPSILON;
-    double size = (double)c->radius;
-    for (uint32_t a = 0; a < axes; a++) {
-        size += fabs((double)c->at[a]);
-        if (c->shape == SPRING_CAPSULE)
-            size += fabs((double)c->to[a]);
-        if (c->shape == SPRING_BOX)
-            size += (double)c->half[a];
+    if (b->shape == SPRING_PLANE) {
+        copy3(to->axis[1], b->end.axis[0]);
+        to->offset[0] = (scalar)dot_of_vectors(b->start.axis[0], b->start.at);
+        to->offset[1] = (scalar)dot_of_vectors(b->end.axis[0], b->end.at);
     }
-    return 16 * eps * (scalar)size;
-}
-
-static void place_collider(scene_collider *to, const spring_collider *c, double time0, double time1, double thickness,
-                           uint32_t axes)
-{
-    copy_shape(to, c, thickness, axes);
-    place_point(c->at, c->velocity, time0, axes, to->at);
-    place_point(c->at, c->velocity, time1, axes, to->at_end);
-    place_point(c->to, c->velocity_to, time0, axes, to->to);
-    place_point(c->to, c->velocity_to, time1, axes, to->to_end);
-    scalar square = 0;
-    for (uint32_t a = 0; a < 3; a++) {
-        to->shift[a] = to->at_end[a] - to->at[a];
-        to->shift_to[a] = to->to_end[a] - to->to[a];
-        square += (to->to[a] - to->at[a]) * (to->to[a] - to->at[a]);
+    copy3(to->segment, b->start.segment);
+    const double square = dot_of_vectors(b->start.segment, b->start.segment);
+    to->inverse_square = square > 0 ? bounded(1 / square) : 0;
+    to->reach = (scalar)(b->reach + rounding);
+    to->growth_squared = (scalar)(b->growth * b->growth);
+    const double margin = (double)largest_radius + rounding;
+    for (int a = 0; a < 3; a++) {
+        bounds->low[a][k] = (scalar)(b->low[a] - margin);
+        bounds->high[a][k] = (scalar)(b->high[a] + margin);
     }
-    to->inverse_square = square > 0 ? 1 / square : 0;
-    to->offset = plane_offset(c, time0, thickness, axes);
-    to->offset_end = plane_offset(c, time1, thickness, axes);
-    to->offset_shift = to->offset_end - to->offset;
-    scalar shift = length_of_shift(to->shift);
-    if (c->shape == SPRING_CAPSULE && length_of_shift(to->shift_to) > shift)
-        shift = length_of_shift(to->shift_to);
-    const scalar reach = to->radius + shift + rounding_error_at(to, axes);
-    /* 1 + e with the two e of may_touch(), rounded up for rounding errors */
-    to->reach_fast = (scalar)1.07 * reach * reach;
-    to->reach_slow = (scalar)1.006 * reach * reach;
+    bounds->turning = bounded(fmax((double)bounds->turning, b->turning));
 }
 
-void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
+void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all)
 {
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
-    scene_collider *placed = scene_memory(s, ARRAY_PLACED);
+    contact_body *const body = scene_memory(s, ARRAY_PLACED);
+    collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
+    bounds->count = s->colliders;
+    bounds->turning = all ? 0 : bounds->turning;
     for (uint32_t i = 0; i < s->colliders; i++)
-        place_collider(&placed[i], &c[i], t0 - s->colliders_set, t1 - s->colliders_set, s->particle_radius,
-                       s->layout.axes);
+        if (all || body[i].moves) {
+            spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
+            place_bound(bounds, i, &body[i], s->largest_radius);
+        }
+    for (uint32_t i = s->colliders; all && i < most_colliders; i++) /* fill the last vector: they touch nothing */
+        for (int a = 0; a < 3; a++) {
+            bounds->low[a][i] = SCALAR_MAX;
+            bounds->high[a][i] = -SCALAR_MAX;
+        }
+}
+
+/* The position of `at`, t after the colliders were set. */
+static void find_origin(const spring_scene *s, const spring_collider *c, double t, double origin[3])
+{
+    for (uint32_t a = 0; a < 3; a++)
+        origin[a] = a < s->layout.axes ? c->at[a] + t * c->velocity[a] + t * t / 2 * c->acceleration[a] : 0;
+}
+
+void spring_scene_begin_impulses(spring_scene *s, double t)
+{
+    const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
+    spring_impulse *const sum = scene_memory(s, ARRAY_IMPULSES);
+    double(*const origin)[3] = scene_memory(s, ARRAY_ORIGINS);
+    for (uint32_t i = 0; i < s->colliders; i++) {
+        sum[s->layout.colliders + i] = (spring_impulse){{0}, {0}};
+        find_origin(s, &c[i], t, origin[i]);
+    }
+}
+
+/* Moves the reference points of angular impulses to the positions at the end of the call. */
+void spring_scene_end_impulses(spring_scene *s, double t)
+{
+    const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
+    spring_impulse *const sum = scene_memory(s, ARRAY_IMPULSES);
+    double(*const origin)[3] = scene_memory(s, ARRAY_ORIGINS);
+    for (uint32_t i = 0; i < s->colliders; i++) {
+        spring_impulse j = sum[s->layout.colliders + i];
+        double end[3], arm[3];
+        find_origin(s, &c[i], t, end);
+        for (int a = 0; a < 3; a++)
+            arm[a] = origin[i][a] - end[a];
+        for (int a = 0; a < 3; a++)
+            j.angular[a] += arm[(a + 1) % 3] * j.linear[(a + 2) % 3] - arm[(a + 2) % 3] * j.linear[(a + 1) % 3];
+        sum[i] = j;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------- public functions */
@@ -208,7 +244,7 @@ spring_status spring_scene_check_colliders(const spring_scene *s, const spring_c
         status = s->layout.colliders == 0 ? SPRING_EDISABLED : SPRING_ERANGE;
     }
     while (name == NULL && i < count)
-        if ((name = invalid_field(&c[i], s->particle_radius, s->layout.axes)) == NULL)
+        if ((name = invalid_field(&c[i], (double)s->largest_radius, s->layout.axes)) == NULL)
             i++;
     if (field != NULL)
         *field = name;
@@ -228,12 +264,27 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
         orthonormalise(&set[i], axes_of_shape(&c[i], s->layout.axes), s->layout.axes);
     }
     s->colliders = count;
-    s->colliders_set = spring_scene_time(s);
+    s->colliders_elapsed = 0;
+    s->colliders_since = s->steps;
+    scene_clear_impulses(s);
     for (uint32_t buffer = 0; buffer < 2; buffer++) { /* without colliders no step writes them */
         uint32_t *const touched = scene_memory(s, touched_in(buffer));
         if (touched != NULL)
             memset(touched, 0, s->layout.particles * sizeof *touched);
     }
+    return SPRING_OK;
+}
+
+spring_status spring_scene_impulses(const spring_scene *s, spring_impulse *out, uint32_t first, uint32_t count)
+{
+    if (s == NULL || out == NULL)
+        return SPRING_EINVAL;
+    if (s->layout.colliders == 0)
+        return SPRING_EDISABLED;
+    if (first > s->colliders || count > s->colliders - first)
+        return SPRING_ERANGE;
+    const spring_impulse *const sum = scene_read(s, ARRAY_IMPULSES);
+    memcpy(out, sum + first, count * sizeof *out);
     return SPRING_OK;
 }
 
@@ -252,43 +303,21 @@ spring_status spring_scene_touching(const spring_scene *s, uint32_t *bits, size_
 
 /* ---------------------------------------------------------------------------------------------------------- at rest */
 
-/* Adds the accelerations by which colliders press, which are not negative. This is projected Gauss-Seidel: in each
-   round, each collider corrects its own acceleration. In a groove, colliders press a particle against each other. */
-static void add_pressing(const double normal[][3], double pressing[], size_t count, double accel[3])
-{
-    enum { rounds = 200 }; /* between walls that enclose 170 degrees, each multiplies the error by 0.97 */
-    for (int round = 0; round < rounds; round++)
-        for (size_t k = 0; k < count; k++) {
-            const double before = pressing[k];
-            pressing[k] = fmax(0, before - dot_of(accel, normal[k], 3));
-            for (int a = 0; a < 3; a++)
-                accel[a] += (pressing[k] - before) * normal[k][a];
-        }
-}
-
-double spring_scene_balanced(const scene_kernels *kernels, const spring_scene *s, size_t i, double accel[3])
+double spring_scene_balanced(const spring_scene *s, size_t i, const double accel[3])
 {
     const uint32_t *touched = scene_read(s, touched_in(s->buffer));
-    const scene_collider *placed = scene_read(s, ARRAY_PLACED);
-    double normal[most_colliders][3], pressing[most_colliders] = {0}, friction[most_colliders];
-    scalar at[3] = {0};
-    size_t count = 0;
+    const contact_body *body = scene_read(s, ARRAY_PLACED);
+    contact_surface surface[most_colliders];
+    const contact_particle particle = scene_contact_particle(s, i);
+    double at[3] = {0};
+    unsigned count = 0;
     for (uint32_t a = 0; a < s->layout.axes; a++)
-        at[a] = scene_state(s, SPRING_POSITION, a)[i];
-    for (uint32_t k = 0; k < s->colliders; k++) {
-        if ((touched[i] >> k & 1) == 0)
-            continue;
-        scalar n[3], velocity[3];
-        kernels->common->contact_surface(&placed[k], at, n, velocity);
-        for (int a = 0; a < 3; a++)
-            normal[count][a] = (double)n[a];
-        friction[count++] = (double)placed[k].friction;
-    }
-    add_pressing((const double(*)[3])normal, pressing, count, accel);
-    double left = spring_hypot(spring_hypot(fabs(accel[0]), fabs(accel[1])), fabs(accel[2]));
-    for (size_t k = 0; k < count; k++) /* static friction */
-        left = fmax(0, left - friction[k] * pressing[k]);
-    return left;
+        at[a] = (double)scene_state(s, SPRING_POSITION, a)[i];
+    for (uint32_t k = 0; k < s->colliders && count + 3 <= most_colliders; k++)
+        if ((touched[i] >> k & 1) != 0)
+            count += spring_contact_surfaces(&body[k], &particle, true, (vector3){at[0], at[1], at[2]},
+                                             (double)SCALAR_EPSILON, surface + count);
+    return spring_contact_balance(surface, count, (vector3){accel[0], accel[1], accel[2]});
 }
 
 #include "../simd/size_end.h"

@@ -175,53 +175,71 @@ static inline void add_normal(pressed_particle *p, uint32_t axes, const scalar n
     p->freedom = FREE_ALONG_LINE;
 }
 
+enum { most_surfaces = 16 }; /* that press a particle; further ones are ignored */
+
 /* How a collider that particle i touched in the last step acts on it. It presses if the particle does not leave the
    surface, and its residual points into the collider. Static friction holds a pressed particle that does not slide. */
 typedef enum pressing { NOT_PRESSED, PRESSED, PRESSED_AND_HELD } pressing;
 
-static inline pressing pressing_of(const scene_step *s, const scene_collider *c, size_t i, const scalar *residual,
-                                   scalar normal[3])
+static inline pressing pressing_of(const scene_step *s, const contact_surface *surface, size_t i,
+                                   const scalar *residual, scalar normal[3])
 {
     const size_t stride = s->scene->layout.stride;
-    scalar at[3] = {0}, surface[3], leaving = 0, pressed = 0, speed = 0;
-    for (uint32_t a = 0; a < s->contacts.axes; a++)
-        at[a] = s->whole.x0[a * stride + i];
-    s->kernels->common->contact_surface(c, at, normal, surface);
-    for (uint32_t a = 0; a < s->contacts.axes; a++) {
-        const scalar v = s->whole.v0[a * stride + i];
-        leaving += (v - surface[a]) * normal[a];
-        speed += (scalar)(fabs((double)v) + fabs((double)surface[a]));
-        pressed -= residual[a * stride + i] * normal[a];
+    const uint32_t axes = s->particles.axes;
+    const double n[3] = {surface->normal.x, surface->normal.y, surface->normal.z};
+    const double of_surface[3] = {surface->velocity.x, surface->velocity.y, surface->velocity.z};
+    double leaving = 0, pressed = 0, speed = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        const double v = (double)s->whole.v0[a * stride + i];
+        normal[a] = (scalar)n[a];
+        leaving += (v - of_surface[a]) * n[a];
+        speed += fabs(v) + fabs(of_surface[a]);
+        pressed -= (double)residual[a * stride + i] * n[a];
     }
-    const scalar rounding = 64 * SCALAR_EPSILON * speed, limit = c->friction * pressed;
+    const double rounding = 64 * (double)SCALAR_EPSILON * speed, limit = surface->friction * pressed;
     if (!(pressed > 0) || leaving > rounding)
         return NOT_PRESSED;
-    scalar sliding = 0, friction = 0; /* squares */
-    for (uint32_t a = 0; a < s->contacts.axes; a++) {
-        const scalar along = s->whole.v0[a * stride + i] - surface[a] - leaving * normal[a];
-        const scalar force = residual[a * stride + i] + pressed * normal[a];
+    double sliding = 0, friction = 0; /* squares */
+    for (uint32_t a = 0; a < axes; a++) {
+        const double along = (double)s->whole.v0[a * stride + i] - of_surface[a] - leaving * n[a];
+        const double force = (double)residual[a * stride + i] + pressed * n[a];
         sliding += along * along;
         friction += force * force;
     }
     return sliding <= rounding * rounding && friction <= limit * limit ? PRESSED_AND_HELD : PRESSED;
 }
 
+/* The surfaces of the colliders with these bits that particle i touches at x. Returns their number. */
+static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t i, bool at_end, const scalar *x,
+                                   contact_surface surface[most_surfaces])
+{
+    const contact_setting *const t = &s->contacts.setting;
+    const contact_particle particle = scene_contact_particle(s->scene, i);
+    unsigned count = 0;
+    for (unsigned k = 0; k < t->count && count + 3 <= most_surfaces; k++)
+        if ((touched >> k & 1) != 0)
+            count += spring_contact_surfaces(&t->body[k], &particle, at_end,
+                                             load_vector(x + i, s->particles.stride, s->particles.axes), t->epsilon,
+                                             surface + count);
+    return count;
+}
+
 /* Finds the pressed particles, and takes their loads out of the residual. */
 static inline pressed_list find_pressed(const scene_step *s, scalar *residual)
 {
     pressed_list found = {.list = scene_memory(s->scene, ARRAY_PRESSED)};
-    const uint32_t axes = s->contacts.axes;
+    const uint32_t axes = s->particles.axes;
     const size_t stride = s->scene->layout.stride;
-    for (size_t i = 0; s->contacts.count > 0 && i < s->particles.count; i++) {
+    for (size_t i = 0; s->contacts.setting.count > 0 && i < s->particles.count; i++) {
         if (s->contacts.before[i] == 0)
             continue;
         pressed_particle *const p = &found.list[found.count];
         bool pressed = false;
-        for (unsigned k = 0; k < s->contacts.count; k++) {
-            scalar normal[3];
-            const pressing how = (s->contacts.before[i] >> k & 1) == 0
-                                     ? NOT_PRESSED
-                                     : pressing_of(s, &s->contacts.collider[k], i, residual, normal);
+        contact_surface surface[most_surfaces];
+        const unsigned surfaces = surfaces_at(s, s->contacts.before[i], i, false, s->whole.x0, surface);
+        for (unsigned k = 0; k < surfaces; k++) {
+            scalar normal[3] = {0};
+            const pressing how = pressing_of(s, &surface[k], i, residual, normal);
             if (how == NOT_PRESSED)
                 continue;
             if (pressed)
@@ -256,10 +274,10 @@ static inline void project_pressed(const scene_step *s, const pressed_list *pres
     for (size_t j = 0; j < pressed->count; j++) {
         const pressed_particle *const p = &pressed->list[j];
         scalar vector[3];
-        for (uint32_t a = 0; a < s->contacts.axes; a++)
+        for (uint32_t a = 0; a < s->particles.axes; a++)
             vector[a] = b[a * stride + p->particle] - (from != NULL ? from[a * stride + p->particle] : 0);
-        free_component(p, s->contacts.axes, vector);
-        for (uint32_t a = 0; a < s->contacts.axes; a++)
+        free_component(p, s->particles.axes, vector);
+        for (uint32_t a = 0; a < s->particles.axes; a++)
             b[a * stride + p->particle] = vector[a] + (from != NULL ? from[a * stride + p->particle] : 0);
     }
 }
@@ -303,19 +321,21 @@ static inline void damp_bounces(const scene_step *s)
 {
     const scalar *const left = scene_read(s->scene, ARRAY_SUMS);
     const size_t stride = s->scene->layout.stride;
-    for (unsigned k = 0; k < s->contacts.count; k++) {
-        const scene_collider *const c = &s->contacts.collider[k];
-        for (size_t i = 0; c->restitution > 0 && i < s->particles.count; i++) {
-            if ((s->contacts.touched[i] >> k & 1) == 0 || left[i] == 1)
+    const uint32_t axes = s->particles.axes;
+    for (unsigned k = 0; k < s->contacts.setting.count; k++) {
+        const uint32_t bit = UINT32_C(1) << k;
+        for (size_t i = 0; s->contacts.setting.body[k].restitution > 0 && i < s->particles.count; i++) {
+            if ((s->contacts.touched[i] & bit) == 0 || left[i] == 1)
                 continue;
-            scalar at[3] = {0}, normal[3], surface[3], leaving = 0;
-            for (uint32_t a = 0; a < s->contacts.axes; a++)
-                at[a] = s->whole.x[a * stride + i] - s->h * c->velocity[a];
-            s->kernels->common->contact_surface(c, at, normal, surface);
-            for (uint32_t a = 0; a < s->contacts.axes; a++)
-                leaving += (s->whole.v[a * stride + i] - surface[a]) * normal[a];
-            for (uint32_t a = 0; a < s->contacts.axes && leaving > 0; a++)
-                s->whole.v[a * stride + i] -= (1 - left[i]) * leaving * normal[a];
+            contact_surface surface[most_surfaces];
+            const unsigned surfaces = surfaces_at(s, bit, i, true, s->whole.x, surface);
+            for (unsigned j = 0; j < surfaces; j++) {
+                const vector3 v = load_vector(s->whole.v + i, stride, axes), n = surface[j].normal,
+                              u = vector_minus(v, surface[j].velocity);
+                const double leaving = u.x * n.x + u.y * n.y + u.z * n.z;
+                if (leaving > 0)
+                    store_vector(s->whole.v + i, stride, axes, vector_plus(v, -(1 - (double)left[i]) * leaving, n));
+            }
         }
     }
 }
@@ -399,7 +419,7 @@ static inline bool kick_exponentially(scene_step *s, const pressed_list *pressed
 SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
 {
     const common_kernels *const kernels = s->kernels->common;
-    const bool collides = s->contacts.count > 0, predicts = scene_callback_uses_velocity(s->scene);
+    const bool collides = s->contacts.setting.count > 0, predicts = scene_callback_uses_velocity(s->scene);
     const scene_outcome failed = {.finite = false};
     scene_motion drift = s->whole, residual = s->whole, end = s->whole;
     drift.drift = end.drift = s->h / 2;
@@ -438,6 +458,7 @@ SPRING_NOINLINE scene_outcome scene_exponential_leapfrog(scene_step *s)
         load_pressed(s, &pressed, drift.x, v1);
     const scene_stage kicked = {.v = v1};
     end.stage = &kicked;
+    end.contacts = WHOLE_STEP_CONTACTS;
     if (!move(s, kernels->drift_kick_drift, &end))
         return failed;
     damp_bounces(s);

@@ -200,7 +200,13 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_SUMS] = {number, l->particles, true},
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
-        [ARRAY_PLACED] = {sizeof(scene_collider), l->colliders, collides},
+        [ARRAY_PLACED] = {sizeof(contact_body), l->colliders, collides},
+        [ARRAY_BOUNDS] = {sizeof(collider_bounds), 1, collides},
+        [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
+        [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
+        [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},
+        [ARRAY_FRICTION] = {number, l->particles, collides && def->friction != NULL},
+        [ARRAY_BITS] = {index, l->particles, collides && def->mask != NULL},
         [ARRAY_TOUCHED_0] = {sizeof(uint32_t), l->particles + padding, collides},
         [ARRAY_TOUCHED_1] = {sizeof(uint32_t), l->particles + padding, collides && rollback},
     };
@@ -281,6 +287,23 @@ static scalar free_inverse_mass_of(const spring_scene_def *def, size_t i)
     return scene_mass_valid(mass) ? (scalar)(1 / mass) : 0;
 }
 
+static void fill_contacts(spring_scene *s, const spring_scene_def *def)
+{
+    scalar *const radius = scene_memory(s, ARRAY_RADIUS), *const friction = scene_memory(s, ARRAY_FRICTION);
+    uint32_t *const bits = scene_memory(s, ARRAY_BITS);
+    scalar largest = 0;
+    for (size_t i = 0; i < def->particles && radius != NULL; i++) {
+        radius[i] = (scalar)def->radius[i];
+        largest = radius[i] > largest ? radius[i] : largest;
+    }
+    if (radius != NULL)
+        s->largest_radius = largest;
+    for (size_t i = 0; i < def->particles && friction != NULL; i++)
+        friction[i] = (scalar)def->friction[i];
+    if (bits != NULL)
+        memcpy(bits, def->mask, def->particles * sizeof *bits);
+}
+
 static void fill_particles(spring_scene *s, const spring_scene_def *def)
 {
     const uint32_t axes = s->layout.axes;
@@ -293,6 +316,7 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
     }
     for (size_t i = 0; i < def->particles && scene_has(s, ARRAY_INVERSE_MASS); i++)
         scene_set_inverse_mass(s, i, inverse_mass_of(def, i));
+    fill_contacts(s, def);
     scalar *freed = scene_memory(s, ARRAY_FREE_MASS);
     for (size_t i = 0; i < def->particles && freed != NULL; i++)
         freed[i] = free_inverse_mass_of(def, i);
@@ -375,7 +399,8 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
         .user = def->user,
         .mass_all = def->mass_all == 0 ? 1 : def->mass_all,
         .drag = def->drag,
-        .particle_radius = def->particle_radius,
+        .particle_radius = (scalar)def->particle_radius,
+        .largest_radius = (scalar)def->particle_radius,
         .max_speed = def->max_speed > 0 ? (scalar)def->max_speed : SCALAR_MAX,
     };
     s->inverse_mass_vector[0] = (scalar)(1 / s->mass_all);

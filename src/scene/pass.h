@@ -3,6 +3,7 @@
 #ifndef SPRINGSTEP_PASS_H
 #define SPRINGSTEP_PASS_H
 
+#include "contact_pass.h"
 #include "steppers.h"
 
 #include <string.h>
@@ -27,6 +28,7 @@ struct scene_step {
     scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
     scalar h;            /* [s] dt in the precision of the scene */
     double t0, dt, done; /* the step starts at the time t0 + done dt */
+    double elapsed, since; /* colliders were set elapsed + (done - since) dt before */
     cached_force cached; /* the forces at the start */
     bool predicts;       /* see scene_stepper */
     damping_series damping;
@@ -90,7 +92,6 @@ static inline void prepare_step(scene_step *s, uint32_t from, uint32_t to)
         .x = x_at(s, to),
         .v = v_at(s, to),
         .max_speed = s->scene->max_speed,
-        .contacts = s->contacts.count > 0 ? &s->contacts : NULL,
     };
 }
 
@@ -100,14 +101,25 @@ static inline double time_at(const scene_step *s, double fraction)
     return s->t0 + (s->done + fraction) * s->dt;
 }
 
+/* [s] The same since the colliders were set. */
+static inline double elapsed_at(const scene_step *s, double fraction)
+{
+    return s->elapsed + (s->done - s->since + fraction) * s->dt;
+}
+
+/* A motion with the contacts that it has if the scene has colliders now. */
+static inline contact_motion with_contacts(const scene_step *s, contact_motion kind)
+{
+    return s->contacts.setting.count > 0 ? kind : NO_CONTACTS;
+}
+
 /* Places the colliders for the step, and prepares the arguments of its contacts. */
 static inline void prepare_contacts(scene_step *s)
 {
     scene_contacts *const c = &s->contacts;
-    if (c->count == 0)
+    if (c->setting.count == 0)
         return;
-    spring_scene_place_colliders(s->scene, time_at(s, 0), time_at(s, 1));
-    c->h = s->h;
+    spring_scene_place_colliders(s->scene, elapsed_at(s, 0), elapsed_at(s, 1), s->first);
     c->x = x_at(s, s->to);
     c->before = scene_read(s->scene, touched_in(s->from));
     c->touched = scene_memory(s->scene, touched_in(s->to));
@@ -250,12 +262,25 @@ SPRING_NOINLINE void find_start_force(scene_step *s)
    cache. In a fused pass, all their data (150 KB) stay in the second-level cache. */
 enum { chunk = 16 * tile };
 
+/* Advances particles from ... to - 1. */
+static inline bool move_range(const scene_step *s, particle_kernel *kernel, const scene_motion *m, size_t from,
+                              size_t to)
+{
+    if (m->contacts == NO_CONTACTS)
+        return kernel(&s->particles, m, from, to);
+    for (size_t i = from; i < to; i += contact_chunk)
+        if (!move_chunk_in_contact(s->scene, &s->contacts, s->kernels->common, kernel, &s->particles, m, i,
+                                   to - i < contact_chunk ? to - i : contact_chunk))
+            return false;
+    return true;
+}
+
 /* Advances all particles. Returns false if a result is not finite. */
 static inline bool move(const scene_step *s, particle_kernel *kernel, const scene_motion *m)
 {
     const size_t count = s->particles.count;
     for (size_t i = 0; i < count; i += chunk)
-        if (!kernel(&s->particles, m, i, count - i > chunk ? i + chunk : count))
+        if (!move_range(s, kernel, m, i, count - i > chunk ? i + chunk : count))
             return false;
     return true;
 }
@@ -285,13 +310,13 @@ SPRING_NOINLINE bool move_evaluate_move(scene_step *s, particle_kernel *first_ke
     band_kernel *const forces = s->kernels->band_forces;
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
         if (i < l->particles &&
-            !first_kernel(&s->particles, first, i, i + chunk < l->particles ? i + chunk : l->particles))
+            !move_range(s, first_kernel, first, i, i + chunk < l->particles ? i + chunk : l->particles))
             return false;
         if (i < ahead)
             continue;
         const size_t from = i - ahead, to = from + chunk < l->particles ? from + chunk : l->particles;
         forces(s->links, first->x, v, &s->forces, from, to);
-        if (second_kernel != NULL && !second_kernel(&s->particles, second, from, to))
+        if (second_kernel != NULL && !move_range(s, second_kernel, second, from, to))
             return false;
     }
     return true;

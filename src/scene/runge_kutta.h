@@ -40,6 +40,7 @@ static scene_outcome scene_rk4(scene_step *s)
     }
     end.kick = end.drift = s->h / 6;
     sums.weight = 1;
+    end.contacts = with_contacts(s, WHOLE_STEP_CONTACTS);
     return (scene_outcome){.finite = move(s, s->kernels->common->last_stage, &end)};
 }
 

@@ -101,10 +101,36 @@ static void choose_damping(scene_step *step, scene_links *links, const scene_ste
     links->turning_time = step->damping.terms > 2 ? step->h : 0;
 }
 
+/* The contacts of a call. */
+static void prepare_collisions(scene_step *step)
+{
+    spring_scene *const s = step->scene;
+    scene_contacts *const c = &step->contacts;
+    if (s->colliders == 0)
+        return;
+    c->setting = (contact_setting){
+        .body = scene_read(s, ARRAY_PLACED),
+        .count = s->colliders,
+        .h = (double)step->h,
+        .epsilon = (double)SCALAR_EPSILON,
+        .origin = scene_memory(s, ARRAY_ORIGINS),
+        .impulse = (spring_impulse *)scene_memory(s, ARRAY_IMPULSES) + s->layout.colliders,
+        .records = true,
+    };
+    c->bounds = scene_read(s, ARRAY_BOUNDS);
+    for (size_t i = 0; i < padding; i++)
+        c->equal_radius[i] = s->particle_radius;
+    c->radius_stride = scene_has(s, ARRAY_RADIUS);
+    c->radius = scene_has(s, ARRAY_RADIUS) ? scene_read(s, ARRAY_RADIUS) : c->equal_radius;
+    spring_scene_begin_impulses(s, elapsed_at(step, 0));
+}
+
 spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_scene *s, spring_method m, double dt,
                                         uint64_t n)
 {
     const spring_status status = check_advance(s, m, dt);
+    if (status == SPRING_OK && (n == 0 || (scalar)dt == 0))
+        scene_clear_impulses(s);
     if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
         return status;
     if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
@@ -128,7 +154,10 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         .t0 = t0,
         .dt = dt,
         .predicts = spring_scene_steppers[m].predicts,
-        .contacts = {.count = s->colliders, .collider = scene_read(s, ARRAY_PLACED), .axes = s->layout.axes}};
+        .done = (double)before,
+        .elapsed = same_run ? s->colliders_elapsed : scene_elapsed(s, s->steps),
+        .since = same_run ? (double)s->colliders_since : 0};
+    prepare_collisions(&step);
     choose_damping(&step, &links, &spring_scene_steppers[m]);
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
@@ -139,6 +168,12 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         if (s->force_cache != PREDICTED_FORCE) /* the cached forces may be overwritten, or not finite themselves */
             scene_drop_forces(s);
         return s->max_speed < SCALAR_MAX ? SPRING_EUNSTABLE : SPRING_ENONFINITE;
+    }
+    if (s->colliders > 0)
+        spring_scene_end_impulses(s, elapsed_at(&step, 1));
+    if (!same_run) {
+        s->colliders_elapsed = step.elapsed;
+        s->colliders_since = 0;
     }
     s->force_cache = cached;
     s->buffer = step.to;
@@ -175,7 +210,7 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         return false;
     const scalar *all = forces_of_state(s);
     if (s->colliders > 0)
-        spring_scene_place_colliders(s, time_of(s), time_of(s));
+        spring_scene_place_colliders(s, scene_elapsed(s, s->steps), scene_elapsed(s, s->steps), true);
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, accel[3] = {0};
@@ -187,7 +222,7 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
             speed = spring_hypot(speed, fabs(v));
         }
         const double acceleration = s->colliders > 0
-                                        ? spring_scene_balanced(best_scene_kernels(), s, i, accel)
+                                        ? spring_scene_balanced(s, i, accel)
                                         : spring_hypot(spring_hypot(fabs(accel[0]), fabs(accel[1])), fabs(accel[2]));
         if (!(speed <= v_tol) || !(acceleration <= a_tol))
             return false;

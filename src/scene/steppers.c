@@ -28,7 +28,8 @@ static double scene_euler_limit(const scene_bounds *b)
 static scene_outcome scene_symplectic_euler(scene_step *s)
 {
     find_start_force(s);
-    const scene_motion m = s->whole;
+    scene_motion m = s->whole;
+    m.contacts = with_contacts(s, IMPLICIT_KICK_DRIFT_CONTACTS);
     return (scene_outcome){.finite = move(s, s->kernels->common->implicit_kick_drift, &m)};
 }
 
@@ -60,6 +61,8 @@ static scene_outcome scene_leapfrog(scene_step *s)
     scene_motion kick_drift = s->whole, last_kick = s->whole;
     kick_drift.kick = last_kick.kick = s->h / 2;
     kick_drift.ends_previous = previous_kick_is_pending;
+    kick_drift.contacts = with_contacts(s, KICK_DRIFT_CONTACTS);
+    last_kick.contacts = with_contacts(s, IMPLICIT_KICK_CONTACTS);
     kick_drift.predicted = uses_velocity ? predicted_velocities(s) : NULL;
     last_kick.v0 = kick_drift.v;
     last_kick.force = s->forces.force;

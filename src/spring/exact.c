@@ -25,6 +25,13 @@ double spring_expm1(double x)
     return (power - 1) + power * y.e;
 }
 
+void spring_sine_cosine(double angle, double *sine, double *cosine)
+{
+    const sine_cosine both = sine_cosine_of(angle);
+    *sine = both.sine;
+    *cosine = both.cosine;
+}
+
 void spring_step_exact(spring_state *s, const spring_params *p, double dt)
 {
     *s = spring_exact(*s, p, dt);

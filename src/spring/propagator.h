@@ -31,6 +31,8 @@ SPRING_INTERNAL spring_state spring_exact(spring_state s, const spring_params *p
 /* e^x - 1 */
 SPRING_INTERNAL double spring_expm1(double x);
 
+SPRING_INTERNAL void spring_sine_cosine(double angle, double *sine, double *cosine);
+
 /* Springs that the exact solution advances with coefficients for each spring, in double in both precisions:
    bit-identical to spring_exact(). A spring that would not stay finite, or has a negative rate, keeps its state. */
 typedef struct exact_array {

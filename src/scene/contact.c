@@ -1,0 +1,1246 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Contacts of particles with rigid colliders: constraints on the drift, with the time of impact.
+ *
+ * Symbols   x0 is the position of a particle, w its velocity after the kick, a the acceleration of that kick, d = h w
+ *           the displacement, V the velocity of the surface, n the normal, u = w - V, and theta the fraction of the
+ *           step before the contact. w includes the fraction kappa of the kick of the step (leapfrog 1/2, symplectic
+ *           Euler 1). R and c are the rotation and the origin of the frame of the body.
+ * Frame     All distances are computed in the frame of the body, where it is at rest: y = R^T (x - c) at the start and
+ *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
+ *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
+ *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
+ * Drift     For each collider in turn:
+ *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
+ *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
+ *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
+ *           3. Impact, if n.u < 0 at theta, u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n times the
+ *              mass, with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has
+ *              the changed velocity.
+ *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
+ *              is lambda n, with the lambda for which the path ends on the surface. Late, in the second half of the
+ *              step, at a second contact in the step, or after 1: the path is projected to the tangent plane, and w
+ *              loses its component into the collider.
+ *           5. Colliders are tested again with a path that others changed. A particle that is still inside at the end
+ *              (corners) is moved by the least D with n_i.D >= depth_i, and w loses its components into these.
+ * Friction  A particle that rests on the surface from the start slides by u' = (A - F u/|u|)/h, where A is the change
+ *           of u by other forces and F = 2 mu lambda. It stops within the step where u = 0, and then sticks if
+ *           |A| <= F. w is such that the last kick ends on the velocity at the end. A particle that sticks from the
+ *           start is carried by the rigid motion.
+ * Kick      The last kick, for colliders that were touched: v loses its components into them, by the least change
+ *           with n_i.v >= n_i.V_i, with friction of at most mu times each of these. Static friction gives v = V.
+ * Impulses  Each change of w or v by a contact is m times an impulse on the particle, which acts at its centre at that
+ *           time.
+ * Order     2 with leapfrog and RK4, also across impacts, with sliding friction, and across reversals: docs/evidence.md.
+ * Source    impulses: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); the constraint in
+ *           the drift: Andersen, RATTLE, J. Comput. Phys. 52 (1983); rotations: Rodrigues (1840). The closed forms are
+ *           in tests/scene/test_contacts.c.
+ */
+#include "contact.h"
+
+#include "../simd/compiler.h"
+#include "../spring/propagator.h"
+
+#include <math.h>
+
+enum {
+    impact_iterations = 12,  /* of step 2 */
+    friction_passes = 2,     /* of step 4: friction changes where the path ends, and so the impulse */
+    surface_iterations = 3,  /* of step 4 */
+    custom_iterations = 8,   /* the same for custom bodies */
+    march_steps = 256,       /* of find_custom_impact() */
+    root_steps = 40,
+    walk_steps = 128,        /* of walk() */
+    walk_pushes = 8,
+    corner_passes = 6,       /* of step 5 */
+    most_constraints = 16,   /* on a particle; further ones are ignored */
+    seidel_rounds = 32,      /* where no particle can fit, as between plates that close */
+    slide_parts = 8          /* of a step in which friction turns */
+};
+
+/* Fractions of a step up to this size are rounding errors. */
+static const double least_fraction = 1e-13;
+
+/* Contacts of a custom body whose gaps differ by this number of slops are at the same place. */
+static const double same_place = 1e3;
+
+/* The cosine between the normals at the start and at the end of a path that presses; a smaller one counts as this. */
+static const double least_cosine = 0.1;
+
+/* ---------------------------------------------------------------------------------------------------------- vectors */
+
+static const vector3 zero3 = {0, 0, 0};
+
+SPRING_INLINE vector3 add(vector3 a, vector3 b)
+{
+    return (vector3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+SPRING_INLINE vector3 subtract(vector3 a, vector3 b)
+{
+    return (vector3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+SPRING_INLINE vector3 scale(double s, vector3 a)
+{
+    return (vector3){s * a.x, s * a.y, s * a.z};
+}
+
+SPRING_INLINE vector3 add_scaled(vector3 a, double s, vector3 b) /* a + s b */
+{
+    return (vector3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+SPRING_INLINE double inner(vector3 a, vector3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+SPRING_INLINE double length_of(vector3 a)
+{
+    return spring_sqrt(inner(a, a));
+}
+
+SPRING_INLINE double largest_of(vector3 a) /* the sum of the sizes of its components */
+{
+    return fabs(a.x) + fabs(a.y) + fabs(a.z);
+}
+
+SPRING_INLINE vector3 outer(vector3 a, vector3 b)
+{
+    return (vector3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+SPRING_INLINE vector3 between(vector3 a, vector3 b, double fraction)
+{
+    return add_scaled(a, fraction, subtract(b, a));
+}
+
+SPRING_INLINE vector3 tangential(vector3 u, vector3 n)
+{
+    return add_scaled(u, -inner(u, n), n);
+}
+
+/* u, or u shortened to the length `most`. */
+SPRING_INLINE vector3 shortened(vector3 u, double most)
+{
+    const double square = inner(u, u);
+    return square > most * most ? scale(most / spring_sqrt(square), u) : u;
+}
+
+static vector3 vector_of(const double v[3], bool flat)
+{
+    return (vector3){v[0], v[1], flat ? 0 : v[2]};
+}
+
+/* ------------------------------------------------------------------------------------------------------------ poses */
+
+/* The coordinates of a direction or a place in a frame, and back. */
+SPRING_INLINE vector3 direction_in(const body_pose *p, vector3 a)
+{
+    return (vector3){inner(a, p->axis[0]), inner(a, p->axis[1]), inner(a, p->axis[2])};
+}
+
+SPRING_INLINE vector3 direction_out(const body_pose *p, vector3 y)
+{
+    return add_scaled(add_scaled(scale(y.x, p->axis[0]), y.y, p->axis[1]), y.z, p->axis[2]);
+}
+
+SPRING_INLINE vector3 place_in(const body_pose *p, vector3 x)
+{
+    return direction_in(p, subtract(x, p->at));
+}
+
+SPRING_INLINE vector3 place_out(const body_pose *p, vector3 y)
+{
+    return add(p->at, direction_out(p, y));
+}
+
+/* sin q/q, (1 - cos q)/q^2 and (q - sin q)/q^3, for the square of q. */
+typedef struct rotation_factors {
+    double first, second, third;
+} rotation_factors;
+
+static rotation_factors factors_of(double square)
+{
+    if (square < 1e-5) /* the first omitted terms are below 1e-19 */
+        return (rotation_factors){1 - square / 6 * (1 - square / 20 * (1 - square / 42)),
+                                  0.5 - square / 24 * (1 - square / 30 * (1 - square / 56)),
+                                  1. / 6 - square / 120 * (1 - square / 42 * (1 - square / 72))};
+    double sine, cosine, half_sine, half_cosine;
+    const double angle = spring_sqrt(square);
+    spring_sine_cosine(angle, &sine, &cosine);
+    spring_sine_cosine(angle / 2, &half_sine, &half_cosine);
+    return (rotation_factors){sine / angle, 2 * half_sine * half_sine / square, (angle - sine) / (angle * square)};
+}
+
+/* a turned by the vector phi (Rodrigues). */
+static vector3 turned(vector3 phi, const rotation_factors *f, vector3 a)
+{
+    const vector3 b = outer(phi, a);
+    return add_scaled(add_scaled(a, f->first, b), f->second, outer(phi, b));
+}
+
+static bool is_zero(vector3 a)
+{
+    return a.x == 0 && a.y == 0 && a.z == 0;
+}
+
+static vector3 spin_of(const double spin[3], bool flat)
+{
+    return flat ? (vector3){0, 0, spin[2]} : vector_of(spin, false);
+}
+
+static bool has_spin(const spring_collider *c, bool flat)
+{
+    return !is_zero(spin_of(c->spin, flat)) || !is_zero(spin_of(c->spin_acceleration, flat));
+}
+
+static vector3 path_of(const double at[3], const double velocity[3], const double accel[3], double t, bool flat)
+{
+    return add_scaled(add_scaled(vector_of(at, flat), t, vector_of(velocity, flat)), t * t / 2,
+                      vector_of(accel, flat));
+}
+
+/* *phi: the angle vector since the collider was set. axis: at that time */
+static void find_pose(body_pose *p, const spring_collider *c, const vector3 axis[3], double t, bool flat, bool turns,
+                      vector3 *phi)
+{
+    p->at = path_of(c->at, c->velocity, c->acceleration, t, flat);
+    p->velocity = add_scaled(vector_of(c->velocity, flat), t, vector_of(c->acceleration, flat));
+    const vector3 spin = spin_of(c->spin, flat), spin_accel = spin_of(c->spin_acceleration, flat);
+    const vector3 rate = add_scaled(spin, t, spin_accel);
+    *phi = add_scaled(scale(t, spin), t * t / 2, spin_accel);
+    p->spin = rate;
+    for (int i = 0; i < 3; i++)
+        p->axis[i] = axis[i];
+    if (!turns)
+        return;
+    const rotation_factors f = factors_of(inner(*phi, *phi));
+    for (int i = 0; i < 3; i++)
+        p->axis[i] = turned(*phi, &f, axis[i]);
+    const vector3 b = outer(*phi, rate);
+    p->spin = add_scaled(add_scaled(rate, f.second, b), f.third, outer(*phi, b));
+}
+
+/* The axes at the time when the collider was set. */
+static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
+{
+    for (int i = 0; i < 3; i++)
+        axis[i] = (vector3){i == 0, i == 1, i == 2};
+    bool given = c->shape == SPRING_BOX;
+    for (int i = 0; i < 3 && c->shape == SPRING_CUSTOM; i++)
+        given = given || !is_zero(vector_of(c->axis[i], flat));
+    for (int i = 0; i < (flat ? 2 : 3) && given; i++)
+        axis[i] = vector_of(c->axis[i], flat);
+    if (c->shape != SPRING_PLANE)
+        return;
+    axis[0] = vector_of(c->axis[0], flat);
+    const vector3 other = fabs(axis[0].x) < 0.6 ? (vector3){1, 0, 0} : (vector3){0, 1, 0};
+    const vector3 side = flat ? (vector3){-axis[0].y, axis[0].x, 0} : outer(axis[0], other);
+    axis[1] = scale(1 / length_of(side), side);
+    axis[2] = outer(axis[0], axis[1]);
+}
+
+/* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. */
+static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
+{
+    const double before = length_of(from), after = length_of(to);
+    b->start.segment = from;
+    b->end.segment = to;
+    const double cosine = inner(from, to) / (before * after);
+    if (is_zero(subtract(from, to)) || !(before > 0) || !(after > 0) || !(cosine > -0.5))
+        return;
+    const vector3 v = scale(1 / (before * after), outer(from, to));
+    for (int i = 0; i < 3; i++) {
+        const vector3 a = b->start.axis[i], once = outer(v, a);
+        b->end.axis[i] = add_scaled(add(a, once), 1 / (1 + cosine), outer(v, once));
+    }
+    b->end.segment = scale(after / before, from);
+    b->turns = b->turns || !is_zero(v);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- bounds */
+
+/* [m] The largest distance of the core from `at`. */
+static double size_of_core(const contact_body *b)
+{
+    if (b->shape == SPRING_CAPSULE)
+        return fmax(length_of(b->start.segment), length_of(b->end.segment));
+    if (b->shape == SPRING_BOX)
+        return length_of((vector3){b->half[0], b->half[1], b->flat ? 0 : b->half[2]});
+    return 0;
+}
+
+static double component(vector3 a, int i)
+{
+    return i == 0 ? a.x : i == 1 ? a.y : a.z;
+}
+
+/* Extends the bound by the body in a pose that does not turn. */
+static void bound_pose(contact_body *b, const body_pose *p, double reach)
+{
+    for (int a = 0; a < 3; a++) {
+        const double at = component(p->at, a);
+        double below = 0, above = 0;
+        if (b->shape == SPRING_CAPSULE) {
+            const double along = component(direction_out(p, p->segment), a);
+            below = fmin(along, 0);
+            above = fmax(along, 0);
+        }
+        for (int i = 0; i < 3 && b->shape == SPRING_BOX; i++)
+            above += !(b->flat && i == 2) ? fabs(component(p->axis[i], a)) * b->half[i] : 0;
+        below = b->shape == SPRING_BOX ? -above : below;
+        const double n = b->shape == SPRING_PLANE ? component(p->axis[0], a) : 0;
+        b->low[a] = b->shape == SPRING_PLANE && n != -1 ? -(double)INFINITY : fmin(b->low[a], at + below - reach);
+        b->high[a] = b->shape == SPRING_PLANE && n != 1 ? (double)INFINITY : fmax(b->high[a], at + above + reach);
+    }
+}
+
+/* If a body turns by the angle A within a step, points of the frame at the distance r from its origin are displaced by
+   A r, so |y1 - y0| <= |d - shift| + A |x0 - at|, where |x0 - at| <= distance from the core + size of the core. A chord
+   touches the body only if the distance at its start is at most radius + |y1 - y0|. The box is the bound of the poses
+   or, of a body that turns, of a sphere. */
+static void find_bounds(contact_body *b, double angle, double custom_bound)
+{
+    const double core = size_of_core(b), infinite = (double)INFINITY;
+    const double radius = b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
+    double stretch = 0;
+    if (b->shape == SPRING_CAPSULE)
+        stretch = length_of(subtract(b->end.segment, b->start.segment));
+    const bool far = !(angle < 0.5);
+    b->growth = far ? 1 : 1 / (1 - angle);
+    b->reach = far ? infinite : (radius + stretch + angle * core) * b->growth;
+    const double shift = length_of(subtract(b->end.at, b->start.at));
+    b->turning = far ? 0 : angle * b->growth;
+    for (int a = 0; a < 3; a++) {
+        b->low[a] = b->turns ? -infinite : infinite;
+        b->high[a] = b->turns ? infinite : -infinite;
+    }
+    if (!b->turns) {
+        bound_pose(b, &b->start, radius + stretch);
+        bound_pose(b, &b->end, radius + stretch);
+    } else if (!far && b->shape != SPRING_PLANE) {
+        const double reach = core + radius + b->turning * (core + radius + shift);
+        for (int a = 0; a < 3; a++) {
+            b->low[a] = fmin(component(b->start.at, a), component(b->end.at, a)) - reach;
+            b->high[a] = fmax(component(b->start.at, a), component(b->end.at, a)) + reach;
+        }
+    }
+}
+
+void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1, uint32_t axes)
+{
+    const bool flat = axes == 2, capsule = c->shape == SPRING_CAPSULE, plane = c->shape == SPRING_PLANE;
+    const bool spins = has_spin(c, flat), round = capsule || c->shape == SPRING_SPHERE;
+    const vector3 velocity = vector_of(c->velocity, flat), accel = vector_of(c->acceleration, flat);
+    *b = (contact_body){
+        .shape = c->shape,
+        .turns = spins && !round,
+        .flat = flat,
+        .bits = c->mask != 0 ? c->mask : UINT32_MAX,
+        .half = {c->half[0], c->half[1], flat ? (double)INFINITY : c->half[2]},
+        .radius = plane ? 0 : c->radius,
+        .friction = c->friction,
+        .restitution = c->restitution,
+        .thickness = c->thickness,
+        .surface = vector_of(c->surface, flat),
+        .gap = c->gap,
+        .user = c->user,
+    };
+    b->slips = !is_zero(b->surface) || (spins && round);
+    b->moves = b->turns || !is_zero(velocity) || !is_zero(accel) || (spins && !is_zero(spin_of(c->spin_acceleration, flat)));
+    vector3 axis[3], phi0, phi1;
+    find_axes(axis, c, flat);
+    find_pose(&b->start, c, axis, t0, flat, b->turns, &phi0);
+    find_pose(&b->end, c, axis, t1, flat, b->turns, &phi1);
+    if (plane && !b->turns) { /* the point that is nearest to the origin, so that the distance of `at` does not matter */
+        b->start.at = scale(inner(axis[0], b->start.at), axis[0]);
+        b->end.at = scale(inner(axis[0], b->end.at), axis[0]);
+    }
+    /* `surface` has the axes of the scene for shapes without axes of their own. */
+    if (plane)
+        b->surface = direction_in(&(body_pose){.axis = {axis[0], axis[1], axis[2]}}, b->surface);
+    double angle = b->turns ? length_of(subtract(phi1, phi0)) : 0;
+    if (capsule) {
+        const vector3 from = subtract(path_of(c->to, c->velocity_to, c->acceleration, t0, flat), b->start.at);
+        const vector3 to = subtract(path_of(c->to, c->velocity_to, c->acceleration, t1, flat), b->end.at);
+        b->start.stretching = b->end.stretching = subtract(vector_of(c->velocity_to, flat), velocity);
+        b->moves = b->moves || !is_zero(b->start.stretching);
+        turn_with_segment(b, from, to);
+        if (b->turns)
+            angle = 2 * length_of(subtract(b->end.axis[0], b->start.axis[0])) +
+                    2 * length_of(subtract(b->end.axis[1], b->start.axis[1])) +
+                    2 * length_of(subtract(b->end.axis[2], b->start.axis[2]));
+    }
+    b->size = largest_of(b->start.at) + b->radius + largest_of(b->start.segment);
+    for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
+        b->size += b->half[a];
+    find_bounds(b, angle, c->bound);
+}
+
+/* -------------------------------------------------------------------------------------------------------- distances */
+
+/* A place near a body, in its frame. */
+typedef struct near_point {
+    double gap;     /* [m] negative inside */
+    vector3 normal; /* unit vector, out of the body */
+    double along;   /* capsule: position of the nearest point of its axis, from 0 at `at` to 1 at `to`; else 0 */
+} near_point;
+
+/* from_core: from the nearest point of the core. In the core itself, the normal is +y. */
+SPRING_INLINE void find_round(near_point *out, vector3 from_core, double radius)
+{
+    const double square = inner(from_core, from_core), distance = spring_sqrt(square);
+    out->normal = square > 0 ? scale(1 / distance, from_core) : (vector3){0, 1, 0};
+    out->gap = distance - radius;
+}
+
+static void find_box(near_point *out, const contact_body *b, vector3 y, double radius)
+{
+    const double at[3] = {y.x, y.y, y.z};
+    double over[3], face[3] = {0}, deepest = -(double)INFINITY;
+    int nearest = 0;
+    bool inside = true;
+    for (int i = 0; i < 3; i++) {
+        const double beyond = fabs(at[i]) - b->half[i];
+        over[i] = beyond > 0 ? (at[i] < 0 ? -beyond : beyond) : 0;
+        inside = inside && !(beyond > 0);
+        if (beyond > deepest) {
+            deepest = beyond;
+            nearest = i;
+        }
+    }
+    if (!inside) {
+        find_round(out, (vector3){over[0], over[1], over[2]}, radius);
+        return;
+    }
+    face[nearest] = at[nearest] < 0 ? -1 : 1;
+    out->normal = (vector3){face[0], face[1], face[2]};
+    out->gap = deepest - radius;
+}
+
+/* Calls the function of a custom body. Returns the number of contacts, 1 to 3. */
+static unsigned find_custom(contact_particle *p, const contact_body *b, vector3 y, near_point out[3])
+{
+    const double point[3] = {y.x, y.y, y.z};
+    double gap[3] = {0}, normal[3][3] = {{0}};
+    unsigned count = b->gap(b->user, point, gap, normal);
+    bool finite = count > 0;
+    count = count > 3 ? 3 : count;
+    for (unsigned i = 0; i < count; i++) {
+        out[i] = (near_point){gap[i] - b->radius - p->radius, vector_of(normal[i], b->flat), 0};
+        finite = finite && spring_finite(out[i].gap) && spring_finite(largest_of(out[i].normal));
+    }
+    if (finite)
+        return count;
+    p->wrong = true;
+    out[0] = (near_point){DBL_MAX, {0, 1, 0}, 0}; /* so that all loops end */
+    return 1;
+}
+
+/* The nearest point of the surface from y, at the given fraction of the step. */
+SPRING_NOINLINE void find_nearest(contact_particle *p, const contact_body *b, double fraction, vector3 y,
+                                  near_point *out)
+{
+    const double radius = b->radius + p->radius;
+    out->along = 0;
+    switch (b->shape) {
+    case SPRING_PLANE:
+        out->normal = (vector3){1, 0, 0};
+        out->gap = y.x - radius;
+        break;
+    case SPRING_CAPSULE: {
+        const vector3 axis = b->turns ? between(b->start.segment, b->end.segment, fraction) : b->start.segment;
+        const double square = inner(axis, axis), along = square > 0 ? inner(y, axis) / square : 0;
+        out->along = along > 0 ? (along < 1 ? along : 1) : 0;
+        find_round(out, add_scaled(y, -out->along, axis), radius);
+        break;
+    }
+    case SPRING_BOX:
+        find_box(out, b, y, radius);
+        break;
+    case SPRING_CUSTOM: {
+        near_point all[3];
+        const unsigned count = find_custom(p, b, y, all);
+        *out = all[0];
+        for (unsigned i = 1; i < count; i++)
+            *out = all[i].gap < out->gap ? all[i] : *out;
+        break;
+    }
+    case SPRING_SPHERE:
+        find_round(out, y, radius);
+        break;
+    }
+}
+
+/* All contacts near y: more than one for some custom bodies only. */
+static unsigned find_all(contact_particle *p, const contact_body *b, double fraction, vector3 y, near_point out[3])
+{
+    if (b->shape == SPRING_CUSTOM)
+        return find_custom(p, b, y, out);
+    find_nearest(p, b, fraction, y, out);
+    return 1;
+}
+
+/* [m] Gaps below this are rounding errors. */
+SPRING_INLINE double slop_of(const contact_setting *s, const contact_particle *p, const contact_body *b)
+{
+    return 8 * s->epsilon * (largest_of(p->x0) + b->size + p->radius);
+}
+
+/* [m/s] Velocity of a point of the frame at x. */
+SPRING_INLINE vector3 frame_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x)
+{
+    const vector3 v = b->shape == SPRING_CAPSULE ? add_scaled(pose->velocity, along, pose->stretching) : pose->velocity;
+    return b->turns && b->shape != SPRING_CAPSULE ? add(v, outer(pose->spin, subtract(x, pose->at))) : v;
+}
+
+/* [m/s] Velocity of the surface relative to the frame, at x. n: in the scene */
+static vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
+{
+    vector3 v = tangential(direction_out(pose, b->surface), n);
+    if (b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE) {
+        const vector3 centre = add_scaled(pose->at, along, direction_out(pose, pose->segment));
+        v = add(v, outer(pose->spin, subtract(x, centre)));
+    }
+    return v;
+}
+
+SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x,
+                                       vector3 n)
+{
+    const vector3 v = frame_velocity(b, pose, along, x);
+    return b->slips ? add(v, slip_velocity(b, pose, along, x, n)) : v;
+}
+
+/* --------------------------------------------------------------------------------------------------------- impulses */
+
+/* Adds the impulse of a change of a particle's velocity by collider i, at x. */
+SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change)
+{
+    if (!s->records)
+        return;
+    const vector3 impulse = scale(-1 / p->inverse_mass, change);
+    const vector3 arm = {x.x - s->origin[i][0], x.y - s->origin[i][1], x.z - s->origin[i][2]};
+    const vector3 moment = outer(arm, impulse);
+    double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
+    linear[0] += impulse.x;
+    linear[1] += impulse.y;
+    linear[2] += impulse.z;
+    angular[0] += moment.x;
+    angular[1] += moment.y;
+    angular[2] += moment.z;
+}
+
+/* --------------------------------------------------------------------------------------------------------- friction */
+
+/* Sliding over the rest of a step. */
+typedef struct sliding {
+    bool sticks;  /* at the end */
+    vector3 mean; /* [m/s] velocity */
+    vector3 kick; /* [m/s] the velocity from which the last kick, A/2 with friction F/2, ends on the velocity at the end */
+} sliding;
+
+/* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
+   friction turns, the time is divided into parts. */
+static sliding slide(vector3 u0, vector3 A, double F)
+{
+    const vector3 across = outer(u0, A);
+    const double square = inner(u0, u0);
+    const bool turns = square < 64 * F * F && inner(across, across) > 1e-24 * square * inner(A, A);
+    const int parts = turns ? slide_parts : 1;
+    const double part = 1. / parts, f = F * part;
+    const vector3 a = scale(part, A);
+    vector3 u = u0, sum = zero3, direction = zero3; /* sum: twice the way, in units of a part */
+    bool sticks = false;
+    for (int i = 0; i < parts; i++) {
+        const double speed = length_of(u);
+        vector3 at_stop = zero3;
+        double stop = 0; /* time of the stop, in parts */
+        if (speed > 0) {
+            const vector3 along = scale(1 / speed, u);
+            const double deceleration = f - inner(a, along);
+            if (!(deceleration > speed)) { /* it does not stop */
+                vector3 next = add(u, a);
+                double length = length_of(next);
+                if (parts == 1 || speed > 4 * f) { /* Heun's method, if friction turns */
+                    const vector3 end = parts == 1 ? along : add_scaled(next, -f, along);
+                    const double end_length = parts == 1 ? 1 : length_of(end);
+                    next = add_scaled(add_scaled(next, -f / 2, along), -f / 2 / end_length, end);
+                    direction = along;
+                } else { /* slow: the direction at the end, or it would zigzag */
+                    next = length > f ? scale(1 - f / length, next) : zero3;
+                }
+                sum = add(sum, add(u, next));
+                u = next;
+                length = length_of(u);
+                sticks = !(length > 0);
+                if (!sticks && parts > 1)
+                    direction = scale(1 / length, u);
+                continue;
+            }
+            stop = speed / deceleration;
+            at_stop = tangential(add_scaled(u, stop, add_scaled(a, -f, along)), along);
+        }
+        const double rest = 1 - stop;
+        const vector3 pushed = add_scaled(at_stop, rest, a);
+        const double length = length_of(pushed);
+        sum = add_scaled(sum, stop, add(u, at_stop));
+        sticks = length <= f * rest;
+        if (sticks) {
+            const double left = length_of(at_stop);
+            sum = add_scaled(sum, f > 0 ? fmin(rest, left / f) : 0, at_stop);
+            u = zero3;
+            continue;
+        }
+        direction = scale(1 / length, pushed);
+        const vector3 end = add_scaled(pushed, -f * rest, direction);
+        sum = add_scaled(sum, rest, add(at_stop, end));
+        u = end;
+    }
+    return (sliding){sticks, scale(part / 2, sum),
+                     sticks ? zero3 : add_scaled(add_scaled(u, -0.5, A), 0.5 * F, direction)};
+}
+
+/* -------------------------------------------------------------------------------------------------------- one collider */
+
+/* A contact of a particle with a body during a drift. */
+typedef struct meeting {
+    const contact_body *b;
+    unsigned index;
+    bool again;        /* the particle has touched a collider in this step */
+    double slop;       /* [m] */
+    vector3 start, way; /* [m] in the frame: the chord */
+    near_point at;     /* at the time of the contact */
+    double fraction, gap, push;
+    vector3 place;     /* in the frame */
+    vector3 n, n_end;  /* normal in the scene, and its direction at the end of the step */
+    double left;       /* [s] */
+    vector3 velocity;  /* [m/s] of the surface */
+    bool walks;        /* the way is long compared with a custom body's thickness */
+} meeting;
+
+enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
+
+/* [m] The step by which a path may enter a custom body: half of its thickness, so that it cannot pass the middle. */
+SPRING_INLINE double custom_step(const contact_body *b)
+{
+    return b->thickness / 2;
+}
+
+static vector3 end_in_frame(const contact_body *b, const contact_particle *p)
+{
+    return place_in(&b->end, add(p->x0, p->d));
+}
+
+static double gap_at_end(contact_particle *p, const contact_body *b, near_point *at)
+{
+    find_nearest(p, b, 1, end_in_frame(b, p), at);
+    return at->gap;
+}
+
+/* The way of the nearest point of a capsule that becomes longer is not part of the particle's. */
+SPRING_INLINE double approach(const meeting *m)
+{
+    const contact_body *const b = m->b;
+    const double rate = inner(m->at.normal, m->way);
+    if (b->shape != SPRING_CAPSULE || !b->turns)
+        return rate;
+    return rate - m->at.along * inner(m->at.normal, subtract(b->end.segment, b->start.segment));
+}
+
+static bool find_convex_impact(contact_particle *p, meeting *m)
+{
+    for (int i = 0;; i++) {
+        const double rate = approach(m);
+        if (m->push > 0)
+            return true;
+        if (m->gap + (1 - m->fraction) * rate >= 0)
+            return false;
+        const double step = m->gap / -rate;
+        if (i == impact_iterations || !(step > 1e-14 * (1 - m->fraction)))
+            return true;
+        m->fraction += step;
+        find_nearest(p, m->b, m->fraction, add_scaled(m->start, m->fraction, m->way), &m->at);
+        m->gap = m->at.gap > 0 ? m->at.gap : 0;
+    }
+}
+
+/* Marches along the chord by the gap, but at least by custom_step(), until it is inside, and then finds the root. If
+   there is no end to it, the path ends at the last point that is known to be outside. */
+static bool find_custom_impact(contact_particle *p, meeting *m)
+{
+    const contact_body *const b = m->b;
+    const double length = length_of(m->way);
+    if (!(length > 0))
+        return false;
+    double last = 0, before = m->gap;
+    near_point outside = m->at, next;
+    for (int i = 0; i < march_steps; i++) {
+        const double now = fmin(1, last + fmax(before, custom_step(b)) / length);
+        find_nearest(p, b, now, add_scaled(m->start, now, m->way), &next);
+        if (next.gap >= 0) {
+            last = now;
+            before = next.gap;
+            outside = next;
+            if (now >= 1)
+                return false;
+            continue;
+        }
+        double low = last, high = now, above = before, below = next.gap;
+        for (int k = 0; k < root_steps && high - low > 1e-15; k++) {
+            const double share = k < root_steps / 2 ? fmin(0.9, fmax(0.1, above / (above - below))) : 0.5;
+            const double middle = low + (high - low) * share;
+            find_nearest(p, b, middle, add_scaled(m->start, middle, m->way), &next);
+            if (next.gap < 0) {
+                high = middle;
+                below = next.gap;
+                continue;
+            }
+            low = middle;
+            above = next.gap;
+            outside = next;
+            if (above < 1e-13 * (length + p->radius))
+                break;
+        }
+        m->fraction = low;
+        m->gap = above;
+        m->at = outside;
+        return true;
+    }
+    p->d = subtract(place_out(&b->end, add_scaled(m->start, last, m->way)), p->x0);
+    return false;
+}
+
+/* Steps 1 and 2. Returns whether there is a contact. */
+static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
+{
+    const contact_body *const b = m->b;
+    m->slop = slop_of(s, p, b);
+    m->start = place_in(&b->start, p->x0);
+    m->way = subtract(end_in_frame(b, p), m->start);
+    m->fraction = 0;
+    find_nearest(p, b, 0, m->start, &m->at);
+    m->push = m->at.gap < -m->slop ? -m->at.gap : 0;
+    m->gap = m->at.gap < m->slop ? 0 : m->at.gap; /* a rounding error divided by h would be a velocity */
+    const bool custom = b->shape == SPRING_CUSTOM, enters = m->gap == 0 && inner(m->at.normal, m->way) < 0;
+    if (custom && m->push == 0 && !enters ? !find_custom_impact(p, m) : !custom && !find_convex_impact(p, m))
+        return false;
+    if (m->gap < m->slop)
+        m->gap = 0;
+    m->left = (1 - m->fraction) * s->h;
+    m->place = add_scaled(m->start, m->fraction, m->way);
+    m->walks = custom && length_of(m->way) > custom_step(b);
+    m->n = direction_out(&b->start, m->at.normal);
+    m->n_end = m->n;
+    const vector3 x = add_scaled(p->x0, m->fraction, p->d);
+    if (b->turns) {
+        m->n_end = direction_out(&b->end, m->at.normal);
+        const vector3 n = between(m->n, m->n_end, m->fraction);
+        m->n = scale(1 / length_of(n), n);
+    }
+    if (m->fraction < least_fraction || !b->moves) {
+        m->velocity = surface_velocity(b, &b->start, m->at.along, x, m->n);
+        return true;
+    }
+    body_pose then = b->start;
+    then.at = between(b->start.at, b->end.at, m->fraction);
+    then.velocity = between(b->start.velocity, b->end.velocity, m->fraction);
+    then.spin = between(b->start.spin, b->end.spin, m->fraction);
+    then.segment = between(b->start.segment, b->end.segment, m->fraction);
+    m->velocity = surface_velocity(b, &then, m->at.along, x, m->n);
+    return true;
+}
+
+/* Step 4, late. */
+static int press_late(const contact_setting *s, contact_particle *p, const meeting *m)
+{
+    const contact_body *const b = m->b;
+    const vector3 u = subtract(p->w, m->velocity), x = add_scaled(p->x0, m->fraction, p->d);
+    const double rate = inner(u, m->n), lost = rate * s->h < 0 ? -rate : 0;
+    const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(lost));
+    const vector3 change = subtract(scale(lost, m->n), friction);
+    p->w = add(p->w, change);
+    p->d = add_scaled(p->d, -m->left, friction);
+    record(s, p, m->index, x, change);
+    /* Onto the tangent plane, in the frame of the body: outside, if the body is convex. */
+    const vector3 end = end_in_frame(b, p);
+    const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
+                                      : m->gap + inner(m->at.normal, subtract(end, m->place));
+    if (inward < 0)
+        p->d = add_scaled(p->d, -inward, m->n_end);
+    near_point there;
+    const double gap = gap_at_end(p, b, &there);
+    if (gap < 0 && !m->walks)
+        p->d = add_scaled(p->d, -gap, direction_out(&b->end, there.normal));
+    return CONTACT;
+}
+
+/* Step 4, early: the lambda for which x + lambda |left| n lies on the surface at the end. Returns whether it surely
+   does. */
+static bool find_lambda(contact_particle *p, const meeting *m, vector3 x, double *lambda)
+{
+    const contact_body *const b = m->b;
+    if (b->shape == SPRING_PLANE && !b->turns)
+        return true;
+    const double duration = fabs(m->left);
+    const bool custom = b->shape == SPRING_CUSTOM;
+    const int most = m->walks ? 0 : custom ? custom_iterations : surface_iterations;
+    double last_gap = 0, last = 0;
+    for (int i = 0; i < most; i++) {
+        near_point there;
+        find_nearest(p, b, 1, place_in(&b->end, add_scaled(x, *lambda * duration, m->n)), &there);
+        const double cosine = inner(m->n, direction_out(&b->end, there.normal));
+        if (fabs(there.gap) < m->slop / 4)
+            return true;
+        if (!(cosine > least_cosine))
+            return false;
+        double change = -there.gap / (duration * cosine);
+        const double slope = there.gap - last_gap;
+        if (custom && i > 0 && slope * (*lambda - last) > 0 && fabs(slope) > 1e-3 * fabs(last_gap))
+            change = -there.gap * (*lambda - last) / slope;
+        last_gap = there.gap;
+        last = *lambda;
+        *lambda = fmax(0, *lambda + change);
+    }
+    return false;
+}
+
+/* Step 4, early. start: [m/s] velocity of the particle at the start of the step; inward: [m] from the tangent plane */
+static int press_from_start(const contact_setting *s, contact_particle *p, const meeting *m, vector3 start,
+                            double inward)
+{
+    const contact_body *const b = m->b;
+    const double duration = fabs(m->left), mu = b->friction * p->friction;
+    const double toward = fmax(least_cosine, inner(m->n, m->n_end));
+    const bool rests = m->fraction < least_fraction;
+    const vector3 x0 = add_scaled(p->x0, m->fraction, p->d), x1 = add(p->x0, p->d);
+    vector3 slip = zero3; /* mean velocity of the surface in the frame */
+    if (b->slips) {
+        slip = slip_velocity(b, &b->start, m->at.along, x0, m->n);
+        if (b->turns && b->shape != SPRING_CAPSULE)
+            slip = scale(0.5, add(slip, slip_velocity(b, &b->end, m->at.along, x0, m->n)));
+        else if (b->shape != SPRING_PLANE)
+            slip = add_scaled(slip, m->left / 2, outer(b->start.spin, slip));
+    }
+    /* way along the surface, relative to it; velocity at the start, and its change by other forces */
+    const vector3 way = direction_out(&b->end, subtract(end_in_frame(b, p), m->place));
+    const vector3 along = tangential(add_scaled(way, -m->left, slip), m->n);
+    const vector3 mean = scale(1 / m->left, along);
+    const vector3 u0 = tangential(subtract(start, m->velocity), m->n), A = scale(2, subtract(mean, u0));
+    double lambda = fmax(0, -inward) / (duration * toward);
+    sliding end = {false, mean, mean};
+    vector3 shift = zero3; /* by friction */
+    bool clear = false;
+    const int passes = mu > 0 ? friction_passes : 0;
+    for (int pass = 0;; pass++) {
+        if (b->turns && pass > 0) {
+            const vector3 there = place_in(&b->end, add(x1, shift));
+            lambda = fmax(0, -(m->gap + inner(m->at.normal, subtract(there, m->place)))) / (duration * toward);
+        }
+        clear = find_lambda(p, m, add(x1, shift), &lambda);
+        if (pass == passes)
+            break;
+        if (rests) {
+            end = slide(u0, A, 2 * mu * lambda);
+            if (end.sticks && is_zero(end.mean) && !b->slips && b->shape != SPRING_CAPSULE)
+                break;
+        } else { /* friction of a particle that landed in this step */
+            const double speed = length_of(mean), limit = mu * lambda, first = length_of(u0);
+            end.sticks = !(speed > limit);
+            end.mean = end.kick = end.sticks ? zero3 : scale(1 - limit / speed, mean);
+            /* Friction along the velocity at the start makes the kicks before and after the drift adjoint. */
+            if (!end.sticks && first > 2 * limit && inner(u0, mean) > 0.5 * first * speed)
+                end.mean = end.kick = add_scaled(mean, -limit / first, u0);
+        }
+        shift = subtract(scale(m->left, end.mean), along);
+    }
+    vector3 change;
+    if (rests && end.sticks && length_of(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
+        vector3 there = m->start;
+        if (b->shape == SPRING_CAPSULE)
+            there = add_scaled(there, m->at.along, subtract(b->end.segment, b->start.segment));
+        p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
+        change = subtract(scale(1 / s->h, p->d), p->w);
+        p->w = scale(1 / s->h, p->d);
+        clear = m->at.gap > -m->slop / 2;
+    } else {
+        change = scale(s->h < 0 ? -lambda : lambda, m->n);
+        if (mu > 0)
+            change = add(change, subtract(end.kick, mean));
+        p->w = add(p->w, change);
+        p->d = add_scaled(add(p->d, shift), lambda * duration, m->n);
+    }
+    record(s, p, m->index, x0, change);
+    return clear ? CONTACT | CLEAR : CONTACT;
+}
+
+/* Steps 1 to 4. */
+static int collide_once(const contact_setting *s, contact_particle *p, meeting *m)
+{
+    const contact_body *const b = m->b;
+    if (!meet(s, p, m))
+        return CLEAR;
+    const vector3 at_impact = m->again ? p->w : add_scaled(p->w, (m->fraction - p->kappa) * s->h, p->accel);
+    const vector3 u = subtract(at_impact, m->velocity);
+    const double rate = inner(u, m->n);
+    vector3 start = add_scaled(p->w, -p->kappa * s->h, p->accel);
+    if (rate * s->h < -m->slop && !(m->again && m->fraction <= 0)) {
+        const double normal = -(1 + b->restitution) * rate;
+        const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(normal));
+        const vector3 change = subtract(scale(normal, m->n), friction);
+        record(s, p, m->index, add_scaled(p->x0, m->fraction, p->d), change);
+        p->w = add(p->w, change);
+        p->d = add_scaled(p->d, m->left, change);
+        start = add(start, change);
+    }
+    if (m->push > 0)
+        p->d = add_scaled(p->d, m->push, m->n);
+    if (!(fabs(m->left) > 0))
+        return CONTACT;
+    const vector3 end = end_in_frame(b, p);
+    const double inward = m->push > 0 ? inner(m->at.normal, subtract(end, m->start)) - m->push
+                                      : m->gap + inner(m->at.normal, subtract(end, m->place));
+    if (inward >= 0 && m->push == 0) {
+        near_point there;
+        if (b->shape == SPRING_PLANE && !b->turns)
+            return CONTACT | CLEAR;
+        find_nearest(p, b, 1, end, &there);
+        if (there.gap >= 0)
+            return CONTACT | CLEAR;
+    }
+    if (m->fraction > 0.5 || m->again || m->push > 0)
+        return press_late(s, p, m);
+    return press_from_start(s, p, m, start, inward);
+}
+
+/* Continues the path after the bend in steps that cannot pass the middle of a custom body, and pushes it out after
+   each. */
+static void walk(const contact_setting *s, contact_particle *p, const meeting *m)
+{
+    const contact_body *const b = m->b;
+    vector3 y = m->place;
+    const vector3 way = subtract(end_in_frame(b, p), y);
+    double left = length_of(way);
+    near_point at, pusher = m->at;
+    find_nearest(p, b, 1, y, &at);
+    if (left <= custom_step(b))
+        return;
+    const vector3 along = scale(1 / left, way);
+    bool pushed = false;
+    for (int i = 0; i < walk_steps && left > 0; i++) {
+        const double step = fmin(left, fmax(at.gap, custom_step(b)));
+        y = add_scaled(y, step, along);
+        left -= step;
+        find_nearest(p, b, 1, y, &at);
+        for (int k = 0; k < walk_pushes && at.gap < 0; k++) {
+            y = add_scaled(y, -at.gap, at.normal);
+            pusher = at;
+            pushed = true;
+            find_nearest(p, b, 1, y, &at);
+        }
+    }
+    if (!pushed && !(left > 0))
+        return;
+    p->d = subtract(place_out(&b->end, y), p->x0);
+    if (!pushed)
+        return;
+    const vector3 n = direction_out(&b->end, pusher.normal), x = add(p->x0, p->d);
+    const vector3 u = subtract(p->w, surface_velocity(b, &b->end, 0, x, n));
+    const double rate = inner(u, n);
+    if (rate * s->h >= 0)
+        return;
+    const double normal = -(1 + b->restitution) * rate;
+    const vector3 friction = shortened(tangential(u, n), b->friction * p->friction * fabs(normal));
+    const vector3 change = subtract(scale(normal, n), friction);
+    p->w = add(p->w, change);
+    record(s, p, m->index, x, change);
+}
+
+static int collide(const contact_setting *s, contact_particle *p, unsigned i, bool again)
+{
+    meeting m = {.b = &s->body[i], .index = i, .again = again};
+    const int found = collide_once(s, p, &m);
+    if ((found & CONTACT) == 0 || m.b->shape != SPRING_CUSTOM)
+        return found;
+    walk(s, p, &m);
+    return CONTACT;
+}
+
+/* ------------------------------------------------------------------------------------------------- several colliders */
+
+/* n.change >= least */
+typedef struct constraint {
+    vector3 n, velocity;
+    double least, multiplier, friction;
+    unsigned index;
+} constraint;
+
+static bool fits(const constraint *c, unsigned count, vector3 change, double tolerance)
+{
+    for (unsigned i = 0; i < count; i++)
+        if (!(inner(c[i].n, change) >= c[i].least - tolerance))
+            return false;
+    return true;
+}
+
+/* Sets the multipliers of the active constraints, and returns their sum of multiplier n, if it fits all constraints. */
+static bool try_active(constraint *c, unsigned count, const unsigned active[3], const double value[3], unsigned used,
+                       double tolerance, vector3 *change)
+{
+    vector3 sum = zero3;
+    double size = 0;
+    for (unsigned k = 0; k < used; k++) {
+        if (!(value[k] >= 0))
+            return false;
+        sum = add_scaled(sum, value[k], c[active[k]].n);
+        size += value[k];
+    }
+    if (!fits(c, count, sum, tolerance + 1e-13 * size))
+        return false;
+    for (unsigned k = 0; k < used; k++)
+        c[active[k]].multiplier = value[k];
+    *change = sum;
+    return true;
+}
+
+/* The least change that fits all constraints: its active set has at most three normals, for which it is known in closed
+   form. If none fits, by projected Gauss-Seidel. */
+static vector3 least_change(constraint *c, unsigned count)
+{
+    double largest = 0;
+    for (unsigned i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(c[i].least));
+        c[i].multiplier = 0;
+    }
+    const double tolerance = 1e-12 * largest;
+    vector3 change = zero3;
+    if (fits(c, count, change, tolerance))
+        return change;
+    for (unsigned i = 0; i < count; i++)
+        if (try_active(c, count, (const unsigned[3]){i}, (const double[3]){c[i].least}, 1, tolerance, &change))
+            return change;
+    for (unsigned i = 0; i < count; i++)
+        for (unsigned j = i + 1; j < count; j++) {
+            const vector3 across = outer(c[i].n, c[j].n);
+            const double cosine = inner(c[i].n, c[j].n), det = inner(across, across); /* 1 - cosine^2 */
+            const double value[3] = {(c[i].least - cosine * c[j].least) / det, (c[j].least - cosine * c[i].least) / det};
+            if (det > 1e-20 &&
+                try_active(c, count, (const unsigned[3]){i, j}, value, 2, tolerance, &change))
+                return change;
+        }
+    for (unsigned i = 0; i < count; i++)
+        for (unsigned j = i + 1; j < count; j++)
+            for (unsigned k = j + 1; k < count; k++) {
+                const vector3 jk = outer(c[j].n, c[k].n), ki = outer(c[k].n, c[i].n), ij = outer(c[i].n, c[j].n);
+                const double det = inner(c[i].n, jk);
+                if (!(fabs(det) > 1e-10))
+                    continue;
+                const vector3 sum = add_scaled(add_scaled(scale(c[i].least, jk), c[j].least, ki), c[k].least, ij);
+                const double value[3] = {inner(jk, sum) / det / det, inner(ki, sum) / det / det, inner(ij, sum) / det / det};
+                if (try_active(c, count, (const unsigned[3]){i, j, k}, value, 3, tolerance, &change))
+                    return change;
+            }
+    for (int round = 0; round < seidel_rounds; round++)
+        for (unsigned i = 0; i < count; i++) {
+            const double now = fmax(0, c[i].multiplier + c[i].least - inner(c[i].n, change));
+            change = add_scaled(change, now - c[i].multiplier, c[i].n);
+            c[i].multiplier = now;
+        }
+    return change;
+}
+
+/* Adds the contacts at x with collider i, unless they are farther away than `most` beyond the nearest. */
+static unsigned add_constraints(contact_particle *p, const contact_body *b, unsigned i, bool at_end, vector3 x,
+                                double most, constraint *c, unsigned count)
+{
+    const body_pose *const pose = at_end ? &b->end : &b->start;
+    near_point at[3];
+    const unsigned found = find_all(p, b, at_end, place_in(pose, x), at);
+    double nearest = at[0].gap;
+    for (unsigned k = 1; k < found; k++)
+        nearest = fmin(nearest, at[k].gap);
+    for (unsigned k = 0; k < found && count < most_constraints; k++) {
+        if (at[k].gap > nearest + most)
+            continue;
+        const vector3 n = direction_out(pose, at[k].normal);
+        c[count++] = (constraint){.n = n,
+                                  .velocity = surface_velocity(b, pose, at[k].along, x, n),
+                                  .least = -at[k].gap,
+                                  .friction = b->friction * p->friction,
+                                  .index = i};
+    }
+    return count;
+}
+
+/* Removes the components of v into several surfaces. Friction acts only in directions that no contact resists. */
+static void stop_jointly(const contact_setting *s, const contact_particle *p, constraint *c, unsigned count, vector3 x,
+                         vector3 *v)
+{
+    const double sign = s->h < 0 ? -1 : 1;
+    for (unsigned i = 0; i < count; i++)
+        c[i].least = -sign * inner(subtract(*v, c[i].velocity), c[i].n);
+    least_change(c, count);
+    for (unsigned i = 0; i < count; i++) {
+        if (!(c[i].multiplier > 0))
+            continue;
+        const vector3 change = scale(sign * c[i].multiplier, c[i].n);
+        *v = add(*v, change);
+        record(s, p, c[i].index, x, change);
+    }
+    for (unsigned i = 0; i < count; i++) {
+        if (!(c[i].multiplier > 0))
+            continue;
+        const vector3 u = tangential(subtract(*v, c[i].velocity), c[i].n);
+        vector3 friction = shortened(u, c[i].friction * c[i].multiplier);
+        for (unsigned k = 0; k < count; k++) {
+            const vector3 line = outer(c[i].n, c[k].n);
+            const double square = inner(line, line);
+            if (k != i && c[k].multiplier > 0 && square > 0)
+                friction = scale(inner(friction, line) / square, line);
+        }
+        *v = subtract(*v, friction);
+        record(s, p, c[i].index, x, scale(-1, friction));
+    }
+}
+
+static void stop(const contact_setting *s, const contact_particle *p, constraint *c, unsigned count, vector3 x,
+                 vector3 *v)
+{
+    if (count > 1) {
+        stop_jointly(s, p, c, count, x, v);
+        return;
+    }
+    const vector3 u = subtract(*v, c->velocity), before = *v;
+    const double rate = inner(u, c->n);
+    if (count == 0 || !(rate * s->h < 0))
+        return;
+    const vector3 along = tangential(u, c->n);
+    const double limit = c->friction * fabs(rate), square = inner(along, along);
+    if (square <= limit * limit)
+        *v = c->velocity;
+    else
+        *v = subtract(add_scaled(*v, -rate, c->n), scale(limit / spring_sqrt(square), along));
+    record(s, p, c->index, x, subtract(*v, before));
+}
+
+void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end, vector3 x,
+                         vector3 *v)
+{
+    constraint c[most_constraints];
+    unsigned count = 0;
+    for (unsigned i = 0; i < s->count; i++)
+        if ((touched >> i & 1) != 0)
+            count = add_constraints(p, &s->body[i], i, at_end, x, same_place * slop_of(s, p, &s->body[i]), c, count);
+    stop(s, p, c, count, x, v);
+}
+
+/* Bits of the colliders that the path of a particle may touch. */
+static uint32_t near_path(const contact_setting *s, const contact_particle *p)
+{
+    const double way = length_of(p->d);
+    uint32_t near = 0;
+    for (unsigned i = 0; i < s->count; i++) {
+        const contact_body *const b = &s->body[i];
+        const double margin = p->radius + b->turning * way + slop_of(s, p, b);
+        bool meets = (b->bits & p->bits) != 0;
+        for (int a = 0; a < 3 && meets; a++) {
+            const double from = component(p->x0, a), to = from + component(p->d, a);
+            meets = !(fmax(from, to) < b->low[a] - margin) && !(fmin(from, to) > b->high[a] + margin);
+        }
+        near |= (uint32_t)meets << i;
+    }
+    return near;
+}
+
+/* Step 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
+static void leave(const contact_setting *s, contact_particle *p, uint32_t near, uint32_t clear)
+{
+    constraint c[most_constraints];
+    uint32_t inside = 0;
+    for (int pass = 0; pass < corner_passes && (pass > 0 || (near & ~clear) != 0); pass++) {
+        unsigned count = 0;
+        bool any_inside = false;
+        const vector3 x = add(p->x0, p->d);
+        const double way = length_of(p->d);
+        for (unsigned i = 0; i < s->count; i++) {
+            if ((near >> i & 1) == 0)
+                continue;
+            const unsigned before = count, found =
+                add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
+            for (unsigned k = before; k < found; k++) {
+                const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
+                any_inside = any_inside || deep;
+                inside |= (uint32_t)deep << i;
+                if ((inside >> i & 1) != 0 || ((p->touched >> i & 1) != 0 && -c[k].least < way))
+                    c[count++] = c[k];
+            }
+        }
+        if (!any_inside)
+            break;
+        p->d = add(p->d, least_change(c, count));
+        near |= s->count > 1 ? near_path(s, p) : 0;
+    }
+    if (inside == 0)
+        return;
+    p->touched |= inside;
+    spring_contact_stop(s, p, inside, true, add(p->x0, p->d), &p->w);
+}
+
+void spring_contact_drift(const contact_setting *s, contact_particle *p)
+{
+    uint32_t near = p->near, clear = 0;
+    p->touched = 0;
+    for (unsigned i = 0; i < s->count; i++)
+        near &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
+    for (int sweep = 0; sweep < 2; sweep++) {
+        bool found_any = false;
+        for (unsigned i = 0; i < s->count; i++) {
+            const uint32_t bit = UINT32_C(1) << i;
+            if ((near & bit) == 0 || (sweep > 0 && p->touched == bit))
+                continue;
+            const int found = collide(s, p, i, p->touched != 0);
+            if ((found & CONTACT) != 0) {
+                found_any = true;
+                p->touched |= bit;
+                clear = 0;
+                near = s->count > 1 ? near_path(s, p) | p->touched : near;
+            }
+            clear |= (found & CLEAR) != 0 ? bit : 0;
+        }
+        if (!found_any)
+            break;
+    }
+    leave(s, p, near, clear);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- queries */
+
+#include "../simd/size_begin.h"
+
+unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *p, bool at_end, vector3 x,
+                                 double epsilon, contact_surface surface[3])
+{
+    const contact_setting s = {.epsilon = epsilon};
+    constraint c[most_constraints];
+    contact_particle particle = *p;
+    const unsigned count = add_constraints(&particle, b, 0, at_end, x, same_place * slop_of(&s, p, b), c, 0);
+    for (unsigned i = 0; i < count; i++)
+        surface[i] = (contact_surface){c[i].n, c[i].velocity, c[i].friction};
+    return count;
+}
+
+double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel)
+{
+    constraint c[most_constraints];
+    count = count < most_constraints ? count : most_constraints;
+    for (unsigned i = 0; i < count; i++)
+        c[i] = (constraint){.n = surface[i].normal, .least = -inner(accel, surface[i].normal)};
+    double left = length_of(add(accel, least_change(c, count)));
+    for (unsigned i = 0; i < count; i++)
+        left = fmax(0, left - surface[i].friction * c[i].multiplier);
+    return left;
+}
+
+#include "../simd/size_end.h"

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+/* Contacts of one particle with the colliders of a scene. They are computed in double for both precisions of scenes, and
+   one particle at a time, so results and impulses do not depend on the vector width. contact.c has the formulas. */
+#ifndef SPRINGSTEP_CONTACT_H
+#define SPRINGSTEP_CONTACT_H
+
+#include "../simd/arithmetic.h"
+
+#include <stddef.h>
+
+#include <springstep/scene.h>
+
+enum { most_colliders = 32 }; /* bits of a mask */
+
+typedef struct vector3 {
+    double x, y, z; /* with two axes z is 0 */
+} vector3;
+
+/* A rigid frame at one time. */
+typedef struct body_pose {
+    vector3 at, velocity, spin; /* [m], [m/s], [rad/s] */
+    vector3 axis[3];            /* unit vectors */
+    vector3 segment;            /* [m] capsule: from `at` to `to`, in the frame */
+    vector3 stretching;         /* [m/s] capsule: velocity of `to` relative to `at` */
+} body_pose;
+
+/* A collider during a step. */
+typedef struct contact_body {
+    spring_shape shape;
+    bool moves;   /* its pose depends on time */
+    bool turns;   /* its frame turns in this step */
+    bool slips;   /* its surface moves in the frame: the spin of a round body, or `surface` */
+    bool flat;    /* two axes */
+    uint32_t bits; /* of the masks of particles */
+    double half[3], radius, friction, restitution, thickness;
+    double size;     /* [m] of the coordinates that a gap is computed from: for rounding errors */
+    vector3 surface; /* [m/s] in the frame */
+    spring_gap_fn *gap;
+    void *user;
+    body_pose start, end;
+    /* A bound on where it can be touched, see spring_contact_place(). */
+    double low[3], high[3]; /* [m] +-INFINITY: not bounded */
+    double turning;         /* a particle that is displaced by d is touched only within `turning` |d| of these */
+    double reach;           /* [m] touched only if distance from its core at the start <= reach + growth |d - shift| */
+    double growth;
+} contact_body;
+
+/* What the contacts of a step have in common. */
+typedef struct contact_setting {
+    const contact_body *body; /* [count] */
+    unsigned count;
+    double h;                      /* [s] duration of the drift */
+    double epsilon;                /* rounding error of coordinates */
+    double (*origin)[3];           /* [count] [m] points that angular impulses are about */
+    spring_impulse *impulse;       /* [count] sums */
+    bool records;                  /* whether impulses are added */
+} contact_setting;
+
+/* A particle. */
+typedef struct contact_particle {
+    vector3 x0;            /* [m] at the start of the drift */
+    vector3 accel;         /* [m/s^2] of the kick before the drift */
+    vector3 w;             /* [m/s] velocity of the drift */
+    vector3 d;             /* [m] displacement */
+    double kappa;          /* w includes this fraction of the kick of the whole step */
+    double radius, inverse_mass;
+    double friction;       /* factor of the friction of colliders */
+    uint32_t bits;         /* its mask */
+    uint32_t near;         /* bit i: its path may touch collider i */
+    uint32_t touched;      /* bit i: it touches collider i */
+    bool wrong;            /* a gap is not finite */
+} contact_particle;
+
+/* The surface of a collider near a particle. */
+typedef struct contact_surface {
+    vector3 normal;   /* out of the collider */
+    vector3 velocity; /* [m/s] */
+    double friction;  /* with this particle */
+} contact_surface;
+
+/* Places a collider for a drift that starts and ends t0 and t1 after the collider was set. */
+SPRING_INTERNAL void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1,
+                                          uint32_t axes);
+
+/* Moves a particle: changes w and d by its contacts. */
+SPRING_INTERNAL void spring_contact_drift(const contact_setting *s, contact_particle *p);
+
+/* Removes from v the components into the colliders that are touched, with friction: the last kick, at x. */
+SPRING_INTERNAL void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t touched, bool at_end,
+                                         vector3 x, vector3 *v);
+
+/* The surfaces that a particle touches at x, at the start or the end of the drift: those whose gap is the least.
+   Returns their number. */
+SPRING_INTERNAL unsigned spring_contact_surfaces(const contact_body *b, const contact_particle *p, bool at_end,
+                                                 vector3 x, double epsilon, contact_surface surface[3]);
+
+/* The acceleration that is left of `accel` by the normal forces and the static friction of the surfaces. */
+SPRING_INTERNAL double spring_contact_balance(const contact_surface *surface, unsigned count, vector3 accel);
+
+#endif

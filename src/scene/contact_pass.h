@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: MIT */
+/* Motions of particles with contacts. All particles of a chunk are advanced without colliders first, by the kernels for
+   SIMD vectors. The few particles that may be in contact are then advanced again, in the order of their indices, with
+   contact.c. */
+#ifndef SPRINGSTEP_CONTACT_PASS_H
+#define SPRINGSTEP_CONTACT_PASS_H
+
+#include "block.h"
+
+#include <math.h>
+
+/* The contacts of a step. */
+typedef struct scene_contacts {
+    contact_setting setting;
+    const collider_bounds *bounds;
+    const scalar *radius; /* [m] */
+    size_t radius_stride; /* from particle to particle: 1, or 0: one vector for all particles */
+    scalar equal_radius[padding];
+    const scalar *x;        /* [m] positions at the end of the step */
+    const uint32_t *before; /* by particle: bit i is set if collider i was touched in the previous step */
+    uint32_t *touched;      /* written: the same for this step; may be `before` */
+} scene_contacts;
+
+/* A particle in a motion with contacts. */
+typedef struct contact_state {
+    vector3 x0, v0, free; /* at the start; free: the acceleration without drag */
+    double drag;          /* [1/s] */
+    contact_particle c;
+} contact_state;
+
+static inline vector3 vector_plus(vector3 a, double s, vector3 b) /* a + s b */
+{
+    return (vector3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static inline vector3 vector_minus(vector3 a, vector3 b)
+{
+    return vector_plus(a, -1, b);
+}
+
+static inline vector3 vector_times(double s, vector3 a)
+{
+    return (vector3){s * a.x, s * a.y, s * a.z};
+}
+
+/* The components of a quantity of all particles, whose axes are `stride` apart. */
+static inline vector3 load_vector(const scalar *quantity, size_t stride, uint32_t axes)
+{
+    return (vector3){(double)quantity[0], (double)quantity[stride], axes > 2 ? (double)quantity[2 * stride] : 0};
+}
+
+static inline void store_vector(scalar *quantity, size_t stride, uint32_t axes, vector3 v)
+{
+    quantity[0] = (scalar)v.x;
+    quantity[stride] = (scalar)v.y;
+    if (axes > 2)
+        quantity[2 * stride] = (scalar)v.z;
+}
+
+/* The solution u of u = v + kick (free - drag u). */
+static inline vector3 kicked_implicitly_by(const contact_state *p, double kick, vector3 v)
+{
+    const vector3 u = vector_plus(v, kick, p->free);
+    return p->drag != 0 ? vector_times(1 / (1 + kick * p->drag), u) : u;
+}
+
+static inline bool finite_vector(vector3 v)
+{
+    return spring_finite(v.x) && spring_finite(v.y) && spring_finite(v.z);
+}
+
+static inline bool too_fast_vector(const scene_motion *m, vector3 v)
+{
+    const double limit = (double)m->max_speed;
+    return !(fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit);
+}
+
+/* Whether the free motion of this particle has a result that is not finite, or too fast. */
+static inline bool wrong_state(const scene_particles *p, const scene_motion *m, size_t i)
+{
+    const vector3 x = load_vector(m->x + i, p->stride, p->axes), v = load_vector(m->v + i, p->stride, p->axes);
+    const bool ends = m->contacts != KICK_DRIFT_CONTACTS, pinned = p->inverse_mass[i * p->mass_stride] == 0;
+    return !finite_vector(x) || !finite_vector(v) || (ends && !pinned && too_fast_vector(m, v)) ||
+           (m->predicted != NULL && !finite_vector(load_vector(m->predicted + i, p->stride, p->axes)));
+}
+
+/* Advances a particle with contacts, and writes its results if they differ from the free motion. Returns false if they
+   are not finite or too fast. */
+static bool advance_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
+                               contact_state *q, uint32_t before)
+{
+    const double kick = (double)m->kick, drift = (double)m->drift, h = t->setting.h;
+    const size_t stride = p->stride;
+    const uint32_t axes = p->axes;
+    vector3 v0 = q->v0, second_kick = {0, 0, 0};
+    bool fine = true;
+    if (m->contacts == KICK_DRIFT_CONTACTS) {
+        if (m->ends_previous) {
+            v0 = kicked_implicitly_by(q, kick, v0);
+            spring_contact_stop(&t->setting, &q->c, before, false, q->x0, &v0);
+            fine = !too_fast_vector(m, v0);
+        }
+        q->c.accel = vector_plus(q->free, -q->drag, v0);
+        q->c.w = vector_plus(v0, kick, q->c.accel);
+        q->c.kappa = 0.5;
+        q->c.d = vector_times(drift, q->c.w);
+    } else if (m->contacts == IMPLICIT_KICK_DRIFT_CONTACTS) {
+        q->c.w = kicked_implicitly_by(q, kick, v0);
+        q->c.accel = vector_plus(q->free, -q->drag, q->c.w);
+        q->c.kappa = 1;
+        q->c.d = vector_times(drift, q->c.w);
+    } else { /* as for a drift with the mean velocity, and kicks by the mean acceleration */
+        const vector3 v1 = load_vector(m->v + i, stride, axes);
+        q->c.d = vector_minus(load_vector(m->x + i, stride, axes), q->x0);
+        q->c.w = vector_times(1 / h, q->c.d);
+        q->c.accel = vector_times(1 / h, vector_minus(v1, v0));
+        q->c.kappa = 0.5;
+        second_kick = vector_minus(v1, q->c.w);
+    }
+    if (!finite_vector(q->c.d) || !finite_vector(q->x0)) /* a function of a custom body sees finite numbers only */
+        return false;
+    spring_contact_drift(&t->setting, &q->c);
+    t->touched[i] = q->c.touched;
+    if (q->c.touched == 0 && !(m->ends_previous && before != 0))
+        return fine && !q->c.wrong && !wrong_state(p, m, i);
+    const vector3 x = vector_plus(q->x0, 1, q->c.d);
+    vector3 v = q->c.w;
+    if (m->contacts == WHOLE_STEP_CONTACTS) {
+        v = vector_plus(v, 1, second_kick);
+        spring_contact_stop(&t->setting, &q->c, q->c.touched, true, x, &v);
+    }
+    store_vector(m->x + i, stride, axes, x);
+    store_vector(m->v + i, stride, axes, v);
+    if (m->predicted != NULL) {
+        contact_setting queries = t->setting;
+        queries.records = false;
+        vector3 predicted = kicked_implicitly_by(q, kick, v);
+        spring_contact_stop(&queries, &q->c, q->c.touched, true, x, &predicted);
+        store_vector(m->predicted + i, stride, axes, predicted);
+    }
+    return fine && !q->c.wrong && !wrong_state(p, m, i);
+}
+
+/* Particle i, in place k of the chunk. */
+static contact_state contact_state_of(const spring_scene *s, const scene_particles *p, const kept_motion *kept,
+                                      size_t i, size_t k)
+{
+    const double inverse_mass = (double)p->inverse_mass[i * p->mass_stride];
+    contact_state q = {.c = scene_contact_particle(s, i), .drag = (double)p->drag * inverse_mass};
+    double force[3] = {0};
+    for (uint32_t a = 0; a < p->axes; a++)
+        force[a] = inverse_mass * ((double)kept->force[a][k] + (double)p->held[(a * p->stride + i) * p->held_stride]) +
+                   (double)p->gravity[a * padding];
+    q.free = (vector3){force[0], force[1], force[2]};
+    q.x0 = q.c.x0 = load_vector(kept->x0[0] + k, contact_chunk, p->axes);
+    q.v0 = load_vector(kept->v0[0] + k, contact_chunk, p->axes);
+    return q;
+}
+
+/* The last kick of a particle that touches colliders. */
+static bool stop_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
+                            contact_state *q)
+{
+    vector3 v = kicked_implicitly_by(q, (double)m->kick, q->v0);
+    spring_contact_stop(&t->setting, &q->c, t->touched[i], true, load_vector(t->x + i, p->stride, p->axes), &v);
+    store_vector(m->v + i, p->stride, p->axes, v);
+    return !q->c.wrong && finite_vector(v) && !too_fast_vector(m, v);
+}
+
+/* Advances a chunk of particles. */
+static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                                  particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
+                                  size_t count)
+{
+    kept_motion kept;
+    uint32_t near[contact_chunk], before[contact_chunk];
+    const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
+    memcpy(before, t->before + from, count * sizeof *before);
+    uint32_t stops = 0; /* at colliders, in a kick */
+    for (size_t k = 0; k < count; k++)
+        stops |= kicks ? t->touched[from + k] : m->ends_previous ? before[k] : 0;
+    if (kicks && stops == 0)
+        return kernel(p, m, from, from + count);
+    kernels->keep_motion(p, m, from, count, &kept);
+    const bool fine = kernel(p, m, from, from + count);
+    bool some = stops != 0 || !fine;
+    if (!kicks) {
+        memset(t->touched + from, 0, count * sizeof *t->touched);
+        some = kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, near) || some;
+    }
+    if (!some)
+        return true;
+    bool all_fine = true;
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = from + k;
+        const uint32_t stop = kicks ? t->touched[i] : m->ends_previous ? before[k] : 0;
+        const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
+        if (pinned || (fine && stop == 0 && (kicks || near[k] == 0))) {
+            all_fine = all_fine && (fine || !wrong_state(p, m, i));
+            continue;
+        }
+        contact_state q = contact_state_of(s, p, &kept, i, k);
+        q.c.near = !kicks && fine ? near[k] : UINT32_MAX;
+        all_fine = (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, stop)) && all_fine;
+    }
+    return all_fine;
+}
+
+#endif
