@@ -28,9 +28,12 @@ static void keep_motion(const scene_particles *p, const scene_motion *m, size_t 
 /* Lanes whose particle may touch the collider on its path from x0 to x. */
 SPRING_INLINE mask may_touch(const collider_bound *c, real3 x0, real3 x, real radius)
 {
-    if (c->shape == SPRING_PLANE) /* the gap along the path is linear */
-        return not_mask(dot3(x0, splat3(c->axis[0])) - c->offset[0] >= radius) |
-               not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] >= radius);
+    if (c->shape == SPRING_PLANE) { /* the gap along the path is linear */
+        const real size = vec_abs(x0.x) + vec_abs(x0.y) + vec_abs(x0.z);
+        const real reach = radius + (c->reach + 32 * SCALAR_EPSILON * size);
+        return not_mask(dot3(x0, splat3(c->axis[0])) - c->offset[0] >= reach) |
+               not_mask(dot3(x, splat3(c->axis[1])) - c->offset[1] >= reach);
+    }
     real3 arm = minus3(x0, splat3(c->at));
     const real3 d = minus3(minus3(x, x0), splat3(c->shift));
     real square = splat(0);
@@ -55,7 +58,7 @@ SPRING_INLINE mask may_touch(const collider_bound *c, real3 x0, real3 x, real ra
 /* Bits of the colliders whose boxes meet the box from `low` to -minus_high. */
 SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real low[3], const real minus_high[3])
 {
-    scalar bounds[2][3] = {{0}}, extent = 0;
+    scalar bounds[2][3] = {{0}}, extent = 0, size = 0;
     for (int a = 0; a < 3; a++) {
         scalar each[2][lanes];
         vec_store(each[0], low[a]);
@@ -66,8 +69,9 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
                 bounds[side][a] = each[side][i] < bounds[side][a] ? each[side][i] : bounds[side][a];
         }
         extent += -bounds[1][a] - bounds[0][a];
+        size += (scalar)fabs((double)bounds[0][a]) + (scalar)fabs((double)bounds[1][a]);
     }
-    const scalar margin = c->turning * extent;
+    const scalar margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
     uint32_t meet = 0;
     for (size_t k = 0; k < c->count; k += lanes) {
         mask apart = {0};

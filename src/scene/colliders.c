@@ -160,7 +160,7 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     copy3(to->segment, b->start.segment);
     const double square = dot_of_vectors(b->start.segment, b->start.segment);
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
-    to->reach = (scalar)(b->reach + rounding);
+    to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
     to->growth_squared = (scalar)(b->growth * b->growth);
     const double margin = (double)largest_radius + rounding;
     for (int a = 0; a < 3; a++) {

@@ -4,8 +4,7 @@
  *
  * Symbols   x0 is the position of a particle, w its velocity after the kick, a the acceleration of that kick, d = h w
  *           the displacement, V the velocity of the surface, n the normal, u = w - V, and theta the fraction of the
- *           step before the contact. w includes the fraction kappa of the kick of the step (leapfrog 1/2, symplectic
- *           Euler 1). R and c are the rotation and the origin of the frame of the body.
+ *           step before the contact. v0 is the velocity at the start of the step. R and c are the rotation and the origin of the frame of the body.
  * Frame     All distances are computed in the frame of the body, where it is at rest: y = R^T (x - c) at the start and
  *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
@@ -14,7 +13,7 @@
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
- *           3. Impact, if n.u < 0 at theta, u = w + (theta - kappa) h a - V: the impulse is -(1 + e) n.u n times the
+ *           3. Impact, if n.u < 0 at theta, u = v0 + theta h a - V: the impulse is -(1 + e) n.u n times the
  *              mass, with friction along -u_t of at most mu times its size. The rest of the path, (1 - theta) h, has
  *              the changed velocity.
  *           4. Pressing, if the rest of the path still ends inside. Early, in the first half of the step: the impulse
@@ -246,8 +245,8 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
 static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
 {
     const double before = length_of(from), after = length_of(to);
-    b->start.segment = from;
-    b->end.segment = to;
+    b->start.segment = b->start.along = from;
+    b->end.segment = b->end.along = to;
     const double cosine = inner(from, to) / (before * after);
     if (is_zero(subtract(from, to)) || !(before > 0) || !(after > 0) || !(cosine > -0.5))
         return;
@@ -355,8 +354,9 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
     find_pose(&b->start, c, axis, t0, flat, b->turns, &phi0);
     find_pose(&b->end, c, axis, t1, flat, b->turns, &phi1);
     if (plane && !b->turns) { /* the point that is nearest to the origin, so that the distance of `at` does not matter */
+        const vector3 shift = subtract(b->end.at, b->start.at);
         b->start.at = scale(inner(axis[0], b->start.at), axis[0]);
-        b->end.at = scale(inner(axis[0], b->end.at), axis[0]);
+        b->end.at = add(b->start.at, shift);
     }
     /* `surface` has the axes of the scene for shapes without axes of their own. */
     if (plane)
@@ -394,6 +394,13 @@ SPRING_INLINE void find_round(near_point *out, vector3 from_core, double radius)
     const double square = inner(from_core, from_core), distance = spring_sqrt(square);
     out->normal = square > 0 ? scale(1 / distance, from_core) : (vector3){0, 1, 0};
     out->gap = distance - radius;
+}
+
+static void find_capsule(near_point *out, vector3 y, vector3 axis, double radius)
+{
+    const double square = inner(axis, axis), along = square > 0 ? inner(y, axis) / square : 0;
+    out->along = along > 0 ? (along < 1 ? along : 1) : 0;
+    find_round(out, add_scaled(y, -out->along, axis), radius);
 }
 
 static void find_box(near_point *out, const contact_body *b, vector3 y, double radius)
@@ -450,13 +457,9 @@ SPRING_NOINLINE void find_nearest(contact_particle *p, const contact_body *b, do
         out->normal = (vector3){1, 0, 0};
         out->gap = y.x - radius;
         break;
-    case SPRING_CAPSULE: {
-        const vector3 axis = b->turns ? between(b->start.segment, b->end.segment, fraction) : b->start.segment;
-        const double square = inner(axis, axis), along = square > 0 ? inner(y, axis) / square : 0;
-        out->along = along > 0 ? (along < 1 ? along : 1) : 0;
-        find_round(out, add_scaled(y, -out->along, axis), radius);
+    case SPRING_CAPSULE:
+        find_capsule(out, y, b->turns ? between(b->start.segment, b->end.segment, fraction) : b->start.segment, radius);
         break;
-    }
     case SPRING_BOX:
         find_box(out, b, y, radius);
         break;
@@ -474,13 +477,24 @@ SPRING_NOINLINE void find_nearest(contact_particle *p, const contact_body *b, do
     }
 }
 
-/* All contacts near y: more than one for some custom bodies only. */
-static unsigned find_all(contact_particle *p, const contact_body *b, double fraction, vector3 y, near_point out[3])
+/* All contacts at x, with their normals in the scene. More than one only for some custom bodies. The end of a step is
+   the start of the next one, with the same bits: the frame of a capsule, which begins anew, is not used. */
+static unsigned find_all(contact_particle *p, const contact_body *b, const body_pose *pose, vector3 x,
+                         near_point out[3])
 {
+    if (b->shape == SPRING_CAPSULE) {
+        find_capsule(out, subtract(x, pose->at), pose->along, b->radius + p->radius);
+        return 1;
+    }
+    const vector3 y = place_in(pose, x);
+    unsigned count = 1;
     if (b->shape == SPRING_CUSTOM)
-        return find_custom(p, b, y, out);
-    find_nearest(p, b, fraction, y, out);
-    return 1;
+        count = find_custom(p, b, y, out);
+    else
+        find_nearest(p, b, 0, y, out);
+    for (unsigned i = 0; i < count; i++)
+        out[i].normal = direction_out(pose, out[i].normal);
+    return count;
 }
 
 /* [m] Gaps below this are rounding errors. */
@@ -501,7 +515,7 @@ static vector3 slip_velocity(const contact_body *b, const body_pose *pose, doubl
 {
     vector3 v = tangential(direction_out(pose, b->surface), n);
     if (b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE) {
-        const vector3 centre = add_scaled(pose->at, along, direction_out(pose, pose->segment));
+        const vector3 centre = add_scaled(pose->at, along, pose->along);
         v = add(v, outer(pose->spin, subtract(x, centre)));
     }
     return v;
@@ -748,7 +762,7 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     then.at = between(b->start.at, b->end.at, m->fraction);
     then.velocity = between(b->start.velocity, b->end.velocity, m->fraction);
     then.spin = between(b->start.spin, b->end.spin, m->fraction);
-    then.segment = between(b->start.segment, b->end.segment, m->fraction);
+    then.along = between(b->start.along, b->end.along, m->fraction);
     m->velocity = surface_velocity(b, &then, m->at.along, x, m->n);
     return true;
 }
@@ -882,10 +896,10 @@ static int collide_once(const contact_setting *s, contact_particle *p, meeting *
     const contact_body *const b = m->b;
     if (!meet(s, p, m))
         return CLEAR;
-    const vector3 at_impact = m->again ? p->w : add_scaled(p->w, (m->fraction - p->kappa) * s->h, p->accel);
+    const vector3 at_impact = m->again ? p->w : add_scaled(p->v0, m->fraction * s->h, p->accel);
     const vector3 u = subtract(at_impact, m->velocity);
     const double rate = inner(u, m->n);
-    vector3 start = add_scaled(p->w, -p->kappa * s->h, p->accel);
+    vector3 start = p->v0;
     if (rate * s->h < -m->slop && !(m->again && m->fraction <= 0)) {
         const double normal = -(1 + b->restitution) * rate;
         const vector3 friction = shortened(tangential(u, m->n), b->friction * p->friction * fabs(normal));
@@ -1057,14 +1071,14 @@ static unsigned add_constraints(contact_particle *p, const contact_body *b, unsi
 {
     const body_pose *const pose = at_end ? &b->end : &b->start;
     near_point at[3];
-    const unsigned found = find_all(p, b, at_end, place_in(pose, x), at);
+    const unsigned found = find_all(p, b, pose, x, at);
     double nearest = at[0].gap;
     for (unsigned k = 1; k < found; k++)
         nearest = fmin(nearest, at[k].gap);
     for (unsigned k = 0; k < found && count < most_constraints; k++) {
         if (at[k].gap > nearest + most)
             continue;
-        const vector3 n = direction_out(pose, at[k].normal);
+        const vector3 n = at[k].normal;
         c[count++] = (constraint){.n = n,
                                   .velocity = surface_velocity(b, pose, at[k].along, x, n),
                                   .least = -at[k].gap,
@@ -1143,7 +1157,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t near = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = p->radius + b->turning * way + slop_of(s, p, b);
+        const double margin = p->radius + b->turning * way + 4 * slop_of(s, p, b);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
             const double from = component(p->x0, a), to = from + component(p->d, a);
@@ -1190,7 +1204,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
 
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
-    uint32_t near = p->near, clear = 0;
+    uint32_t near = p->near == UINT32_MAX ? near_path(s, p) : p->near, clear = 0;
     p->touched = 0;
     for (unsigned i = 0; i < s->count; i++)
         near &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);

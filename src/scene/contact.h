@@ -21,6 +21,7 @@ typedef struct body_pose {
     vector3 at, velocity, spin; /* [m], [m/s], [rad/s] */
     vector3 axis[3];            /* unit vectors */
     vector3 segment;            /* [m] capsule: from `at` to `to`, in the frame */
+    vector3 along;              /* the same, in the scene */
     vector3 stretching;         /* [m/s] capsule: velocity of `to` relative to `at` */
 } body_pose;
 
@@ -59,10 +60,10 @@ typedef struct contact_setting {
 /* A particle. */
 typedef struct contact_particle {
     vector3 x0;            /* [m] at the start of the drift */
+    vector3 v0;            /* [m/s] at the start */
     vector3 accel;         /* [m/s^2] of the kick before the drift */
     vector3 w;             /* [m/s] velocity of the drift */
     vector3 d;             /* [m] displacement */
-    double kappa;          /* w includes this fraction of the kick of the whole step */
     double radius, inverse_mass;
     double friction;       /* factor of the friction of colliders */
     uint32_t bits;         /* its mask */

@@ -21,10 +21,11 @@ typedef struct scene_contacts {
     uint32_t *touched;      /* written: the same for this step; may be `before` */
 } scene_contacts;
 
-/* A particle in a motion with contacts. */
+/* A particle in a motion with contacts. Its free motion has the operations of leapfrog_particles_tmpl.h. */
 typedef struct contact_state {
-    vector3 x0, v0, free; /* at the start; free: the acceleration without drag */
-    double drag;          /* [1/s] */
+    scalar x0[3], v0[3], free[3]; /* free: the acceleration without drag */
+    scalar drag;                /* [1/s] */
+    scalar leading, correction; /* of an implicit kick */
     contact_particle c;
 } contact_state;
 
@@ -57,11 +58,27 @@ static inline void store_vector(scalar *quantity, size_t stride, uint32_t axes, 
         quantity[2 * stride] = (scalar)v.z;
 }
 
-/* The solution u of u = v + kick (free - drag u). */
-static inline vector3 kicked_implicitly_by(const contact_state *p, double kick, vector3 v)
+static inline vector3 vector_from(const scalar v[3])
 {
-    const vector3 u = vector_plus(v, kick, p->free);
-    return p->drag != 0 ? vector_times(1 / (1 + kick * p->drag), u) : u;
+    return (vector3){(double)v[0], (double)v[1], (double)v[2]};
+}
+
+static inline void round_vector(scalar to[3], vector3 v)
+{
+    to[0] = (scalar)v.x;
+    to[1] = (scalar)v.y;
+    to[2] = (scalar)v.z;
+}
+
+/* The solution u of u = v + kick (free - drag u). */
+static inline vector3 kicked_implicitly_by(const contact_state *p, scalar kick, const scalar v[3])
+{
+    scalar u[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = v[a] + kick * p->free[a];
+        u[a] = p->drag != 0 ? p->leading * u[a] + p->correction * u[a] : u[a];
+    }
+    return vector_from(u);
 }
 
 static inline bool finite_vector(vector3 v)
@@ -89,41 +106,46 @@ static inline bool wrong_state(const scene_particles *p, const scene_motion *m, 
 static bool advance_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
                                contact_state *q, uint32_t before)
 {
-    const double kick = (double)m->kick, drift = (double)m->drift, h = t->setting.h;
+    const double drift = (double)m->drift, h = t->setting.h;
+    scalar accel[3];
     const size_t stride = p->stride;
     const uint32_t axes = p->axes;
-    vector3 v0 = q->v0, second_kick = {0, 0, 0};
+    vector3 v0 = vector_from(q->v0), second_kick = {0, 0, 0};
     bool fine = true;
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
-            v0 = kicked_implicitly_by(q, kick, v0);
-            spring_contact_stop(&t->setting, &q->c, before, false, q->x0, &v0);
+            v0 = kicked_implicitly_by(q, m->kick, q->v0);
+            spring_contact_stop(&t->setting, &q->c, before, false, q->c.x0, &v0);
+            round_vector(q->v0, v0); /* as after a call */
+            v0 = vector_from(q->v0);
             fine = !too_fast_vector(m, v0);
         }
-        q->c.accel = vector_plus(q->free, -q->drag, v0);
-        q->c.w = vector_plus(v0, kick, q->c.accel);
-        q->c.kappa = 0.5;
+        for (int a = 0; a < 3; a++) {
+            accel[a] = q->drag != 0 ? q->free[a] - q->drag * q->v0[a] : q->free[a];
+            q->v0[a] += m->kick * accel[a];
+        }
+        q->c.accel = vector_from(accel);
+        q->c.w = vector_from(q->v0);
         q->c.d = vector_times(drift, q->c.w);
     } else if (m->contacts == IMPLICIT_KICK_DRIFT_CONTACTS) {
-        q->c.w = kicked_implicitly_by(q, kick, v0);
-        q->c.accel = vector_plus(q->free, -q->drag, q->c.w);
-        q->c.kappa = 1;
+        q->c.w = kicked_implicitly_by(q, m->kick, q->v0);
+        q->c.accel = vector_plus(vector_from(q->free), -(double)q->drag, q->c.w);
         q->c.d = vector_times(drift, q->c.w);
     } else { /* as for a drift with the mean velocity, and kicks by the mean acceleration */
         const vector3 v1 = load_vector(m->v + i, stride, axes);
-        q->c.d = vector_minus(load_vector(m->x + i, stride, axes), q->x0);
+        q->c.d = vector_minus(load_vector(m->x + i, stride, axes), q->c.x0);
         q->c.w = vector_times(1 / h, q->c.d);
         q->c.accel = vector_times(1 / h, vector_minus(v1, v0));
-        q->c.kappa = 0.5;
         second_kick = vector_minus(v1, q->c.w);
     }
-    if (!finite_vector(q->c.d) || !finite_vector(q->x0)) /* a function of a custom body sees finite numbers only */
+    q->c.v0 = v0;
+    if (!finite_vector(q->c.d) || !finite_vector(q->c.x0)) /* a function of a custom body sees finite numbers only */
         return false;
     spring_contact_drift(&t->setting, &q->c);
     t->touched[i] = q->c.touched;
     if (q->c.touched == 0 && !(m->ends_previous && before != 0))
         return fine && !q->c.wrong && !wrong_state(p, m, i);
-    const vector3 x = vector_plus(q->x0, 1, q->c.d);
+    const vector3 x = vector_plus(q->c.x0, 1, q->c.d);
     vector3 v = q->c.w;
     if (m->contacts == WHOLE_STEP_CONTACTS) {
         v = vector_plus(v, 1, second_kick);
@@ -131,10 +153,13 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     }
     store_vector(m->x + i, stride, axes, x);
     store_vector(m->v + i, stride, axes, v);
+    for (uint32_t a = 0; a < axes && q->c.touched == 0; a++) /* the free motion, with its rounding errors */
+        m->x[a * stride + i] = q->x0[a] + m->drift * q->v0[a];
     if (m->predicted != NULL) {
         contact_setting queries = t->setting;
         queries.records = false;
-        vector3 predicted = kicked_implicitly_by(q, kick, v);
+        round_vector(q->v0, v);
+        vector3 predicted = kicked_implicitly_by(q, m->kick, q->v0);
         spring_contact_stop(&queries, &q->c, q->c.touched, true, x, &predicted);
         store_vector(m->predicted + i, stride, axes, predicted);
     }
@@ -142,26 +167,32 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
 }
 
 /* Particle i, in place k of the chunk. */
-static contact_state contact_state_of(const spring_scene *s, const scene_particles *p, const kept_motion *kept,
-                                      size_t i, size_t k)
+static contact_state contact_state_of(const spring_scene *s, const scene_particles *p, const scene_motion *m,
+                                      const kept_motion *kept, size_t i, size_t k)
 {
-    const double inverse_mass = (double)p->inverse_mass[i * p->mass_stride];
-    contact_state q = {.c = scene_contact_particle(s, i), .drag = (double)p->drag * inverse_mass};
-    double force[3] = {0};
-    for (uint32_t a = 0; a < p->axes; a++)
-        force[a] = inverse_mass * ((double)kept->force[a][k] + (double)p->held[(a * p->stride + i) * p->held_stride]) +
-                   (double)p->gravity[a * padding];
-    q.free = (vector3){force[0], force[1], force[2]};
-    q.x0 = q.c.x0 = load_vector(kept->x0[0] + k, contact_chunk, p->axes);
-    q.v0 = load_vector(kept->v0[0] + k, contact_chunk, p->axes);
-    return q;
+    const scalar inverse_mass = p->inverse_mass[i * p->mass_stride], drag = p->drag * inverse_mass, q = m->kick * drag;
+    const bool light = q <= 1 && q >= -1;
+    contact_state c = {
+        .drag = drag,
+        .leading = light ? 1 : 0,
+        .correction = (light ? 0 - q : 1) / (1 + q),
+        .c = scene_contact_particle(s, i),
+    };
+    for (uint32_t a = 0; a < p->axes; a++) {
+        const scalar force = kept->force[a][k] + p->held[(a * p->stride + i) * p->held_stride];
+        c.free[a] = inverse_mass * force + p->gravity[a * padding];
+        c.v0[a] = kept->v0[a][k];
+        c.x0[a] = kept->x0[a][k];
+    }
+    c.c.x0 = vector_from(c.x0);
+    return c;
 }
 
 /* The last kick of a particle that touches colliders. */
 static bool stop_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
                             contact_state *q)
 {
-    vector3 v = kicked_implicitly_by(q, (double)m->kick, q->v0);
+    vector3 v = kicked_implicitly_by(q, m->kick, q->v0);
     spring_contact_stop(&t->setting, &q->c, t->touched[i], true, load_vector(t->x + i, p->stride, p->axes), &v);
     store_vector(m->v + i, p->stride, p->axes, v);
     return !q->c.wrong && finite_vector(v) && !too_fast_vector(m, v);
@@ -199,8 +230,8 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
-        contact_state q = contact_state_of(s, p, &kept, i, k);
-        q.c.near = !kicks && fine ? near[k] : UINT32_MAX;
+        contact_state q = contact_state_of(s, p, m, &kept, i, k);
+        q.c.near = !kicks && fine && stop == 0 ? near[k] : UINT32_MAX; /* its path is another one after a stop */
         all_fine = (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, stop)) && all_fine;
     }
     return all_fine;
