@@ -9,7 +9,7 @@
  *           at the end of the step. The path is defined as the chord y0 + theta (y1 - y0). The gap to a convex body
  *           along a chord is a convex function. A capsule whose ends have different velocities turns by the smallest
  *           rotation that takes its axis along. The spin of spheres and capsules does not turn their frame.
- * Drift     For each collider in turn:
+ * Drift     For each contact, in the order of the times of impact:
  *           1. A particle that is inside at the start is moved out along n, without a change of velocity.
  *           2. Newton's method on the gap along the chord gives the time of impact: theta <- theta + gap/(rate of
  *              approach). It never overshoots, because the gap is convex. Custom bodies: see find_custom_impact().
@@ -51,6 +51,7 @@ enum {
     root_steps = 40,
     walk_steps = 128,        /* of walk() */
     walk_pushes = 8,
+    contact_rounds = 8,      /* contacts of a particle in a drift */
     corner_passes = 6,       /* of step 5 */
     most_constraints = 16,   /* on a particle; further ones are ignored */
     seidel_rounds = 32,      /* where no particle can fit, as between plates that close */
@@ -890,12 +891,10 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
     return clear ? CONTACT | CLEAR : CONTACT;
 }
 
-/* Steps 1 to 4. */
-static int collide_once(const contact_setting *s, contact_particle *p, meeting *m)
+/* Steps 1, 3 and 4. */
+static int collide_once(const contact_setting *s, contact_particle *p, const meeting *m)
 {
     const contact_body *const b = m->b;
-    if (!meet(s, p, m))
-        return CLEAR;
     const vector3 at_impact = m->again ? p->w : add_scaled(p->v0, m->fraction * s->h, p->accel);
     const vector3 u = subtract(at_impact, m->velocity);
     const double rate = inner(u, m->n);
@@ -972,13 +971,12 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
     record(s, p, m->index, x, change);
 }
 
-static int collide(const contact_setting *s, contact_particle *p, unsigned i, bool again)
+static int collide(const contact_setting *s, contact_particle *p, const meeting *m)
 {
-    meeting m = {.b = &s->body[i], .index = i, .again = again};
-    const int found = collide_once(s, p, &m);
-    if ((found & CONTACT) == 0 || m.b->shape != SPRING_CUSTOM)
+    const int found = collide_once(s, p, m);
+    if (m->b->shape != SPRING_CUSTOM)
         return found;
-    walk(s, p, &m);
+    walk(s, p, m);
     return CONTACT;
 }
 
@@ -1204,27 +1202,28 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
 
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
-    uint32_t near = p->near == UINT32_MAX ? near_path(s, p) : p->near, clear = 0;
+    uint32_t near = p->near == UINT32_MAX ? near_path(s, p) : p->near, clear = 0, last = 0;
     p->touched = 0;
     for (unsigned i = 0; i < s->count; i++)
         near &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
-    for (int sweep = 0; sweep < 2; sweep++) {
-        bool found_any = false;
+    for (int round = 0; round < contact_rounds; round++) {
+        meeting first = {.fraction = 2}; /* of all colliders */
         for (unsigned i = 0; i < s->count; i++) {
             const uint32_t bit = UINT32_C(1) << i;
-            if ((near & bit) == 0 || (sweep > 0 && p->touched == bit))
+            if ((near & ~clear & ~last & bit) == 0)
                 continue;
-            const int found = collide(s, p, i, p->touched != 0);
-            if ((found & CONTACT) != 0) {
-                found_any = true;
-                p->touched |= bit;
-                clear = 0;
-                near = s->count > 1 ? near_path(s, p) | p->touched : near;
-            }
-            clear |= (found & CLEAR) != 0 ? bit : 0;
+            meeting m = {.b = &s->body[i], .index = i, .again = p->touched != 0};
+            if (!meet(s, p, &m))
+                clear |= bit;
+            else if (m.fraction < first.fraction)
+                first = m;
         }
-        if (!found_any)
+        if (first.fraction > 1)
             break;
+        last = UINT32_C(1) << first.index;
+        p->touched |= last;
+        clear = (collide(s, p, &first) & CLEAR) != 0 ? last : 0;
+        near = s->count > 1 ? near_path(s, p) | p->touched : near;
     }
     leave(s, p, near, clear);
 }
