@@ -272,16 +272,16 @@ static inline double scene_elapsed(const spring_scene *s, uint64_t steps)
 }
 
 /* What contacts of particle i depend on besides its state. */
-static inline contact_particle scene_contact_particle(const spring_scene *s, size_t i)
+static inline void scene_contact_particle(const spring_scene *s, size_t i, contact_particle *p)
 {
     const scalar *const radius = scene_read(s, ARRAY_RADIUS), *const friction = scene_read(s, ARRAY_FRICTION);
+    const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
     const uint32_t *const bits = scene_read(s, ARRAY_BITS);
-    return (contact_particle){
-        .radius = (double)(radius != NULL ? radius[i] : s->particle_radius),
-        .inverse_mass = inverse_mass_at(s, i),
-        .friction = friction != NULL ? (double)friction[i] : 1,
-        .bits = bits != NULL ? bits[i] : UINT32_MAX,
-    };
+    p->radius = (double)(radius != NULL ? radius[i] : s->particle_radius);
+    p->mass = inverse_mass != NULL ? 1 / (double)inverse_mass[i] : s->mass_all;
+    p->friction = friction != NULL ? (double)friction[i] : 1;
+    p->bits = bits != NULL ? bits[i] : UINT32_MAX;
+    p->wrong = false;
 }
 
 static inline bool scene_callback_uses_velocity(const spring_scene *s)

@@ -308,7 +308,8 @@ double spring_scene_balanced(const spring_scene *s, size_t i, const double accel
     const uint32_t *touched = scene_read(s, touched_in(s->buffer));
     const contact_body *body = scene_read(s, ARRAY_PLACED);
     contact_surface surface[most_colliders];
-    const contact_particle particle = scene_contact_particle(s, i);
+    contact_particle particle = {0};
+    scene_contact_particle(s, i, &particle);
     double at[3] = {0};
     unsigned count = 0;
     for (uint32_t a = 0; a < s->layout.axes; a++)

@@ -397,14 +397,14 @@ SPRING_INLINE void find_round(near_point *out, vector3 from_core, double radius)
     out->gap = distance - radius;
 }
 
-static void find_capsule(near_point *out, vector3 y, vector3 axis, double radius)
+SPRING_INLINE void find_capsule(near_point *out, vector3 y, vector3 axis, double radius)
 {
     const double square = inner(axis, axis), along = square > 0 ? inner(y, axis) / square : 0;
     out->along = along > 0 ? (along < 1 ? along : 1) : 0;
     find_round(out, add_scaled(y, -out->along, axis), radius);
 }
 
-static void find_box(near_point *out, const contact_body *b, vector3 y, double radius)
+SPRING_INLINE void find_box(near_point *out, const contact_body *b, vector3 y, double radius)
 {
     const double at[3] = {y.x, y.y, y.z};
     double over[3], face[3] = {0}, deepest = -(double)INFINITY;
@@ -448,9 +448,10 @@ static unsigned find_custom(contact_particle *p, const contact_body *b, vector3 
 }
 
 /* The nearest point of the surface from y, at the given fraction of the step. */
-SPRING_NOINLINE void find_nearest(contact_particle *p, const contact_body *b, double fraction, vector3 y,
-                                  near_point *out)
+SPRING_NOINLINE void find_nearest_to(contact_particle *p, const contact_body *b, double fraction, double x, double y_,
+                                     double z, near_point *out)
 {
+    const vector3 y = {x, y_, z};
     const double radius = b->radius + p->radius;
     out->along = 0;
     switch (b->shape) {
@@ -476,6 +477,11 @@ SPRING_NOINLINE void find_nearest(contact_particle *p, const contact_body *b, do
         find_round(out, y, radius);
         break;
     }
+}
+
+SPRING_INLINE void find_nearest(contact_particle *p, const contact_body *b, double fraction, vector3 y, near_point *out)
+{
+    find_nearest_to(p, b, fraction, y.x, y.y, y.z, out);
 }
 
 /* All contacts at x, with their normals in the scene. More than one only for some custom bodies. The end of a step is
@@ -536,7 +542,7 @@ SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, u
 {
     if (!s->records)
         return;
-    const vector3 impulse = scale(-1 / p->inverse_mass, change);
+    const vector3 impulse = scale(-p->mass, change);
     const vector3 arm = {x.x - s->origin[i][0], x.y - s->origin[i][1], x.z - s->origin[i][2]};
     const vector3 moment = outer(arm, impulse);
     double *const linear = s->impulse[i].linear, *const angular = s->impulse[i].angular;
@@ -559,12 +565,17 @@ typedef struct sliding {
 
 /* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
    friction turns, the time is divided into parts. */
-static sliding slide(vector3 u0, vector3 A, double F)
+SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, double ay, double az, double F, int most_parts, sliding *out)
 {
+    const vector3 u0 = {ux, uy, uz}, A = {ax, ay, az};
+    out->sticks = true;
+    out->mean = out->kick = zero3;
+    if (is_zero(u0) && inner(A, A) <= F * F)
+        return;
     const vector3 across = outer(u0, A);
     const double square = inner(u0, u0);
     const bool turns = square < 64 * F * F && inner(across, across) > 1e-24 * square * inner(A, A);
-    const int parts = turns ? slide_parts : 1;
+    const int parts = turns ? most_parts : 1;
     const double part = 1. / parts, f = F * part;
     const vector3 a = scale(part, A);
     vector3 u = u0, sum = zero3, direction = zero3; /* sum: twice the way, in units of a part */
@@ -614,8 +625,15 @@ static sliding slide(vector3 u0, vector3 A, double F)
         sum = add_scaled(sum, rest, add(at_stop, end));
         u = end;
     }
-    return (sliding){sticks, scale(part / 2, sum),
-                     sticks ? zero3 : add_scaled(add_scaled(u, -0.5, A), 0.5 * F, direction)};
+    out->sticks = sticks;
+    out->mean = scale(part / 2, sum);
+    if (!sticks)
+        out->kick = add_scaled(add_scaled(u, -0.5, A), 0.5 * F, direction);
+}
+
+SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, sliding *out)
+{
+    slide_from(u0.x, u0.y, u0.z, A.x, A.y, A.z, F, most_parts, out);
 }
 
 /* -------------------------------------------------------------------------------------------------------- one collider */
@@ -644,7 +662,7 @@ SPRING_INLINE double custom_step(const contact_body *b)
     return b->thickness / 2;
 }
 
-static vector3 end_in_frame(const contact_body *b, const contact_particle *p)
+SPRING_INLINE vector3 end_in_frame(const contact_body *b, const contact_particle *p)
 {
     return place_in(&b->end, add(p->x0, p->d));
 }
@@ -747,13 +765,13 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->left = (1 - m->fraction) * s->h;
     m->place = add_scaled(m->start, m->fraction, m->way);
     m->walks = custom && length_of(m->way) > custom_step(b);
-    m->n = direction_out(&b->start, m->at.normal);
-    m->n_end = m->n;
-    const vector3 x = add_scaled(p->x0, m->fraction, p->d);
+    const vector3 x = add_scaled(p->x0, m->fraction, p->d), n = direction_out(&b->start, m->at.normal);
+    m->n = n;
+    m->n_end = n;
     if (b->turns) {
         m->n_end = direction_out(&b->end, m->at.normal);
-        const vector3 n = between(m->n, m->n_end, m->fraction);
-        m->n = scale(1 / length_of(n), n);
+        const vector3 middle = between(n, m->n_end, m->fraction);
+        m->n = scale(1 / length_of(middle), middle);
     }
     if (m->fraction < least_fraction || !b->moves) {
         m->velocity = surface_velocity(b, &b->start, m->at.along, x, m->n);
@@ -794,14 +812,14 @@ static int press_late(const contact_setting *s, contact_particle *p, const meeti
 
 /* Step 4, early: the lambda for which x + lambda |left| n lies on the surface at the end. Returns whether it surely
    does. */
-static bool find_lambda(contact_particle *p, const meeting *m, vector3 x, double *lambda)
+SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x, bool last_pass, double *lambda)
 {
     const contact_body *const b = m->b;
     if (b->shape == SPRING_PLANE && !b->turns)
         return true;
     const double duration = fabs(m->left);
     const bool custom = b->shape == SPRING_CUSTOM;
-    const int most = m->walks ? 0 : custom ? custom_iterations : surface_iterations;
+    const int most = m->walks ? 0 : custom ? custom_iterations : last_pass ? surface_iterations : 1;
     double last_gap = 0, last = 0;
     for (int i = 0; i < most; i++) {
         near_point there;
@@ -854,11 +872,11 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
             const vector3 there = place_in(&b->end, add(x1, shift));
             lambda = fmax(0, -(m->gap + inner(m->at.normal, subtract(there, m->place)))) / (duration * toward);
         }
-        clear = find_lambda(p, m, add(x1, shift), &lambda);
+        clear = find_lambda(p, m, add(x1, shift), pass == passes, &lambda);
         if (pass == passes)
             break;
         if (rests) {
-            end = slide(u0, A, 2 * mu * lambda);
+            slide(u0, A, 2 * mu * lambda, pass + 1 < passes ? 2 : slide_parts, &end);
             if (end.sticks && is_zero(end.mean) && !b->slips && b->shape != SPRING_CAPSULE)
                 break;
         } else { /* friction of a particle that landed in this step */
@@ -1151,6 +1169,8 @@ void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t
 /* Bits of the colliders that the path of a particle may touch. */
 static uint32_t near_path(const contact_setting *s, const contact_particle *p)
 {
+    if (s->count == 1)
+        return 1;
     const double way = length_of(p->d);
     uint32_t near = 0;
     for (unsigned i = 0; i < s->count; i++) {
@@ -1192,7 +1212,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
         if (!any_inside)
             break;
         p->d = add(p->d, least_change(c, count));
-        near |= s->count > 1 ? near_path(s, p) : 0;
+        near |= near_path(s, p);
     }
     if (inside == 0)
         return;
@@ -1207,23 +1227,28 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
     for (unsigned i = 0; i < s->count; i++)
         near &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
     for (int round = 0; round < contact_rounds; round++) {
-        meeting first = {.fraction = 2}; /* of all colliders */
+        meeting each[2];
+        meeting *first = NULL, *next = &each[0]; /* first: of all colliders */
         for (unsigned i = 0; i < s->count; i++) {
             const uint32_t bit = UINT32_C(1) << i;
             if ((near & ~clear & ~last & bit) == 0)
                 continue;
-            meeting m = {.b = &s->body[i], .index = i, .again = p->touched != 0};
-            if (!meet(s, p, &m))
+            next->b = &s->body[i];
+            next->index = i;
+            next->again = p->touched != 0;
+            if (!meet(s, p, next))
                 clear |= bit;
-            else if (m.fraction < first.fraction)
-                first = m;
+            else if (first == NULL || next->fraction < first->fraction) {
+                first = next;
+                next = first == &each[0] ? &each[1] : &each[0];
+            }
         }
-        if (first.fraction > 1)
+        if (first == NULL)
             break;
-        last = UINT32_C(1) << first.index;
+        last = UINT32_C(1) << first->index;
         p->touched |= last;
-        clear = (collide(s, p, &first) & CLEAR) != 0 ? last : 0;
-        near = s->count > 1 ? near_path(s, p) | p->touched : near;
+        clear = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
+        near = near_path(s, p) | p->touched;
     }
     leave(s, p, near, clear);
 }

@@ -64,7 +64,7 @@ typedef struct contact_particle {
     vector3 accel;         /* [m/s^2] of the kick before the drift */
     vector3 w;             /* [m/s] velocity of the drift */
     vector3 d;             /* [m] displacement */
-    double radius, inverse_mass;
+    double radius, mass;   /* [m], [kg] */
     double friction;       /* factor of the friction of colliders */
     uint32_t bits;         /* its mask */
     uint32_t near;         /* bit i: its path may touch collider i */

@@ -167,25 +167,25 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
 }
 
 /* Particle i, in place k of the chunk. */
-static contact_state contact_state_of(const spring_scene *s, const scene_particles *p, const scene_motion *m,
-                                      const kept_motion *kept, size_t i, size_t k)
+static void prepare_state(const spring_scene *s, const scene_particles *p, const scene_motion *m,
+                          const kept_motion *kept, size_t i, size_t k, contact_state *c)
 {
     const scalar inverse_mass = p->inverse_mass[i * p->mass_stride], drag = p->drag * inverse_mass, q = m->kick * drag;
-    const bool light = q <= 1 && q >= -1;
-    contact_state c = {
-        .drag = drag,
-        .leading = light ? 1 : 0,
-        .correction = (light ? 0 - q : 1) / (1 + q),
-        .c = scene_contact_particle(s, i),
-    };
+    c->drag = drag;
+    if (drag != 0) {
+        const bool light = q <= 1 && q >= -1;
+        c->leading = light ? 1 : 0;
+        c->correction = (light ? 0 - q : 1) / (1 + q);
+    }
+    scene_contact_particle(s, i, &c->c);
+    c->free[2] = c->v0[2] = c->x0[2] = 0;
     for (uint32_t a = 0; a < p->axes; a++) {
         const scalar force = kept->force[a][k] + p->held[(a * p->stride + i) * p->held_stride];
-        c.free[a] = inverse_mass * force + p->gravity[a * padding];
-        c.v0[a] = kept->v0[a][k];
-        c.x0[a] = kept->x0[a][k];
+        c->free[a] = inverse_mass * force + p->gravity[a * padding];
+        c->v0[a] = kept->v0[a][k];
+        c->x0[a] = kept->x0[a][k];
     }
-    c.c.x0 = vector_from(c.x0);
-    return c;
+    c->c.x0 = vector_from(c->x0);
 }
 
 /* The last kick of a particle that touches colliders. */
@@ -230,7 +230,8 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
-        contact_state q = contact_state_of(s, p, m, &kept, i, k);
+        contact_state q;
+        prepare_state(s, p, m, &kept, i, k, &q);
         q.c.near = !kicks && fine && stop == 0 ? near[k] : UINT32_MAX; /* its path is another one after a stop */
         all_fine = (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, stop)) && all_fine;
     }

@@ -214,7 +214,8 @@ static inline unsigned surfaces_at(const scene_step *s, uint32_t touched, size_t
                                    contact_surface surface[most_surfaces])
 {
     const contact_setting *const t = &s->contacts.setting;
-    const contact_particle particle = scene_contact_particle(s->scene, i);
+    contact_particle particle = {0};
+    scene_contact_particle(s->scene, i, &particle);
     unsigned count = 0;
     for (unsigned k = 0; k < t->count && count + 3 <= most_surfaces; k++)
         if ((touched >> k & 1) != 0)
