@@ -520,8 +520,9 @@ SPRING_INLINE vector3 frame_velocity(const contact_body *b, const body_pose *pos
 /* [m/s] Velocity of the surface relative to the frame, at x. n: in the scene */
 static vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
 {
-    vector3 v = tangential(direction_out(pose, b->surface), n);
-    if (b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE) {
+    const bool round = b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE; /* in the axes of the scene */
+    vector3 v = tangential(round ? b->surface : direction_out(pose, b->surface), n);
+    if (round) {
         const vector3 centre = add_scaled(pose->at, along, pose->along);
         v = add(v, outer(pose->spin, subtract(x, centre)));
     }

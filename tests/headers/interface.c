@@ -68,7 +68,7 @@ AT(spring_link, rest, 8, 8);
 AT(spring_link, stiffness, 16, 16);
 AT(spring_link, damping, 24, 24);
 
-SIZE(spring_collider, 248, 248);
+SIZE(spring_collider, 360, 352);
 AT(spring_collider, shape, 0, 0);
 AT(spring_collider, at, 8, 8);
 AT(spring_collider, to, 32, 32);
@@ -80,8 +80,20 @@ AT(spring_collider, velocity_to, 184, 184);
 AT(spring_collider, spin, 208, 208);
 AT(spring_collider, friction, 232, 232);
 AT(spring_collider, restitution, 240, 240);
+AT(spring_collider, acceleration, 248, 248);
+AT(spring_collider, spin_acceleration, 272, 272);
+AT(spring_collider, surface, 296, 296);
+AT(spring_collider, mask, 320, 320);
+AT(spring_collider, gap, 328, 324);
+AT(spring_collider, user, 336, 328);
+AT(spring_collider, thickness, 344, 336);
+AT(spring_collider, bound, 352, 344);
 
-SIZE(spring_scene_def, 152, 112);
+SIZE(spring_impulse, 48, 48);
+AT(spring_impulse, linear, 0, 0);
+AT(spring_impulse, angular, 24, 24);
+
+SIZE(spring_scene_def, 176, 128);
 AT(spring_scene_def, axes, 0, 0);
 AT(spring_scene_def, flags, 4, 4);
 AT(spring_scene_def, methods, 8, 8);
@@ -100,13 +112,16 @@ AT(spring_scene_def, user, 120, 84);
 AT(spring_scene_def, max_speed, 128, 88);
 AT(spring_scene_def, colliders, 136, 96);
 AT(spring_scene_def, particle_radius, 144, 104);
+AT(spring_scene_def, radius, 152, 112);
+AT(spring_scene_def, friction, 160, 116);
+AT(spring_scene_def, mask, 168, 120);
 
 SIZE(spring_scene_energies, 24, 24);
 AT(spring_scene_energies, kinetic, 0, 0);
 AT(spring_scene_energies, elastic, 8, 8);
 AT(spring_scene_energies, gravity, 16, 16);
 
-SIZE(spring_scenef_def, 152, 112);
+SIZE(spring_scenef_def, 176, 128);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
@@ -125,6 +140,9 @@ AT(spring_scenef_def, user, 120, 84);
 AT(spring_scenef_def, max_speed, 128, 88);
 AT(spring_scenef_def, colliders, 136, 96);
 AT(spring_scenef_def, particle_radius, 144, 104);
+AT(spring_scenef_def, radius, 152, 112);
+AT(spring_scenef_def, friction, 160, 116);
+AT(spring_scenef_def, mask, 168, 120);
 
 SIZE(spring_grid, 72, 72);
 AT(spring_grid, count, 0, 0);
@@ -184,6 +202,7 @@ VALUE(SPRING_PLANE, 0);
 VALUE(SPRING_SPHERE, 1);
 VALUE(SPRING_CAPSULE, 2);
 VALUE(SPRING_BOX, 3);
+VALUE(SPRING_CUSTOM, 4);
 
 VALUE(SPRING_CHECK_INTERVAL, 4096);
 

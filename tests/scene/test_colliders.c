@@ -112,6 +112,9 @@ static void bad_colliders(void)
         {FIELD(spin), all, true},
         {FIELD(friction), all, false},
         {FIELD(restitution), all, false},
+        {FIELD(acceleration), all, true},
+        {FIELD(spin_acceleration), all, true},
+        {FIELD(surface), all, true},
     };
     const double bad[] = {NAN, INFINITY, -INFINITY, 1e308 * (sizeof(scalar) == 4 ? 1 : 10), -1e-9};
     const double x[] = {0, 5, 0, 1, 5, 0};
@@ -139,7 +142,7 @@ static void bad_colliders(void)
     check_field(s, c, NULL);
     c = (spring_collider){.shape = SPRING_PLANE, .axis = {{0, 1.01, 0}}};
     check_field(s, c, "axis");
-    c = (spring_collider){.shape = (spring_shape)shape_count, .axis = {{0, 1, 0}}};
+    c = (spring_collider){.shape = (spring_shape)(SPRING_CUSTOM + 1), .axis = {{0, 1, 0}}};
     check_field(s, c, "shape");
     c = (spring_collider){
         .shape = SPRING_PLANE, .axis = {{0.6, 0.8, 0}}, .at = {(double)SCALAR_MAX, (double)SCALAR_MAX, 0}};

@@ -81,14 +81,31 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* a turned by the vector phi. */
+static void turn(const double phi[3], double a[3])
+{
+    const double angle = sqrt(dot(phi, phi));
+    if (angle == 0)
+        return;
+    const double n[3] = {phi[0] / angle, phi[1] / angle, phi[2] / angle}, along = dot(n, a), old[3] = {a[0], a[1], a[2]};
+    for (int i = 0; i < 3; i++) {
+        const double cross = n[(i + 1) % 3] * old[(i + 2) % 3] - n[(i + 2) % 3] * old[(i + 1) % 3];
+        a[i] = cos(angle) * old[i] + sin(angle) * cross + (1 - cos(angle)) * along * n[i];
+    }
+}
+
 /* The distance from a collider at `time` after it was set, from the definition of each shape: independent of the library. */
 static double gap_of(const spring_collider *c, double time, const double x[3], uint32_t axes)
 {
-    double from[3] = {0}, axis[3] = {0}, square = 0;
+    double from[3] = {0}, axis[3] = {0}, back[3] = {0}, square = 0;
     for (uint32_t a = 0; a < axes; a++) {
-        from[a] = x[a] - c->at[a] - time * c->velocity[a];
+        from[a] = x[a] - c->at[a] - time * c->velocity[a] - time * time / 2 * c->acceleration[a];
         axis[a] = c->to[a] - c->at[a] + time * (c->velocity_to[a] - c->velocity[a]);
     }
+    for (uint32_t a = axes == 2 ? 2 : 0; a < 3; a++)
+        back[a] = -(time * c->spin[a] + time * time / 2 * c->spin_acceleration[a]);
+    if (c->shape == SPRING_PLANE || c->shape == SPRING_BOX)
+        turn(back, from);
     if (c->shape == SPRING_PLANE)
         return dot(from, c->axis[0]);
     if (c->shape == SPRING_CAPSULE) {
@@ -409,7 +426,8 @@ static void stopping_distance(void)
     }
 }
 
-/* A belt takes a particle along: it is behind by u^2/(2 mu g). A turning disc, the spin of a plane, likewise. */
+/* A belt takes a particle along: it is behind by u^2/(2 mu g). So does the surface of a body at rest. A turning disc, the
+   spin of a plane, likewise. */
 static void conveyor(void)
 {
     const double mu = 0.3, speed = 1;
@@ -421,6 +439,13 @@ static void conveyor(void)
     CHECK_CLOSE(2 * speed - x[0], speed * speed / (2 * mu * gravity), 1e-5, "as a block that stops");
     CHECK_CLOSE(v[0], speed, 2 * EPS, "as fast as the belt");
     w.collider[0].velocity[0] = 0;
+    w.collider[0].surface[0] = speed;
+    w.collider[0].surface[1] = 3; /* the normal part is ignored */
+    run_to(&w, SPRING_LEAPFROG, 1.0 / 480, 2, x, v);
+    CHECK_CLOSE(2 * speed - x[0], speed * speed / (2 * mu * gravity), 1e-5, "as a block that stops");
+    CHECK_CLOSE(v[0], speed, 2 * EPS, "as fast as the belt");
+    CHECK_BELOW(fabs(x[1]), 10 * EPS, "on the belt");
+    w.collider[0].surface[0] = w.collider[0].surface[1] = 0;
     w.collider[0].spin[1] = -2; /* the surface at (0, 0, -0.5) has the velocity spin x arm = (1, 0, 0) */
     w.x[2] = -0.5;
     spring_scene *s = scene_for(&w);
@@ -545,7 +570,11 @@ static void hits_and_misses(void)
     for (int run = 0; run < 400; run++) {
         const uint32_t axes = run % 2 == 0 ? 2 : 3;
         const double dt = 0.25, radius = 0.02;
-        const spring_collider c = random_collider(axes);
+        spring_collider c = random_collider(axes);
+        memset(c.acceleration, 0, sizeof c.acceleration); /* the path is a chord in the frame of the body */
+        memcpy(c.velocity_to, c.velocity, sizeof c.velocity);
+        if (c.shape == SPRING_PLANE || c.shape == SPRING_BOX)
+            memset(c.spin, 0, sizeof c.spin), memset(c.spin_acceleration, 0, sizeof c.spin_acceleration);
         for (size_t i = 0; i < count * axes; i++) {
             x[i] = random_uniform(-2.5, 2.5);
             v[i] = random_uniform(-6, 6);
