@@ -763,6 +763,9 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
         return false;
     if (m->gap < m->slop)
         m->gap = 0;
+    /* Rounding errors of many steps are taken back, so that they stay below the slop. */
+    if (m->fraction == 0 && fabs(m->at.gap) > m->slop / 2 && m->push == 0)
+        m->gap = m->at.gap;
     m->left = (1 - m->fraction) * s->h;
     m->place = add_scaled(m->start, m->fraction, m->way);
     m->walks = custom && length_of(m->way) > custom_step(b);
@@ -895,6 +898,8 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         vector3 there = m->start;
         if (b->shape == SPRING_CAPSULE)
             there = add_scaled(there, m->at.along, subtract(b->end.segment, b->start.segment));
+        if (m->at.gap < -m->slop / 2) /* rounding errors of many steps */
+            there = add_scaled(there, -m->at.gap, m->at.normal);
         p->d = b->moves ? subtract(place_out(&b->end, there), p->x0) : zero3;
         change = subtract(scale(1 / s->h, p->d), p->w);
         p->w = scale(1 / s->h, p->d);
