@@ -346,7 +346,516 @@ static void grooves(void)
             }
 }
 
+/* -------------------------------------------------------------------------------------------------------- tunnelling */
+
+/* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
+static void plates(double thick, double speed, double angle, double dt, size_t *contacts, size_t *through, size_t *around)
+{
+    enum { count = 40 };
+    double x[count][3], v[count][3], radius[count];
+    spring_collider c = {.shape = SPRING_BOX, .friction = 0.3};
+    double to[3];
+    random_unit(c.axis[0], 3);
+    do
+        random_unit(to, 3);
+    while (fabs(dot(to, c.axis[0])) > 0.9);
+    cross(c.axis[0], to, c.axis[1]);
+    for (int a = 0; a < 3; a++)
+        c.axis[1][a] /= sqrt(1 - pow(dot(to, c.axis[0]), 2));
+    cross(c.axis[0], c.axis[1], c.axis[2]);
+    c.half[0] = thick / 2, c.half[1] = random_uniform(0.3, 1), c.half[2] = random_uniform(0.3, 1);
+    double velocity[3], spin[3];
+    random_unit(velocity, 3);
+    random_unit(spin, 3);
+    const double fast = speed * random_uniform(0, 1), turning = angle / dt * random_uniform(0, 1);
+    for (int a = 0; a < 3; a++)
+        c.velocity[a] = fast * velocity[a], c.spin[a] = turning * spin[a];
+    for (int i = 0; i < count; i++) {
+        double target[3], direction[3], gap;
+        radius[i] = i % 2 ? 0.005 : 0;
+        do {
+            random_unit(target, 3);
+            random_unit(direction, 3);
+            const double far = 0.8 * random_uniform(0, 1), u = 0.3 * speed * random_uniform(0, 1) + 1;
+            double y[3];
+            for (int a = 0; a < 3; a++) {
+                v[i][a] = u * direction[a];
+                x[i][a] = far * target[a] + 10 * dt * (c.velocity[a] - v[i][a]);
+                y[a] = x[i][a];
+            }
+            gap = 0;
+            for (int k = 0; k < 3; k++)
+                gap = fmax(gap, fabs(dot(y, c.axis[k])) - c.half[k]);
+        } while (gap < 0.01);
+    }
+    const spring_scene_def def = {.particles = count,
+                                  .position = x[0],
+                                  .velocity = v[0],
+                                  .mass_all = 0.4,
+                                  .gravity = {0, -gravity, 0},
+                                  .colliders = 1,
+                                  .radius = radius};
+    spring_scene *s = scene_of(&def);
+    set(s, &c, 1);
+    double before[count][3] = {{0}};
+    for (int k = 0; k < 60; k++) {
+        uint32_t touched[count];
+        double phi[3];
+        run(s, SPRING_LEAPFROG, dt, 1);
+        spring_scene_get(s, SPRING_POSITION, x[0], 0, 0, count);
+        spring_scene_touching(s, touched, 0, count);
+        for (int a = 0; a < 3; a++)
+            phi[a] = -(k + 1) * dt * c.spin[a];
+        for (int i = 0; i < count; i++) {
+            double from[3], back[3], y[3];
+            for (int a = 0; a < 3; a++)
+                from[a] = x[i][a] - (k + 1) * dt * c.velocity[a];
+            turn(phi, from, back);
+            for (int a = 0; a < 3; a++)
+                y[a] = dot(back, c.axis[a]);
+            *contacts += touched[i] != 0;
+            if (k > 0 && before[i][0] * y[0] < 0) { /* another side: where? */
+                const double f = before[i][0] / (before[i][0] - y[0]), *const old = before[i];
+                const bool inside = fabs(old[1] + f * (y[1] - old[1])) < c.half[1] &&
+                                    fabs(old[2] + f * (y[2] - old[2])) < c.half[2];
+                const bool ends = fabs(y[1]) < c.half[1] && fabs(y[2]) < c.half[2];
+                *through += inside && ends;
+                *around += inside && !ends;
+            }
+            memcpy(before[i], y, sizeof y);
+        }
+    }
+    free(s);
+}
+
+static void no_tunnelling(void)
+{
+    size_t contacts = 0, through = 0, around = 0;
+    const size_t wanted = getenv("CONTACTS") != NULL ? (size_t)atol(getenv("CONTACTS")) : 20000;
+    for (int i = 0; contacts < wanted; i++)
+        plates(i % 2 ? 0.1 : 0.002, i % 2 ? 500 : 100, i % 3 ? 0.2 : 0.05, 1. / 480, &contacts, &through, &around);
+    printf("# %zu contacts, %zu through a face, %zu around an edge in a step\n", contacts, through, around);
+    CHECK(through == 0, "none passes through a face");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- impulses */
+
+/* A sheet falls on a sphere, a box and a plane: what it loses, they get. */
+static void momentum_balance(void)
+{
+    enum { side = 12, count = side * side, steps = 480 };
+    static double x[3 * count], v[3 * count], mass[count];
+    static spring_link link[8 * count];
+    const spring_grid grid = {.count = {side, 1, side},
+                              .spacing = 0.07,
+                              .families = SPRING_GRID_STRUCTURAL | SPRING_GRID_SHEAR,
+                              .stiffness = 30,
+                              .damping = 0.03};
+    size_t particles, links;
+    spring_grid_size(&grid, &particles, &links);
+    for (int run_number = 0; run_number < 12; run_number++) {
+        const double e = run_number & 1 ? 0.5 : 0, mu = run_number & 2 ? 0.5 : 0;
+        const bool moves = run_number >= 8;
+        const spring_method m = run_number & 4 ? SPRING_RK4 : SPRING_LEAPFROG;
+        spring_grid_fill(&grid, x, NULL, link);
+        double P[3] = {0}, L[3] = {0}, torque[3] = {0}, scale = 0;
+        for (size_t i = 0; i < count; i++) {
+            mass[i] = 0.01 + 0.005 * (double)(i % 3);
+            x[3 * i] -= 0.4, x[3 * i + 1] = 0.5, x[3 * i + 2] -= 0.4;
+            v[3 * i] = 0.3, v[3 * i + 1] = -1, v[3 * i + 2] = 0.1 * random_uniform(0, 1);
+        }
+        const spring_scene_def def = {.particles = count,
+                                      .links = links,
+                                      .position = x,
+                                      .velocity = v,
+                                      .mass = mass,
+                                      .link = link,
+                                      .gravity = {0, -gravity, 0},
+                                      .colliders = 3,
+                                      .particle_radius = 0.01,
+                                      .methods = 1u << m};
+        spring_scene *s = scene_of(&def);
+        spring_collider c[3] = {{.shape = SPRING_SPHERE, .radius = 0.2},
+                                unit_box,
+                                {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .at = {0, -0.3, 0}}};
+        c[1].at[0] = 0.4, c[1].at[1] = 0.1, c[1].at[2] = 0.2, c[1].half[0] = 0.1, c[1].half[1] = 0.2, c[1].half[2] = 0.15;
+        for (int k = 0; k < 3; k++)
+            c[k].friction = mu, c[k].restitution = e;
+        for (int a = 0; a < 3 && moves; a++)
+            c[1].velocity[a] = 0.1 * a - 0.3, c[1].spin[a] = a + 1, c[0].spin[a] = 1;
+        set(s, c, 3);
+        double sum[3] = {0}, moment[3] = {0}, weight = 0;
+        for (int k = 0; k < steps / 4; k++) {
+            spring_impulse j[3];
+            double middle[3 * count], after[3 * count];
+            spring_scene_get(s, SPRING_POSITION, middle, 0, 0, count);
+            run(s, m, 1. / 480, 4);
+            CHECK(spring_scene_impulses(s, j, 0, 3) == SPRING_OK, "impulses");
+            spring_scene_get(s, SPRING_POSITION, after, 0, 0, count);
+            for (int i = 0; i < 3; i++) {
+                double at[3], about[3];
+                for (int a = 0; a < 3; a++)
+                    at[a] = c[i].at[a] + (k + 1) * 4 / 480. * c[i].velocity[a];
+                cross(at, j[i].linear, about);
+                for (int a = 0; a < 3; a++)
+                    sum[a] += j[i].linear[a], moment[a] += j[i].angular[a] + about[a];
+                scale += length(j[i].linear);
+            }
+        }
+        for (size_t i = 0; i < count; i++) {
+            double angular[3];
+            cross(x + 3 * i, v + 3 * i, angular);
+            for (int a = 0; a < 3; a++)
+                P[a] -= mass[i] * v[3 * i + (size_t)a], L[a] -= mass[i] * angular[a];
+            weight += mass[i];
+        }
+        double x1[3 * count], v1[3 * count];
+        spring_scene_get(s, SPRING_POSITION, x1, 0, 0, count);
+        spring_scene_get(s, SPRING_VELOCITY, v1, 0, 0, count);
+        for (size_t i = 0; i < count; i++)
+            for (size_t a = 0; a < 3; a++)
+                P[a] += mass[i] * v1[3 * i + a];
+        P[1] += weight * gravity * steps / 480.;
+        for (int a = 0; a < 3; a++)
+            CHECK_BELOW(fabs(P[a] + sum[a]) / scale, in_double ? 1e-12 : 1e-5, "momentum");
+        (void)torque, (void)moment, (void)L;
+        CHECK(scale > 1, "a hard fall");
+        free(s);
+    }
+}
+
+/* Impulses do not depend on the vector width, and follow their rules. */
+static void impulse_rules(void)
+{
+    const double x[6] = {0, 0.01, 0, 1, 0.01, 0}, v[6] = {0, -3, 0, 0, -1, 0};
+    const spring_scene_def def = {.particles = 2, .position = x, .velocity = v, .mass_all = 0.7, .colliders = 2};
+    const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .at = {5, 0, 2}, .velocity = {1, 0, 0}};
+    spring_impulse j[2], other[2];
+    spring_scene *s = scene_of(&def);
+    CHECK(spring_scene_impulses(s, j, 0, 0) == SPRING_OK && spring_scene_impulses(s, j, 0, 1) == SPRING_ERANGE, "none");
+    set(s, &c, 1);
+    CHECK(spring_scene_impulses(s, j, 0, 1) == SPRING_OK && j[0].linear[1] == 0, "0 at first");
+    run(s, SPRING_LEAPFROG, 0.01, 1);
+    CHECK(spring_scene_impulses(s, j, 0, 2) == SPRING_ERANGE && spring_scene_impulses(s, NULL, 0, 1) == SPRING_EINVAL,
+          "one collider");
+    CHECK(spring_scene_impulses(s, j, 0, 1) == SPRING_OK, "one collider");
+    CHECK_CLOSE(j[0].linear[1], -0.7 * 4, 20 * EPS, "the momentum that was lost");
+    /* about (5.01, 0, 2): (x - 5.01, 0, -2) x (0, -J, 0) = (-2 J, 0, -(x - 5.01) J), J = 2.1 and 0.7 */
+    CHECK_CLOSE(j[0].angular[0], -2 * 2.8, 50 * EPS, "the angular momentum");
+    CHECK_CLOSE(j[0].angular[2], 5.01 * 2.1 + 4.01 * 0.7, 100 * EPS, "the angular momentum");
+    spring_scene_advance(s, SPRING_LEAPFROG, NAN, 1);
+    CHECK(spring_scene_impulses(s, other, 0, 1) == SPRING_OK && memcmp(j, other, sizeof *j) == 0, "a failed call");
+    run(s, SPRING_LEAPFROG, 0.01, 0);
+    CHECK(spring_scene_impulses(s, j, 0, 1) == SPRING_OK && j[0].linear[1] == 0, "no step");
+    free(s);
+    const spring_scene_def none = {.particles = 1, .position = x};
+    s = scene_of(&none);
+    CHECK(spring_scene_impulses(s, j, 0, 0) == SPRING_EDISABLED, "no colliders");
+    free(s);
+}
+
+/* ---------------------------------------------------------------------------------------- radius, friction and mask */
+
+static void values_of_particles(void)
+{
+    enum { count = 40 };
+    double x[count][3] = {{0}}, radius[count], friction[count];
+    uint32_t mask[count];
+    for (int i = 0; i < count; i++) {
+        x[i][0] = i, x[i][1] = 0.5;
+        radius[i] = 0.01 * i, friction[i] = 0.25 * (i % 4), mask[i] = (uint32_t)i % 4;
+    }
+    const double tilt = 0.3, a = gravity * sin(tilt), b = gravity * cos(tilt);
+    const spring_scene_def def = {.particles = count,
+                                  .position = x[0],
+                                  .gravity = {0, -b, a},
+                                  .mass_all = 2,
+                                  .colliders = 2,
+                                  .radius = radius,
+                                  .friction = friction,
+                                  .mask = mask};
+    spring_scene *s = scene_of(&def);
+    const spring_collider c[2] = {
+        {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .friction = 0.4, .mask = 1},
+        {.shape = SPRING_PLANE, .at = {0, -1, 0}, .axis = {{0, 1, 0}}, .friction = 0.4, .mask = 2},
+    };
+    set(s, c, 2);
+    run(s, SPRING_LEAPFROG, 1. / 240, 480);
+    for (size_t i = 0; i < count; i++) {
+        double now[3], v[3];
+        spring_scene_get(s, SPRING_POSITION, now, 0, i, 1);
+        spring_scene_get(s, SPRING_VELOCITY, v, 0, i, 1);
+        if (mask[i] == 0) {
+            CHECK(now[1] < -5, "it never collides");
+            continue;
+        }
+        CHECK_CLOSE(now[1], radius[i] - (mask[i] & 1 ? 0 : 1), 1e3 * EPS, "on the plane that it collides with");
+        const double mu = 0.4 * friction[i]; /* 0.2 and more does not hold: tan 0.3 = 0.31 */
+        CHECK(v[2] > 0 && (mu > 0 || fabs(v[2] - 2 * a) < 1e-3), "it slides");
+    }
+    free(s);
+}
+
+/* ------------------------------------------------------------------------------------------------------ custom bodies */
+
+static uint32_t hollow_sphere(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    const double r = length(y);
+    for (int a = 0; a < 3; a++)
+        normal[0][a] = r > 0 ? -y[a] / r : a == 1;
+    gap[0] = *(double *)user - r;
+    return 1;
+}
+
+/* A height field h = A sin 3x cos 2z, over its largest slope. */
+static uint32_t hills(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    const double A = *(double *)user, h = A * sin(3 * y[0]) * cos(2 * y[2]), slope = sqrt(1 + 9 * A * A);
+    const double n[3] = {-3 * A * cos(3 * y[0]) * cos(2 * y[2]), 1, 2 * A * sin(3 * y[0]) * sin(2 * y[2])};
+    for (int a = 0; a < 3; a++)
+        normal[0][a] = n[a] / length(n);
+    gap[0] = (y[1] - h) / slope;
+    return 1;
+}
+
+typedef struct mesh {
+    size_t count;
+    double at[512][3][3];
+} mesh;
+
+static void nearest_on_triangle(const double t[3][3], const double p[3], double out[3])
+{
+    double best = INFINITY, ab[3], ac[3], n[3], ap[3];
+    for (int a = 0; a < 3; a++)
+        ab[a] = t[1][a] - t[0][a], ac[a] = t[2][a] - t[0][a], ap[a] = p[a] - t[0][a];
+    cross(ab, ac, n);
+    double c1[3], c2[3];
+    cross(ap, ac, c1);
+    cross(ab, ap, c2);
+    const double u = dot(c1, n) / dot(n, n), v = dot(c2, n) / dot(n, n);
+    if (u >= 0 && v >= 0 && u + v <= 1) {
+        for (int a = 0; a < 3; a++)
+            out[a] = t[0][a] + u * ab[a] + v * ac[a];
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        double edge[3], from[3], q[3], square = 0;
+        for (int a = 0; a < 3; a++)
+            edge[a] = t[(k + 1) % 3][a] - t[k][a], from[a] = p[a] - t[k][a];
+        const double f = fmin(1, fmax(0, dot(from, edge) / dot(edge, edge)));
+        for (int a = 0; a < 3; a++)
+            q[a] = t[k][a] + f * edge[a], square += (p[a] - q[a]) * (p[a] - q[a]);
+        if (square < best) {
+            best = square;
+            memcpy(out, q, sizeof q);
+        }
+    }
+}
+
+/* A shell: the distance from its triangles, to which the radius of the collider is added. */
+static uint32_t mesh_distance(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    const mesh *m = user;
+    gap[0] = INFINITY;
+    for (size_t i = 0; i < m->count; i++) {
+        double q[3], d[3];
+        nearest_on_triangle(m->at[i], y, q);
+        for (int a = 0; a < 3; a++)
+            d[a] = y[a] - q[a];
+        const double r = length(d);
+        if (r < gap[0]) {
+            gap[0] = r;
+            for (int a = 0; a < 3; a++)
+                normal[0][a] = r > 0 ? d[a] / r : a == 1;
+        }
+    }
+    return 1;
+}
+
+static void add_triangle(mesh *m, const double a[3], const double b[3], const double c[3], int level)
+{
+    if (level == 0) {
+        memcpy(m->at[m->count][0], a, 3 * sizeof *a);
+        memcpy(m->at[m->count][1], b, 3 * sizeof *b);
+        memcpy(m->at[m->count++][2], c, 3 * sizeof *c);
+        return;
+    }
+    double ab[3], bc[3], ca[3];
+    for (int k = 0; k < 3; k++)
+        ab[k] = a[k] + b[k], bc[k] = b[k] + c[k], ca[k] = c[k] + a[k];
+    const double l[3] = {length(ab), length(bc), length(ca)};
+    for (int k = 0; k < 3; k++)
+        ab[k] /= l[0], bc[k] /= l[1], ca[k] /= l[2];
+    add_triangle(m, a, ab, ca, level - 1);
+    add_triangle(m, ab, b, bc, level - 1);
+    add_triangle(m, ca, bc, c, level - 1);
+    add_triangle(m, ab, bc, ca, level - 1);
+}
+
+static void ball_of_triangles(mesh *m, int level)
+{
+    m->count = 0;
+    for (int i = 0; i < 8; i++) {
+        const double a[3] = {i & 1 ? -1 : 1, 0, 0}, b[3] = {0, i & 2 ? -1 : 1, 0}, c[3] = {0, 0, i & 4 ? -1 : 1};
+        add_triangle(m, a, b, c, level);
+    }
+}
+
+/* Shoots 50 particles about. Returns how many end on the other side. */
+static int shots(spring_collider c, double radius, double speed, bool field, double g)
+{
+    enum { count = 50 };
+    double x[count][3], v[count][3];
+    for (int i = 0; i < count; i++) {
+        double to[3], at[3];
+        random_unit(to, 3);
+        random_unit(at, 3);
+        const double far = random_uniform(0, 0.5), u = speed * random_uniform(0.5, 1);
+        for (int a = 0; a < 3; a++) {
+            x[i][a] = field ? (a == 1 ? random_uniform(0.5, 1.5) : random_uniform(0, 4)) : far * at[a];
+            v[i][a] = field ? speed * (a == 1 ? -random_uniform(0, 1) : random_uniform(-0.5, 0.5)) : u * to[a];
+        }
+    }
+    const spring_scene_def def = {.particles = count,
+                                  .position = x[0],
+                                  .velocity = v[0],
+                                  .mass_all = 0.3,
+                                  .gravity = {0, -g, 0},
+                                  .colliders = 1,
+                                  .particle_radius = radius};
+    spring_scene *s = scene_of(&def);
+    set(s, &c, 1);
+    int out = 0;
+    for (int k = 0; k < 300; k++)
+        run(s, SPRING_LEAPFROG, 1. / 480, 1);
+    for (size_t i = 0; i < count; i++) {
+        double now[3], gap[3], normal[3][3];
+        spring_scene_get(s, SPRING_POSITION, now, 0, i, 1);
+        hills(c.user, now, gap, normal);
+        out += field ? gap[0] < -1e-5 : !(length(now) < 1);
+    }
+    free(s);
+    return out;
+}
+
+static void custom_bodies(void)
+{
+    static mesh fine, coarse;
+    double radius = 1, height = 0.15;
+    ball_of_triangles(&fine, 2);
+    ball_of_triangles(&coarse, 0);
+    int out = 0, all = 0;
+    for (int bounces = 0; bounces < 2; bounces++) {
+        spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 0.04, .restitution = bounces * 0.9, .friction = 0.3};
+        c.gap = hollow_sphere, c.user = &radius;
+        out += shots(c, 0.01, 500, false, gravity);
+        c.friction = 0, c.spin[0] = 1.5, c.spin[1] = 5;
+        out += shots(c, 0.01, 500, false, gravity);
+        c.friction = 0.3, c.spin[0] = c.spin[1] = 0, c.gap = hills, c.user = &height;
+        out += shots(c, 0.01, 500, true, gravity);
+        out += shots(c, 0.01, 5, true, gravity);
+        c.gap = mesh_distance, c.user = &fine, c.radius = 0.01, c.thickness = 0.02;
+        out += shots(c, 0.01, 500, false, 0);
+        c.friction = 0, c.spin[1] = 3;
+        out += shots(c, 0.01, 20, false, gravity);
+        c.user = &coarse, c.spin[1] = 0, c.radius = 0.005, c.thickness = 0.01;
+        out += shots(c, 0.005, 500, false, gravity);
+        all += 7 * 50;
+    }
+    printf("# %d of %d particles left\n", out, all);
+    CHECK(out == 0, "none passes through");
+}
+
+/* Slides on a body for a second. */
+static void slide_on(spring_collider c, const double x[3], const double v[3], uint64_t steps, double out[3])
+{
+    double at[3] = {x[0], x[1], x[2]}, gap[3], n[3][3], u[3];
+    const double g[3] = {0, -gravity, 0};
+    for (int k = 0; k < 200; k++) {
+        c.gap(c.user, at, gap, n);
+        for (int a = 0; a < 3; a++)
+            at[a] -= gap[0] * n[0][a];
+    }
+    c.gap(c.user, at, gap, n);
+    for (int a = 0; a < 3; a++)
+        u[a] = v[a] - dot(v, n[0]) * n[0][a];
+    spring_scene *s = particle_at(at, u, g, 1);
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, 1. / (double)steps, steps);
+    get(s, out, u);
+    free(s);
+}
+
+static void custom_order(void)
+{
+    double radius = 1, height = 0.15;
+    for (int kind = 0; kind < 4 && in_double; kind++) {
+        spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 0.04, .friction = kind & 1 ? (kind & 2 ? 0.1 : 0.2) : 0};
+        c.gap = kind & 2 ? hills : hollow_sphere, c.user = kind & 2 ? &height : &radius;
+        const double x[3] = {kind & 2 ? 0.2 : 0.6, kind & 2 ? 0.1 : -0.7, 0.1}, v[3] = {kind & 2 ? 1 : 0.3, 0, kind & 2 ? 0.4 : 0.8};
+        double best[3], now[3], error[2];
+        slide_on(c, x, v, 1 << 15, best);
+        for (int fine = 0; fine < 2; fine++) {
+            slide_on(c, x, v, fine ? 1024 : 64, now);
+            for (int a = 0; a < 3; a++)
+                now[a] -= best[a];
+            error[fine] = length(now);
+        }
+        printf("# %s: order %.2f\n", kind & 2 ? "hills" : "inside of a sphere", log2(error[0] / error[1]) / 4);
+        CHECK(log2(error[0] / error[1]) / 4 >= 1.9, "second order");
+    }
+}
+
+static uint32_t not_finite_gap(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    (void)user;
+    gap[0] = y[1] > 0.5 ? y[1] : (double)NAN;
+    normal[0][0] = normal[0][2] = 0, normal[0][1] = 1;
+    return 1;
+}
+
+/* A valley of two faces, as two contacts of one body: a particle rests in it. Gaps that are not finite are reported. */
+static uint32_t valley(void *user, const double y[3], double gap[3], double normal[3][3])
+{
+    (void)user;
+    for (int k = 0; k < 2; k++) {
+        const double n[3] = {k ? -0.6 : 0.6, 0.8, 0};
+        memcpy(normal[k], n, sizeof n);
+        gap[k] = dot(n, y);
+    }
+    return 2;
+}
+
+static void contacts_of_a_custom_body(void)
+{
+    const double x[3] = {0.1, 1, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
+    spring_scene *s = particle_at(x, none, g, 1);
+    spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 1, .gap = valley};
+    double now[3], v[3];
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, 1. / 480, 4800);
+    get(s, now, v);
+    CHECK_BELOW(length(v), in_double ? 1e-10 : 1e-3, "at rest");
+    CHECK_BELOW(hypot(now[0], now[1]), 1e-4, "at the bottom");
+    CHECK(spring_scene_at_rest(s, 1e-3, 1e-3), "balanced by both contacts");
+    free(s);
+    s = particle_at(x, none, g, 1);
+    c.gap = not_finite_gap;
+    set(s, &c, 1);
+    CHECK(spring_scene_advance(s, SPRING_LEAPFROG, 1. / 480, 4800) == SPRING_ENONFINITE, "reported");
+    get(s, now, v);
+    CHECK(now[1] == 1, "nothing has changed");
+    free(s);
+}
+
 static const test tests[] = {
+    {"no tunnelling", no_tunnelling},
+    {"momentum balance", momentum_balance},
+    {"impulses", impulse_rules},
+    {"radius, friction and mask", values_of_particles},
+    {"custom bodies", custom_bodies},
+    {"order on custom bodies", custom_order},
+    {"contacts of a custom body", contacts_of_a_custom_body},
     {"a turned box hits", turned_box_hits},
     {"a bead on a turning plane", bead_on_turning_plane},
     {"turntable", turntable},
