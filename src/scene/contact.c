@@ -61,6 +61,9 @@ enum {
 /* Fractions of a step up to this size are rounding errors. */
 static const double least_fraction = 1e-13;
 
+/* The cosine between normals of a custom body on the same face. */
+static const double same_face = 0.9;
+
 /* Contacts of a custom body whose gaps differ by this number of slops are at the same place. */
 static const double same_place = 1e3;
 
@@ -374,7 +377,8 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
                     2 * length_of(subtract(b->end.axis[1], b->start.axis[1])) +
                     2 * length_of(subtract(b->end.axis[2], b->start.axis[2]));
     }
-    b->size = largest_of(b->start.at) + b->radius + largest_of(b->start.segment);
+    b->size = largest_of(b->start.at) + b->radius + largest_of(b->start.segment) +
+              (b->shape == SPRING_CUSTOM ? b->thickness : 0);
     for (uint32_t a = 0; a < axes && c->shape == SPRING_BOX; a++)
         b->size += b->half[a];
     find_bounds(b, angle, c->bound);
@@ -831,7 +835,7 @@ SPRING_INLINE bool find_lambda(contact_particle *p, const meeting *m, vector3 x,
         const double cosine = inner(m->n, direction_out(&b->end, there.normal));
         if (fabs(there.gap) < m->slop / 4)
             return true;
-        if (!(cosine > least_cosine))
+        if (!(cosine > (custom ? same_face : least_cosine))) /* in a corner, step 5 follows */
             return false;
         double change = -there.gap / (duration * cosine);
         const double slope = there.gap - last_gap;

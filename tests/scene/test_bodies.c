@@ -416,11 +416,13 @@ static void plates(double thick, double speed, double angle, double dt, size_t *
             *contacts += touched[i] != 0;
             if (k > 0 && before[i][0] * y[0] < 0) { /* another side: where? */
                 const double f = before[i][0] / (before[i][0] - y[0]), *const old = before[i];
-                const bool inside = fabs(old[1] + f * (y[1] - old[1])) < c.half[1] &&
-                                    fabs(old[2] + f * (y[2] - old[2])) < c.half[2];
-                const bool ends = fabs(y[1]) < c.half[1] && fabs(y[2]) < c.half[2];
-                *through += inside && ends;
-                *around += inside && !ends;
+                const double edge = in_double ? 1e-9 : 1e-3; /* not on the sides */
+                const bool inside = fabs(old[1] + f * (y[1] - old[1])) < c.half[1] - edge &&
+                                    fabs(old[2] + f * (y[2] - old[2])) < c.half[2] - edge;
+                const bool begins = fabs(old[1]) < c.half[1] - edge && fabs(old[2]) < c.half[2] - edge;
+                const bool ends = fabs(y[1]) < c.half[1] - edge && fabs(y[2]) < c.half[2] - edge;
+                *through += begins && ends;
+                *around += inside && !(begins && ends);
             }
             memcpy(before[i], y, sizeof y);
         }
@@ -527,7 +529,7 @@ static void momentum_balance(void)
 /* Impulses do not depend on the vector width, and follow their rules. */
 static void impulse_rules(void)
 {
-    const double x[6] = {0, 0.01, 0, 1, 0.01, 0}, v[6] = {0, -3, 0, 0, -1, 0};
+    const double x[6] = {0, 0.01, 0, 1, 0.005, 0}, v[6] = {0, -3, 0, 0, -1, 0};
     const spring_scene_def def = {.particles = 2, .position = x, .velocity = v, .mass_all = 0.7, .colliders = 2};
     const spring_collider c = {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .at = {5, 0, 2}, .velocity = {1, 0, 0}};
     spring_impulse j[2], other[2];
@@ -819,7 +821,7 @@ static uint32_t valley(void *user, const double y[3], double gap[3], double norm
 {
     (void)user;
     for (int k = 0; k < 2; k++) {
-        const double n[3] = {k ? -0.6 : 0.6, 0.8, 0};
+        const double n[3] = {k ? -0.8 : 0.8, 0.6, 0};
         memcpy(normal[k], n, sizeof n);
         gap[k] = dot(n, y);
     }
