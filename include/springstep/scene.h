@@ -165,8 +165,8 @@ typedef struct spring_collider {
         components also move the surface along its normal, which throws particles up. With two axes, only spin[2] is
         used. */
     double spin[3];
-    double friction;    /**< Coulomb coefficient >= 0 */
-    double restitution; /**< 0 to 1: ratio of the normal speeds after and before an impact */
+    double friction;             /**< Coulomb coefficient >= 0 */
+    double restitution;          /**< 0 to 1: ratio of the normal speeds after and before an impact */
     double acceleration[3];      /**< [m/s^2] of `at` and `to`: at + velocity t + acceleration t^2/2 */
     double spin_acceleration[3]; /**< [rad/s^2] turned by the vector spin t + spin_acceleration t^2/2 */
     double surface[3];           /**< [m/s] further velocity of the surface in the frame of the body, as of a conveyor
@@ -177,7 +177,7 @@ typedef struct spring_collider {
                                     `radius` is added to the body */
     void *user;                  /**< SPRING_CUSTOM: passed to gap */
     double thickness;            /**< [m] SPRING_CUSTOM: least thickness of the body, > 0 */
-    double bound;                /**< [m] SPRING_CUSTOM: radius of a sphere about `at` that contains the body without its
+    double bound; /**< [m] SPRING_CUSTOM: radius of a sphere about `at` that contains the body without its
                                     radius; 0: none, as for terrain and hollow bodies */
 } spring_collider;
 

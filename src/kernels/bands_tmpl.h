@@ -30,13 +30,13 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 
 /* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
    to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
-SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
-                             const real *rest, const real *c, bool damped, bool tension_only)
+SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const lane_mask *joined,
+                             const real *k, const real *rest, const real *c, bool damped, bool tension_only)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
     real rate[most_together];
-    mask acts[most_together]; /* lanes whose link has a force */
+    lane_mask acts[most_together]; /* lanes whose link has a force */
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         real square = delta[m][0] * delta[m][0];
@@ -72,7 +72,7 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
 }
 
 /* On one axis a link is a linear spring. */
-SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
+SPRING_INLINE void to_linear_forces(real (*delta)[3], real (*relative)[3], const lane_mask *joined, const real *k,
                                     const real *rest, const real *c, bool damped)
 {
     SPRING_UNROLL
@@ -114,7 +114,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
     for (size_t j = 0; j < count; j += together * lanes) {
         real delta[most_together][3], relative[most_together][3];
         real k[most_together], rest[most_together], c[most_together];
-        mask joined[most_together];
+        lane_mask joined[most_together];
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
@@ -210,7 +210,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     size_t j = 0;
     for (; j < count; j += together * lanes) {
         real inverse[most_together];
-        mask joined[most_together];
+        lane_mask joined[most_together];
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             joined[m] = vec_load_mask(occupied + j + m * lanes);
@@ -242,7 +242,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
             speed_square += relative * relative;
         }
         const real stretch = 1 - vec_load(rest_length + number) * inverse;
-        mask acts = vec_load_mask(occupied + j);
+        lane_mask acts = vec_load_mask(occupied + j);
         if (tension_only)
             acts &= not_mask(stretch <= 0);
         const real inverse_square = inverse * inverse, unit = root * inverse;
@@ -271,7 +271,7 @@ SPRING_NOINLINE void freezing_tile_on_1_axis(const scene_links *s, const scene_b
     const size_t together = links_together(1) * lanes;
     for (size_t j = 0; j < (count + together - 1) / together * together; j += lanes) {
         const ptrdiff_t i = slot + (ptrdiff_t)j;
-        const mask joined = vec_load_mask(band->occupied + i);
+        const lane_mask joined = vec_load_mask(band->occupied + i);
         const real k = vec_load(band->stiffness + i * stride_c), rest = vec_load(band->rest + i * stride_c);
         const real root = vec_load(band->root + i);
         const scalar *const at = x + t + j, *const with = v + t + j;

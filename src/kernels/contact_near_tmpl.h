@@ -14,7 +14,7 @@
 #include "../simd/real3_tmpl.h"
 #include "scene_kernels.h"
 
-static void keep_motion(const scene_particles *p, const scene_motion *m, size_t first, size_t count, kept_motion *k)
+static void copy_motion(const scene_particles *p, const scene_motion *m, size_t first, size_t count, kept_motion *k)
 {
     for (uint32_t a = 0; a < p->axes; a++)
         for (size_t i = 0; i < count; i += lanes) {
@@ -26,7 +26,7 @@ static void keep_motion(const scene_particles *p, const scene_motion *m, size_t 
 }
 
 /* Lanes whose particle may touch the collider on its path from x0 to x. */
-SPRING_INLINE mask may_touch(const collider_bound *c, real3 x0, real3 x, real radius)
+SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, real radius)
 {
     if (c->shape == SPRING_PLANE) { /* the gap along the path is linear */
         const real size = vec_abs(x0.x) + vec_abs(x0.y) + vec_abs(x0.z);
@@ -51,8 +51,8 @@ SPRING_INLINE mask may_touch(const collider_bound *c, real3 x0, real3 x, real ra
     } else
         square = dot3(arm, arm);
     const real reach = c->reach + radius, reach_squared = reach * reach, way = c->growth_squared * dot3(d, d);
-    return not_mask(square > vec_min((scalar)1.07 * reach_squared + (scalar)17.1 * way,
-                                     (scalar)1.006 * reach_squared + 258 * way));
+    return not_mask(
+        square > vec_min((scalar)1.07 * reach_squared + (scalar)17.1 * way, (scalar)1.006 * reach_squared + 258 * way));
 }
 
 /* Bits of the colliders whose boxes meet the box from `low` to -minus_high. */
@@ -74,10 +74,10 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
     const scalar margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
     uint32_t meet = 0;
     for (size_t k = 0; k < c->count; k += lanes) {
-        mask apart = {0};
+        lane_mask apart = {0};
         for (int a = 0; a < 3; a++)
-            apart |= (vec_load(c->low[a] + k) > margin - bounds[1][a]) |
-                     (vec_load(c->high[a] + k) < bounds[0][a] - margin);
+            apart |=
+                (vec_load(c->low[a] + k) > margin - bounds[1][a]) | (vec_load(c->high[a] + k) < bounds[0][a] - margin);
         if (!any(not_mask(apart)))
             continue;
         uint32_t each[lanes];
@@ -90,12 +90,13 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
 
 SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)
 {
-    return (real3){vec_load(quantity), vec_load(quantity + stride), axes > 2 ? vec_load(quantity + 2 * stride) : splat(0)};
+    return (real3){vec_load(quantity), vec_load(quantity + stride),
+                   axes > 2 ? vec_load(quantity + 2 * stride) : splat(0)};
 }
 
-static bool find_near(const collider_bounds *c, const scene_particles *p, const kept_motion *kept, const scalar *x,
-                      const scalar *radius, size_t radius_stride, size_t first, size_t count,
-                      uint32_t near[contact_chunk])
+static bool find_near_colliders(const collider_bounds *c, const scene_particles *p, const kept_motion *kept,
+                                const scalar *x, const scalar *radius, size_t radius_stride, size_t first, size_t count,
+                                uint32_t near[contact_chunk])
 {
     real low[3], minus_high[3];
     for (uint32_t a = 0; a < 3; a++)
@@ -112,16 +113,16 @@ static bool find_near(const collider_bounds *c, const scene_particles *p, const 
         index[left] = k;
         left += meet >> k & 1;
     }
-    mask found = {0};
+    lane_mask found = {0};
     if (left == 0)
         memset(near, 0, count * sizeof *near);
     for (size_t i = 0; i < count && left > 0; i += lanes) {
         const real3 from = load_place(kept->x0[0] + i, contact_chunk, p->axes);
         const real3 to = load_place(x + first + i, p->stride, p->axes);
         const real r = radius_stride != 0 ? vec_load(radius + first + i) : splat(*radius);
-        lane_bits bits = bits_where((mask){0}, 0);
+        lane_bits bits = bits_where((lane_mask){0}, 0);
         for (unsigned k = 0; k < left; k++) {
-            const mask touch = may_touch(&c->each[index[k]], from, to, r);
+            const lane_mask touch = may_touch(&c->each[index[k]], from, to, r);
             bits |= bits_where(touch, UINT32_C(1) << index[k]);
             found |= touch;
         }

@@ -20,7 +20,7 @@ SPRING_INLINE bool advance_shared(const batch_run *b, bool loaded)
             v[k] = vec_load(b->v + j);
             exact_step(&x[k], &v[k], loaded ? rate(b->accel, j) : splat(0), &c, loaded);
         }
-        all &= store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
+        all &= store_group(b, i, b->x + i, b->v + i, x, v, vectors, (lane_mask){0});
     }
     return all;
 }
@@ -71,7 +71,7 @@ SPRING_NOINLINE bool land_group(const batch_run *b, size_t i, const follow_coeff
         v[k] = s.v;
         *b->landing.moving += settle(&b->landing, j, &x[k], &v[k], s.y, s.rest, c, sizeof(scalar) == sizeof(float));
     }
-    return store_group(b, i, b->x + i, b->v + i, x, v, vectors, (mask){0});
+    return store_group(b, i, b->x + i, b->v + i, x, v, vectors, (lane_mask){0});
 }
 
 /* Springs with equal coefficients, and with stiffness. unit: exact_coefficients.half is 1, as for most time steps. */
@@ -104,7 +104,7 @@ SPRING_INLINE bool follow_shared(const batch_run *run, bool unit)
             continue;
         }
         moving += counted_from(&b.landing, i, group);
-        all &= store_group(run, i, b.x + i, b.v + i, x, v, vectors, (mask){0});
+        all &= store_group(run, i, b.x + i, b.v + i, x, v, vectors, (lane_mask){0});
     }
     *b.landing.moving += moving;
     return all;

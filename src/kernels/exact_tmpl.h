@@ -35,7 +35,7 @@ SPRING_INLINE real rounded(real a, bool single)
 SPRING_INLINE void follow_each(const exact_run *b, size_t i, real *x, real *v, real w, real a,
                                const exact_coefficients *exact, bool loaded)
 {
-    const mask is_free = w == 0;
+    const lane_mask is_free = w == 0;
     const real target = exact_load(b->target, i, b->single);
     const real shift = rounded(a / w, b->single),
                rest = rounded(select_real(a != 0, target + shift, target), b->single);

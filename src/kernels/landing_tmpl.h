@@ -19,7 +19,7 @@ SPRING_INLINE size_t settle(const exact_landing *b, size_t i, real *x, real *v, 
                             const follow_coefficients *c, bool single)
 {
     size_t moving = counted_from(b, i, lanes);
-    mask rests = (vec_abs(*x - rest) <= (scalar)b->x_tol) & (vec_abs(*v) <= (scalar)b->v_tol);
+    lane_mask rests = (vec_abs(*x - rest) <= (scalar)b->x_tol) & (vec_abs(*v) <= (scalar)b->v_tol);
     if (any(not_mask(rests)))
         rests = rests | follow_lands(*x, rest, y, *v, c, single);
     if (!any(rests))

@@ -24,7 +24,7 @@ typedef struct coordinates {
 } coordinates;
 
 /* The first `count` lanes, 1 <= count <= padding. */
-SPRING_INLINE mask first_lanes(size_t count)
+SPRING_INLINE lane_mask first_lanes(size_t count)
 {
     static const int8_t bytes[2 * padding] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     return vec_load_mask(bytes + padding - count);
@@ -45,7 +45,7 @@ SPRING_INLINE real dragged_acceleration(const scene_motion *m, const coordinates
 }
 
 /* Lanes of free particles whose velocity at the end of a step is above max_speed, infinite or NaN. */
-SPRING_INLINE mask too_fast(const scene_motion *m, const coordinates *c, real v)
+SPRING_INLINE lane_mask too_fast(const scene_motion *m, const coordinates *c, real v)
 {
     return not_mask(vec_abs(v) <= m->max_speed) & (c->inverse_mass > 0);
 }
@@ -57,7 +57,7 @@ SPRING_INLINE void store_state(const scene_motion *m, const coordinates *c, real
 }
 
 /* Stores the state at the end of a step. Returns the lanes that are not finite or too fast. */
-SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x, real v)
+SPRING_INLINE lane_mask store_end(const scene_motion *m, const coordinates *c, real x, real v)
 {
     store_state(m, c, x, v);
     return not_finite(x) | too_fast(m, c, v);
@@ -65,7 +65,7 @@ SPRING_INLINE mask store_end(const scene_motion *m, const coordinates *c, real x
 
 /* Advances one vector of coordinates. Returns the lanes whose result is infinite, NaN or too fast. variant is a
    constant. */
-typedef mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
+typedef lane_mask particle_update(const scene_motion *m, const coordinates *c, unsigned variant);
 
 /* The loop of all kernels. holds is a constant; if true, a scene without held forces adds -0, which changes no bit. */
 SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene_motion *motion, size_t from, size_t to,
@@ -73,7 +73,7 @@ SPRING_INLINE bool for_each_vector(const scene_particles *particles, const scene
 {
     const scene_particles p = *particles; /* local copies, so that stores cannot alias their fields */
     const scene_motion m = *motion;
-    mask wrong = {0};
+    lane_mask wrong = {0};
     for (uint32_t a = 0; a < p.axes; a++) {
         const real gravity = vec_load(p.gravity + a * padding);
         const scalar *const held = p.held + a * p.stride * p.held_stride;
@@ -108,13 +108,13 @@ SPRING_INLINE real kicked_implicitly(const scene_motion *m, const coordinates *c
 
 enum { ENDS_PREVIOUS = 1, PREDICTS = 2 };
 
-SPRING_INLINE mask update_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
     const real v0 = (variant & ENDS_PREVIOUS) != 0 ? kicked_implicitly(m, c, start, free) : start;
     const real v = v0 + m->kick * (c->dragged ? free - c->drag * v0 : free), x = vec_load(m->x0 + c->at) + m->drift * v;
     store_state(m, c, x, v);
-    mask wrong = not_finite(x); /* also if v0 or v is not finite */
+    lane_mask wrong = not_finite(x); /* also if v0 or v is not finite */
     if ((variant & ENDS_PREVIOUS) != 0)
         wrong |= (vec_abs(v0) > m->max_speed) & (c->inverse_mass > 0); /* not NaN, see above */
     if ((variant & PREDICTS) == 0)
@@ -134,7 +134,7 @@ static bool move_kick_drift_free(const scene_particles *p, const scene_motion *m
                             : for_each_vector(p, m, from, to, update_kick_drift, PREDICTS, false);
 }
 
-SPRING_INLINE mask update_implicit_kick(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_implicit_kick(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));

@@ -8,11 +8,11 @@
 
 #include "leapfrog_particles_tmpl.h"
 
-SPRING_INLINE mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_implicit_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const real v = kicked_implicitly(m, c, vec_load(m->v0 + c->at), free_acceleration(m, c));
-    const mask hidden = not_finite(m->kick * c->drag); /* 1/(1 + q) is 0 for infinite q */
+    const lane_mask hidden = not_finite(m->kick * c->drag); /* 1/(1 + q) is 0 for infinite q */
     return store_end(m, c, vec_load(m->x0 + c->at) + m->drift * v, v) | hidden;
 }
 
@@ -25,7 +25,7 @@ static bool move_implicit_kick_drift(const scene_particles *p, const scene_motio
 
 enum { NO_SUM, FIRST_SUM, NEXT_SUM };
 
-SPRING_INLINE mask update_stage(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_stage(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const scene_stage *const s = m->stage;
     const real dx = vec_load(s->v + c->at), dv = dragged_acceleration(m, c, dx);
@@ -58,7 +58,7 @@ static bool move_next_stage(const scene_particles *p, const scene_motion *m, siz
     return for_each_vector(p, m, from, to, update_stage, NEXT_SUM, true);
 }
 
-SPRING_INLINE mask update_last_stage(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_last_stage(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const scene_stage *const s = m->stage;
@@ -93,7 +93,7 @@ SPRING_INLINE real nystrom_sum(const scene_motion *m, const coordinates *c, cons
     return sum;
 }
 
-SPRING_INLINE mask update_nystrom_stage(const scene_motion *m, const coordinates *c, unsigned number)
+SPRING_INLINE lane_mask update_nystrom_stage(const scene_motion *m, const coordinates *c, unsigned number)
 {
     const real accel = nystrom_acceleration(m, c, number), last = m->nystrom->weight_x[number - 1] * accel;
     const real sum = number > 1 ? nystrom_sum(m, c, m->nystrom->weight_x, number - 1) + last : last;
@@ -109,7 +109,7 @@ static bool move_nystrom_stage(const scene_particles *p, const scene_motion *m, 
     return for_each_vector(p, m, from, to, update_nystrom_stage, (unsigned)m->nystrom->number, true);
 }
 
-SPRING_INLINE mask update_nystrom_end(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_nystrom_end(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const size_t stored = nystrom_stages;
@@ -131,7 +131,7 @@ static bool move_nystrom_end(const scene_particles *p, const scene_motion *m, si
 
 /* ------------------------------------------------------------------------------------------------ exponential kick */
 
-SPRING_INLINE mask update_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const real x = vec_load(m->x0 + c->at) + m->drift * vec_load(m->v0 + c->at);
@@ -145,7 +145,7 @@ static bool move_drift(const scene_particles *p, const scene_motion *m, size_t f
 }
 
 /* The drift before the kick, which contacts replace, and the drift after it. */
-SPRING_INLINE mask update_drift_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_drift_kick_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const real v = vec_load(m->stage->v + c->at);
@@ -165,7 +165,7 @@ SPRING_INLINE real mass_ratio(const coordinates *c, scalar h)
     return c->dragged ? 1 / (1 + q * ((scalar)0.5 + q / (12 + 2 * q))) : splat(1);
 }
 
-SPRING_INLINE mask update_residual(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_residual(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     (void)variant;
     const real residual = mass_ratio(c, m->kick) * dragged_acceleration(m, c, vec_load(m->v0 + c->at));
@@ -179,10 +179,10 @@ static bool move_residual(const scene_particles *p, const scene_motion *m, size_
 }
 
 /* A term of Clenshaw's recurrence. The residual of a pinned particle is 0, so its terms are 0, too. */
-SPRING_INLINE mask update_series_term(const scene_motion *m, const coordinates *c, unsigned last)
+SPRING_INLINE lane_mask update_series_term(const scene_motion *m, const coordinates *c, unsigned last)
 {
     const scene_series *const s = m->series;
-    const mask free = c->inverse_mass > 0;
+    const lane_mask free = c->inverse_mass > 0;
     const real inverse_mass = mass_ratio(c, s->h) * c->inverse_mass;
     const real accel = select_real(free, inverse_mass * vec_load(m->force + c->at), splat(0));
     const real term = s->coefficient * vec_load(s->residual + c->at) +
@@ -190,7 +190,7 @@ SPRING_INLINE mask update_series_term(const scene_motion *m, const coordinates *
                        s->second_weight * vec_load(s->second_before + c->at) + s->force_weight * accel);
     if (!last) {
         vec_store(m->v + c->at, term);
-        return (mask){0};
+        return (lane_mask){0};
     }
     const real v0 = vec_load(m->v0 + c->at), v = select_real(free, v0 + m->kick * term, v0);
     vec_store(m->v + c->at, v);
@@ -219,7 +219,7 @@ static bool move_last_series_term(const scene_particles *p, const scene_motion *
 
 /* -------------------------------------------------------------------------------- kicks, and drifts with exact drag */
 
-SPRING_INLINE mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
+SPRING_INLINE lane_mask update_kick_damped_drift(const scene_motion *m, const coordinates *c, unsigned variant)
 {
     const real free = free_acceleration(m, c), start = vec_load(m->v0 + c->at);
     const real v0 = (variant & ENDS_PREVIOUS) != 0 ? start + m->kick * free : start;

@@ -138,11 +138,11 @@ typedef struct scene_damped_drift {
 
 /* A bound on a collider during a drift, by which particles are found that may touch it: see contact_body. */
 typedef struct collider_bound {
-    spring_shape shape;                               /* SPRING_SPHERE for custom bodies */
-    scalar at[3], shift[3];                           /* [m] at the start of the drift, and its displacement */
-    scalar axis[3][3], half[3];                       /* box; plane: normal at the start and at the end */
-    scalar offset[2];                                 /* [m] plane: normal . at, at the start and at the end */
-    scalar segment[3], inverse_square;                /* capsule, at the start */
+    spring_shape shape;                /* SPRING_SPHERE for custom bodies */
+    scalar at[3], shift[3];            /* [m] at the start of the drift, and its displacement */
+    scalar axis[3][3], half[3];        /* box; plane: normal at the start and at the end */
+    scalar offset[2];                  /* [m] plane: normal . at, at the start and at the end */
+    scalar segment[3], inverse_square; /* capsule, at the start */
     scalar reach, growth_squared;
 } collider_bound;
 

@@ -41,8 +41,8 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .drift_kick_drift = move_drift_kick_drift,
     .kick_damped_drift = move_kick_damped_drift,
     .stretched = any_stretched,
-    .keep_motion = keep_motion,
-    .find_near = find_near,
+    .keep_motion = copy_motion,
+    .find_near = find_near_colliders,
 };
 #endif
 

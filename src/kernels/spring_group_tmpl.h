@@ -49,7 +49,7 @@ SPRING_NOINLINE bool store_valid(const batch_run *b, size_t i, const real *x, co
 
 /* Checks whether a spring of a group may have to keep its state. A sum is not finite if one of its terms is not finite,
    or if it overflows. signs: not 0 where a rate is negative. */
-SPRING_INLINE bool may_be_invalid(const real *x, const real *v, size_t many, mask signs)
+SPRING_INLINE bool may_be_invalid(const real *x, const real *v, size_t many, lane_mask signs)
 {
     real sum = x[0] + v[0];
     SPRING_UNROLL
@@ -60,7 +60,7 @@ SPRING_INLINE bool may_be_invalid(const real *x, const real *v, size_t many, mas
 
 /* Stores the group from spring i on, at x_to and v_to. Returns false if a spring keeps its state. */
 SPRING_INLINE bool store_group(const batch_run *b, size_t i, scalar *x_to, scalar *v_to, const real *x, const real *v,
-                               size_t many, mask signs)
+                               size_t many, lane_mask signs)
 {
     if (SPRING_UNLIKELY(may_be_invalid(x, v, many, signs))) {
         real x1[vectors], v1[vectors]; /* copies, so that x and v stay in registers */
@@ -78,7 +78,7 @@ SPRING_INLINE bool store_group(const batch_run *b, size_t i, scalar *x_to, scala
 
 SPRING_INLINE bool none_finite(const real *x, const real *v)
 {
-    mask finite = {0};
+    lane_mask finite = {0};
     SPRING_UNROLL
     for (size_t k = 0; k < vectors; k++)
         finite |= (x[k] - x[k]) + (v[k] - v[k]) == 0;

@@ -15,10 +15,10 @@
 #include "exact_shared_tmpl.h"
 
 /* Computes the coefficients of the group from spring i on. Returns sign bits where a rate is negative. */
-SPRING_INLINE mask prepare_group(step_coefficients c[vectors], const batch_run *b, size_t i, real h,
-                                 method_prepare *prepare, bool damped, bool loaded)
+SPRING_INLINE lane_mask prepare_group(step_coefficients c[vectors], const batch_run *b, size_t i, real h,
+                                      method_prepare *prepare, bool damped, bool loaded)
 {
-    mask signs = {0};
+    lane_mask signs = {0};
     SPRING_ROLLED
     for (size_t k = 0; k < vectors; k++) {
         const spring_rates r = rates_at(b, i + k * lanes, damped, loaded);
@@ -45,8 +45,8 @@ SPRING_INLINE void step_group(real *x, real *v, real h, const step_coefficients 
 
 /* Advances the group from spring i on. Returns false if a spring keeps its state. b: a copy of *run. */
 SPRING_INLINE bool advance_group(const batch_run *run, const batch_run *b, size_t i, real h,
-                                 const step_coefficients c[vectors], mask signs, method_start *start, method_step *step,
-                                 bool damped, bool loaded)
+                                 const step_coefficients c[vectors], lane_mask signs, method_start *start,
+                                 method_step *step, bool damped, bool loaded)
 {
     real x[vectors], v[vectors];
     SPRING_UNROLL
@@ -74,7 +74,7 @@ SPRING_INLINE bool advance_groups(const batch_run *run, method_prepare *prepare,
     const bool shared = b.omega2.stride + b.gamma.stride + b.accel.stride == 0;
     const real h = splat(b.dt);
     step_coefficients c[vectors];
-    mask signs = {0};
+    lane_mask signs = {0};
     bool all = true;
     for (size_t i = 0; i < b.count; i += group) {
         if (i == 0 || !shared)

@@ -15,7 +15,7 @@ SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, 
 {
     const real nearly = splat((scalar)(1 - 0x1p-18)); /* 1 - 4e-6: more than the rounding errors, also in float */
     const ptrdiff_t stride_c = band->coefficient_stride;
-    mask longer = {0};
+    lane_mask longer = {0};
     for (ptrdiff_t t = band->start; t < band->end; t += (ptrdiff_t)lanes) {
         const ptrdiff_t slot = t - band->start;
         const real rest = vec_load(band->rest + slot * stride_c), bound = stretch * rest;
@@ -26,7 +26,7 @@ SPRING_INLINE bool band_stretched(const scene_links *s, const scene_band *band, 
             const real delta = vec_load(at + band->offset) - vec_load(at);
             square += delta * delta;
         }
-        const mask beyond = (rest != 0) & not_mask(square < nearly * (bound * bound));
+        const lane_mask beyond = (rest != 0) & not_mask(square < nearly * (bound * bound));
         if (SPRING_UNLIKELY(any(beyond))) /* may include cut links */
             longer |= beyond & vec_load_mask(band->occupied + slot);
     }

@@ -15,7 +15,7 @@ typedef struct implicit_factors {
 
 SPRING_INLINE implicit_factors implicit_factors_of(real q)
 {
-    const mask light = vec_abs(q) <= 1;
+    const lane_mask light = vec_abs(q) <= 1;
     return (implicit_factors){
         .leading = select_real(light, splat(1), splat(0)),
         .correction = select_real(light, 0 - q, splat(1)) / (1 + q),

@@ -124,8 +124,8 @@ struct spring_scene {
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
     bool bounds_known;
-    double roots_dt;        /* [s] step for which ARRAY_ROOTS is known; 0: none */
-    uint32_t colliders;     /* at most layout.colliders */
+    double roots_dt;          /* [s] step for which ARRAY_ROOTS is known; 0: none */
+    uint32_t colliders;       /* at most layout.colliders */
     double colliders_elapsed; /* [s] since they were set, at step colliders_since; see scene_elapsed() */
     uint64_t colliders_since;
     scalar particle_radius; /* [m] */

@@ -43,19 +43,19 @@
 #include <math.h>
 
 enum {
-    impact_iterations = 12,  /* of step 2 */
-    friction_passes = 2,     /* of step 4: friction changes where the path ends, and so the impulse */
-    surface_iterations = 3,  /* of step 4 */
-    custom_iterations = 8,   /* the same for custom bodies */
-    march_steps = 256,       /* of find_custom_impact() */
+    impact_iterations = 12, /* of step 2 */
+    friction_passes = 2,    /* of step 4: friction changes where the path ends, and so the impulse */
+    surface_iterations = 3, /* of step 4 */
+    custom_iterations = 8,  /* the same for custom bodies */
+    march_steps = 256,      /* of find_custom_impact() */
     root_steps = 40,
-    walk_steps = 128,        /* of walk() */
+    walk_steps = 128, /* of walk() */
     walk_pushes = 8,
-    contact_rounds = 8,      /* contacts of a particle in a drift */
-    corner_passes = 6,       /* of step 5 */
-    most_constraints = 16,   /* on a particle; further ones are ignored */
-    seidel_rounds = 32,      /* where no particle can fit, as between plates that close */
-    slide_parts = 8          /* of a step in which friction turns */
+    contact_rounds = 8,    /* contacts of a particle in a drift */
+    corner_passes = 6,     /* of step 5 */
+    most_constraints = 16, /* on a particle; further ones are ignored */
+    seidel_rounds = 32,    /* where no particle can fit, as between plates that close */
+    slide_parts = 8        /* of a step in which friction turns */
 };
 
 /* Fractions of a step up to this size are rounding errors. */
@@ -201,8 +201,7 @@ static bool has_spin(const spring_collider *c, bool flat)
 
 static vector3 path_of(const double at[3], const double velocity[3], const double accel[3], double t, bool flat)
 {
-    return add_scaled(add_scaled(vector_of(at, flat), t, vector_of(velocity, flat)), t * t / 2,
-                      vector_of(accel, flat));
+    return add_scaled(add_scaled(vector_of(at, flat), t, vector_of(velocity, flat)), t * t / 2, vector_of(accel, flat));
 }
 
 /* *phi: the angle vector since the collider was set. axis: at that time */
@@ -307,7 +306,8 @@ static void bound_pose(contact_body *b, const body_pose *p, double reach)
 static void find_bounds(contact_body *b, double angle, double custom_bound)
 {
     const double core = size_of_core(b), infinite = (double)INFINITY;
-    const double radius = b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
+    const double radius =
+        b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
     double stretch = 0;
     if (b->shape == SPRING_CAPSULE)
         stretch = length_of(subtract(b->end.segment, b->start.segment));
@@ -352,12 +352,14 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
         .user = c->user,
     };
     b->slips = !is_zero(b->surface) || (spins && round);
-    b->moves = b->turns || !is_zero(velocity) || !is_zero(accel) || (spins && !is_zero(spin_of(c->spin_acceleration, flat)));
+    b->moves =
+        b->turns || !is_zero(velocity) || !is_zero(accel) || (spins && !is_zero(spin_of(c->spin_acceleration, flat)));
     vector3 axis[3], phi0, phi1;
     find_axes(axis, c, flat);
     find_pose(&b->start, c, axis, t0, flat, b->turns, &phi0);
     find_pose(&b->end, c, axis, t1, flat, b->turns, &phi1);
-    if (plane && !b->turns) { /* the point that is nearest to the origin, so that the distance of `at` does not matter */
+    if (plane &&
+        !b->turns) { /* the point that is nearest to the origin, so that the distance of `at` does not matter */
         const vector3 shift = subtract(b->end.at, b->start.at);
         b->start.at = scale(inner(axis[0], b->start.at), axis[0]);
         b->end.at = add(b->start.at, shift);
@@ -533,8 +535,7 @@ static vector3 slip_velocity(const contact_body *b, const body_pose *pose, doubl
     return v;
 }
 
-SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x,
-                                       vector3 n)
+SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
 {
     const vector3 v = frame_velocity(b, pose, along, x);
     return b->slips ? add(v, slip_velocity(b, pose, along, x, n)) : v;
@@ -565,12 +566,14 @@ SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, u
 typedef struct sliding {
     bool sticks;  /* at the end */
     vector3 mean; /* [m/s] velocity */
-    vector3 kick; /* [m/s] the velocity from which the last kick, A/2 with friction F/2, ends on the velocity at the end */
+    vector3
+        kick; /* [m/s] the velocity from which the last kick, A/2 with friction F/2, ends on the velocity at the end */
 } sliding;
 
 /* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
    friction turns, the time is divided into parts. */
-SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, double ay, double az, double F, int most_parts, sliding *out)
+SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, double ay, double az, double F,
+                                int most_parts, sliding *out)
 {
     const vector3 u0 = {ux, uy, uz}, A = {ax, ay, az};
     out->sticks = true;
@@ -647,16 +650,16 @@ SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, slidin
 typedef struct meeting {
     const contact_body *b;
     unsigned index;
-    bool again;        /* the particle has touched a collider in this step */
-    double slop;       /* [m] */
+    bool again;         /* the particle has touched a collider in this step */
+    double slop;        /* [m] */
     vector3 start, way; /* [m] in the frame: the chord */
-    near_point at;     /* at the time of the contact */
+    near_point at;      /* at the time of the contact */
     double fraction, gap, push;
-    vector3 place;     /* in the frame */
-    vector3 n, n_end;  /* normal in the scene, and its direction at the end of the step */
-    double left;       /* [s] */
-    vector3 velocity;  /* [m/s] of the surface */
-    bool walks;        /* the way is long compared with a custom body's thickness */
+    vector3 place;    /* in the frame */
+    vector3 n, n_end; /* normal in the scene, and its direction at the end of the step */
+    double left;      /* [s] */
+    vector3 velocity; /* [m/s] of the surface */
+    bool walks;       /* the way is long compared with a custom body's thickness */
 } meeting;
 
 enum { NO_CONTACT = 0, CONTACT = 1, CLEAR = 2 }; /* CLEAR: the path is known to end outside */
@@ -1065,9 +1068,9 @@ static vector3 least_change(constraint *c, unsigned count)
         for (unsigned j = i + 1; j < count; j++) {
             const vector3 across = outer(c[i].n, c[j].n);
             const double cosine = inner(c[i].n, c[j].n), det = inner(across, across); /* 1 - cosine^2 */
-            const double value[3] = {(c[i].least - cosine * c[j].least) / det, (c[j].least - cosine * c[i].least) / det};
-            if (det > 1e-20 &&
-                try_active(c, count, (const unsigned[3]){i, j}, value, 2, tolerance, &change))
+            const double value[3] = {(c[i].least - cosine * c[j].least) / det,
+                                     (c[j].least - cosine * c[i].least) / det};
+            if (det > 1e-20 && try_active(c, count, (const unsigned[3]){i, j}, value, 2, tolerance, &change))
                 return change;
         }
     for (unsigned i = 0; i < count; i++)
@@ -1078,7 +1081,8 @@ static vector3 least_change(constraint *c, unsigned count)
                 if (!(fabs(det) > 1e-10))
                     continue;
                 const vector3 sum = add_scaled(add_scaled(scale(c[i].least, jk), c[j].least, ki), c[k].least, ij);
-                const double value[3] = {inner(jk, sum) / det / det, inner(ki, sum) / det / det, inner(ij, sum) / det / det};
+                const double value[3] = {inner(jk, sum) / det / det, inner(ki, sum) / det / det,
+                                         inner(ij, sum) / det / det};
                 if (try_active(c, count, (const unsigned[3]){i, j, k}, value, 3, tolerance, &change))
                     return change;
             }
@@ -1209,8 +1213,8 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
         for (unsigned i = 0; i < s->count; i++) {
             if ((near >> i & 1) == 0)
                 continue;
-            const unsigned before = count, found =
-                add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
+            const unsigned before = count,
+                           found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
             for (unsigned k = before; k < found; k++) {
                 const bool deep = c[k].least > slop_of(s, p, &s->body[i]);
                 any_inside = any_inside || deep;

@@ -28,10 +28,10 @@ typedef struct body_pose {
 /* A collider during a step. */
 typedef struct contact_body {
     spring_shape shape;
-    bool moves;   /* its pose depends on time */
-    bool turns;   /* its frame turns in this step */
-    bool slips;   /* its surface moves in the frame: the spin of a round body, or `surface` */
-    bool flat;    /* two axes */
+    bool moves;    /* its pose depends on time */
+    bool turns;    /* its frame turns in this step */
+    bool slips;    /* its surface moves in the frame: the spin of a round body, or `surface` */
+    bool flat;     /* two axes */
     uint32_t bits; /* of the masks of particles */
     double half[3], radius, friction, restitution, thickness;
     double size;     /* [m] of the coordinates that a gap is computed from: for rounding errors */
@@ -50,26 +50,26 @@ typedef struct contact_body {
 typedef struct contact_setting {
     const contact_body *body; /* [count] */
     unsigned count;
-    double h;                      /* [s] duration of the drift */
-    double epsilon;                /* rounding error of coordinates */
-    double (*origin)[3];           /* [count] [m] points that angular impulses are about */
-    spring_impulse *impulse;       /* [count] sums */
-    bool records;                  /* whether impulses are added */
+    double h;                /* [s] duration of the drift */
+    double epsilon;          /* rounding error of coordinates */
+    double (*origin)[3];     /* [count] [m] points that angular impulses are about */
+    spring_impulse *impulse; /* [count] sums */
+    bool records;            /* whether impulses are added */
 } contact_setting;
 
 /* A particle. */
 typedef struct contact_particle {
-    vector3 x0;            /* [m] at the start of the drift */
-    vector3 v0;            /* [m/s] at the start */
-    vector3 accel;         /* [m/s^2] of the kick before the drift */
-    vector3 w;             /* [m/s] velocity of the drift */
-    vector3 d;             /* [m] displacement */
-    double radius, mass;   /* [m], [kg] */
-    double friction;       /* factor of the friction of colliders */
-    uint32_t bits;         /* its mask */
-    uint32_t near;         /* bit i: its path may touch collider i */
-    uint32_t touched;      /* bit i: it touches collider i */
-    bool wrong;            /* a gap is not finite */
+    vector3 x0;          /* [m] at the start of the drift */
+    vector3 v0;          /* [m/s] at the start */
+    vector3 accel;       /* [m/s^2] of the kick before the drift */
+    vector3 w;           /* [m/s] velocity of the drift */
+    vector3 d;           /* [m] displacement */
+    double radius, mass; /* [m], [kg] */
+    double friction;     /* factor of the friction of colliders */
+    uint32_t bits;       /* its mask */
+    uint32_t near;       /* bit i: its path may touch collider i */
+    uint32_t touched;    /* bit i: it touches collider i */
+    bool wrong;          /* a gap is not finite */
 } contact_particle;
 
 /* The surface of a collider near a particle. */

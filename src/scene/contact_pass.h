@@ -24,8 +24,8 @@ typedef struct scene_contacts {
 /* A particle in a motion with contacts. Its free motion has the operations of leapfrog_particles_tmpl.h. */
 typedef struct contact_state {
     scalar x0[3], v0[3], free[3]; /* free: the acceleration without drag */
-    scalar drag;                /* [1/s] */
-    scalar leading, correction; /* of an implicit kick */
+    scalar drag;                  /* [1/s] */
+    scalar leading, correction;   /* of an implicit kick */
     contact_particle c;
 } contact_state;
 

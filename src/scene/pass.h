@@ -24,13 +24,13 @@ struct scene_step {
     scene_forces forces; /* .force: at the end of the step, or of its stages */
     scene_particles particles;
     uint32_t from, to;
-    bool first, last;    /* of a call */
-    scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
-    scalar h;            /* [s] dt in the precision of the scene */
-    double t0, dt, done; /* the step starts at the time t0 + done dt */
+    bool first, last;      /* of a call */
+    scene_motion whole;    /* over the whole step, from the state at its start to the state at its end */
+    scalar h;              /* [s] dt in the precision of the scene */
+    double t0, dt, done;   /* the step starts at the time t0 + done dt */
     double elapsed, since; /* colliders were set elapsed + (done - since) dt before */
-    cached_force cached; /* the forces at the start */
-    bool predicts;       /* see scene_stepper */
+    cached_force cached;   /* the forces at the start */
+    bool predicts;         /* see scene_stepper */
     damping_series damping;
     scene_contacts contacts;
 };

@@ -144,19 +144,18 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
     scene_links links = scene_prepare_links(s, band);
-    scene_step step = {
-        .kernels = kernels,
-        .scene = s,
-        .links = &links,
-        .forces = scene_prepare_forces(s, NULL),
-        .particles = scene_prepare_particles(s),
-        .h = (scalar)dt,
-        .t0 = t0,
-        .dt = dt,
-        .predicts = spring_scene_steppers[m].predicts,
-        .done = (double)before,
-        .elapsed = same_run ? s->colliders_elapsed : scene_elapsed(s, s->steps),
-        .since = same_run ? (double)s->colliders_since : 0};
+    scene_step step = {.kernels = kernels,
+                       .scene = s,
+                       .links = &links,
+                       .forces = scene_prepare_forces(s, NULL),
+                       .particles = scene_prepare_particles(s),
+                       .h = (scalar)dt,
+                       .t0 = t0,
+                       .dt = dt,
+                       .predicts = spring_scene_steppers[m].predicts,
+                       .done = (double)before,
+                       .elapsed = same_run ? s->colliders_elapsed : scene_elapsed(s, s->steps),
+                       .since = same_run ? (double)s->colliders_since : 0};
     prepare_collisions(&step);
     choose_damping(&step, &links, &spring_scene_steppers[m]);
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);

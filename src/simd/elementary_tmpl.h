@@ -114,7 +114,7 @@ SPRING_INLINE sine_cosine sine_cosine_of(real angle)
     const real leading = 1 - z / 2; /* its rounding error is added below */
     const real cosine = leading + (((1 - leading) - z / 2) + z * z * polynomial(z, even, 8));
     const real_bits turn = to_bits(quarter);
-    const mask odd_turn = (turn & 1) != 0;
+    const lane_mask odd_turn = (turn & 1) != 0;
     const real_bits minus_sine = (turn & 2) << 62, minus_cosine = ((turn + 1) & 2) << 62;
     return (sine_cosine){from_bits(to_bits(select_real(odd_turn, cosine, sine)) ^ minus_sine),
                          from_bits(to_bits(select_real(odd_turn, sine, cosine)) ^ minus_cosine)};

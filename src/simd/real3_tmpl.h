@@ -52,7 +52,7 @@ SPRING_INLINE real3 cross3(real3 a, real3 b)
     return (real3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-SPRING_INLINE real3 select3(mask t, real3 a, real3 b)
+SPRING_INLINE real3 select3(lane_mask t, real3 a, real3 b)
 {
     return (real3){select_real(t, a.x, b.x), select_real(t, a.y, b.y), select_real(t, a.z, b.z)};
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* `real` as one number; see real_tmpl.h. */
 typedef scalar real;
-typedef bool mask;
+typedef bool lane_mask;
 typedef uint64_t real_bits; /* of a double */
 
 SPRING_INLINE real splat(scalar s)
@@ -9,27 +9,27 @@ SPRING_INLINE real splat(scalar s)
     return s;
 }
 
-SPRING_INLINE mask not_finite(real a)
+SPRING_INLINE lane_mask not_finite(real a)
 {
     return !(a - a == 0);
 }
 
-SPRING_INLINE mask sign_bit(real a)
+SPRING_INLINE lane_mask sign_bit(real a)
 {
     return spring_sign_bit((double)a);
 }
 
-SPRING_INLINE bool any(mask t)
+SPRING_INLINE bool any(lane_mask t)
 {
     return t;
 }
 
-SPRING_INLINE mask not_mask(mask t)
+SPRING_INLINE lane_mask not_mask(lane_mask t)
 {
     return !t;
 }
 
-SPRING_INLINE real select_real(mask t, real a, real b)
+SPRING_INLINE real select_real(lane_mask t, real a, real b)
 {
     return t ? a : b;
 }
@@ -39,7 +39,7 @@ SPRING_INLINE real vec_not_negative(real a)
     return a < 0 ? 0 : a;
 }
 
-SPRING_INLINE mask vec_load_mask(const int8_t *p)
+SPRING_INLINE lane_mask vec_load_mask(const int8_t *p)
 {
     return *p != 0;
 }
@@ -61,12 +61,12 @@ SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
     *p = b;
 }
 
-SPRING_INLINE lane_bits bits_where(mask t, uint32_t bits)
+SPRING_INLINE lane_bits bits_where(lane_mask t, uint32_t bits)
 {
     return t ? bits : 0;
 }
 
-SPRING_INLINE mask has_bits(lane_bits b, uint32_t bits)
+SPRING_INLINE lane_mask has_bits(lane_bits b, uint32_t bits)
 {
     return (b & bits) != 0;
 }
@@ -119,7 +119,7 @@ SPRING_INLINE void vec_store_float(float *p, real r)
 #endif
 
 /* Bit-identical to the function in real_vector_tmpl.h. */
-SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
+SPRING_INLINE void vec_inverse_sqrt(real *a, const lane_mask *where, int many)
 {
     (void)where;
     for (int k = 0; k < many; k++) {

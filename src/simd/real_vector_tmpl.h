@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* `real` as a vector of SPRING_VECTOR bytes; see real_tmpl.h. */
 typedef scalar real __attribute__((vector_size(SPRING_VECTOR)));
-typedef scalar_bits mask __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
-typedef mask real_bits;
+typedef scalar_bits lane_mask __attribute__((vector_size(SPRING_VECTOR))); /* of a comparison: -1 or 0 in each lane */
+typedef lane_mask real_bits;
 
 SPRING_INLINE real splat(scalar s)
 {
@@ -10,18 +10,18 @@ SPRING_INLINE real splat(scalar s)
 }
 
 /* Not 0 in lanes that are infinite or NaN. */
-SPRING_INLINE mask not_finite(real a)
+SPRING_INLINE lane_mask not_finite(real a)
 {
-    return (mask)(a - a);
+    return (lane_mask)(a - a);
 }
 
-SPRING_INLINE mask sign_bit(real a)
+SPRING_INLINE lane_mask sign_bit(real a)
 {
-    return (mask)a & (mask)splat(-(scalar)0);
+    return (lane_mask)a & (lane_mask)splat(-(scalar)0);
 }
 
 /* Whether any bit is set. */
-SPRING_INLINE bool any(mask t)
+SPRING_INLINE bool any(lane_mask t)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64
     return _mm512_test_epi64_mask((__m512i)t, (__m512i)t) != 0;
@@ -40,14 +40,14 @@ SPRING_INLINE bool any(mask t)
 #endif
 }
 
-SPRING_INLINE mask not_mask(mask t)
+SPRING_INLINE lane_mask not_mask(lane_mask t)
 {
     return ~t;
 }
 
-SPRING_INLINE real select_real(mask t, real a, real b)
+SPRING_INLINE real select_real(lane_mask t, real a, real b)
 {
-    return (real)((t & (mask)a) | (~t & (mask)b));
+    return (real)((t & (lane_mask)a) | (~t & (lane_mask)b));
 }
 
 /* a, but 0 where a < 0. */
@@ -71,29 +71,29 @@ SPRING_INLINE real vec_not_negative(real a)
 }
 
 /* From one byte per lane, -1 or 0. */
-SPRING_INLINE mask vec_load_mask(const int8_t *p)
+SPRING_INLINE lane_mask vec_load_mask(const int8_t *p)
 {
 #if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
-    return (mask)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
+    return (lane_mask)_mm512_cvtepi8_epi32(_mm_loadu_si128((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 64
-    return (mask)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
+    return (lane_mask)_mm512_cvtepi8_epi64(_mm_loadl_epi64((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
-    return (mask)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
+    return (lane_mask)_mm256_cvtepi8_epi32(_mm_loadl_epi64((const __m128i *)p));
 #elif SPRING_X86_64 && SPRING_VECTOR == 32
     int four;
     memcpy(&four, p, sizeof four);
-    return (mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
+    return (lane_mask)_mm256_cvtepi8_epi64(_mm_cvtsi32_si128(four));
 #elif SPRING_X86_64 /* unpacking repeats each byte */
     int32_t bytes = 0;
-    memcpy(&bytes, p, sizeof(mask) / sizeof(scalar));
+    memcpy(&bytes, p, sizeof(lane_mask) / sizeof(scalar));
     const __m128i each = _mm_cvtsi32_si128(bytes), twice = _mm_unpacklo_epi8(each, each);
     const __m128i four = _mm_unpacklo_epi16(twice, twice);
-    return (mask)(sizeof(scalar) == sizeof(float) ? four : _mm_unpacklo_epi32(four, four));
+    return (lane_mask)(sizeof(scalar) == sizeof(float) ? four : _mm_unpacklo_epi32(four, four));
 #elif defined(__wasm_simd128__) && SPRING_VECTOR == 16 && !defined(SPRING_FLOAT)
     const v128_t both = wasm_v128_load16_splat(p);
-    return (mask)wasm_i8x16_shuffle(both, both, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+    return (lane_mask)wasm_i8x16_shuffle(both, both, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
 #else
-    mask t = {0};
+    lane_mask t = {0};
     for (size_t i = 0; i < sizeof t / sizeof(scalar); i++)
         t[i] = p[i];
     return t;
@@ -112,7 +112,7 @@ SPRING_INLINE real vec_load_lanes(const scalar *p)
 }
 
 /* 32 bits in each lane. */
-typedef mask lane_bits;
+typedef lane_mask lane_bits;
 
 SPRING_INLINE lane_bits load_bits(const uint32_t *p)
 {
@@ -131,13 +131,13 @@ SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
 }
 
 /* `bits` in the lanes of a mask, 0 in other lanes. */
-SPRING_INLINE lane_bits bits_where(mask t, uint32_t bits)
+SPRING_INLINE lane_bits bits_where(lane_mask t, uint32_t bits)
 {
     return t & (scalar_bits)bits;
 }
 
 /* Lanes that have one of `bits`. */
-SPRING_INLINE mask has_bits(lane_bits b, uint32_t bits)
+SPRING_INLINE lane_mask has_bits(lane_bits b, uint32_t bits)
 {
     return (b & (scalar_bits)bits) != 0;
 }
@@ -230,12 +230,12 @@ SPRING_INLINE real vec_seed(real a)
 
 SPRING_INLINE real vec_abs(real a)
 {
-    return (real)(~(mask)splat(-(scalar)0) & (mask)a);
+    return (real)(~(lane_mask)splat(-(scalar)0) & (lane_mask)a);
 }
 
 SPRING_INLINE real vec_minus_abs(real a)
 {
-    return (real)((mask)splat(-(scalar)0) | (mask)a);
+    return (real)((lane_mask)splat(-(scalar)0) | (lane_mask)a);
 }
 
 /* The smaller; b if a is NaN. */
@@ -262,9 +262,9 @@ SPRING_INLINE real vec_min(real a, real b)
 /* vec_inverse_sqrt() for numbers of any size. */
 SPRING_NOINLINE void vec_inverse_sqrt_of_any(real *a, int many)
 {
-    const mask least = (mask)splat(0x1p-84), beyond = (mask){0} - ((int64_t)1 << 59);
+    const lane_mask least = (lane_mask)splat(0x1p-84), beyond = (lane_mask){0} - ((int64_t)1 << 59);
     for (int k = 0; k < many; k++) {
-        const mask fits = (((mask)a[k] - least) & beyond) == 0;
+        const lane_mask fits = (((lane_mask)a[k] - least) & beyond) == 0;
         const real one = select_real(fits, a[k], splat(1)), seed = vec_seed(one), rest = 1 - one * (seed * seed);
         const real root = seed + seed * rest * ((scalar)0.5 + (scalar)0.375 * rest);
         a[k] = select_real(fits, root, select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0)));
@@ -279,7 +279,7 @@ SPRING_NOINLINE void vec_inverse_sqrt_of_any(real *a, int many)
    is y (1 + r/2 + 3/8 r^2), r = 1 - a y^2. y has 24 bits, so its square is exact. |r| < 2^-20, so the omitted terms are
    below 2^-61. The last sum adds half an ulp at most, and a y^2 as much. Lanes with an exponent outside of
    2^-84 ... 2^43 use the quotient in double. This is a choice per lane, so results are the same in any vector. */
-SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
+SPRING_INLINE void vec_inverse_sqrt(real *a, const lane_mask *where, int many)
 {
 #ifdef SPRING_FLOAT
     (void)where;
@@ -288,12 +288,12 @@ SPRING_INLINE void vec_inverse_sqrt(real *a, const mask *where, int many)
         a[k] = select_real(a[k] > 0, 1 / vec_sqrt(a[k]), splat(0));
 #else
     /* There are 128 exponents, so the difference to the bits of the least number has 7 + 52 bits. */
-    const mask least = (mask)splat(0x1p-84), beyond = (mask){0} - ((int64_t)1 << 59);
+    const lane_mask least = (lane_mask)splat(0x1p-84), beyond = (lane_mask){0} - ((int64_t)1 << 59);
     real y[8], r[8];
-    mask wrong = {0};
+    lane_mask wrong = {0};
     SPRING_UNROLL
     for (int k = 0; k < many; k++)
-        wrong |= where[k] & ((mask)a[k] - least);
+        wrong |= where[k] & ((lane_mask)a[k] - least);
     if (SPRING_UNLIKELY(any(wrong & beyond))) {
         real any_size[8]; /* a copy, so that a stays in registers */
         SPRING_UNROLL

@@ -105,9 +105,9 @@ SPRING_INLINE exact_coefficients exact_coefficients_of(real w, real b, real rest
 {
     const real t = time + (time - time);
     const spring_split r = spring_split_of(w, b, rest);
-    const mask real_roots = r.overdamped, complex_roots = not_mask(real_roots), forward = t > 0;
+    const lane_mask real_roots = r.overdamped, complex_roots = not_mask(real_roots), forward = t > 0;
     const real angle = r.split * t, size = vec_abs(angle);
-    const mask still = size < exact_tiny;
+    const lane_mask still = size < exact_tiny;
     real slow = b, fast = b, rate = b, F = t, G = t, H = t;
     if (any(complex_roots)) {
         const sine_cosine y = sine_cosine_of(angle);
@@ -140,7 +140,7 @@ SPRING_INLINE exact_coefficients exact_coefficients_of(real w, real b, real rest
         const real P = (select_real(size_slow < exact_tiny, t, lost) - E.half * c.H) / fast;
         c.P = select_real(real_roots, P, c.P);
     }
-    const mask brief = vec_abs(largest) < 1;
+    const lane_mask brief = vec_abs(largest) < 1;
     if (any(brief))
         c.P = select_real(brief, t * t * exact_short_response(2 * (b * t), product), c.P);
     return c;

@@ -46,7 +46,7 @@ SPRING_INLINE real follow_least_fraction(bool single)
 SPRING_INLINE follow_coefficients follow_prepare(exact_coefficients exact, real omega2, real dt, bool single)
 {
     const real f0 = follow_least_fraction(single), decay = exact.decay_rate * dt;
-    const mask lands = (decay > 0) & (omega2 > 0);
+    const lane_mask lands = (decay > 0) & (omega2 > 0);
     const real fraction = select_real(decay < f0, f0, select_real(decay < 1, decay, splat(1)));
     return (follow_coefficients){exact, omega2, select_real(lands, fraction, splat(0))};
 }
@@ -62,21 +62,21 @@ SPRING_INLINE real half_ulp(real a)
 /* sqrt(a^2 + b^2), a and b >= 0, without squares that overflow: spring_hypot() on `real` */
 SPRING_INLINE real vec_hypot(real a, real b)
 {
-    const mask larger = a > b;
+    const lane_mask larger = a > b;
     const real large = select_real(larger, a, b), lesser = select_real(larger, b, a);
     const real ratio = lesser / select_real(large > 0, large, splat(1));
     return large * vec_sqrt(1 + ratio * ratio);
 }
 
 /* Whether a spring lands: see above. single: as in follow_prepare(). */
-SPRING_INLINE mask follow_lands(real x, real rest, real y, real u, const follow_coefficients *c, bool single)
+SPRING_INLINE lane_mask follow_lands(real x, real rest, real y, real u, const follow_coefficients *c, bool single)
 {
     const scalar ulps = single && sizeof(scalar) == sizeof(double) ? (scalar)0x1p29 : 1; /* an ulp of float in double */
     const scalar least = single ? (scalar)FLT_MIN : (scalar)DBL_MIN;
     const scalar reach = 2.25; /* [d] 9/4, see above */
     const real x_size = vec_abs(x), rest_size = vec_abs(rest), distance = vec_abs(y);
     const real tolerance = half_ulp(select_real(x_size > rest_size, x_size, rest_size)) * (reach * ulps) + least;
-    const mask nearby = (c->fraction > 0) & (distance * c->fraction <= tolerance);
+    const lane_mask nearby = (c->fraction > 0) & (distance * c->fraction <= tolerance);
     if (!any(nearby))
         return nearby;
     const real speed = vec_abs(u) / vec_sqrt(select_real(nearby, c->omega2, splat(1)));

@@ -10,14 +10,14 @@
 /* split = sqrt |w - b^2|; overdamped: w < b^2 */
 typedef struct spring_split {
     real split;
-    mask overdamped;
+    lane_mask overdamped;
 } spring_split;
 
 /* rest: the rounding error of w - b^2, where w is omega^2 rounded */
 SPRING_INLINE spring_split spring_split_of(real w, real b, real rest)
 {
     real scale = splat(1), back = splat(1);
-    const mask large = (b > 0x1p400) | (w > 0x1p800), tiny = (b < 0x1p-400) & (w < 0x1p-800);
+    const lane_mask large = (b > 0x1p400) | (w > 0x1p800), tiny = (b < 0x1p-400) & (w < 0x1p-800);
     if (SPRING_UNLIKELY(any(large | tiny))) { /* squares or their rounding errors might overflow or underflow */
         scale = select_real(large, splat(0x1p-700), select_real(tiny, splat(0x1p600), scale));
         back = select_real(large, splat(0x1p700), select_real(tiny, splat(0x1p-600), back));

@@ -22,7 +22,7 @@ void INVERSE_SQRT(scalar *a, const int8_t *where, size_t count)
     enum { many = 4 };
     for (size_t i = 0; i < count; i += many * lanes) {
         real each[many];
-        mask joined[many];
+        lane_mask joined[many];
         for (size_t k = 0; k < many; k++) {
             each[k] = vec_load(a + i + k * lanes);
             joined[k] = vec_load_mask(where + i + k * lanes);

@@ -42,7 +42,8 @@ static void turn(const double phi[3], const double a[3], double out[3])
         n[i] = phi[i] / angle;
     cross(n, a, c);
     for (int i = 0; i < 3; i++)
-        out[i] = angle > 0 ? cos(angle) * a[i] + sin(angle) * c[i] + 2 * pow(sin(angle / 2), 2) * dot(n, a) * n[i] : a[i];
+        out[i] =
+            angle > 0 ? cos(angle) * a[i] + sin(angle) * c[i] + 2 * pow(sin(angle / 2), 2) * dot(n, a) * n[i] : a[i];
 }
 
 /* One free particle of 0.7 kg. */
@@ -129,7 +130,10 @@ static void turned_box_hits(void)
             for (int fine = 0; fine < 2; fine++) {
                 double sum = 0;
                 for (int k = 0; k < 8; k++)
-                    sum += pow(bat(with_contacts[m], 10, 0.05, e, (fine ? 1. / 7680 : 1. / 240) * (1 + 0.05 * k), 1 << 20).error, 2);
+                    sum +=
+                        pow(bat(with_contacts[m], 10, 0.05, e, (fine ? 1. / 7680 : 1. / 240) * (1 + 0.05 * k), 1 << 20)
+                                .error,
+                            2);
                 error[fine] = sqrt(sum / 8);
             }
             CHECK(log2(error[0] / error[1]) / 5 >= 1.9, "second order");
@@ -231,7 +235,8 @@ static void platforms(void)
             double slip = 0, now[3], u[3];
             for (int f = 0; f < (shaken ? 600 : 60); f++) {
                 const double t = f * frame, t1 = t + frame;
-                const double here = shaken ? sin(2 * t) : 0.3 * t + 2 * t * t, next = shaken ? sin(2 * t1) : 0.3 * t1 + 2 * t1 * t1;
+                const double here = shaken ? sin(2 * t) : 0.3 * t + 2 * t * t,
+                             next = shaken ? sin(2 * t1) : 0.3 * t1 + 2 * t1 * t1;
                 c.at[0] = here, c.velocity[0] = shaken ? 2 * cos(2 * t) : 0.3 + 4 * t;
                 c.acceleration[0] = shaken ? 2 * (next - here - c.velocity[0] * frame) / frame / frame : 4;
                 set(s, &c, 1);
@@ -327,9 +332,11 @@ static void grooves(void)
     for (int i = 0; i < 5; i++)
         for (int mu = 0; mu < 2; mu++)
             for (int m = 0; m < method_count; m++) {
-                const double half = degrees[i] * PI / 360, x[3] = {0.3 * sin(half), 1, 0}, none[3] = {0}, g[3] = {0, -gravity, 0};
-                spring_collider c[2] = {{.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}, .friction = 0.3 * mu},
-                                        {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}, .friction = 0.3 * mu}};
+                const double half = degrees[i] * PI / 360, x[3] = {0.3 * sin(half), 1, 0}, none[3] = {0},
+                             g[3] = {0, -gravity, 0};
+                spring_collider c[2] = {
+                    {.shape = SPRING_PLANE, .axis = {{cos(half), sin(half), 0}}, .friction = 0.3 * mu},
+                    {.shape = SPRING_PLANE, .axis = {{-cos(half), sin(half), 0}}, .friction = 0.3 * mu}};
                 spring_scene *s = particle_at(x, none, g, 2);
                 set(s, c, 2);
                 double inside = 0, now[3], v[3];
@@ -349,7 +356,8 @@ static void grooves(void)
 /* -------------------------------------------------------------------------------------------------------- tunnelling */
 
 /* A plate 2 b thick flies through a cloud at up to 500 m/s and turns by up to 0.2 rad in a step. */
-static void plates(double thick, double speed, double angle, double dt, size_t *contacts, size_t *through, size_t *around)
+static void plates(double thick, double speed, double angle, double dt, size_t *contacts, size_t *through,
+                   size_t *around)
 {
     enum { count = 40 };
     double x[count][3], v[count][3], radius[count];
@@ -480,7 +488,8 @@ static void momentum_balance(void)
         spring_collider c[3] = {{.shape = SPRING_SPHERE, .radius = 0.2},
                                 unit_box,
                                 {.shape = SPRING_PLANE, .axis = {{0, 1, 0}}, .at = {0, -0.3, 0}}};
-        c[1].at[0] = 0.4, c[1].at[1] = 0.1, c[1].at[2] = 0.2, c[1].half[0] = 0.1, c[1].half[1] = 0.2, c[1].half[2] = 0.15;
+        c[1].at[0] = 0.4, c[1].at[1] = 0.1, c[1].at[2] = 0.2, c[1].half[0] = 0.1, c[1].half[1] = 0.2,
+        c[1].half[2] = 0.15;
         for (int k = 0; k < 3; k++)
             c[k].friction = mu, c[k].restitution = e;
         for (int a = 0; a < 3 && moves; a++)
@@ -792,9 +801,11 @@ static void custom_order(void)
 {
     double radius = 1, height = 0.15;
     for (int kind = 0; kind < 4 && in_double; kind++) {
-        spring_collider c = {.shape = SPRING_CUSTOM, .thickness = 0.04, .friction = kind & 1 ? (kind & 2 ? 0.1 : 0.2) : 0};
+        spring_collider c = {
+            .shape = SPRING_CUSTOM, .thickness = 0.04, .friction = kind & 1 ? (kind & 2 ? 0.1 : 0.2) : 0};
         c.gap = kind & 2 ? hills : hollow_sphere, c.user = kind & 2 ? &height : &radius;
-        const double x[3] = {kind & 2 ? 0.2 : 0.6, kind & 2 ? 0.1 : -0.7, 0.1}, v[3] = {kind & 2 ? 1 : 0.3, 0, kind & 2 ? 0.4 : 0.8};
+        const double x[3] = {kind & 2 ? 0.2 : 0.6, kind & 2 ? 0.1 : -0.7, 0.1},
+                     v[3] = {kind & 2 ? 1 : 0.3, 0, kind & 2 ? 0.4 : 0.8};
         double best[3], now[3], error[2];
         slide_on(c, x, v, 1 << 15, best);
         for (int fine = 0; fine < 2; fine++) {

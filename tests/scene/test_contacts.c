@@ -87,7 +87,8 @@ static void turn(const double phi[3], double a[3])
     const double angle = sqrt(dot(phi, phi));
     if (angle == 0)
         return;
-    const double n[3] = {phi[0] / angle, phi[1] / angle, phi[2] / angle}, along = dot(n, a), old[3] = {a[0], a[1], a[2]};
+    const double n[3] = {phi[0] / angle, phi[1] / angle, phi[2] / angle}, along = dot(n, a),
+                 old[3] = {a[0], a[1], a[2]};
     for (int i = 0; i < 3; i++) {
         const double cross = n[(i + 1) % 3] * old[(i + 2) % 3] - n[(i + 2) % 3] * old[(i + 1) % 3];
         a[i] = cos(angle) * old[i] + sin(angle) * cross + (1 - cos(angle)) * along * n[i];
