@@ -99,7 +99,7 @@ SPRING_INLINE double inner(vector3 a, vector3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-SPRING_INLINE double length_of(vector3 a)
+SPRING_INLINE double length3(vector3 a)
 {
     return spring_sqrt(inner(a, a));
 }
@@ -240,14 +240,14 @@ static void find_axes(vector3 axis[3], const spring_collider *c, bool flat)
     axis[0] = vector_of(c->axis[0], flat);
     const vector3 other = fabs(axis[0].x) < 0.6 ? (vector3){1, 0, 0} : (vector3){0, 1, 0};
     const vector3 side = flat ? (vector3){-axis[0].y, axis[0].x, 0} : outer(axis[0], other);
-    axis[1] = scale(1 / length_of(side), side);
+    axis[1] = scale(1 / length3(side), side);
     axis[2] = outer(axis[0], axis[1]);
 }
 
 /* Turns the frame at the end of the step so that the axis of the capsule is the same in it, up to its length. */
 static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
 {
-    const double before = length_of(from), after = length_of(to);
+    const double before = length3(from), after = length3(to);
     b->start.segment = b->start.along = from;
     b->end.segment = b->end.along = to;
     const double cosine = inner(from, to) / (before * after);
@@ -268,9 +268,9 @@ static void turn_with_segment(contact_body *b, vector3 from, vector3 to)
 static double size_of_core(const contact_body *b)
 {
     if (b->shape == SPRING_CAPSULE)
-        return fmax(length_of(b->start.segment), length_of(b->end.segment));
+        return fmax(length3(b->start.segment), length3(b->end.segment));
     if (b->shape == SPRING_BOX)
-        return length_of((vector3){b->half[0], b->half[1], b->flat ? 0 : b->half[2]});
+        return length3((vector3){b->half[0], b->half[1], b->flat ? 0 : b->half[2]});
     return 0;
 }
 
@@ -310,11 +310,11 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
         b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
     double stretch = 0;
     if (b->shape == SPRING_CAPSULE)
-        stretch = length_of(subtract(b->end.segment, b->start.segment));
+        stretch = length3(subtract(b->end.segment, b->start.segment));
     const bool far = !(angle < 0.5);
     b->growth = far ? 1 : 1 / (1 - angle);
     b->reach = far ? infinite : (radius + stretch + angle * core) * b->growth;
-    const double shift = length_of(subtract(b->end.at, b->start.at));
+    const double shift = length3(subtract(b->end.at, b->start.at));
     b->turning = far ? 0 : angle * b->growth;
     for (int a = 0; a < 3; a++) {
         b->low[a] = b->turns ? -infinite : infinite;
@@ -367,7 +367,7 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
     /* `surface` has the axes of the scene for shapes without axes of their own. */
     if (plane)
         b->surface = direction_in(&(body_pose){.axis = {axis[0], axis[1], axis[2]}}, b->surface);
-    double angle = b->turns ? length_of(subtract(phi1, phi0)) : 0;
+    double angle = b->turns ? length3(subtract(phi1, phi0)) : 0;
     if (capsule) {
         const vector3 from = subtract(path_of(c->to, c->velocity_to, c->acceleration, t0, flat), b->start.at);
         const vector3 to = subtract(path_of(c->to, c->velocity_to, c->acceleration, t1, flat), b->end.at);
@@ -375,9 +375,9 @@ void spring_contact_place(contact_body *b, const spring_collider *c, double t0, 
         b->moves = b->moves || !is_zero(b->start.stretching);
         turn_with_segment(b, from, to);
         if (b->turns)
-            angle = 2 * length_of(subtract(b->end.axis[0], b->start.axis[0])) +
-                    2 * length_of(subtract(b->end.axis[1], b->start.axis[1])) +
-                    2 * length_of(subtract(b->end.axis[2], b->start.axis[2]));
+            angle = 2 * length3(subtract(b->end.axis[0], b->start.axis[0])) +
+                    2 * length3(subtract(b->end.axis[1], b->start.axis[1])) +
+                    2 * length3(subtract(b->end.axis[2], b->start.axis[2]));
     }
     b->size = largest_of(b->start.at) + b->radius + largest_of(b->start.segment) +
               (b->shape == SPRING_CUSTOM ? b->thickness : 0);
@@ -589,7 +589,7 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
     vector3 u = u0, sum = zero3, direction = zero3; /* sum: twice the way, in units of a part */
     bool sticks = false;
     for (int i = 0; i < parts; i++) {
-        const double speed = length_of(u);
+        const double speed = length3(u);
         vector3 at_stop = zero3;
         double stop = 0; /* time of the stop, in parts */
         if (speed > 0) {
@@ -597,10 +597,10 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
             const double deceleration = f - inner(a, along);
             if (!(deceleration > speed)) { /* it does not stop */
                 vector3 next = add(u, a);
-                double length = length_of(next);
+                double length = length3(next);
                 if (parts == 1 || speed > 4 * f) { /* Heun's method, if friction turns */
                     const vector3 end = parts == 1 ? along : add_scaled(next, -f, along);
-                    const double end_length = parts == 1 ? 1 : length_of(end);
+                    const double end_length = parts == 1 ? 1 : length3(end);
                     next = add_scaled(add_scaled(next, -f / 2, along), -f / 2 / end_length, end);
                     direction = along;
                 } else { /* slow: the direction at the end, or it would zigzag */
@@ -608,7 +608,7 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
                 }
                 sum = add(sum, add(u, next));
                 u = next;
-                length = length_of(u);
+                length = length3(u);
                 sticks = !(length > 0);
                 if (!sticks && parts > 1)
                     direction = scale(1 / length, u);
@@ -619,11 +619,11 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
         }
         const double rest = 1 - stop;
         const vector3 pushed = add_scaled(at_stop, rest, a);
-        const double length = length_of(pushed);
+        const double length = length3(pushed);
         sum = add_scaled(sum, stop, add(u, at_stop));
         sticks = length <= f * rest;
         if (sticks) {
-            const double left = length_of(at_stop);
+            const double left = length3(at_stop);
             sum = add_scaled(sum, f > 0 ? fmin(rest, left / f) : 0, at_stop);
             u = zero3;
             continue;
@@ -713,7 +713,7 @@ static bool find_convex_impact(contact_particle *p, meeting *m)
 static bool find_custom_impact(contact_particle *p, meeting *m)
 {
     const contact_body *const b = m->b;
-    const double length = length_of(m->way);
+    const double length = length3(m->way);
     if (!(length > 0))
         return false;
     double last = 0, before = m->gap;
@@ -775,14 +775,14 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
         m->gap = m->at.gap;
     m->left = (1 - m->fraction) * s->h;
     m->place = add_scaled(m->start, m->fraction, m->way);
-    m->walks = custom && length_of(m->way) > custom_step(b);
+    m->walks = custom && length3(m->way) > custom_step(b);
     const vector3 x = add_scaled(p->x0, m->fraction, p->d), n = direction_out(&b->start, m->at.normal);
     m->n = n;
     m->n_end = n;
     if (b->turns) {
         m->n_end = direction_out(&b->end, m->at.normal);
         const vector3 middle = between(n, m->n_end, m->fraction);
-        m->n = scale(1 / length_of(middle), middle);
+        m->n = scale(1 / length3(middle), middle);
     }
     if (m->fraction < least_fraction || !b->moves) {
         m->velocity = surface_velocity(b, &b->start, m->at.along, x, m->n);
@@ -891,7 +891,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
             if (end.sticks && is_zero(end.mean) && !b->slips && b->shape != SPRING_CAPSULE)
                 break;
         } else { /* friction of a particle that landed in this step */
-            const double speed = length_of(mean), limit = mu * lambda, first = length_of(u0);
+            const double speed = length3(mean), limit = mu * lambda, first = length3(u0);
             end.sticks = !(speed > limit);
             end.mean = end.kick = end.sticks ? zero3 : scale(1 - limit / speed, mean);
             /* Friction along the velocity at the start makes the kicks before and after the drift adjoint. */
@@ -901,7 +901,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
         shift = subtract(scale(m->left, end.mean), along);
     }
     vector3 change;
-    if (rests && end.sticks && length_of(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
+    if (rests && end.sticks && length3(u0) * duration <= m->slop && !b->slips) { /* carried exactly */
         vector3 there = m->start;
         if (b->shape == SPRING_CAPSULE)
             there = add_scaled(there, m->at.along, subtract(b->end.segment, b->start.segment));
@@ -966,7 +966,7 @@ static void walk(const contact_setting *s, contact_particle *p, const meeting *m
     const contact_body *const b = m->b;
     vector3 y = m->place;
     const vector3 way = subtract(end_in_frame(b, p), y);
-    double left = length_of(way);
+    double left = length3(way);
     near_point at, pusher = m->at;
     find_nearest(p, b, 1, y, &at);
     if (left <= custom_step(b))
@@ -1185,7 +1185,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
 {
     if (s->count == 1)
         return 1;
-    const double way = length_of(p->d);
+    const double way = length3(p->d);
     uint32_t near = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
@@ -1209,7 +1209,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
         unsigned count = 0;
         bool any_inside = false;
         const vector3 x = add(p->x0, p->d);
-        const double way = length_of(p->d);
+        const double way = length3(p->d);
         for (unsigned i = 0; i < s->count; i++) {
             if ((near >> i & 1) == 0)
                 continue;
@@ -1289,7 +1289,7 @@ double spring_contact_balance(const contact_surface *surface, unsigned count, ve
     count = count < most_constraints ? count : most_constraints;
     for (unsigned i = 0; i < count; i++)
         c[i] = (constraint){.n = surface[i].normal, .least = -inner(accel, surface[i].normal)};
-    double left = length_of(add(accel, least_change(c, count)));
+    double left = length3(add(accel, least_change(c, count)));
     for (unsigned i = 0; i < count; i++)
         left = fmax(0, left - surface[i].friction * c[i].multiplier);
     return left;
