@@ -53,9 +53,9 @@ enum {
     walk_pushes = 8,
     contact_rounds = 8,    /* contacts of a particle in a drift */
     corner_passes = 6,     /* of step 5 */
-    most_constraints = 16, /* on a particle; further ones are ignored */
+    most_constraints = 12, /* on a particle; further ones are ignored */
     seidel_rounds = 32,    /* where no particle can fit, as between plates that close */
-    slide_parts = 8        /* of a step in which friction turns */
+    slide_parts = 4        /* of a step in which friction turns */
 };
 
 /* Fractions of a step up to this size are rounding errors. */
@@ -92,6 +92,14 @@ SPRING_INLINE vector3 scale(double s, vector3 a)
 SPRING_INLINE vector3 add_scaled(vector3 a, double s, vector3 b) /* a + s b */
 {
     return (vector3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+/* Copies one number at a time. Compilers would copy two at once, which waits for the stores of each. */
+SPRING_INLINE void put(vector3 *to, vector3 from)
+{
+    to->x = from.x;
+    to->y = from.y;
+    to->z = from.z;
 }
 
 SPRING_INLINE double inner(vector3 a, vector3 b)
@@ -410,28 +418,26 @@ SPRING_INLINE void find_capsule(near_point *out, vector3 y, vector3 axis, double
     find_round(out, add_scaled(y, -out->along, axis), radius);
 }
 
+/* How far a coordinate is beyond +-half, with its sign. */
+SPRING_INLINE double beyond(double a, double half)
+{
+    return a > half ? a - half : a < -half ? a + half : 0;
+}
+
 SPRING_INLINE void find_box(near_point *out, const contact_body *b, vector3 y, double radius)
 {
-    const double at[3] = {y.x, y.y, y.z};
-    double over[3], face[3] = {0}, deepest = -(double)INFINITY;
-    int nearest = 0;
-    bool inside = true;
-    for (int i = 0; i < 3; i++) {
-        const double beyond = fabs(at[i]) - b->half[i];
-        over[i] = beyond > 0 ? (at[i] < 0 ? -beyond : beyond) : 0;
-        inside = inside && !(beyond > 0);
-        if (beyond > deepest) {
-            deepest = beyond;
-            nearest = i;
-        }
-    }
-    if (!inside) {
-        find_round(out, (vector3){over[0], over[1], over[2]}, radius);
+    const double x_gap = fabs(y.x) - b->half[0], y_gap = fabs(y.y) - b->half[1], z_gap = fabs(y.z) - b->half[2];
+    if ((x_gap > 0) + (y_gap > 0) + (z_gap > 0) > 1) { /* an edge or a corner */
+        const vector3 over = {beyond(y.x, b->half[0]), beyond(y.y, b->half[1]), beyond(y.z, b->half[2])};
+        find_round(out, over, radius);
         return;
     }
-    face[nearest] = at[nearest] < 0 ? -1 : 1;
-    out->normal = (vector3){face[0], face[1], face[2]};
-    out->gap = deepest - radius;
+    const bool z_first = z_gap > x_gap && z_gap > y_gap, y_first = !z_first && y_gap > x_gap;
+    const double at = z_first ? y.z : y_first ? y.y : y.x, side = at < 0 ? -1 : 1;
+    out->gap = (z_first ? z_gap : y_first ? y_gap : x_gap) - radius;
+    out->normal.x = z_first || y_first ? 0 : side;
+    out->normal.y = y_first ? side : 0;
+    out->normal.z = z_first ? side : 0;
 }
 
 /* Calls the function of a custom body. Returns the number of contacts, 1 to 3. */
@@ -524,7 +530,7 @@ SPRING_INLINE vector3 frame_velocity(const contact_body *b, const body_pose *pos
 }
 
 /* [m/s] Velocity of the surface relative to the frame, at x. n: in the scene */
-static vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
+SPRING_INLINE vector3 slip_velocity(const contact_body *b, const body_pose *pose, double along, vector3 x, vector3 n)
 {
     const bool round = b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE; /* in the axes of the scene */
     vector3 v = tangential(round ? b->surface : direction_out(pose, b->surface), n);
@@ -777,8 +783,8 @@ static bool meet(const contact_setting *s, contact_particle *p, meeting *m)
     m->place = add_scaled(m->start, m->fraction, m->way);
     m->walks = custom && length3(m->way) > custom_step(b);
     const vector3 x = add_scaled(p->x0, m->fraction, p->d), n = direction_out(&b->start, m->at.normal);
-    m->n = n;
-    m->n_end = n;
+    put(&m->n, n);
+    put(&m->n_end, n);
     if (b->turns) {
         m->n_end = direction_out(&b->end, m->at.normal);
         const vector3 middle = between(n, m->n_end, m->fraction);
@@ -1108,12 +1114,13 @@ static unsigned add_constraints(contact_particle *p, const contact_body *b, unsi
     for (unsigned k = 0; k < found && count < most_constraints; k++) {
         if (at[k].gap > nearest + most)
             continue;
-        const vector3 n = at[k].normal;
-        c[count++] = (constraint){.n = n,
-                                  .velocity = surface_velocity(b, pose, at[k].along, x, n),
-                                  .least = -at[k].gap,
-                                  .friction = b->friction * p->friction,
-                                  .index = i};
+        constraint *const to = &c[count++];
+        put(&to->n, at[k].normal);
+        put(&to->velocity, surface_velocity(b, pose, at[k].along, x, at[k].normal));
+        to->least = -at[k].gap;
+        to->multiplier = 0;
+        to->friction = b->friction * p->friction;
+        to->index = i;
     }
     return count;
 }
