@@ -535,7 +535,81 @@ static void momentum_balance(void)
     }
 }
 
-/* Impulses do not depend on the vector width, and follow their rules. */
+/* The loop of docs/games.md: a ball of mass M takes the impulses of `count` particles, m in total, after each call. The
+   speed of the ball is the last one known, so energy is not conserved: its ratio to the right one, minus 1. */
+static double coupled(int count, double ratio, double e)
+{
+    double x[64][3], v[64][3], V[3] = {0}, at[3] = {0}, P0 = 0, P1, E1, E0 = 0;
+    const double M = 5, m = ratio * M / count;
+    for (int i = 0; i < count; i++) { /* beams along x, that hit at different times */
+        x[i][0] = -0.5 - 0.3 * i / count, x[i][1] = x[i][2] = 0;
+        v[i][0] = 3, v[i][1] = v[i][2] = 0;
+        P0 += m * 3, E0 += m * 9 / 2;
+    }
+    const spring_scene_def def = {
+        .particles = (size_t)count, .position = x[0], .velocity = v[0], .mass_all = m, .colliders = 1};
+    spring_scene *s = scene_of(&def);
+    for (int f = 0; f < 60; f++) {
+        spring_impulse j;
+        spring_collider c = {.shape = SPRING_SPHERE, .radius = 0.1, .restitution = e};
+        memcpy(c.at, at, sizeof at);
+        memcpy(c.velocity, V, sizeof V);
+        set(s, &c, 1);
+        run(s, SPRING_LEAPFROG, 1. / 480, 8);
+        spring_scene_impulses(s, &j, 0, 1);
+        for (int a = 0; a < 3; a++) {
+            at[a] += 8. / 480 * V[a];
+            V[a] += j.linear[a] / M;
+        }
+    }
+    spring_scene_get(s, SPRING_VELOCITY, v[0], 0, 0, (size_t)count);
+    P1 = M * V[0], E1 = M * dot(V, V) / 2;
+    for (int i = 0; i < count; i++)
+        P1 += m * v[i][0], E1 += m * dot(v[i], v[i]) / 2;
+    free(s);
+    CHECK_BELOW(fabs(P1 / P0 - 1), in_double ? 1e-11 : 1e-5, "momentum is conserved");
+    return E1 / E0;
+}
+
+static void coupling(void)
+{
+    for (int many = 0; many < 2; many++)
+        for (int e = 0; e < 3; e++)
+            for (int k = 0; k < 5; k++) {
+                const double ratio[] = {0.01, 0.05, 0.2, 0.5, 1};
+                const double energy = coupled(many ? 64 : 1, ratio[k], 0.5 * e);
+                if (in_double)
+                    printf("# %d particles, m/M %.2f, e %.1f: energy %.3f of the start\n", many ? 64 : 1, ratio[k],
+                           0.5 * e, energy);
+            }
+}
+
+/* Impulses do not depend on the vector width. */
+static void impulses_on_all_widths(void)
+{
+    static model m;
+    for (int k = 0; k < 40; k++) {
+        build(&m, (const uint32_t[]){9, 5, 1}, 3, (unsigned)random_bits() % feature_masks & ~(unsigned)PINNED);
+        m.def.colliders = 2;
+        m.def.particle_radius = 0.02;
+        m.def.methods = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4;
+        const spring_collider c[2] = {random_collider(3), random_collider(3)};
+        spring_impulse first[2], j[2];
+        for (int i = 0; i < kernel_count; i++) {
+            if (kernels_of(i) == NULL)
+                continue;
+            spring_scene *s = scene_of(&m.def);
+            set(s, c, 2);
+            if (spring_scene_advance_with(kernels_of(i), s, with_contacts[k % 2], 0.01, 5) == SPRING_OK) {
+                CHECK(spring_scene_impulses(s, i == 0 ? first : j, 0, 2) == SPRING_OK, "impulses");
+                CHECK(i == 0 || memcmp(first, j, sizeof j) == 0, "the same bits");
+            }
+            free(s);
+        }
+    }
+}
+
+/* The rules of spring_scene_impulses(). */
 static void impulse_rules(void)
 {
     const double x[6] = {0, 0.01, 0, 1, 0.005, 0}, v[6] = {0, -3, 0, 0, -1, 0};
@@ -865,6 +939,8 @@ static const test tests[] = {
     {"no tunnelling", no_tunnelling},
     {"momentum balance", momentum_balance},
     {"impulses", impulse_rules},
+    {"impulses on all widths", impulses_on_all_widths},
+    {"coupling", coupling},
     {"radius, friction and mask", values_of_particles},
     {"custom bodies", custom_bodies},
     {"order on custom bodies", custom_order},
