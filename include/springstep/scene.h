@@ -36,8 +36,8 @@
  *    (tests/scene/test_stack.c). At most as much is in use when a callback is called.
  *  - Results are bit-identical with every compiler, instruction set and SIMD vector width, if the results of the
  *    callback are.
- *  - Particles collide with colliders: planes, spheres, capsules and boxes. They do not collide with each other. Links
- *    do not collide.
+ *  - Particles collide with colliders: planes, spheres, capsules, boxes, and bodies that a function describes. They do
+ *    not collide with each other. Links do not collide.
  *
  * spring_scenef_... is the single-precision version, compiled from the same source. State and arithmetic are float,
  * which halves the memory; docs/performance.md compares the time. Definitions, colliders, times, energies and
@@ -148,26 +148,24 @@ typedef enum spring_shape {
  */
 typedef uint32_t spring_gap_fn(void *user, const double point[3], double gap[3], double normal[3][3]);
 
-/** A convex body that free particles cannot enter. Zero-initialise. Fields that the shape does not use are ignored.
- * With two axes, the third elements are ignored too, except spin[2]. */
+/** A rigid body that free particles cannot enter. All shapes are convex, except SPRING_CUSTOM. Zero-initialise. Fields
+ * that the shape does not use are ignored. With two axes, the third elements are ignored too, except those of spin and
+ * spin_acceleration, of which only the third is used. */
 typedef struct spring_collider {
-    spring_shape shape;    /**< shape of the body */
-    double at[3];          /**< [m] plane: a point on it; sphere, box: the centre; capsule: one end of the segment */
-    double to[3];          /**< [m] capsule: the other end of the segment */
-    double axis[3][3];     /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes.
+    spring_shape shape;     /**< shape of the body */
+    double at[3];           /**< [m] plane: a point on it; sphere, box: the centre; capsule: one end of the segment */
+    double to[3];           /**< [m] capsule: the other end of the segment */
+    double axis[3][3];      /**< plane: axis[0] is the unit normal, which points out of the body; box: its unit axes.
                                 An error of up to 1e-3, as of rotations in single precision, is removed */
-    double half[3];        /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
-    double radius;         /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
-    double velocity[3];    /**< [m/s] velocity of `at` */
-    double velocity_to[3]; /**< [m/s] capsule: velocity of `to` */
-    /** [rad/s] angular velocity of the surface about `at`, for a capsule about its axis. It is for friction: the body
-        does not turn. For a plane or a box, set only the component along the normal of the touched face. Other
-        components also move the surface along its normal, which throws particles up. With two axes, only spin[2] is
-        used. */
-    double spin[3];
-    double friction;             /**< Coulomb coefficient >= 0 */
-    double restitution;          /**< 0 to 1: ratio of the normal speeds after and before an impact */
-    double acceleration[3];      /**< [m/s^2] of `at` and `to`: at + velocity t + acceleration t^2/2 */
+    double half[3];         /**< [m] >= 0; box: half of its size along each of its axes, without the radius */
+    double radius;          /**< [m] >= 0; sphere, capsule: the radius; box: the radius of its rounded edges */
+    double velocity[3];     /**< [m/s] velocity of `at` */
+    double velocity_to[3];  /**< [m/s] capsule: velocity of `to` */
+    double spin[3];         /**< [rad/s] angular velocity. It turns planes, boxes and custom bodies about `at`. A sphere
+                                and a capsule keep their place, and their surface spins about `at` or about the axis */
+    double friction;        /**< Coulomb coefficient >= 0 */
+    double restitution;     /**< 0 to 1: ratio of the normal speeds after and before an impact */
+    double acceleration[3]; /**< [m/s^2] of `at` and `to`: at + velocity t + acceleration t^2/2 */
     double spin_acceleration[3]; /**< [rad/s^2] turned by the vector spin t + spin_acceleration t^2/2 */
     double surface[3];           /**< [m/s] further velocity of the surface in the frame of the body, as of a conveyor
                                     belt. Its normal part is ignored. The frame of a plane, a sphere or a capsule has
@@ -314,9 +312,9 @@ SPRING_API spring_status spring_scene_init(void *memory, size_t bytes, const spr
  * omega dt (w dt)^3/8 per step, unless drag/mass exceeds this fraction divided by dt. Use RK4, which loses energy: the
  * fraction (omega dt)^6/72 per step without links. Both Euler methods gain (omega dt)^2 (tests/scene/test_forces.c).
  *
- * Contacts have order 2 with leapfrog and RK4, also across impacts, and order 1 with symplectic Euler. With friction,
- * the order is 1 after a particle has reversed its direction or stopped, because a particle that stops sticks for the
- * rest of the step. See spring_scene_set_colliders(). Colliders do not change the stable step.
+ * Contacts have order 2 with leapfrog and RK4, also across impacts, with colliders that turn and accelerate, and with
+ * friction across stops and reversals of direction. They have order 1 with symplectic Euler. See
+ * spring_scene_set_colliders(). Colliders do not change the stable step.
  *
  * Time is not accumulated: step i of consecutive calls with the same dt is at t0 + i dt.
  *
@@ -479,25 +477,35 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
 /**
  * Replaces all colliders of a scene.
  *
- * The colliders are given at their pose at the current time of the scene. They then move at their velocities until they
- * are set again. In a game, set them once per frame, with the velocities that bring them to their next pose. After an
- * error, the colliders of the last call keep moving. Axes of a plane or a box that are not orthonormal to rounding are
- * replaced by the nearest orthonormal axes. A particle that is inside a collider is moved to its surface in the next
- * step, without a change of velocity. Pinned particles pass through colliders.
+ * The colliders are given at their pose at the current time of the scene. They then move with their velocity,
+ * acceleration, spin and spin acceleration until they are set again. After an error, the colliders of the last call keep
+ * moving. Axes that are not orthonormal to rounding are replaced by the nearest orthonormal axes. A particle that is
+ * inside a collider is moved to its surface in the next step, without a change of velocity. Pinned particles pass
+ * through colliders.
+ *
+ * To set colliders once per frame of length T, give the present pose, the present velocity V, and the acceleration that
+ * leads to the next position: 2 (next - present - V T)/T^2. Do the same with spin and spin_acceleration. If V is not
+ * known, use (next - previous)/(2 T) and (next - 2 present + previous)/T^2. A velocity without acceleration is enough
+ * for bodies that nothing rests on: static friction breaks where the velocity jumps from frame to frame.
  *
  * An impact with the relative velocity u multiplies the normal component of u by -restitution and reduces the
- * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed.
- * A bounce therefore has order 2, and no particle passes through a single collider that does not turn, at any speed. A
- * capsule whose ends have different velocities turns. Keep its angle per step small. A box that turns from one call to
- * the next does not hit particles: they are moved to its surface. A particle that static friction can hold is held
- * exactly, at any time step. On a surface that spins at omega, however, its distance from the axis grows by the factor
- * exp(omega^2 dt t/2). If an impact moves the particle less than 8 eps (|x| + radius) into the collider in a step,
- * this is treated as a rounding error, and the particle does not bounce.
+ * tangential component by at most friction (1 + restitution) |u_normal|. The time of impact within a step is computed, in
+ * the frame of the body. A bounce therefore has order 2, and no particle passes through a single collider at any speed.
+ * A body that turns by more than about 0.2 rad in a step may cut the path of a fast particle, and a particle may pass
+ * around an edge within a step. A capsule whose ends have different velocities turns, too. A particle that static
+ * friction can hold is carried along with the motion of the body, at any time step. On the spinning surface of a sphere
+ * or a capsule it is held to second order. If an impact moves the particle less than 8 eps (|x| + |at| + size) into the
+ * collider in a step, this is treated as a rounding error, and the particle does not bounce.
  *
- * Colliders act in the order of their indices. In a wedge between colliders, a particle may be inside one of the
- * colliders by a fraction of its motion in a step. In a groove narrower than about 10 degrees, it sinks in much deeper
- * and does not come to rest. Make a floor of one plane or box: a particle can be caught at the seam of two boxes. Links
- * do not collide, so a thin collider can pass between two particles. A step with negative dt does not undo a step.
+ * A particle that touches several colliders is kept out of all of them, also in a groove of 0.5 degrees. In a wide groove
+ * without friction, it may swing by a fraction of the distance that it falls in a step. A custom body that is concave
+ * counts as several bodies only where it returns several contacts. Links do not collide, so a thin collider can pass
+ * between two particles. A step with negative dt does not undo a step.
+ *
+ * A custom body is followed along the path by its gaps, but by at least half of `thickness`, so no particle passes
+ * through it. The function is called a few times for a particle that rests, and at most 1500 times per step. If it is
+ * called more often, the particle stops at the last point that is known to be outside. A gap or a normal that is not
+ * finite makes the step fail with SPRING_ENONFINITE, or SPRING_EUNSTABLE in a scene with max_speed.
  *
  * With restitution 1, no friction and no damping, energy is not conserved: it grows, and it grows faster with longer
  * steps. See docs/evidence.md.
@@ -506,9 +514,10 @@ SPRING_API spring_status spring_scene_set_gravity(spring_scene *s, const double 
  * @param[in] count  number of colliders, at most `colliders` of the definition; 0 removes all colliders
  * @return SPRING_OK.
  *         SPRING_EINVAL: NULL; an unknown shape; a number that is not finite in the precision of the scene (also after
- *         particle_radius is added to a radius, or to axis[0] . at of a plane); a negative radius, half size or
- *         friction; a restitution outside 0 ... 1; axes whose dot products differ from those of orthonormal axes by more
- *         than 1e-3. spring_scene_check_colliders() names the collider and the field.
+ *         the largest radius of a particle is added to a radius, or to axis[0] . at of a plane); a negative radius, half
+ *         size, friction or bound; a restitution outside 0 ... 1; a custom body without a function or a thickness; axes
+ *         whose dot products differ from those of orthonormal axes by more than 1e-3. spring_scene_check_colliders()
+ *         names the collider and the field.
  *         SPRING_ERANGE: count is too large.
  *         SPRING_EDISABLED: `colliders` of the definition is 0
  */

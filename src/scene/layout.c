@@ -201,7 +201,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_HELD] = {number, quantity, (l->flags & SPRING_SCENE_FORCES) != 0},
         [ARRAY_COLLIDERS] = {sizeof(spring_collider), l->colliders, collides},
         [ARRAY_PLACED] = {sizeof(contact_body), l->colliders, collides},
-        [ARRAY_BOUNDS] = {sizeof(collider_bounds), 1, collides},
+        [ARRAY_BOUNDS] = {1, offsetof(collider_bounds, each) + l->colliders * sizeof(collider_bound), collides},
         [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
         [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
         [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},

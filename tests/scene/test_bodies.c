@@ -495,41 +495,50 @@ static void momentum_balance(void)
         for (int a = 0; a < 3 && moves; a++)
             c[1].velocity[a] = 0.1 * a - 0.3, c[1].spin[a] = a + 1, c[0].spin[a] = 1;
         set(s, c, 3);
-        double sum[3] = {0}, moment[3] = {0}, weight = 0;
-        for (int k = 0; k < steps / 4; k++) {
+        double sum[3] = {0}, moment[3] = {0}, weight = 0, before[3 * count], after[3 * count], v1[3 * count];
+        memcpy(after, x, sizeof after);
+        for (int k = 0; k < steps; k++) {
             spring_impulse j[3];
-            double middle[3 * count], after[3 * count];
-            spring_scene_get(s, SPRING_POSITION, middle, 0, 0, count);
-            run(s, m, 1. / 480, 4);
+            memcpy(before, after, sizeof before);
+            run(s, m, 1. / 480, 1);
             CHECK(spring_scene_impulses(s, j, 0, 3) == SPRING_OK, "impulses");
             spring_scene_get(s, SPRING_POSITION, after, 0, 0, count);
             for (int i = 0; i < 3; i++) {
                 double at[3], about[3];
                 for (int a = 0; a < 3; a++)
-                    at[a] = c[i].at[a] + (k + 1) * 4 / 480. * c[i].velocity[a];
+                    at[a] = c[i].at[a] + (k + 1) / 480. * c[i].velocity[a];
                 cross(at, j[i].linear, about);
                 for (int a = 0; a < 3; a++)
                     sum[a] += j[i].linear[a], moment[a] += j[i].angular[a] + about[a];
                 scale += length(j[i].linear);
             }
+            for (size_t i = 0; i < count; i++) { /* gravity acts half at the start and half at the end of a step */
+                const double lever = mass[i] * gravity / 480 / 2;
+                torque[0] += lever * (before[3 * i + 2] + after[3 * i + 2]);
+                torque[2] -= lever * (before[3 * i] + after[3 * i]);
+            }
         }
+        spring_scene_get(s, SPRING_VELOCITY, v1, 0, 0, count);
         for (size_t i = 0; i < count; i++) {
-            double angular[3];
-            cross(x + 3 * i, v + 3 * i, angular);
-            for (int a = 0; a < 3; a++)
-                P[a] -= mass[i] * v[3 * i + (size_t)a], L[a] -= mass[i] * angular[a];
+            double first[3], last[3];
+            cross(x + 3 * i, v + 3 * i, first);
+            cross(after + 3 * i, v1 + 3 * i, last);
+            for (size_t a = 0; a < 3; a++) {
+                P[a] += mass[i] * (v1[3 * i + a] - v[3 * i + a]);
+                L[a] += mass[i] * (last[a] - first[a]);
+            }
             weight += mass[i];
         }
-        double x1[3 * count], v1[3 * count];
-        spring_scene_get(s, SPRING_POSITION, x1, 0, 0, count);
-        spring_scene_get(s, SPRING_VELOCITY, v1, 0, 0, count);
-        for (size_t i = 0; i < count; i++)
-            for (size_t a = 0; a < 3; a++)
-                P[a] += mass[i] * v1[3 * i + a];
         P[1] += weight * gravity * steps / 480.;
-        for (int a = 0; a < 3; a++)
+        double off = 0;
+        for (int a = 0; a < 3; a++) {
             CHECK_BELOW(fabs(P[a] + sum[a]) / scale, in_double ? 1e-12 : 1e-5, "momentum");
-        (void)torque, (void)moment, (void)L;
+            off = fmax(off, fabs(L[a] + moment[a] - torque[a]) / scale);
+        }
+        if (in_double && m == SPRING_LEAPFROG)
+            printf("# friction %.1f, restitution %.1f, %s: angular momentum %.1e m times the impulses\n", mu, e,
+                   moves ? "moving" : "at rest", off);
+        CHECK(!in_double || m != SPRING_LEAPFROG || off < (moves ? 1e-4 : mu > 0 ? 1e-6 : 1e-11), "angular momentum");
         CHECK(scale > 1, "a hard fall");
         free(s);
     }
