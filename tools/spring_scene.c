@@ -106,11 +106,13 @@ static const cli_option options[] = {
      .help = "a plane, sphere, capsule or box that particles cannot enter; repeatable\n"
              "Fields are NAME=NUMBER, separated by commas, and 0 by default. These fields apply to all shapes: x y\n"
              "z [m] is a point of the plane, the centre, or one end of the capsule. vx vy vz [m/s] is the\n"
-             "velocity. wx wy wz [rad/s] is the spin, for friction: along the normal of a plane. friction is at\n"
-             "least 0, restitution from 0 to 1. A plane also has the normal nx ny nz, upwards by default. A sphere\n"
-             "has a radius. A capsule has a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size\n"
-             "along x, y and z, and a radius, which rounds its edges. z is up. The rope has no y. At most 32\n"
-             "colliders. Not for scenes with one axis, and not for euler, rkn8 and srkn6."},
+             "velocity, ax ay az [m/s^2] the acceleration, wx wy wz [rad/s] the spin, which turns a plane or a box\n"
+             "about its point, wax way waz [rad/s^2] the spin acceleration, and sx sy sz [m/s] the velocity of a\n"
+             "belt on its surface. friction is at least 0, restitution from 0 to 1. mask is an integer; 0 means all\n"
+             "bits. A plane also has the normal nx ny nz, upwards by default. A sphere has a radius. A capsule has\n"
+             "a radius and the other end x2 y2 z2. A box has hx hy hz, half of its size along x, y and z, and a\n"
+             "radius, which rounds its edges. z is up. The rope has no y. At most 32 colliders. Not for scenes with\n"
+             "one axis, and not for euler, rkn8 and srkn6."},
     {"particle-radius", CLI_NOT_NEGATIVE, .real = &particle_radius, .value = "R", .needs = &colliders,
      .help = "radius of every particle [m]"},
     {"fps", CLI_POSITIVE, .real = &fps, .value = "N", .help = "rows and frames per second"},

@@ -14,9 +14,10 @@ enum { shape_count = sizeof shape_names / sizeof shape_names[0] };
 /* The values of a word, in the order of its fields. */
 typedef struct collider_numbers {
     double at[3], to[3], normal[3], half[3], radius, velocity[3], spin[3], friction, restitution;
+    double accel[3], spin_accel[3], surface[3], mask;
 } collider_numbers;
 
-typedef enum number_range { ANY, NOT_NEGATIVE, FRACTION } number_range;
+typedef enum number_range { ANY, NOT_NEGATIVE, FRACTION, BITS } number_range;
 
 enum {
     FOR_PLANE = 1 << SPRING_PLANE,
@@ -56,18 +57,32 @@ static const collider_field fields[] = {
     {"wz", AT(spin[2]), FOR_ALL, ANY},
     {"friction", AT(friction), FOR_ALL, NOT_NEGATIVE},
     {"restitution", AT(restitution), FOR_ALL, FRACTION},
+    {"ax", AT(accel[0]), FOR_ALL, ANY},
+    {"ay", AT(accel[1]), FOR_ALL, ANY},
+    {"az", AT(accel[2]), FOR_ALL, ANY},
+    {"wax", AT(spin_accel[0]), FOR_ALL, ANY},
+    {"way", AT(spin_accel[1]), FOR_ALL, ANY},
+    {"waz", AT(spin_accel[2]), FOR_ALL, ANY},
+    {"sx", AT(surface[0]), FOR_ALL, ANY},
+    {"sy", AT(surface[1]), FOR_ALL, ANY},
+    {"sz", AT(surface[2]), FOR_ALL, ANY},
+    {"mask", AT(mask), FOR_ALL, BITS},
 };
 #undef AT
 enum { field_count = sizeof fields / sizeof fields[0] };
 
 static bool in_range(double value, number_range range)
 {
+    if (range == BITS)
+        return value >= 0 && value <= UINT32_MAX && value == floor(value);
     return isfinite(value) && (range == ANY || value >= 0) && (range != FRACTION || value <= 1);
 }
 
 static const char *range_words(number_range range)
 {
-    return range == ANY ? "a finite number" : range == NOT_NEGATIVE ? "a finite number >= 0" : "a number from 0 to 1";
+    static const char *const words[] = {"a finite number", "a finite number >= 0", "a number from 0 to 1",
+                                        "an integer from 0 to 2^32 - 1"};
+    return words[range];
 }
 
 static spring_shape read_shape(const char *word, const char **rest)
@@ -81,7 +96,7 @@ static spring_shape read_shape(const char *word, const char **rest)
              "--collider: \"%s\" does not begin with a shape; it should be plane:, sphere:, capsule: or box:", word);
 }
 
-static void list_fields(spring_shape shape, char text[200])
+static void list_fields(spring_shape shape, char text[300])
 {
     text[0] = '\0';
     for (int i = 0; i < field_count; i++)
@@ -97,7 +112,7 @@ static const collider_field *read_field(const char *word, spring_shape shape, co
         if (strlen(fields[i].name) == length && strncmp(text, fields[i].name, length) == 0 &&
             fields[i].shapes & 1 << shape)
             return &fields[i];
-    char known[200];
+    char known[300];
     list_fields(shape, known);
     cli_fail(CLI_USAGE, "--collider: \"%.*s\" in \"%s\" is not a field of a %s; it should be one of %s", (int)length,
              text, word, shape_names[shape], known);
@@ -174,7 +189,10 @@ static spring_collider read_collider(const char *word, uint32_t axes)
     put(n.velocity, axes, c.velocity_to);
     put_spin(n.spin, axes, c.spin);
     make_axes(word, &n, axes, &c);
-    c.radius = n.radius, c.friction = n.friction, c.restitution = n.restitution;
+    put(n.accel, axes, c.acceleration);
+    put_spin(n.spin_accel, axes, c.spin_acceleration);
+    put(n.surface, axes, c.surface);
+    c.radius = n.radius, c.friction = n.friction, c.restitution = n.restitution, c.mask = (uint32_t)n.mask;
     return c;
 }
 
