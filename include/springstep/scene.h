@@ -77,8 +77,48 @@ typedef struct spring_link {
     uint32_t b;       /**<         index of another particle */
     double rest;      /**< [m]     rest length >= 0 */
     double stiffness; /**< [N/m]   >= 0 */
-    double damping;   /**< [N s/m] >= 0, along the link */
+    double damping;   /**< [N s/m] >= 0, along the link; in all directions if rest is 0 */
+    uint32_t flags;   /**<         SPRING_LINK_... | ... */
 } spring_link;
+
+/** @name Flags of a link
+ *
+ * They require two or three axes, and are not allowed with RKN8 and SRKN6. spring_scene_set_link() does not change them.
+ * @{ */
+/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. */
+#define SPRING_LINK_TENSION_ONLY UINT32_C(1)
+/** A tension-only link that acts only while exactly one of its ends is pinned. It keeps a particle from moving away
+   from a pinned particle that it hangs on; see spring_links_tethers(). While it does not act, its tension and its
+   energy are 0, and it does not count in the stable step. spring_scene_set_pinned() may therefore lower the stable
+   step. */
+#define SPRING_LINK_TETHER UINT32_C(2)
+/** @} */
+
+/** A spring between two weighted points. Zero-initialise.
+ *
+ * Its vector is d = sum of weight[i] x[particle[i]], and its length is |d|. The weights (-1, 1) are those of a
+ * spring_link from particle[0] to particle[1]. With (-1, a, b, c), a + b + c = 1, a particle is attached to a point in a
+ * triangle. With (1/2, -1, 1/2), three particles resist bending; see spring_bend_rod(). The force on particle[i] is
+ *
+ *     rest > 0   -weight[i] tension d/length,   tension = stiffness (length - rest) + damping rate
+ *     rest = 0   -weight[i] (stiffness d + damping d'),   d' = sum of weight[i] v[particle[i]]
+ *
+ * where rate is the time derivative of the length. If rest > 0 and the length is 0, the force is 0. On one axis, the
+ * force on particle[i] is -weight[i] (stiffness (d - rest) + damping d').
+ *
+ * For rest = 0 the spring is linear. It is damped in all directions, and so exerts the external torque -damping d x d'.
+ * This brakes the rotation of free bodies: a free hoop of 24 particles whose bending springs have a damping ratio of
+ * 0.05 in its lowest mode of bending loses 34 % of its angular velocity in 1 s. Use damping to attach a particle, and
+ * drag to damp bending of free bodies.
+ *
+ * SPRING_SCENE_TENSION_ONLY does not concern weighted links. */
+typedef struct spring_weighted_link {
+    uint32_t particle[4]; /**<         indices of different particles; ignored where the weight is 0 */
+    double weight[4];     /**<         0: unused. Their sum is 0, to 1e-12 of the largest */
+    double rest;          /**< [m]     rest length >= 0 */
+    double stiffness;     /**< [N/m]   >= 0 */
+    double damping;       /**< [N s/m] >= 0 */
+} spring_weighted_link;
 
 /** A callback that adds forces to force[axis][particle] [N].
  *
@@ -174,6 +214,8 @@ typedef struct spring_scene_def {
                                      fails with SPRING_EUNSTABLE; 0: no limit */
     uint32_t colliders;           /**< maximum number of colliders, at most 32; 0: none */
     double particle_radius;       /**< [m] >= 0, radius of every particle in contacts */
+    size_t weighted_links;        /**< number, less than 2^29; on 32-bit systems at most 2^23 - 1 */
+    const spring_weighted_link *weighted_link; /**< [weighted_links] */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */
@@ -649,6 +691,8 @@ typedef struct spring_scenef_def {
     double max_speed;
     uint32_t colliders;
     double particle_radius;
+    size_t weighted_links;
+    const spring_weighted_link *weighted_link;
     /** @} */
 } spring_scenef_def;
 
