@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_DEFINITION_H
 #define SPRINGSTEP_DEFINITION_H
 
-#include "stored_links.h"
+#include "weighted_links.h"
 
 static inline uint32_t axes_of(const spring_scene_def *def)
 {
@@ -31,7 +31,19 @@ static inline bool has_damped_links(const spring_scene_def *def)
     for (size_t i = 0; i < def->links; i++)
         if (def->link[i].damping > 0)
             return true;
+    for (size_t i = 0; i < def->weighted_links; i++)
+        if (def->weighted_link[i].damping > 0)
+            return true;
     return false;
+}
+
+/* All flags of links. */
+static inline uint32_t link_flags(const spring_scene_def *def)
+{
+    uint32_t flags = 0;
+    for (size_t i = 0; i < def->links; i++)
+        flags |= def->link[i].flags;
+    return flags;
 }
 
 #endif

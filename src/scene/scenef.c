@@ -12,3 +12,4 @@
 #include "steppers.c"
 #include "tear.c"
 #include "transform.c"
+#include "weighted.c"
