@@ -13,22 +13,33 @@
 #include "pass.h"
 #include "weighted_links.h"
 
-/* d[a]: the sum of weight (x - x of the first particle). */
-SPRING_INLINE void weighted_sum(const stored_weighted *l, const scalar *x, size_t stride, uint32_t axes, int points,
-                                scalar d[3])
+/* The sum of weight (x - x of the first particle) on an axis. */
+SPRING_INLINE scalar weighted_sum(const stored_weighted *l, const scalar *x, int points)
 {
-    for (uint32_t a = 0; a < axes; a++) {
-        const scalar *const at = x + a * stride;
-        const scalar first = at[l->particle[0]];
-        scalar sum = l->weight[1] * (at[l->particle[1]] - first);
-        for (int i = 2; i < points; i++)
-            sum += l->weight[i] * (at[l->particle[i]] - first);
-        d[a] = sum;
-    }
+    const scalar first = x[l->particle[0]];
+    scalar sum = l->weight[1] * (x[l->particle[1]] - first);
+    SPRING_ROLLED
+    for (int i = 2; i < points; i++)
+        sum += l->weight[i] * (x[l->particle[i]] - first);
+    return sum;
 }
 
-/* The pull of a link that has a direction, in `d`. See all_unbanded() and all_unbanded_freezing(). */
-static void pull_along(const scene_links *s, stored_weighted *l, const scalar relative[3], scalar d[3])
+/* Adds the forces of a link on an axis. */
+SPRING_INLINE void add_pull(const stored_weighted *l, scalar pull, scalar *force, int points)
+{
+    scalar sum = l->weight[1] * pull;
+    force[l->particle[1]] -= sum;
+    SPRING_ROLLED
+    for (int i = 2; i < points; i++) {
+        const scalar part = l->weight[i] * pull;
+        force[l->particle[i]] -= part;
+        sum += part;
+    }
+    force[l->particle[0]] += sum;
+}
+
+/* The force of a link that has a direction, divided by its vector d. See all_unbanded(), and all_unbanded_freezing(). */
+static scalar force_by_vector(const scene_links *s, stored_weighted *l, const scalar relative[3], const scalar d[3])
 {
     const bool frozen = s->terms == FREEZING_TERMS;
     const scalar damping = s->terms == STIFFNESS_TERM ? 0 : frozen ? l->root * l->root : l->damping;
@@ -55,35 +66,35 @@ static void pull_along(const scene_links *s, stored_weighted *l, const scalar re
     } else if (frozen) {
         l->direction_scale = l->turning = 0;
     }
-    for (uint32_t a = 0; a < s->axes; a++)
-        d[a] *= scale;
+    return scale;
 }
 
-/* `points` is constant, so that loops are unrolled. */
-SPRING_INLINE void add_weighted_link(const scene_links *s, stored_weighted *l, const scalar *x, const scalar *v,
-                                     scalar *force, int points)
+/* Rest length 0, or one axis. Axes are independent. */
+SPRING_INLINE void add_linear_link(const scene_links *s, const stored_weighted *l, const scalar *x, const scalar *v,
+                                   scalar *force, int points)
 {
-    const bool linear = s->axes == 1 || l->rest == 0;
-    scalar d[3], relative[3] = {0};
-    weighted_sum(l, x, s->stride, s->axes, points, d);
-    if (s->terms != STIFFNESS_TERM)
-        weighted_sum(l, v, s->stride, s->axes, points, relative);
-    if (!linear)
-        pull_along(s, l, relative, d);
-    for (uint32_t a = 0; a < s->axes && linear; a++) {
-        d[a] = s->terms == DAMPING_TERM ? 0 : l->stiffness * (s->axes == 1 ? d[a] - l->rest : d[a]);
-        if (s->terms != STIFFNESS_TERM)
-            d[a] += (s->terms == STIFFNESS_AND_DAMPING_TERM ? l->damping : l->root * l->root) * relative[a];
-    }
+    const scalar rest = s->axes == 1 ? l->rest : 0, stiffness = s->terms == DAMPING_TERM ? 0 : l->stiffness;
+    const scalar damping = s->terms == STIFFNESS_AND_DAMPING_TERM ? l->damping : l->root * l->root;
+    SPRING_ROLLED
     for (uint32_t a = 0; a < s->axes; a++) {
-        scalar *const on = force + a * s->stride, sum = 0;
-        for (int i = 1; i < points; i++) {
-            const scalar pull = l->weight[i] * d[a];
-            on[l->particle[i]] -= pull;
-            sum += pull;
-        }
-        on[l->particle[0]] += sum;
+        scalar pull = stiffness * (weighted_sum(l, x + a * s->stride, points) - rest);
+        if (s->terms != STIFFNESS_TERM)
+            pull += damping * weighted_sum(l, v + a * s->stride, points);
+        add_pull(l, pull, force + a * s->stride, points);
     }
+}
+
+static void add_directed_link(const scene_links *s, stored_weighted *l, const scalar *x, const scalar *v, scalar *force)
+{
+    scalar d[3], relative[3] = {0};
+    for (uint32_t a = 0; a < s->axes; a++) {
+        d[a] = weighted_sum(l, x + a * s->stride, l->points);
+        if (s->terms != STIFFNESS_TERM)
+            relative[a] = weighted_sum(l, v + a * s->stride, l->points);
+    }
+    const scalar scale = force_by_vector(s, l, relative, d);
+    for (uint32_t a = 0; a < s->axes; a++)
+        add_pull(l, scale * d[a], force + a * s->stride, l->points);
 }
 
 void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force)
@@ -93,10 +104,12 @@ void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scal
         stored_weighted *const l = &own.weighted_link[j];
         if (l->banded || l->points < 2 || !(l->stiffness > 0 || l->damping > 0))
             continue;
-        if (l->points == 3)
-            add_weighted_link(&own, l, x, v, force, 3);
+        if (own.axes > 1 && l->rest > 0)
+            add_directed_link(&own, l, x, v, force);
+        else if (l->points == 3)
+            add_linear_link(&own, l, x, v, force, 3);
         else
-            add_weighted_link(&own, l, x, v, force, l->points);
+            add_linear_link(&own, l, x, v, force, l->points);
     }
 }
 
