@@ -1011,7 +1011,8 @@ SPRING_API spring_status spring_bend_rod(size_t particles, uint32_t axes, const 
  * @param[in,out] count         at most 4 links for each particle
  * @par Accuracy  Exact for constant curvature, except that edges lack their diagonals. The deflection of a cantilever of
  *                20 segments differs by 0.13 % from the theory of beams for rows and columns. With diagonals it is
- *                between those of a plate and of a beam (tests/scene/test_bend.c)
+ *                between those of a plate and of a beam, but about 20 % larger for a strip of four particles
+ *                (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *pinned, uint32_t families,
                                           double rigidity, double damping_time, spring_weighted_link *out,
@@ -1037,7 +1038,11 @@ SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *p
  * @param         work          [particles + 6*triangles + 1] work space, used only during the call
  * @return SPRING_EINVAL also for a triangle without area, and for an edge that more than two triangles or two triangles
  *         with the same corners have
- * @par Accuracy  MESH_ACCURACY
+ * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
+ *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
+ *                squares with parallel diagonals, and about 4 times for irregular meshes. As there are no links over the
+ *                outer edges, a square cantilever is softer than a beam, by up to 21 %. Prefer spring_bend_grid() for
+ *                grids of squares (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_mesh(size_t particles, const double *position, size_t triangles,
                                           const uint32_t *triangle, const uint8_t *pinned, double rigidity,
