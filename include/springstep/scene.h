@@ -574,12 +574,27 @@ SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, co
 SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count, const spring_link *link);
 
 /**
+ * Changes weighted links first ... first + count - 1 of an editable scene. If one of the new links is invalid, none is
+ * changed.
+ *
+ * A link of a band whose weights are no longer (w, -2w, w), or whose rest length is no longer 0, leaves its band, and
+ * takes about eight times as long.
+ *
+ * @param[in] link  [count] the new values. Where a weight is not 0, the particle must be the one of the definition, and
+ *                  its weight there not 0
+ * @return SPRING_OK; SPRING_EINVAL: NULL, other particles, or values that spring_scene_check() rejects; SPRING_ERANGE:
+ *         the links do not exist; SPRING_EDISABLED: the scene is not editable
+ */
+SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, size_t count,
+                                                         const spring_weighted_link *link);
+
+/**
  * Cuts all links of an editable scene that are longer than a limit.
  *
  * Call it at a fixed interval, such as once per frame, because the result depends on how often the lengths are
  * compared. Links are compared in double precision and visited in the order of their indices. Links that are already
- * cut, and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Use spring_links_components()
- * to find the pieces.
+ * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
+ * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
  * If no banded link tears, the lengths of banded links are compared with SIMD, which costs much less than a step; for
  * bands see spring_links_renumber().
@@ -617,6 +632,14 @@ SPRING_API spring_status spring_scene_transform(spring_scene *s, const double ma
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
  */
 SPRING_API spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link);
+
+/** Copies the current values of a weighted link, rounded to the precision of the scene. Where its weight is 0 in the
+ * definition, the particle is 0.
+ *
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
+ */
+SPRING_API spring_status spring_scene_get_weighted_link(const spring_scene *s, size_t index,
+                                                        spring_weighted_link *link);
 
 /** Returns the smallest index of a link between particles a and b, in either order. Cut links are included. Returns
     SIZE_MAX if there is no such link, and for NULL. The search visits all links. */
@@ -729,6 +752,10 @@ SPRING_API spring_status spring_scenef_set_gravity(spring_scenef *s, const doubl
 SPRING_API spring_status spring_scenef_set_force(spring_scenef *s, spring_scenef_force_fn *force, void *user);
 SPRING_API spring_status spring_scenef_set_link(spring_scenef *s, size_t index, const spring_link *link);
 SPRING_API spring_status spring_scenef_get_link(const spring_scenef *s, size_t index, spring_link *link);
+SPRING_API spring_status spring_scenef_set_weighted_links(spring_scenef *s, size_t first, size_t count,
+                                                          const spring_weighted_link *link);
+SPRING_API spring_status spring_scenef_get_weighted_link(const spring_scenef *s, size_t index,
+                                                         spring_weighted_link *link);
 SPRING_API size_t spring_scenef_find_link(const spring_scenef *s, uint32_t a, uint32_t b);
 SPRING_API spring_status spring_scenef_set_pinned(spring_scenef *s, size_t first, size_t count, const uint8_t *pinned);
 SPRING_API spring_status spring_scenef_set_mass(spring_scenef *s, size_t first, size_t count, const double *mass);

@@ -10,7 +10,9 @@
  *           position and no velocity of earlier tiles, which a fused pass may have advanced already.
  * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2), or 0 if both ends are at one point.
  *           On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force unless it is longer
- *           than its rest length and pulls.
+ *           than its rest length and pulls. A link of rest length 0 is linear: k delta + c (relative velocity).
+ *           A three-point link at i, i + offset and i + 2 offset has s = k (x_i - 2 x_mid + x_end), with c and
+ *           velocities added likewise; its forces are -s, 2 s and -s.
  * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
  */
 #ifndef SPRINGSTEP_BANDS_TMPL_H
@@ -31,7 +33,8 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 /* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
    to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
-                             const real *rest, const real *c, bool damped, bool tension_only)
+                             const real *rest, const real *c, const real *bound, bool damped, bool bounded,
+                             bool isotropic)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
@@ -55,19 +58,25 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
         const real inverse = scale[m];
         const real stretch = 1 - rest[m] * inverse;
         scale[m] = k[m] * stretch;
-        if (damped)
-            scale[m] += c[m] * (rate[m] * inverse * inverse);
+        if (damped) {
+            const real along = isotropic ? select_real(rest[m] == 0, splat(0), c[m]) : c[m];
+            scale[m] += along * (rate[m] * inverse * inverse);
+        }
         acts[m] = joined[m];
-        if (tension_only) /* NaN remains, so that it is detected */
-            scale[m] = vec_not_negative(scale[m]);
-        if (tension_only && damped)
-            acts[m] &= not_mask(stretch <= 0);
+        if (bounded) /* NaN remains, so that it is detected */
+            scale[m] = vec_max(bound[m], scale[m]);
+        if (bounded && damped)
+            acts[m] &= not_mask(stretch <= bound[m]);
     }
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            delta[m][a] = select_real(acts[m], scale[m] * delta[m][a], splat(0));
+        for (uint32_t a = 0; a < axes; a++) {
+            delta[m][a] *= scale[m];
+            if (damped && isotropic)
+                delta[m][a] += select_real(rest[m] == 0, c[m] * relative[m][a], splat(0));
+            delta[m][a] = select_real(acts[m], delta[m][a], splat(0));
+        }
     }
 }
 
@@ -101,10 +110,11 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
                                bool shared)
 {
     const size_t stride = s->stride;
-    const bool tension_only = axes > 1 && s->tension_only;
+    const bool bounded = axes > 1 && s->bounded, isotropic = axes > 1 && s->isotropic;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
-    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
+    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride, stride_b = (ptrdiff_t)s->bound_stride;
+    const scalar *const bounds = bounded ? band->bound + slot * stride_b : NULL;
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c,
                         *const damping = damped ? band->damping + slot * stride_c : NULL;
@@ -113,7 +123,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
     const size_t together = links_together(axes);
     for (size_t j = 0; j < count; j += together * lanes) {
         real delta[most_together][3], relative[most_together][3];
-        real k[most_together], rest[most_together], c[most_together];
+        real k[most_together], rest[most_together], c[most_together], bound[most_together];
         mask joined[most_together];
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
@@ -122,6 +132,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
             k[m] = vec_load(stiffness + number);
             rest[m] = vec_load(rest_length + number);
             c[m] = damped ? vec_load(damping + number) : splat(0);
+            bound[m] = bounded ? vec_load(bounds + (ptrdiff_t)i * stride_b) : splat(0);
             joined[m] = vec_load_mask(occupied + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
@@ -133,7 +144,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
         if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
-            to_forces(axes, delta, relative, joined, k, rest, c, damped, tension_only);
+            to_forces(axes, delta, relative, joined, k, rest, c, bound, damped, bounded, isotropic);
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
@@ -204,7 +215,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c, *const roots = band->root + slot;
     scalar *const scales = band->direction_scale + slot, *const turnings = band->turning + slot;
-    const bool tension_only = s->tension_only;
+    const ptrdiff_t stride_b = (ptrdiff_t)s->bound_stride;
     const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     const size_t together = links_together(axes);
     size_t j = 0;
@@ -231,33 +242,44 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     for (j = 0; j < end; j += lanes) {
         const ptrdiff_t number = (ptrdiff_t)j * stride_c;
         const real root = vec_load(roots + j), c = root * root, inverse = vec_load(scales + j);
-        real delta[3], square = splat(0), rate = splat(0), speed_square = splat(0);
+        real delta[3], relative[3], square = splat(0), rate = splat(0), speed_square = splat(0);
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
             const scalar *const at = x + a * stride + t + j, *const with = v + a * stride + t + j;
-            const real relative = vec_load(with + offset) - vec_load(with);
+            relative[a] = vec_load(with + offset) - vec_load(with);
             delta[a] = vec_load(at + offset) - vec_load(at);
             square += delta[a] * delta[a];
-            rate += delta[a] * relative;
-            speed_square += relative * relative;
+            rate += delta[a] * relative[a];
+            speed_square += relative[a] * relative[a];
         }
-        const real stretch = 1 - vec_load(rest_length + number) * inverse;
-        mask acts = vec_load_mask(occupied + j);
-        if (tension_only)
-            acts &= not_mask(stretch <= 0);
-        const real inverse_square = inverse * inverse, unit = root * inverse;
-        real scale = vec_load(stiffness + number) * stretch + c * (rate * inverse_square);
+        const real rest = vec_load(rest_length + number), stretch = 1 - rest * inverse;
+        mask acts = vec_load_mask(occupied + j), linear = {0};
+        if (s->bounded)
+            acts &= not_mask(stretch <= vec_load(band->bound + (slot + (ptrdiff_t)j) * stride_b));
+        const real inverse_square = inverse * inverse;
+        real unit = root * inverse, along = c;
+        if (s->isotropic) {
+            linear = (mask)(rest == 0);
+            along = select_real(linear, splat(0), c);
+        }
+        real scale = vec_load(stiffness + number) * stretch + along * (rate * inverse_square);
         if (span > 0) {
             const real across = vec_not_negative(speed_square * square - rate * rate); /* |delta x relative|^2 */
             const real angle = span * inverse_square, turned = vec_min(angle * angle * across, splat(1));
             const real turning = (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * inverse_span;
-            vec_store(turnings + j, select_real(acts, turning * (2 * unit * square), splat(0)));
-            scale -= c * turning;
+            vec_store(turnings + j, select_real(acts & not_mask(linear), turning * (2 * unit * square), splat(0)));
+            scale -= along * turning;
         }
+        if (s->isotropic)
+            unit = select_real(linear, -root, unit);
         vec_store(scales + j, select_real(acts, unit, splat(0)));
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++)
-            vec_store(force + a * axis + j, select_real(acts, scale * delta[a], splat(0)));
+        for (uint32_t a = 0; a < axes; a++) {
+            real pull = scale * delta[a];
+            if (s->isotropic)
+                pull += select_real(linear, c * relative[a], splat(0));
+            vec_store(force + a * axis + j, select_real(acts, pull, splat(0)));
+        }
     }
 }
 
@@ -294,7 +316,8 @@ SPRING_NOINLINE void freezing_tile_on_3_axes(const scene_links *s, const scene_b
 }
 
 /* Like tile_forces(), for damping alone along stored directions d: the force is d (d . relative velocity + turning).
-   On one axis d is direction_scale, otherwise this times the vector between the ends. */
+   On one axis d is direction_scale, otherwise this times the vector between the ends. A negative direction_scale stands
+   for all directions. */
 SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
                                        ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
@@ -309,20 +332,24 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
             const real scale = vec_load(scales + i);
-            real delta[3], rate = splat(0);
+            real delta[3], relative[3], rate = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
-                const real relative = vec_load(with + offset) - vec_load(with);
+                relative[a] = vec_load(with + offset) - vec_load(with);
                 delta[a] = axes > 1 ? vec_load(at + offset) - vec_load(at) : splat(1);
-                rate += axes > 1 ? delta[a] * relative : relative;
+                rate += axes > 1 ? delta[a] * relative[a] : relative[a];
             }
             rate *= scale;
             if (weight != 0)
                 rate += weight * vec_load(turnings + i);
             SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++)
-                vec_store(force + a * axis + i, scale * rate * delta[a]);
+            for (uint32_t a = 0; a < axes; a++) {
+                real pull = scale * rate * delta[a];
+                if (axes > 1 && s->isotropic)
+                    pull = select_real(scale < 0, scale * scale * relative[a], pull);
+                vec_store(force + a * axis + i, pull);
+            }
         }
     }
 }
@@ -345,18 +372,62 @@ SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_ba
     tile_damping_forces(s, band, x, v, t, slots, force, axis, 3);
 }
 
-/* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
+/* Like tile_kernel, for three-point links. Axes are independent. */
+SPRING_INLINE void three_point_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis, bool stiff, bool damped)
+{
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const ptrdiff_t offset = band->offset, slot = t - band->start;
+    const bool frozen = s->terms == FREEZING_TERMS || s->terms == DAMPING_TERM;
+    const scalar *const stiffness = band->stiffness + slot;
+    const scalar *const damping = damped ? (frozen ? band->root : band->damping) + slot : NULL;
+    for (size_t j = 0; j < count; j += lanes) {
+        const mask joined = vec_load_mask(band->occupied + slot + j);
+        const real k = vec_load(stiffness + j);
+        real c = damped ? vec_load(damping + j) : splat(0);
+        if (damped && frozen)
+            c *= c;
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const scalar *const at = x + a * s->stride + t + j, *const with = v + a * s->stride + t + j;
+            real pull = splat(0);
+            if (stiff) {
+                const real middle = vec_load(at + offset);
+                pull = k * ((vec_load(at) - middle) + (vec_load(at + 2 * offset) - middle));
+            }
+            if (damped) {
+                const real middle = vec_load(with + offset);
+                pull += c * ((vec_load(with) - middle) + (vec_load(with + 2 * offset) - middle));
+            }
+            vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
+        }
+    }
+}
+
+SPRING_NOINLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    if (s->terms == STIFFNESS_TERM)
+        three_point_forces(s, band, x, v, t, slots, force, axis, true, false);
+    else
+        three_point_forces(s, band, x, v, t, slots, force, axis, s->terms != DAMPING_TERM, true);
+}
+
+/* Forces to be added to the particles of a tile. Forces along axis a are at force + a * axis. */
 typedef struct kept_forces {
     const scalar *force;
     size_t axis;
 } kept_forces;
 
-/* Sets `to` to the sum of the forces of all bands on `count` particles. */
-typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                           const kept_forces *minus, size_t minuses);
+/* What is added to the forces of a tile: once, twice, or subtracted. */
+typedef struct kept_sums {
+    kept_forces plus[most_bands], minus[2 * most_bands], twice[most_bands];
+    size_t pluses, minuses, twices;
+} kept_sums;
 
-SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                          const kept_forces *minus, size_t minuses, uint32_t axes)
+/* Sets `to` to the sum of the forces of all bands on `count` particles. */
+typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_sums *sums);
+
+SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_sums *sums, uint32_t axes)
 {
     enum { most = 4 };
     const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors per iteration */
@@ -368,7 +439,7 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
             for (uint32_t a = 0; a < axes; a++)
                 force[m][a] = splat(0);
         }
-        for (const kept_forces *k = plus; k < plus + pluses; k++) {
+        for (const kept_forces *k = sums->plus; k < sums->plus + sums->pluses; k++) {
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
@@ -376,12 +447,20 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
                     force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
             }
         }
-        for (const kept_forces *k = minus; k < minus + minuses; k++) {
+        for (const kept_forces *k = sums->minus; k < sums->minus + sums->minuses; k++) {
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
                 for (uint32_t a = 0; a < axes; a++)
                     force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
+            }
+        }
+        for (const kept_forces *k = sums->twice; k < sums->twice + sums->twices; k++) {
+            SPRING_UNROLL
+            for (size_t m = 0; m < some; m++) {
+                SPRING_UNROLL
+                for (uint32_t a = 0; a < axes; a++)
+                    force[m][a] += 2 * vec_load(k->force + a * k->axis + j + m * lanes);
             }
         }
         SPRING_UNROLL
@@ -393,22 +472,19 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_fo
     }
 }
 
-SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                                    const kept_forces *minus, size_t minuses)
+SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_sums *sums)
 {
-    gather(to, stride, count, plus, pluses, minus, minuses, 1);
+    gather(to, stride, count, sums, 1);
 }
 
-SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                                      const kept_forces *minus, size_t minuses)
+SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_sums *sums)
 {
-    gather(to, stride, count, plus, pluses, minus, minuses, 2);
+    gather(to, stride, count, sums, 2);
 }
 
-SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
-                                      const kept_forces *minus, size_t minuses)
+SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_sums *sums)
 {
-    gather(to, stride, count, plus, pluses, minus, minuses, 3);
+    gather(to, stride, count, sums, 3);
 }
 
 /* Copies the first tile of a ring behind its last tile, so that any `tile` consecutive slots are contiguous. */
@@ -426,6 +502,19 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
     inlined_repeat_tile(force, ring, slots, axis, axes);
 }
 
+/* Whether links of a band whose lower ends are `distance` before a tile at t act on it. */
+SPRING_INLINE bool reaches(const scene_band *band, ptrdiff_t distance, ptrdiff_t t)
+{
+    return t < band->end + distance && t + tile > band->start + distance;
+}
+
+/* The place in a ring that is `distance` before a place. */
+SPRING_INLINE ptrdiff_t place_before(const scene_band *band, ptrdiff_t place, ptrdiff_t distance)
+{
+    const ptrdiff_t other = place - (distance < band->ring ? distance : distance % band->ring);
+    return other < 0 ? other + band->ring : other;
+}
+
 /* See band_kernel. The rings contain the forces of earlier links. `t` is the first particle of a tile, place[r] its
    place in ring r, `axis` the stride between the axes of a ring, and `end` the end of the vectors that have links. */
 SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
@@ -437,33 +526,39 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
         const scene_band *band = &s->band[r];
         place[r] = (ptrdiff_t)from % band->ring;
         if (from == 0) { /* no link has a lower end before the first particle */
-            const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
+            const size_t before = (size_t)(band->reach < tile ? (band->reach + lanes - 1) / lanes * lanes : tile);
             clear_slots(out->rings + band->ring_start + band->ring - before, (size_t)(band->ring + tile), before, axes);
         }
     }
     for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
-        kept_forces plus[most_bands], minus[most_bands];
-        size_t pluses = 0, minuses = 0;
+        kept_sums sums;
+        sums.pluses = sums.minuses = sums.twices = 0;
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const ptrdiff_t ring = band->ring, other = place[r] - band->back;
-            const size_t axis = (size_t)(ring + tile);
+            const size_t axis = (size_t)(band->ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + place[r];
             const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
             if ((t == band->start - tile || t + (ptrdiff_t)count > end) && t < end + tile)
                 clear_slots(force, axis, count, axes); /* upper ends of links may read slots without links */
             if (t >= band->start && t < band->end) {
-                forces(s, band, x, v, t, count, force, axis);
-                plus[pluses++] = (kept_forces){force, axis};
+                if (band->three_points) {
+                    three_point_tile(s, band, x, v, t, count, force, axis);
+                    sums.minus[sums.minuses++] = (kept_forces){force, axis};
+                } else {
+                    forces(s, band, x, v, t, count, force, axis);
+                    sums.plus[sums.pluses++] = (kept_forces){force, axis};
+                }
             }
             if (place[r] == 0)
-                repeat(force, ring, count, axis, axes);
-            if (t < band->end + band->offset && t + tile > band->start + band->offset)
-                minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
-            place[r] = place[r] + tile < ring ? place[r] + tile : 0;
+                repeat(force, band->ring, count, axis, axes);
+            if (band->three_points && reaches(band, band->offset, t))
+                sums.twice[sums.twices++] = (kept_forces){kept + place_before(band, place[r], band->offset), axis};
+            if (reaches(band, band->reach, t))
+                sums.minus[sums.minuses++] = (kept_forces){kept + place_before(band, place[r], band->reach), axis};
+            place[r] = place[r] + tile < band->ring ? place[r] + tile : 0;
         }
-        sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
+        sum(out->force + t, s->stride, count, &sums);
     }
 }
 

@@ -21,6 +21,8 @@ enum {
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
+static const uint32_t no_slot = UINT32_MAX;
+
 /* Which terms of the law of a link are computed. */
 typedef enum link_terms {
     STIFFNESS_TERM,             /* no link is damped */
@@ -30,32 +32,49 @@ typedef enum link_terms {
 } link_terms;
 
 /* A band: links whose upper end is `offset` particles after the lower end. A band has a slot for each particle of the
-   tiles that contain lower ends. */
+   tiles that contain lower ends. In a band of three-point links, a link joins the particles i, i + offset and
+   i + 2 offset with the weights (w, -2w, w) and rest length 0, and its stiffness and damping are multiplied by w^2. */
 typedef struct scene_band {
     ptrdiff_t offset;
+    bool three_points;
     ptrdiff_t start, end;         /* slots, from the first tile with a lower end to the end of the last one */
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
     const scalar *stiffness;      /* [N/m] */
     const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
+    const scalar *bound;          /* see scene_links.bounded */
     /* Of an exponential kick, by slot; NULL: the scene has none. */
     const scalar *root;      /* [(N s/m)^(1/2)] square root of the damping, which may be saturated */
-    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act */
+    scalar *direction_scale; /* root/length, on one axis root, for rest length 0 -root; 0: the link does not act */
     scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
-    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots */
-    ptrdiff_t back;          /* offset modulo ring */
+    ptrdiff_t reach;         /* offset, or with three points 2 offset */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least reach + tile or all slots */
 } scene_band;
 
 /* Links that belong to no band. */
 typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
-    const scalar *stiffness, *rest, *damping; /* as in scene_band */
+    const scalar *stiffness, *rest, *damping, *bound; /* as in scene_band */
     const scalar *root;
     scalar *direction_scale, *turning;
 } unbanded_links;
+
+/* A weighted link that is not in a band. Its vector is the sum of weight[i] (x[particle[i]] - x[particle[0]]) for i > 0.
+   This equals the sum of weight[i] x[particle[i]] since the sum of the weights is 0, and a translation adds no rounding
+   error. */
+typedef struct weighted_link {
+    uint32_t particle[4]; /* first the particle with the largest weight */
+    uint32_t slot;        /* among the slots of all bands; no_slot: it cannot be in a band */
+    uint8_t points;       /* number of particles; 0: none */
+    uint8_t place[4];     /* index of each particle in spring_weighted_link */
+    bool banded;          /* a band computes its forces */
+    scalar weight[4];
+    scalar stiffness, rest, damping;
+    scalar root, direction_scale, turning; /* as in scene_band */
+} weighted_link;
 
 typedef struct scene_links {
     size_t particles;
@@ -65,7 +84,11 @@ typedef struct scene_links {
     size_t bands;
     const scene_band *band;
     unbanded_links unbanded;
-    bool tension_only; /* links pull and never push */
+    size_t weighted;                     /* 0: all weighted links are in bands */
+    struct weighted_link *weighted_link; /* [weighted] */
+    bool bounded;        /* some links pull and never push: their bound of the tension is 0, that of others -INFINITY */
+    size_t bound_stride; /* from link to link: 1, or 0: one vector of bounds for all links */
+    bool isotropic;      /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */

@@ -3,7 +3,7 @@
 #ifndef SPRINGSTEP_DEFINITION_H
 #define SPRINGSTEP_DEFINITION_H
 
-#include "stored_links.h"
+#include "weighted_links.h"
 
 static inline uint32_t axes_of(const spring_scene_def *def)
 {
@@ -41,16 +41,13 @@ static inline double link_row(const spring_scene_def *def, const spring_link *li
                                                         : 2 * link->stiffness;
 }
 
-/* What a weighted link adds to the row sum of its particle[i] [N/m]: stiffness |w_i| times the sum of |w_j| over its free
-   particles. */
+/* What a weighted link adds to the row sum of its particle[i] [N/m]; 0 for a pinned particle. */
 static inline double weighted_link_row(const spring_scene_def *def, const spring_weighted_link *link, int i)
 {
-    double sum = 0;
+    double free[4];
     for (int j = 0; j < 4; j++)
-        if (link->weight[j] != 0 && !is_pinned(def, link->particle[j]))
-            sum += fabs(link->weight[j]);
-    return link->weight[i] == 0 || is_pinned(def, link->particle[i]) ? 0
-                                                                     : link->stiffness * fabs(link->weight[i]) * sum;
+        free[j] = link->weight[j] != 0 && !is_pinned(def, link->particle[j]) ? 1 : 0;
+    return free[i] > 0 ? link->stiffness * weighted_row(link->weight, free, i) : 0;
 }
 
 static inline bool has_damped_links(const spring_scene_def *def)
@@ -58,7 +55,19 @@ static inline bool has_damped_links(const spring_scene_def *def)
     for (size_t i = 0; i < def->links; i++)
         if (def->link[i].damping > 0)
             return true;
+    for (size_t i = 0; i < def->weighted_links; i++)
+        if (def->weighted_link[i].damping > 0)
+            return true;
     return false;
+}
+
+/* All flags of links. */
+static inline uint32_t link_flags(const spring_scene_def *def)
+{
+    uint32_t flags = 0;
+    for (size_t i = 0; i < def->links; i++)
+        flags |= def->link[i].flags;
+    return flags;
 }
 
 #endif

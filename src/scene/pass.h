@@ -139,7 +139,10 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
 /* band: memory for the bands. */
 static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[most_bands])
 {
+    static const scalar no_push[padding] = {0}; /* the bounds of a scene whose links are all tension-only */
     const scene_layout *l = &s->layout;
+    const scalar *const bound = scene_read(s, ARRAY_BOUND);
+    const bool each = bound != NULL;
     const bool damped = s->damped_links > 0;
     const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
     const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
@@ -151,6 +154,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
             .offset = (ptrdiff_t)b->offset,
+            .three_points = b->kind == BAND_OF_THREE_POINTS,
             .start = (ptrdiff_t)(b->first / tile * tile),
             .end = (ptrdiff_t)b->end,
             .occupied = occupied + b->slots,
@@ -158,12 +162,13 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
+            .bound = each ? bound + b->slots : no_push,
             .root = root != NULL ? root + b->slots : NULL,
             .direction_scale = frozen != NULL ? frozen + b->slots : NULL,
             .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
+            .reach = (ptrdiff_t)b->reach,
             .ring = (ptrdiff_t)b->ring,
-            .back = (ptrdiff_t)b->back,
         };
     }
     return (scene_links){
@@ -181,11 +186,16 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
                 .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
+                .bound = each ? bound + l->band_slots : no_push,
                 .root = root != NULL ? root + l->band_slots : NULL,
                 .direction_scale = frozen != NULL ? frozen + l->band_slots : NULL,
                 .turning = frozen != NULL ? frozen + all_slots + l->band_slots : NULL,
             },
-        .tension_only = scene_tension_only(s),
+        .weighted = s->loose > 0 ? l->weighted : 0,
+        .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
+        .bounded = each || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
+        .bound_stride = each,
+        .isotropic = s->isotropic_links > 0,
     };
 }
 
@@ -217,6 +227,14 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
     if (links->bands == 0 || links->unbanded.count > 0)
         (out->records != NULL && links->terms != FREEZING_TERMS ? common->record_forces
                                                                 : common->unbanded_forces)(links, x, v, out);
+    if (links->weighted > 0)
+        spring_scene_add_weighted(links, x, v, out->force);
+}
+
+/* Whether bands have all links and weighted links, so that the forces on a part of the particles can be computed. */
+static inline bool only_bands(const scene_links *links)
+{
+    return links->bands > 0 && links->unbanded.count == 0 && links->weighted == 0;
 }
 
 /* The same, with the forces of the callback at time t. */
@@ -265,7 +283,7 @@ static inline bool move(const scene_step *s, particle_kernel *kernel, const scen
  * of the step. Then, unless second_kernel is NULL, advances all particles by `second`, which uses these forces and does
  * not change positions. Returns false if a result is not finite.
  *
- * The results are those of move(), evaluate() and move(). If all links lie in bands and there is no callback, it is one
+ * The results are those of move(), evaluate() and move(). If all links are in bands and there is no callback, it is one
  * fused pass: the forces on a chunk of particles are computed as soon as `first` has advanced the other ends of their
  * links, and `second` advances the chunk while it is in the cache.
  */
@@ -274,14 +292,13 @@ SPRING_NOINLINE bool move_evaluate_move(scene_step *s, particle_kernel *first_ke
                                         const scene_motion *second)
 {
     const scene_layout *l = &s->scene->layout;
-    if (l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
+    if (!only_bands(s->links) || s->scene->force != NULL) {
         if (!move(s, first_kernel, first))
             return false;
         evaluate(s, first->x, v, fraction);
         return second_kernel == NULL || move(s, second_kernel, second);
     }
-    /* offsets ascend */
-    const size_t ahead = (l->band[l->bands - 1].offset + chunk - 1) / chunk * chunk;
+    const size_t ahead = (l->band[l->bands - 1].reach + chunk - 1) / chunk * chunk; /* reaches ascend */
     band_kernel *const forces = s->kernels->band_forces;
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
         if (i < l->particles &&

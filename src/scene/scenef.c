@@ -13,3 +13,4 @@
 #include "tear.c"
 #include "tethers.c"
 #include "transform.c"
+#include "weighted.c"

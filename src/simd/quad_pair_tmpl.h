@@ -34,9 +34,9 @@ SPRING_INLINE quad quad_over(quad a, quad b)
     return (quad){a.low / b.low, a.high / b.high};
 }
 
-SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+SPRING_INLINE quad quad_where_greater(quad a, quad b, quad than) /* else 0 */
 {
-    return (quad){select_real(b.low > 0, a.low, splat(0)), select_real(b.high > 0, a.high, splat(0))};
+    return (quad){select_real(b.low > than.low, a.low, splat(0)), select_real(b.high > than.high, a.high, splat(0))};
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

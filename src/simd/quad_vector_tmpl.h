@@ -33,9 +33,9 @@ SPRING_INLINE quad quad_over(quad a, quad b)
     return a / b;
 }
 
-SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+SPRING_INLINE quad quad_where_greater(quad a, quad b, quad than) /* else 0 */
 {
-    return (quad)((quad_bits)a & (quad_bits)(b > 0));
+    return (quad)((quad_bits)a & (quad_bits)(b > than));
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

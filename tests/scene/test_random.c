@@ -48,7 +48,7 @@ enum { after_grids = 8, after_pairs = 14, after_bands = 17, special_count = size
 
 static void add_link(model *m, uint32_t a, uint32_t b)
 {
-    m->link[m->def.links++] = (spring_link){a, b, 0.8, 13.7, m->link[0].damping};
+    m->link[m->def.links++] = (spring_link){a, b, 0.8, 13.7, m->link[0].damping, 0};
 }
 
 /* Links of one offset between lower ends that begin and end anywhere, with gaps. */
@@ -391,7 +391,7 @@ static void fail(const block *b, const model *m)
     spring_scene *const s = b->s;
     static const double nothing[12] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     const spring_collider wrong = {.shape = SPRING_SPHERE, .radius = -1};
-    const spring_link link = {0, 0, 1, 1, 1};
+    const spring_link link = {0, 0, 1, 1, 1, 0};
     const uint8_t pinned = 1;
     const size_t beyond = s->layout.particles + below(3);
     const block kept = copy_of(b);

@@ -160,7 +160,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     for (size_t i = 0; i < 20 && features & STRAY && particles > 1; i++) {
         const uint32_t one = (uint32_t)(random_bits() % particles);
         const uint32_t other = (uint32_t)(random_bits() % (particles - 1));
-        m->link[links++] = (spring_link){one, other < one ? other : other + 1, 0.8, 9.7, m->link[0].damping};
+        m->link[links++] = (spring_link){one, other < one ? other : other + 1, 0.8, 9.7, m->link[0].damping, 0};
     }
     if (features & SHUFFLED)
         shuffle(m->link, links);
@@ -169,7 +169,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     for (size_t i = particles; i < particles + 20 && i < most; i++)
         m->mass[i] = NAN;
     for (size_t i = links; i < links + 20 && i < most_links; i++)
-        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
+        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1, 0};
     m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Weighted links that are not in bands: their forces, one after another in their order, and how they are read and set.
+ *
+ * Law       F_i = -w_i p,  p = d (k (1 - rest/|d|) + c (d . d')/|d|^2),  d = sum of w_i x_i. For rest length 0 and on one
+ *           axis p is linear: k d + c d', or k (d - rest) + c d'. The force on the first particle is minus the sum of
+ *           the others, so momentum is conserved to rounding error.
+ * Kick      In an exponential kick, d is the direction that is frozen. The damping of a linear link acts in all
+ *           directions, and has no turning term.
+ */
+#include "../kernels/link_law.h"
+#include "../spring/roots.h"
+#include "pass.h"
+#include "weighted_links.h"
+
+/* d[a]: the sum of weight (x - x of the first particle). */
+SPRING_INLINE void weighted_sum(const weighted_link *l, const scalar *x, size_t stride, uint32_t axes, int points,
+                                scalar d[3])
+{
+    for (uint32_t a = 0; a < axes; a++) {
+        const scalar *const at = x + a * stride;
+        const scalar first = at[l->particle[0]];
+        scalar sum = l->weight[1] * (at[l->particle[1]] - first);
+        for (int i = 2; i < points; i++)
+            sum += l->weight[i] * (at[l->particle[i]] - first);
+        d[a] = sum;
+    }
+}
+
+/* The pull of a link that has a direction, in `d`. See all_unbanded() and all_unbanded_freezing(). */
+static void pull_along(const scene_links *s, weighted_link *l, const scalar relative[3], scalar d[3])
+{
+    const bool frozen = s->terms == FREEZING_TERMS;
+    const scalar damping = s->terms == STIFFNESS_TERM ? 0 : frozen ? l->root * l->root : l->damping;
+    scalar square = 0, rate = 0, speed_square = 0, scale = 0;
+    for (uint32_t a = 0; a < s->axes; a++) {
+        square += d[a] * d[a];
+        rate += d[a] * relative[a];
+        speed_square += relative[a] * relative[a];
+    }
+    if (s->terms == DAMPING_TERM) {
+        scale = l->direction_scale * (l->direction_scale * rate + s->turning_weight * l->turning);
+    } else if (!(square == 0)) { /* NaN is detected */
+        const scalar inverse = 1 / (scalar)spring_sqrt((double)square);
+        scalar slower = 0;
+        if (frozen) {
+            const scalar root = l->root * inverse;
+            slower = turning_rate(s->turning_time, inverse * inverse, speed_square * square - rate * rate);
+            l->turning = slower * (2 * root * square);
+            l->direction_scale = root;
+        }
+        scale = l->stiffness * (1 - l->rest * inverse);
+        if (damping > 0)
+            scale += damping * (rate * (inverse * inverse) - slower);
+    } else if (frozen) {
+        l->direction_scale = l->turning = 0;
+    }
+    for (uint32_t a = 0; a < s->axes; a++)
+        d[a] *= scale;
+}
+
+/* `points` is constant, so that loops are unrolled. */
+SPRING_INLINE void add_weighted_link(const scene_links *s, weighted_link *l, const scalar *x, const scalar *v,
+                                     scalar *force, int points)
+{
+    const bool linear = s->axes == 1 || l->rest == 0;
+    scalar d[3], relative[3] = {0};
+    weighted_sum(l, x, s->stride, s->axes, points, d);
+    if (s->terms != STIFFNESS_TERM)
+        weighted_sum(l, v, s->stride, s->axes, points, relative);
+    if (!linear)
+        pull_along(s, l, relative, d);
+    for (uint32_t a = 0; a < s->axes && linear; a++) {
+        d[a] = s->terms == DAMPING_TERM ? 0 : l->stiffness * (s->axes == 1 ? d[a] - l->rest : d[a]);
+        if (s->terms != STIFFNESS_TERM)
+            d[a] += (s->terms == STIFFNESS_AND_DAMPING_TERM ? l->damping : l->root * l->root) * relative[a];
+    }
+    for (uint32_t a = 0; a < s->axes; a++) {
+        scalar *const on = force + a * s->stride, sum = 0;
+        for (int i = 1; i < points; i++) {
+            const scalar pull = l->weight[i] * d[a];
+            on[l->particle[i]] -= pull;
+            sum += pull;
+        }
+        on[l->particle[0]] += sum;
+    }
+}
+
+void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force)
+{
+    const scene_links own = *s; /* a local copy, so that stores cannot alias its fields */
+    for (size_t j = 0; j < own.weighted; j++) {
+        weighted_link *const l = &own.weighted_link[j];
+        if (l->banded || l->points < 2 || !(l->stiffness > 0 || l->damping > 0))
+            continue;
+        if (l->points == 3)
+            add_weighted_link(&own, l, x, v, force, 3);
+        else
+            add_weighted_link(&own, l, x, v, force, l->points);
+    }
+}
+
+void spring_scene_weighted_vector(const spring_scene *s, const weighted_link *l, double d[3])
+{
+    for (uint32_t a = 0; a < 3; a++) {
+        const scalar *const x = a < s->layout.axes ? scene_state(s, SPRING_POSITION, a) : NULL;
+        d[a] = 0;
+        for (int i = 1; i < l->points && x != NULL; i++)
+            d[a] += (double)l->weight[i] * ((double)x[l->particle[i]] - (double)x[l->particle[0]]);
+    }
+}
+
+#include "../simd/size_begin.h"
+
+/* ------------------------------------------------------------------------------------------------------ get and set */
+
+/* Whether a link may replace a weighted link. */
+static bool replaces(const spring_scene *s, const weighted_link *old, const spring_weighted_link *link)
+{
+    const spring_weighted_link now = scene_weighted(old);
+    bool defined[4] = {false};
+    for (int i = 0; i < old->points; i++)
+        defined[old->place[i]] = true;
+    for (int i = 0; i < 4; i++)
+        if (link->weight[i] != 0 && (!defined[i] || link->particle[i] != now.particle[i]))
+            return false;
+    if (weighted_invalid_field(link) != NULL)
+        return false;
+    double inverse[4];
+    weighted_inverse_masses(s, link, inverse);
+    return weighted_overflows(link, inverse) == NULL;
+}
+
+spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, size_t count,
+                                              const spring_weighted_link *link)
+{
+    if (s == NULL || link == NULL)
+        return SPRING_EINVAL;
+    if ((s->layout.flags & SPRING_SCENE_EDITABLE) == 0)
+        return SPRING_EDISABLED;
+    if (first > s->layout.weighted || count > s->layout.weighted - first)
+        return SPRING_ERANGE;
+    weighted_link *const all = scene_memory(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < count; i++)
+        if (!replaces(s, &all[first + i], &link[i]))
+            return SPRING_EINVAL;
+    for (size_t i = 0; i < count; i++) {
+        weighted_link *const to = &all[first + i];
+        s->damped_links -= to->damping > 0;
+        s->loose -= !to->banded;
+        scene_write_weighted(s, to, &link[i]);
+        s->damped_links += to->damping > 0;
+        s->loose += !to->banded;
+    }
+    s->bounds_known = false;
+    scene_drop_forces(s);
+    return SPRING_OK;
+}
+
+spring_status spring_scene_get_weighted_link(const spring_scene *s, size_t index, spring_weighted_link *link)
+{
+    if (s == NULL || link == NULL)
+        return SPRING_EINVAL;
+    if (index >= s->layout.weighted)
+        return SPRING_ERANGE;
+    const weighted_link *const all = scene_read(s, ARRAY_WEIGHTED);
+    *link = scene_weighted(&all[index]);
+    return SPRING_OK;
+}
+
+#include "../simd/size_end.h"
