@@ -58,9 +58,9 @@ typedef enum band_kind { BAND_OF_LINKS, BAND_OF_TETHERS, BAND_OF_THREE_POINTS } 
 
 /* A band: its links, and where its slots, coefficients and ring start in the arrays of all bands. */
 typedef struct band_layout {
-    band_kind kind;
     uint32_t offset;     /* upper end of a link minus its lower end; three points: from one to the next */
     uint32_t first, end; /* range of the lower ends */
+    uint8_t kind;        /* band_kind */
     bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
     size_t slots, coefficients, ring_start;
     size_t reach, ring; /* see scene_band */

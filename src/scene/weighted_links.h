@@ -92,15 +92,20 @@ static inline void scene_write_weighted(spring_scene *s, weighted_link *to, cons
     occupied[at.slot] = square > 0 && (to->stiffness > 0 || to->damping > 0) ? -1 : 0;
 }
 
-/* The link with its values in the precision of the scene. */
+/* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
+   others, which add_weighted_link() uses in its place, so that the sum of the weights is 0. */
 static inline spring_weighted_link scene_weighted(const weighted_link *l)
 {
     spring_weighted_link link = {
         .rest = (double)l->rest, .stiffness = (double)l->stiffness, .damping = (double)l->damping};
+    double others = 0;
     for (int i = 0; i < l->points; i++) {
         link.particle[l->place[i]] = l->particle[i];
         link.weight[l->place[i]] = (double)l->weight[i];
+        others += i > 0 ? (double)l->weight[i] : 0;
     }
+    if (l->points > 0 && sizeof(scalar) < sizeof(double))
+        link.weight[l->place[0]] = -others;
     return link;
 }
 

@@ -88,7 +88,7 @@ static void tension_energies_and_rest(void)
                 const spring_link *link = &m.def.link[i];
                 const link_force f = evaluate_link(link, axes, y.x, y.v);
                 const double extension = f.length - (double)(scalar)link->rest, length = fabs(f.length) + link->rest;
-                const bool pulls = !tension_only || (extension > 0 && f.tension > 0);
+                const bool pulls = !tension_only || link->rest == 0 || (extension > 0 && f.tension > 0);
                 elastic += tension_only && extension <= 0 ? 0 : link->stiffness * extension * extension / 2;
                 all += link->stiffness * length * length / 2;
                 CHECK_CLOSE(spring_scene_tension(s, i), pulls ? f.tension : 0,
