@@ -65,7 +65,7 @@ typedef struct unbanded_links {
 /* A weighted link that is not in a band. Its vector is the sum of weight[i] (x[particle[i]] - x[particle[0]]) for i > 0.
    This equals the sum of weight[i] x[particle[i]] since the sum of the weights is 0, and a translation adds no rounding
    error. */
-typedef struct weighted_link {
+typedef struct stored_weighted {
     uint32_t particle[4]; /* first the particle with the largest weight */
     uint32_t slot;        /* among the slots of all bands; no_slot: it cannot be in a band */
     uint8_t points;       /* number of particles; 0: none */
@@ -74,7 +74,7 @@ typedef struct weighted_link {
     scalar weight[4];
     scalar stiffness, rest, damping;
     scalar root, direction_scale, turning; /* as in scene_band */
-} weighted_link;
+} stored_weighted;
 
 typedef struct scene_links {
     size_t particles;
@@ -84,8 +84,8 @@ typedef struct scene_links {
     size_t bands;
     const scene_band *band;
     unbanded_links unbanded;
-    size_t weighted;                     /* 0: all weighted links are in bands */
-    struct weighted_link *weighted_link; /* [weighted] */
+    size_t weighted;                       /* 0: all weighted links are in bands */
+    struct stored_weighted *weighted_link; /* [weighted] */
     bool bounded;        /* some links pull and never push: their bound of the tension is 0, that of others -INFINITY */
     size_t bound_stride; /* from link to link: 1, or 0: one vector of bounds for all links */
     bool isotropic;      /* on two or three axes, a link of rest length 0 is damped: in all directions */

@@ -36,7 +36,7 @@ typedef enum scene_array {
     ARRAY_FLAGS,          /* by link: spring_link.flags; only if one is not 0 */
     ARRAY_BOUND,          /* [N] by slot like ARRAY_SLOTS: see scene_links.bounded; only if links differ */
     ARRAY_TETHERS,        /* tether */
-    ARRAY_WEIGHTED,       /* weighted_link */
+    ARRAY_WEIGHTED,       /* stored_weighted */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
     ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
@@ -159,7 +159,7 @@ SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double 
 SPRING_INTERNAL void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force);
 
 /* The vector of a weighted link in double, from the state; d: [3] */
-SPRING_INTERNAL void spring_scene_weighted_vector(const spring_scene *s, const weighted_link *l, double d[3]);
+SPRING_INTERNAL void spring_scene_weighted_vector(const spring_scene *s, const stored_weighted *l, double d[3]);
 
 /* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);

@@ -120,7 +120,7 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
     for (size_t i = 0; grows && spring_scene_get_link(s, i, &link) == SPRING_OK; i++)
         if (scene_link_overflows(&link, proposed_inverse_mass(s, p, link.a), proposed_inverse_mass(s, p, link.b)))
             return false;
-    const weighted_link *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     for (size_t i = 0; grows && i < s->layout.weighted; i++) {
         const spring_weighted_link now = scene_weighted(&weighted[i]);
         double inverse[4];

@@ -233,7 +233,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_FLAGS] = {1, l->links, flagged},
         [ARRAY_BOUND] = {number, l->band_slots + unbanded, flagged && !all_pull},
         [ARRAY_TETHERS] = {sizeof(tether), l->tethers, l->tethers > 0},
-        [ARRAY_WEIGHTED] = {sizeof(weighted_link), l->weighted, l->weighted > 0},
+        [ARRAY_WEIGHTED] = {sizeof(stored_weighted), l->weighted, l->weighted > 0},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
         [ARRAY_ROOTS] = {number, l->band_slots + unbanded, kicks},
@@ -411,10 +411,10 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
     }
 }
 
-/* The particles of a weighted link; see weighted_link. */
-static weighted_link particles_of(const spring_weighted_link *link)
+/* The particles of a weighted link; see stored_weighted. */
+static stored_weighted particles_of(const spring_weighted_link *link)
 {
-    weighted_link to = {.slot = no_slot};
+    stored_weighted to = {.slot = no_slot};
     int first = 0;
     for (int i = 1; i < 4; i++)
         if (fabs(link->weight[i]) > fabs(link->weight[first]))
@@ -432,7 +432,7 @@ static weighted_link particles_of(const spring_weighted_link *link)
 static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
 {
     uint32_t next[most_bands] = {0};
-    weighted_link *const all = scene_memory(s, ARRAY_WEIGHTED);
+    stored_weighted *const all = scene_memory(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < def->weighted_links; i++) {
         const spring_weighted_link *link = &def->weighted_link[i];
         const three_points points = three_points_of(link);

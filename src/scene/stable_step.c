@@ -25,7 +25,7 @@ static double coefficient_of(const stored_link *link, link_coefficient which)
 static bool terms_of_weighted(const spring_scene *s, size_t index, link_coefficient which, spring_weighted_link *link,
                               double term[4])
 {
-    const weighted_link *const all = scene_read(s, ARRAY_WEIGHTED);
+    const stored_weighted *const all = scene_read(s, ARRAY_WEIGHTED);
     *link = scene_weighted(&all[index]);
     const double value = which == STIFFNESS ? link->stiffness : link->damping;
     double inverse[4];
@@ -136,9 +136,9 @@ void spring_scene_find_roots(spring_scene *s, double dt, double most)
         const double factor = fmin(1, ldexp(most / (dt * larger), -exponent));
         root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * factor);
     }
-    weighted_link *const weighted = scene_memory(s, ARRAY_WEIGHTED);
+    stored_weighted *const weighted = scene_memory(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < s->layout.weighted; i++) {
-        weighted_link *const link = &weighted[i];
+        stored_weighted *const link = &weighted[i];
         double larger = 0;
         for (int k = 0; k < link->points; k++)
             larger = fmax(larger, link->weight[k] != 0 ? sum_of_particle(s, link->particle[k], exponent, 0, true) : 0);

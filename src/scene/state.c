@@ -44,7 +44,7 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
         if (link.stiffness > 0 && (extension > 0 || !scene_tension_only(s, i, link.rest)))
             e.elastic += (double)link.stiffness * extension * extension / 2;
     }
-    const weighted_link *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < s->layout.weighted; i++) {
         double d[3];
         spring_scene_weighted_vector(s, &weighted[i], d);

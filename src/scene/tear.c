@@ -80,7 +80,7 @@ static bool any_longer(const scene_kernels *kernels, spring_scene *s, double str
 /* Cuts the weighted links that contain both ends of a link. */
 static void cut_weighted_links(spring_scene *s, const spring_link *link)
 {
-    const weighted_link *const all = scene_read(s, ARRAY_WEIGHTED);
+    const stored_weighted *const all = scene_read(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < s->layout.weighted; i++) {
         int ends = 0;
         for (int k = 0; k < all[i].points; k++)

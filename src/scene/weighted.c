@@ -14,7 +14,7 @@
 #include "weighted_links.h"
 
 /* d[a]: the sum of weight (x - x of the first particle). */
-SPRING_INLINE void weighted_sum(const weighted_link *l, const scalar *x, size_t stride, uint32_t axes, int points,
+SPRING_INLINE void weighted_sum(const stored_weighted *l, const scalar *x, size_t stride, uint32_t axes, int points,
                                 scalar d[3])
 {
     for (uint32_t a = 0; a < axes; a++) {
@@ -28,7 +28,7 @@ SPRING_INLINE void weighted_sum(const weighted_link *l, const scalar *x, size_t 
 }
 
 /* The pull of a link that has a direction, in `d`. See all_unbanded() and all_unbanded_freezing(). */
-static void pull_along(const scene_links *s, weighted_link *l, const scalar relative[3], scalar d[3])
+static void pull_along(const scene_links *s, stored_weighted *l, const scalar relative[3], scalar d[3])
 {
     const bool frozen = s->terms == FREEZING_TERMS;
     const scalar damping = s->terms == STIFFNESS_TERM ? 0 : frozen ? l->root * l->root : l->damping;
@@ -60,7 +60,7 @@ static void pull_along(const scene_links *s, weighted_link *l, const scalar rela
 }
 
 /* `points` is constant, so that loops are unrolled. */
-SPRING_INLINE void add_weighted_link(const scene_links *s, weighted_link *l, const scalar *x, const scalar *v,
+SPRING_INLINE void add_weighted_link(const scene_links *s, stored_weighted *l, const scalar *x, const scalar *v,
                                      scalar *force, int points)
 {
     const bool linear = s->axes == 1 || l->rest == 0;
@@ -90,7 +90,7 @@ void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scal
 {
     const scene_links own = *s; /* a local copy, so that stores cannot alias its fields */
     for (size_t j = 0; j < own.weighted; j++) {
-        weighted_link *const l = &own.weighted_link[j];
+        stored_weighted *const l = &own.weighted_link[j];
         if (l->banded || l->points < 2 || !(l->stiffness > 0 || l->damping > 0))
             continue;
         if (l->points == 3)
@@ -100,7 +100,7 @@ void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scal
     }
 }
 
-void spring_scene_weighted_vector(const spring_scene *s, const weighted_link *l, double d[3])
+void spring_scene_weighted_vector(const spring_scene *s, const stored_weighted *l, double d[3])
 {
     for (uint32_t a = 0; a < 3; a++) {
         const scalar *const x = a < s->layout.axes ? scene_state(s, SPRING_POSITION, a) : NULL;
@@ -115,7 +115,7 @@ void spring_scene_weighted_vector(const spring_scene *s, const weighted_link *l,
 /* ------------------------------------------------------------------------------------------------------ get and set */
 
 /* Whether a link may replace a weighted link. */
-static bool replaces(const spring_scene *s, const weighted_link *old, const spring_weighted_link *link)
+static bool replaces(const spring_scene *s, const stored_weighted *old, const spring_weighted_link *link)
 {
     const spring_weighted_link now = scene_weighted(old);
     bool defined[4] = {false};
@@ -140,12 +140,12 @@ spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, siz
         return SPRING_EDISABLED;
     if (first > s->layout.weighted || count > s->layout.weighted - first)
         return SPRING_ERANGE;
-    weighted_link *const all = scene_memory(s, ARRAY_WEIGHTED);
+    stored_weighted *const all = scene_memory(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < count; i++)
         if (!replaces(s, &all[first + i], &link[i]))
             return SPRING_EINVAL;
     for (size_t i = 0; i < count; i++) {
-        weighted_link *const to = &all[first + i];
+        stored_weighted *const to = &all[first + i];
         s->damped_links -= to->damping > 0;
         s->loose -= !to->banded;
         scene_write_weighted(s, to, &link[i]);
@@ -163,7 +163,7 @@ spring_status spring_scene_get_weighted_link(const spring_scene *s, size_t index
         return SPRING_EINVAL;
     if (index >= s->layout.weighted)
         return SPRING_ERANGE;
-    const weighted_link *const all = scene_read(s, ARRAY_WEIGHTED);
+    const stored_weighted *const all = scene_read(s, ARRAY_WEIGHTED);
     *link = scene_weighted(&all[index]);
     return SPRING_OK;
 }

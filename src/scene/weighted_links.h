@@ -71,7 +71,7 @@ static inline three_points three_points_of(const spring_weighted_link *link)
 }
 
 /* Stores the coefficients of a link: in its slot of a band if it fits there. */
-static inline void scene_write_weighted(spring_scene *s, weighted_link *to, const spring_weighted_link *link)
+static inline void scene_write_weighted(spring_scene *s, stored_weighted *to, const spring_weighted_link *link)
 {
     for (int i = 0; i < to->points; i++)
         to->weight[i] = (scalar)link->weight[to->place[i]];
@@ -94,7 +94,7 @@ static inline void scene_write_weighted(spring_scene *s, weighted_link *to, cons
 
 /* The link with its values in the precision of the scene. In single precision the first weight is minus the sum of the
    others, which add_weighted_link() uses in its place, so that the sum of the weights is 0. */
-static inline spring_weighted_link scene_weighted(const weighted_link *l)
+static inline spring_weighted_link scene_weighted(const stored_weighted *l)
 {
     spring_weighted_link link = {
         .rest = (double)l->rest, .stiffness = (double)l->stiffness, .damping = (double)l->damping};
