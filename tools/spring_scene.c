@@ -87,7 +87,7 @@ static const cli_option options[] = {
              "and their default is the full --stiffness. S > 1 multiplies it by 1 - 1/S, the transverse stiffness\n"
              "of a sheet with this stretch."},
     {"bend", CLI_POSITIVE, .real = &bend, .value = "B",
-     .help = "rope, cloth and water only: bending stiffness, EI of a rope [N m^2], D of a sheet [N m]\n"
+     .help = "rope, cloth, water: bending stiffness, EI [N m^2] or D [N m]\n"
              "The rope gets the links of spring_bend_rod(). Sheets get those of spring_bend_grid() along rows,\n"
              "columns and diagonals."},
     {"tethers", CLI_POSITIVE, .real = &tethers, .value = "FRACTION",

@@ -49,7 +49,7 @@ static const cli_option options[] = {
              "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "drag on a particle of the scene [N s/m]"},
     {"bend", CLI_POSITIVE, .real = &bend, .value = "B",
-     .help = "rope, cloth and water: bending stiffness, EI of a rope [N m^2], D of a sheet [N m]"},
+     .help = "rope, cloth, water: bending stiffness, EI [N m^2] or D [N m]"},
     {"tethers", CLI_POSITIVE, .real = &tethers, .value = "FRACTION",
      .help = "rope, cloth, jelly and meshes: tethers to the nearest pins; 0.05 is a good value\n"
              "With tethers, a scene sags less at the same stiffness, so that it needs fewer steps. See --tethers of\n"
