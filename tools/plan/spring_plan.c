@@ -51,7 +51,7 @@ static const cli_option options[] = {
     {"bend", CLI_POSITIVE, .real = &bend, .value = "B",
      .help = "rope, cloth, water: bending stiffness, EI [N m^2] or D [N m]"},
     {"tethers", CLI_POSITIVE, .real = &tethers, .value = "FRACTION",
-     .help = "rope, cloth, jelly and meshes: tethers to the nearest pins; 0.05 is a good value\n"
+     .help = "rope, cloth, jelly, meshes: tethers to the nearest pins, such as 0.05\n"
              "With tethers, a scene sags less at the same stiffness, so that it needs fewer steps. See --tethers of\n"
              "spring-scene."},
     {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
