@@ -33,8 +33,7 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 /* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
    to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
-                             const real *rest, const real *c, const real *bound, bool damped, bool bounded,
-                             bool isotropic)
+                             const real *rest, const real *c, bool damped, bool bounded)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
@@ -56,27 +55,23 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         const real inverse = scale[m];
-        const real stretch = 1 - rest[m] * inverse;
+        const real stretch = 1 - (bounded ? vec_abs(rest[m]) : rest[m]) * inverse;
         scale[m] = k[m] * stretch;
-        if (damped) {
-            const real along = isotropic ? select_real(rest[m] == 0, splat(0), c[m]) : c[m];
-            scale[m] += along * (rate[m] * inverse * inverse);
-        }
+        if (damped)
+            scale[m] += c[m] * (rate[m] * inverse * inverse);
         acts[m] = joined[m];
-        if (bounded) /* NaN remains, so that it is detected */
-            scale[m] = vec_max(bound[m], scale[m]);
-        if (bounded && damped)
-            acts[m] &= not_mask(stretch <= bound[m]);
+        if (bounded) { /* NaN remains, so that it is detected */
+            const mask pulls = rest[m] < 0;
+            scale[m] = select_real(pulls, vec_not_negative(scale[m]), scale[m]);
+            if (damped)
+                acts[m] &= not_mask(pulls & (stretch <= 0));
+        }
     }
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++) {
-            delta[m][a] *= scale[m];
-            if (damped && isotropic)
-                delta[m][a] += select_real(rest[m] == 0, c[m] * relative[m][a], splat(0));
-            delta[m][a] = select_real(acts[m], delta[m][a], splat(0));
-        }
+        for (uint32_t a = 0; a < axes; a++)
+            delta[m][a] = select_real(acts[m], scale[m] * delta[m][a], splat(0));
     }
 }
 
@@ -110,11 +105,10 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
                                bool shared)
 {
     const size_t stride = s->stride;
-    const bool bounded = axes > 1 && s->bounded, isotropic = axes > 1 && s->isotropic;
+    const bool bounded = axes > 1 && s->bounded;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
-    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride, stride_b = (ptrdiff_t)s->bound_stride;
-    const scalar *const bounds = bounded ? band->bound + slot * stride_b : NULL;
+    const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c,
                         *const damping = damped ? band->damping + slot * stride_c : NULL;
@@ -123,7 +117,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
     const size_t together = links_together(axes);
     for (size_t j = 0; j < count; j += together * lanes) {
         real delta[most_together][3], relative[most_together][3];
-        real k[most_together], rest[most_together], c[most_together], bound[most_together];
+        real k[most_together], rest[most_together], c[most_together];
         mask joined[most_together];
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
@@ -132,7 +126,6 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
             k[m] = vec_load(stiffness + number);
             rest[m] = vec_load(rest_length + number);
             c[m] = damped ? vec_load(damping + number) : splat(0);
-            bound[m] = bounded ? vec_load(bounds + (ptrdiff_t)i * stride_b) : splat(0);
             joined[m] = vec_load_mask(occupied + i);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
@@ -144,7 +137,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
         if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
-            to_forces(axes, delta, relative, joined, k, rest, c, bound, damped, bounded, isotropic);
+            to_forces(axes, delta, relative, joined, k, rest, c, damped, bounded);
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
@@ -215,7 +208,6 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c, *const roots = band->root + slot;
     scalar *const scales = band->direction_scale + slot, *const turnings = band->turning + slot;
-    const ptrdiff_t stride_b = (ptrdiff_t)s->bound_stride;
     const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     const size_t together = links_together(axes);
     size_t j = 0;
@@ -241,45 +233,33 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const size_t end = j;
     for (j = 0; j < end; j += lanes) {
         const ptrdiff_t number = (ptrdiff_t)j * stride_c;
-        const real root = vec_load(roots + j), c = root * root, inverse = vec_load(scales + j);
-        real delta[3], relative[3], square = splat(0), rate = splat(0), speed_square = splat(0);
+        const real root = vec_not_negative(vec_load(roots + j)), c = root * root, inverse = vec_load(scales + j);
+        real delta[3], square = splat(0), rate = splat(0), speed_square = splat(0);
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
             const scalar *const at = x + a * stride + t + j, *const with = v + a * stride + t + j;
-            relative[a] = vec_load(with + offset) - vec_load(with);
+            const real relative = vec_load(with + offset) - vec_load(with);
             delta[a] = vec_load(at + offset) - vec_load(at);
             square += delta[a] * delta[a];
-            rate += delta[a] * relative[a];
-            speed_square += relative[a] * relative[a];
+            rate += delta[a] * relative;
+            speed_square += relative * relative;
         }
-        const real rest = vec_load(rest_length + number), stretch = 1 - rest * inverse;
-        mask acts = vec_load_mask(occupied + j), linear = {0};
-        if (s->bounded)
-            acts &= not_mask(stretch <= vec_load(band->bound + (slot + (ptrdiff_t)j) * stride_b));
-        const real inverse_square = inverse * inverse;
-        real unit = root * inverse, along = c;
-        if (s->isotropic) {
-            linear = (mask)(rest == 0);
-            along = select_real(linear, splat(0), c);
-        }
-        real scale = vec_load(stiffness + number) * stretch + along * (rate * inverse_square);
+        const real rest = vec_load(rest_length + number), stretch = 1 - vec_abs(rest) * inverse;
+        mask acts = vec_load_mask(occupied + j);
+        acts &= not_mask((rest < 0) & (stretch <= 0));
+        const real inverse_square = inverse * inverse, unit = root * inverse;
+        real scale = vec_load(stiffness + number) * stretch + c * (rate * inverse_square);
         if (span > 0) {
             const real across = vec_not_negative(speed_square * square - rate * rate); /* |delta x relative|^2 */
             const real angle = span * inverse_square, turned = vec_min(angle * angle * across, splat(1));
             const real turning = (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * inverse_span;
-            vec_store(turnings + j, select_real(acts & not_mask(linear), turning * (2 * unit * square), splat(0)));
-            scale -= along * turning;
+            vec_store(turnings + j, select_real(acts, turning * (2 * unit * square), splat(0)));
+            scale -= c * turning;
         }
-        if (s->isotropic)
-            unit = select_real(linear, -root, unit);
         vec_store(scales + j, select_real(acts, unit, splat(0)));
         SPRING_UNROLL
-        for (uint32_t a = 0; a < axes; a++) {
-            real pull = scale * delta[a];
-            if (s->isotropic)
-                pull += select_real(linear, c * relative[a], splat(0));
-            vec_store(force + a * axis + j, select_real(acts, pull, splat(0)));
-        }
+        for (uint32_t a = 0; a < axes; a++)
+            vec_store(force + a * axis + j, select_real(acts, scale * delta[a], splat(0)));
     }
 }
 
@@ -316,8 +296,7 @@ SPRING_NOINLINE void freezing_tile_on_3_axes(const scene_links *s, const scene_b
 }
 
 /* Like tile_forces(), for damping alone along stored directions d: the force is d (d . relative velocity + turning).
-   On one axis d is direction_scale, otherwise this times the vector between the ends. A negative direction_scale stands
-   for all directions. */
+   On one axis d is direction_scale, otherwise this times the vector between the ends. */
 SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
                                        ptrdiff_t t, size_t slots, scalar *force, size_t axis, uint32_t axes)
 {
@@ -332,24 +311,20 @@ SPRING_INLINE void tile_damping_forces(const scene_links *s, const scene_band *b
         for (size_t m = 0; m < together; m++) {
             const size_t i = j + m * lanes;
             const real scale = vec_load(scales + i);
-            real delta[3], relative[3], rate = splat(0);
+            real delta[3], rate = splat(0);
             SPRING_UNROLL
             for (uint32_t a = 0; a < axes; a++) {
                 const scalar *const at = x + a * stride + t + i, *const with = v + a * stride + t + i;
-                relative[a] = vec_load(with + offset) - vec_load(with);
+                const real relative = vec_load(with + offset) - vec_load(with);
                 delta[a] = axes > 1 ? vec_load(at + offset) - vec_load(at) : splat(1);
-                rate += axes > 1 ? delta[a] * relative[a] : relative[a];
+                rate += axes > 1 ? delta[a] * relative : relative;
             }
             rate *= scale;
             if (weight != 0)
                 rate += weight * vec_load(turnings + i);
             SPRING_UNROLL
-            for (uint32_t a = 0; a < axes; a++) {
-                real pull = scale * rate * delta[a];
-                if (axes > 1 && s->isotropic)
-                    pull = select_real(scale < 0, scale * scale * relative[a], pull);
-                vec_store(force + a * axis + i, pull);
-            }
+            for (uint32_t a = 0; a < axes; a++)
+                vec_store(force + a * axis + i, scale * rate * delta[a]);
         }
     }
 }
@@ -372,21 +347,50 @@ SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_ba
     tile_damping_forces(s, band, x, v, t, slots, force, axis, 3);
 }
 
-/* Like tile_kernel, for three-point links. Axes are independent. */
-SPRING_INLINE void three_point_forces(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
-                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis, bool stiff, bool damped)
+/* Replaces the forces of links of rest length 0, which are linear and damped in all directions. Of these, other kernels
+   damp only the motion along the link and, in an exponential kick, none, since their roots are negative. */
+SPRING_NOINLINE void replace_linear_forces(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
+    const bool frozen = s->terms == FREEZING_TERMS || s->terms == DAMPING_TERM;
+    for (size_t j = 0; j < count; j += lanes) {
+        const ptrdiff_t i = slot + (ptrdiff_t)j, number = i * stride_c;
+        const mask joined = vec_load_mask(band->occupied + i);
+        const real rest = vec_load(band->rest + number);
+        const real k = s->terms == DAMPING_TERM ? splat(0) : vec_load(band->stiffness + number);
+        real c = frozen ? vec_load(band->root + i) : vec_load(band->damping + number);
+        if (frozen)
+            c *= c;
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const scalar *const at = x + a * s->stride + t + j, *const with = v + a * s->stride + t + j;
+            const real pull =
+                k * (vec_load(at + offset) - vec_load(at)) + c * (vec_load(with + offset) - vec_load(with));
+            scalar *const to = force + a * axis + j;
+            vec_store(to, select_real(joined, select_real(rest == 0, pull, vec_load(to)), splat(0)));
+        }
+    }
+}
+
+/* A tile_kernel for three-point links. Axes are independent. */
+SPRING_NOINLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis)
 {
     const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
-    const bool frozen = s->terms == FREEZING_TERMS || s->terms == DAMPING_TERM;
+    const bool stiff = s->terms != DAMPING_TERM, damped = s->terms != STIFFNESS_TERM;
+    const scalar *const root = s->terms > STIFFNESS_AND_DAMPING_TERM ? band->root + slot : NULL;
     const scalar *const stiffness = band->stiffness + slot;
-    const scalar *const damping = damped ? (frozen ? band->root : band->damping) + slot : NULL;
+    const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
     for (size_t j = 0; j < count; j += lanes) {
         const mask joined = vec_load_mask(band->occupied + slot + j);
         const real k = vec_load(stiffness + j);
         real c = damped ? vec_load(damping + j) : splat(0);
-        if (damped && frozen)
+        if (root != NULL)
             c *= c;
+        SPRING_ROLLED
         for (uint32_t a = 0; a < s->axes; a++) {
             const scalar *const at = x + a * s->stride + t + j, *const with = v + a * s->stride + t + j;
             real pull = splat(0);
@@ -403,31 +407,18 @@ SPRING_INLINE void three_point_forces(const scene_links *s, const scene_band *ba
     }
 }
 
-SPRING_NOINLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
-                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis)
-{
-    if (s->terms == STIFFNESS_TERM)
-        three_point_forces(s, band, x, v, t, slots, force, axis, true, false);
-    else
-        three_point_forces(s, band, x, v, t, slots, force, axis, s->terms != DAMPING_TERM, true);
-}
-
-/* Forces to be added to the particles of a tile. Forces along axis a are at force + a * axis. */
+/* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
 typedef struct kept_forces {
     const scalar *force;
     size_t axis;
 } kept_forces;
 
-/* What is added to the forces of a tile: once, twice, or subtracted. */
-typedef struct kept_sums {
-    kept_forces plus[most_bands], minus[2 * most_bands], twice[most_bands];
-    size_t pluses, minuses, twices;
-} kept_sums;
-
 /* Sets `to` to the sum of the forces of all bands on `count` particles. */
-typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_sums *sums);
+typedef void gather_kernel(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                           const kept_forces *minus, size_t minuses);
 
-SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_sums *sums, uint32_t axes)
+SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                          const kept_forces *minus, size_t minuses, uint32_t axes)
 {
     enum { most = 4 };
     const size_t some = axes == 1 && SPRING_VECTOR == 16 ? most : 2; /* vectors per iteration */
@@ -439,7 +430,7 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_su
             for (uint32_t a = 0; a < axes; a++)
                 force[m][a] = splat(0);
         }
-        for (const kept_forces *k = sums->plus; k < sums->plus + sums->pluses; k++) {
+        for (const kept_forces *k = plus; k < plus + pluses; k++) {
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
@@ -447,20 +438,12 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_su
                     force[m][a] += vec_load(k->force + a * k->axis + j + m * lanes);
             }
         }
-        for (const kept_forces *k = sums->minus; k < sums->minus + sums->minuses; k++) {
+        for (const kept_forces *k = minus; k < minus + minuses; k++) {
             SPRING_UNROLL
             for (size_t m = 0; m < some; m++) {
                 SPRING_UNROLL
                 for (uint32_t a = 0; a < axes; a++)
                     force[m][a] -= vec_load(k->force + a * k->axis + j + m * lanes);
-            }
-        }
-        for (const kept_forces *k = sums->twice; k < sums->twice + sums->twices; k++) {
-            SPRING_UNROLL
-            for (size_t m = 0; m < some; m++) {
-                SPRING_UNROLL
-                for (uint32_t a = 0; a < axes; a++)
-                    force[m][a] += 2 * vec_load(k->force + a * k->axis + j + m * lanes);
             }
         }
         SPRING_UNROLL
@@ -472,19 +455,22 @@ SPRING_INLINE void gather(scalar *to, size_t stride, size_t count, const kept_su
     }
 }
 
-SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_sums *sums)
+SPRING_INLINE void gather_on_1_axis(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                    const kept_forces *minus, size_t minuses)
 {
-    gather(to, stride, count, sums, 1);
+    gather(to, stride, count, plus, pluses, minus, minuses, 1);
 }
 
-SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_sums *sums)
+SPRING_NOINLINE void gather_on_2_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
 {
-    gather(to, stride, count, sums, 2);
+    gather(to, stride, count, plus, pluses, minus, minuses, 2);
 }
 
-SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_sums *sums)
+SPRING_NOINLINE void gather_on_3_axes(scalar *to, size_t stride, size_t count, const kept_forces *plus, size_t pluses,
+                                      const kept_forces *minus, size_t minuses)
 {
-    gather(to, stride, count, sums, 3);
+    gather(to, stride, count, plus, pluses, minus, minuses, 3);
 }
 
 /* Copies the first tile of a ring behind its last tile, so that any `tile` consecutive slots are contiguous. */
@@ -508,11 +494,10 @@ SPRING_INLINE bool reaches(const scene_band *band, ptrdiff_t distance, ptrdiff_t
     return t < band->end + distance && t + tile > band->start + distance;
 }
 
-/* The place in a ring that is `distance` before a place. */
-SPRING_INLINE ptrdiff_t place_before(const scene_band *band, ptrdiff_t place, ptrdiff_t distance)
+/* The place in a ring that is `back` slots before a place; back: modulo the ring. */
+SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t back, ptrdiff_t ring)
 {
-    const ptrdiff_t other = place - (distance < band->ring ? distance : distance % band->ring);
-    return other < 0 ? other + band->ring : other;
+    return place < back ? place - back + ring : place - back;
 }
 
 /* See band_kernel. The rings contain the forces of earlier links. `t` is the first particle of a tile, place[r] its
@@ -531,12 +516,13 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
         }
     }
     for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
-        kept_sums sums;
-        sums.pluses = sums.minuses = sums.twices = 0;
+        kept_forces plus[2 * most_bands], minus[2 * most_bands];
+        size_t pluses = 0, minuses = 0;
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const size_t axis = (size_t)(band->ring + tile);
+            const ptrdiff_t ring = band->ring;
+            const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + place[r];
             const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
             if ((t == band->start - tile || t + (ptrdiff_t)count > end) && t < end + tile)
@@ -544,21 +530,23 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
             if (t >= band->start && t < band->end) {
                 if (band->three_points) {
                     three_point_tile(s, band, x, v, t, count, force, axis);
-                    sums.minus[sums.minuses++] = (kept_forces){force, axis};
+                    minus[minuses++] = (kept_forces){force, axis};
                 } else {
                     forces(s, band, x, v, t, count, force, axis);
-                    sums.plus[sums.pluses++] = (kept_forces){force, axis};
+                    if (axes > 1 && s->isotropic)
+                        replace_linear_forces(s, band, x, v, t, count, force, axis);
+                    plus[pluses++] = (kept_forces){force, axis};
                 }
             }
             if (place[r] == 0)
-                repeat(force, band->ring, count, axis, axes);
-            if (band->three_points && reaches(band, band->offset, t))
-                sums.twice[sums.twices++] = (kept_forces){kept + place_before(band, place[r], band->offset), axis};
+                repeat(force, ring, count, axis, axes);
+            for (int twice = 0; twice < 2 && band->three_points && reaches(band, band->offset, t); twice++)
+                plus[pluses++] = (kept_forces){kept + place_before(place[r], band->middle_back, ring), axis};
             if (reaches(band, band->reach, t))
-                sums.minus[sums.minuses++] = (kept_forces){kept + place_before(band, place[r], band->reach), axis};
-            place[r] = place[r] + tile < band->ring ? place[r] + tile : 0;
+                minus[minuses++] = (kept_forces){kept + place_before(place[r], band->back, ring), axis};
+            place[r] = place[r] + tile < ring ? place[r] + tile : 0;
         }
-        sum(out->force + t, s->stride, count, &sums);
+        sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
     }
 }
 

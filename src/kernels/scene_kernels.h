@@ -41,23 +41,26 @@ typedef struct scene_band {
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
     const scalar *stiffness;      /* [N/m] */
-    const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end */
+    const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end, on
+                                     several axes if it pulls and never pushes */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
-    const scalar *bound;          /* see scene_links.bounded */
     /* Of an exponential kick, by slot; NULL: the scene has none. */
-    const scalar *root;      /* [(N s/m)^(1/2)] square root of the damping, which may be saturated */
-    scalar *direction_scale; /* root/length, on one axis root, for rest length 0 -root; 0: the link does not act */
+    /* [(N s/m)^(1/2)] square root of the damping, which may be saturated; negative for rest length 0 on several axes */
+    const scalar *root;
+    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act, or its root is negative */
     scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
     ptrdiff_t reach;         /* offset, or with three points 2 offset */
     ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least reach + tile or all slots */
+    ptrdiff_t back;          /* reach modulo ring */
+    ptrdiff_t middle_back;   /* offset modulo ring */
 } scene_band;
 
 /* Links that belong to no band. */
 typedef struct unbanded_links {
     size_t count;
     const uint32_t *a, *b;
-    const scalar *stiffness, *rest, *damping, *bound; /* as in scene_band */
+    const scalar *stiffness, *rest, *damping; /* as in scene_band */
     const scalar *root;
     scalar *direction_scale, *turning;
 } unbanded_links;
@@ -86,9 +89,8 @@ typedef struct scene_links {
     unbanded_links unbanded;
     size_t weighted;                       /* 0: all weighted links are in bands */
     struct stored_weighted *weighted_link; /* [weighted] */
-    bool bounded;        /* some links pull and never push: their bound of the tension is 0, that of others -INFINITY */
-    size_t bound_stride; /* from link to link: 1, or 0: one vector of bounds for all links */
-    bool isotropic;      /* on two or three axes, a link of rest length 0 is damped: in all directions */
+    bool bounded;                          /* on two or three axes, some links pull and never push */
+    bool isotropic; /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */

@@ -12,20 +12,14 @@
 #include "link_law.h"
 #include "bands_tmpl.h"
 
-/* The bound of the tension of a link; see scene_links.bounded. */
-SPRING_INLINE scalar link_bound(const scene_links *s, size_t j)
-{
-    return s->unbanded.bound[j * s->bound_stride];
-}
-
 /* The force of a link divided by the vector between its ends. rate: relative velocity . delta */
-SPRING_INLINE scalar link_scale(const scene_links *s, size_t j, scalar square, scalar rate, bool damped)
+SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped)
 {
-    const unbanded_links *const l = &s->unbanded;
-    const scalar stretch = 1 - l->rest[j] / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
+    const bool pulls = l->rest[j] < 0;
+    const scalar rest = pulls ? -l->rest[j] : l->rest[j];
+    const scalar stretch = 1 - rest / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
     const scalar scale = damped ? pull + l->damping[j] * (rate / square) : pull;
-    /* NaN is not slack, so that it is detected */
-    return s->bounded && (stretch <= link_bound(s, j) || scale <= link_bound(s, j)) ? 0 : scale;
+    return pulls && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is detected */
 }
 
 /* A cut link has no force, however far apart its ends are. */
@@ -53,7 +47,7 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
         if (!link_acts(l, j, damped) || (!linear && !(square > 0)))
             continue;
         if (!linear)
-            scale = link_scale(s, j, square, rate, damped);
+            scale = link_scale(l, j, square, rate, damped);
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
             if (!linear)
@@ -71,10 +65,9 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
 }
 
 /* Not inlined, since it is called for few links. */
-SPRING_NOINLINE void one_quad_link(const scene_links *s, size_t j, const scalar *x, const scalar *v, scalar *force,
+SPRING_NOINLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
                                    size_t stride, bool damped)
 {
-    const unbanded_links *const l = &s->unbanded;
     const bool linear = l->rest[j] == 0;
     const size_t a = stride * l->a[j], b = stride * l->b[j];
     const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
@@ -82,7 +75,7 @@ SPRING_NOINLINE void one_quad_link(const scene_links *s, size_t j, const scalar 
     const scalar square = quad_dot(delta, delta);
     if (!link_acts(l, j, damped) || (!linear && !(square > 0)))
         return;
-    const scalar scale = linear ? l->stiffness[j] : link_scale(s, j, square, quad_dot(delta, relative), damped);
+    const scalar scale = linear ? l->stiffness[j] : link_scale(l, j, square, quad_dot(delta, relative), damped);
     quad pull = quad_times(quad_all(scale), delta);
     if (linear && damped)
         pull = quad_plus(pull, quad_times(quad_all(l->damping[j]), relative));
@@ -97,7 +90,6 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
 {
     const unbanded_links own = s->unbanded, *const l = &own; /* a local copy, so that stores cannot alias its fields */
     const bool bounded = s->bounded, isotropic = damped && s->isotropic;
-    const size_t stride_b = s->bound_stride;
     const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
@@ -119,7 +111,8 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
                 rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
         }
         const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
-        const quad stretch = quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square)));
+        const quad signed_rest = quad_load(l->rest + j), rest = bounded ? quad_abs(signed_rest) : signed_rest;
+        const quad stretch = quad_minus(quad_all(1), quad_over(rest, quad_sqrt(square)));
         quad scale = quad_times(quad_load(l->stiffness + j), stretch);
         if (damped)
             scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
@@ -128,14 +121,11 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
         /* both ends at one point, or very far apart, or a link of rest length 0 */
         if (SPRING_UNLIKELY(linear || !quad_finite(quad_plus(scale, square)))) {
             for (size_t m = 0; m < some; m++)
-                one_quad_link(s, j + m, x, v, force, stride, damped);
+                one_quad_link(l, j + m, x, v, force, stride, damped);
             continue;
         }
-        const quad bound = bounded ? quad_load(l->bound + j * stride_b) : square;
         if (bounded)
-            scale = quad_where_greater(scale, scale, bound);
-        if (bounded && damped)
-            scale = quad_where_greater(scale, stretch, bound);
+            scale = quad_zero_where(scale, scale, damped ? stretch : scale, signed_rest);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
@@ -145,7 +135,7 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        one_quad_link(s, j, x, v, force, stride, damped);
+        one_quad_link(l, j, x, v, force, stride, damped);
 }
 
 /* ------------------------------------------------------------------------------------- links of an exponential kick */
@@ -169,12 +159,14 @@ SPRING_NOINLINE void all_unbanded_freezing(const scene_links *s, const scalar *x
         if (!link_acts(l, j, true))
             continue;
         if (s->axes == 1 || l->rest[j] == 0) {
-            l->direction_scale[j] = s->axes == 1 ? root : -root;
+            l->direction_scale[j] = root;
             for (uint32_t a = 0; a < s->axes; a++)
                 delta[a] = l->stiffness[j] * (s->axes == 1 ? delta[a] - l->rest[j] : delta[a]) + c * relative[a];
         } else {
-            const scalar inverse = 1 / scalar_sqrt(square), stretch = 1 - l->rest[j] * inverse;
-            if (square == 0 || (s->bounded && stretch <= link_bound(s, j)))
+            const bool pulls = l->rest[j] < 0;
+            const scalar rest = pulls ? -l->rest[j] : l->rest[j];
+            const scalar inverse = 1 / scalar_sqrt(square), stretch = 1 - rest * inverse;
+            if (square == 0 || (pulls && stretch <= 0))
                 continue;
             const scalar inverse_square = inverse * inverse;
             const scalar turning = turning_rate(s->turning_time, inverse_square, across * square - rate * rate);

@@ -34,7 +34,6 @@ typedef enum scene_array {
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
     ARRAY_FLAGS,          /* by link: spring_link.flags; only if one is not 0 */
-    ARRAY_BOUND,          /* [N] by slot like ARRAY_SLOTS: see scene_links.bounded; only if links differ */
     ARRAY_TETHERS,        /* tether */
     ARRAY_WEIGHTED,       /* stored_weighted */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */

@@ -3,6 +3,8 @@
 #include "definition.h"
 #include "steppers.h"
 
+#include "../simd/size_begin.h"
+
 typedef struct def_error {
     spring_status status;
     const char *field;
@@ -173,3 +175,5 @@ spring_status spring_scene_check(const spring_scene_def *def, const char **field
         *index = found.index;
     return found.status;
 }
+
+#include "../simd/size_end.h"

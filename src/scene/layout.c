@@ -11,6 +11,8 @@
 #include "definition.h"
 #include "steppers.h"
 
+#include "../simd/size_begin.h"
+
 /* ------------------------------------------------------------------------------------------------------------ bands */
 
 static uint32_t lower_end(const spring_link *link)
@@ -35,7 +37,7 @@ enum { candidates = 256, probes = 8 };
 
 static bool equal_links(const spring_link *a, const spring_link *b)
 {
-    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest &&
+    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest && a->flags == b->flags &&
            (a->a > a->b) == (b->a > b->b);
 }
 
@@ -203,8 +205,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool predicts = needs.predicts && velocity_used, kicks = needs.predicts && damped;
     const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
     const bool collides = l->colliders > 0, flagged = link_flags(def) != 0;
-    const bool all_pull = (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
-               loose = l->loose > 0 || (editable && l->weighted > 0);
+    const bool loose = l->loose > 0 || (editable && l->weighted > 0);
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
@@ -231,7 +232,6 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_REST] = {number, unbanded, l->unbanded > 0},
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
         [ARRAY_FLAGS] = {1, l->links, flagged},
-        [ARRAY_BOUND] = {number, l->band_slots + unbanded, flagged && !all_pull},
         [ARRAY_TETHERS] = {sizeof(tether), l->tethers, l->tethers > 0},
         [ARRAY_WEIGHTED] = {sizeof(stored_weighted), l->weighted, l->weighted > 0},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
@@ -376,7 +376,6 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
     uint32_t *slots = scene_memory(s, ARRAY_SLOTS), *link_a = scene_memory(s, ARRAY_LINK_A),
              *link_b = scene_memory(s, ARRAY_LINK_B);
     uint8_t *const flags = scene_memory(s, ARRAY_FLAGS);
-    scalar *const bound = scene_memory(s, ARRAY_BOUND);
     tether *tethers = scene_memory(s, ARRAY_TETHERS);
     uint32_t next[most_bands] = {0}, unbanded = 0;
     for (size_t i = 0; i < def->links; i++) {
@@ -392,8 +391,6 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
             slots[i] = slot;
         if (flags != NULL)
             flags[i] = (uint8_t)link->flags;
-        if (bound != NULL)
-            bound[slot] = link->flags != 0 ? 0 : -(scalar)INFINITY;
         if (kind_of(link) == BAND_OF_TETHERS)
             *tethers++ = (tether){.link = (uint32_t)i};
     }
@@ -484,3 +481,5 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     *result = s;
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

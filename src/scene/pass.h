@@ -139,10 +139,7 @@ static inline scene_particles scene_prepare_particles(const spring_scene *s)
 /* band: memory for the bands. */
 static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[most_bands])
 {
-    static const scalar no_push[padding] = {0}; /* the bounds of a scene whose links are all tension-only */
     const scene_layout *l = &s->layout;
-    const scalar *const bound = scene_read(s, ARRAY_BOUND);
-    const bool each = bound != NULL;
     const bool damped = s->damped_links > 0;
     const int8_t *occupied = scene_read(s, ARRAY_OCCUPIED);
     const scalar *stiffness = scene_read(s, ARRAY_BAND_STIFFNESS), *rest = scene_read(s, ARRAY_BAND_REST);
@@ -162,13 +159,14 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             .stiffness = stiffness + b->coefficients,
             .rest = rest + b->coefficients,
             .damping = damped ? damping + b->coefficients : NULL,
-            .bound = each ? bound + b->slots : no_push,
             .root = root != NULL ? root + b->slots : NULL,
             .direction_scale = frozen != NULL ? frozen + b->slots : NULL,
             .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
             .reach = (ptrdiff_t)b->reach,
             .ring = (ptrdiff_t)b->ring,
+            .back = (ptrdiff_t)(b->reach % b->ring),
+            .middle_back = (ptrdiff_t)(b->offset % b->ring),
         };
     }
     return (scene_links){
@@ -186,15 +184,13 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
                 .stiffness = scene_read(s, ARRAY_LINK_STIFFNESS),
                 .rest = scene_read(s, ARRAY_LINK_REST),
                 .damping = damped ? scene_read(s, ARRAY_LINK_DAMPING) : NULL,
-                .bound = each ? bound + l->band_slots : no_push,
                 .root = root != NULL ? root + l->band_slots : NULL,
                 .direction_scale = frozen != NULL ? frozen + l->band_slots : NULL,
                 .turning = frozen != NULL ? frozen + all_slots + l->band_slots : NULL,
             },
         .weighted = s->loose > 0 ? l->weighted : 0,
         .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
-        .bounded = each || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
-        .bound_stride = each,
+        .bounded = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
     };
 }

@@ -134,7 +134,8 @@ void spring_scene_find_roots(spring_scene *s, double dt, double most)
         const double larger =
             fmax(sum_of_particle(s, link.a, exponent, 0, true), sum_of_particle(s, link.b, exponent, 0, true));
         const double factor = fmin(1, ldexp(most / (dt * larger), -exponent));
-        root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * factor);
+        const double size = spring_sqrt((double)link.damping * factor);
+        root[scene_link_place(s, i).slot] = (scalar)(link.rest == 0 && s->layout.axes > 1 ? -size : size);
     }
     stored_weighted *const weighted = scene_memory(s, ARRAY_WEIGHTED);
     for (size_t i = 0; i < s->layout.weighted; i++) {

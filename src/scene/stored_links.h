@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "../simd/size_begin.h"
+
 /* Where a link is stored. */
 typedef struct link_place {
     uint32_t a, b; /* its ends; in a band the lower one first */
@@ -49,7 +51,8 @@ static inline stored_link scene_link(const spring_scene *s, size_t index)
     const scalar *stiffness = scene_read(s, at.banded ? ARRAY_BAND_STIFFNESS : ARRAY_LINK_STIFFNESS);
     const scalar *rest = scene_read(s, at.banded ? ARRAY_BAND_REST : ARRAY_LINK_REST);
     const scalar *damping = scene_read(s, at.banded ? ARRAY_BAND_DAMPING : ARRAY_LINK_DAMPING);
-    return (stored_link){at.a, at.b, stiffness[at.index], rest[at.index], damping != NULL ? damping[at.index] : 0};
+    const scalar size = s->layout.axes > 1 && rest[at.index] < 0 ? -rest[at.index] : rest[at.index];
+    return (stored_link){at.a, at.b, stiffness[at.index], size, damping != NULL ? damping[at.index] : 0};
 }
 
 static inline void scene_write_link(spring_scene *s, size_t index, const spring_link *link)
@@ -61,7 +64,8 @@ static inline void scene_write_link(spring_scene *s, size_t index, const spring_
     int8_t *occupied = scene_memory(s, ARRAY_OCCUPIED);
     const scalar rest = (scalar)fabs(link->rest); /* -0.0 would reverse a link on one axis */
     stiffness[at.index] = (scalar)link->stiffness;
-    rests[at.index] = s->layout.axes == 1 && at.a != link->a ? -rest : rest;
+    const bool negative = s->layout.axes == 1 ? at.a != link->a : scene_link_flags(s, index) != 0;
+    rests[at.index] = negative ? -rest : rest; /* see scene_band */
     if (damping != NULL)
         damping[at.index] = (scalar)link->damping;
     if (at.banded)
@@ -172,5 +176,7 @@ static inline const char *scene_link_overflows(const spring_link *link, double i
            : !scene_fits(2 * (link->damping * lightest)) ? "link.damping"
                                                          : NULL;
 }
+
+#include "../simd/size_end.h"
 
 #endif

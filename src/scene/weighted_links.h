@@ -5,6 +5,8 @@
 
 #include "stored_links.h"
 
+#include "../simd/size_begin.h"
+
 /* The field of a weighted link that is not valid for any particles and masses; NULL: none. */
 static inline const char *weighted_invalid_field(const spring_weighted_link *link)
 {
@@ -115,5 +117,7 @@ static inline void weighted_inverse_masses(const spring_scene *s, const spring_w
     for (int i = 0; i < 4; i++)
         inverse[i] = link->weight[i] != 0 ? inverse_mass_at(s, link->particle[i]) : 0;
 }
+
+#include "../simd/size_end.h"
 
 #endif
