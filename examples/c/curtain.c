@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 enum { W = 40, H = 25, N = W * H, MOST_LINKS = 5 * N, STEPS = 30 };
-enum { HAND = W / 2 - 6, HELD = 6 };  /* the pulled particles of the lowest row */
+enum { HAND = W / 2 - 3, HELD = 6 };  /* the pulled particles of the lowest row */
 enum { SEAM = 12 * W };               /* the seam is below this particle */
 static const double frame = 1.0 / 60; /* [s] */
 
@@ -52,7 +52,7 @@ int main(void)
     static uint32_t work[2 * N];
     static double distance[2 * N];
     size_t tethers = MOST_LINKS - links; /* to the rail; looser than the seam, so that it tears first */
-    must(spring_links_tethers(&def, 0.05, 0.4, link + links, &tethers, work, distance));
+    must(spring_links_tethers(&def, 0.05, 0.5, link + links, &tethers, work, distance));
     def.links += tethers;
     for (int i = HAND; i < HAND + HELD; i++)
         pinned[i] = 1;
