@@ -374,35 +374,43 @@ SPRING_NOINLINE void replace_linear_forces(const scene_links *s, const scene_ban
     }
 }
 
-/* A tile_kernel for three-point links. Axes are independent. */
-SPRING_NOINLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
-                                      ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+/* The second difference of three numbers that are `offset` apart. */
+SPRING_INLINE real second_difference(const scalar *at, ptrdiff_t offset)
 {
-    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const real middle = vec_load(at + offset);
+    return (vec_load(at) - middle) + (vec_load(at + 2 * offset) - middle);
+}
+
+/* A tile_kernel for three-point links. Axes are independent. */
+SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots, stride = s->stride;
+    const uint32_t axes = s->axes;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const bool stiff = s->terms != DAMPING_TERM, damped = s->terms != STIFFNESS_TERM;
     const scalar *const root = s->terms > STIFFNESS_AND_DAMPING_TERM ? band->root + slot : NULL;
     const scalar *const stiffness = band->stiffness + slot;
     const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
+    const int8_t *const occupied = band->occupied + slot;
     for (size_t j = 0; j < count; j += lanes) {
-        const mask joined = vec_load_mask(band->occupied + slot + j);
+        const mask joined = vec_load_mask(occupied + j);
         const real k = vec_load(stiffness + j);
-        real c = damped ? vec_load(damping + j) : splat(0);
-        if (root != NULL)
-            c *= c;
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < 3; a++) {
+            const real pull = stiff && a < axes ? k * second_difference(x + a * stride + t + j, offset) : splat(0);
+            if (a < axes)
+                vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
+        }
+    }
+    for (size_t j = 0; j < count && damped; j += lanes) {
+        const mask joined = vec_load_mask(occupied + j);
+        const real r = vec_load(damping + j), c = root != NULL ? r * r : r;
         SPRING_ROLLED
-        for (uint32_t a = 0; a < s->axes; a++) {
-            const scalar *const at = x + a * s->stride + t + j, *const with = v + a * s->stride + t + j;
-            real pull = splat(0);
-            if (stiff) {
-                const real middle = vec_load(at + offset);
-                pull = k * ((vec_load(at) - middle) + (vec_load(at + 2 * offset) - middle));
-            }
-            if (damped) {
-                const real middle = vec_load(with + offset);
-                pull += c * ((vec_load(with) - middle) + (vec_load(with + 2 * offset) - middle));
-            }
-            vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
+        for (uint32_t a = 0; a < axes; a++) {
+            const real pull = c * second_difference(v + a * stride + t + j, offset);
+            scalar *const to = force + a * axis + j;
+            vec_store(to, select_real(joined, vec_load(to) + pull, splat(0)));
         }
     }
 }
@@ -488,16 +496,68 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
     inlined_repeat_tile(force, ring, slots, axis, axes);
 }
 
+/* ---------------------------------------------------------------------------------------------- three-point links */
+
 /* Whether links of a band whose lower ends are `distance` before a tile at t act on it. */
 SPRING_INLINE bool reaches(const scene_band *band, ptrdiff_t distance, ptrdiff_t t)
 {
     return t < band->end + distance && t + tile > band->start + distance;
 }
 
-/* The place in a ring that is `back` slots before a place; back: modulo the ring. */
-SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t back, ptrdiff_t ring)
+/* The place in a ring that is `distance` before a place. */
+SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t distance, ptrdiff_t ring)
 {
-    return place < back ? place - back + ring : place - back;
+    const ptrdiff_t other = place - distance % ring;
+    return other < 0 ? other + ring : other;
+}
+
+/* Adds 2 middle - low - high to the forces on a tile. Any of them may be NULL. */
+SPRING_INLINE void add_triple(scalar *to, size_t stride, size_t count, uint32_t axes, const scalar *low,
+                              const scalar *middle, const scalar *high, size_t axis)
+{
+    const bool whole = low != NULL && middle != NULL && high != NULL;
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < count; j += lanes) {
+            const size_t i = a * axis + j;
+            real sum = vec_load(to + a * stride + j);
+            if (whole) {
+                sum += 2 * vec_load(middle + i) - (vec_load(low + i) + vec_load(high + i));
+            } else {
+                sum -= low != NULL ? vec_load(low + i) : splat(0);
+                sum += middle != NULL ? 2 * vec_load(middle + i) : splat(0);
+                sum -= high != NULL ? vec_load(high + i) : splat(0);
+            }
+            vec_store(to + a * stride + j, sum);
+        }
+}
+
+/* Adds the forces of the bands of three-point links on a tile, which follow the other bands. As for_each_tile(). */
+SPRING_NOINLINE void add_three_point_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           ptrdiff_t t, size_t count)
+{
+    for (const scene_band *band = s->band + s->bands; band < s->band + s->all_bands; band++) {
+        const ptrdiff_t ring = band->ring, place = t % ring;
+        const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
+        const size_t axis = (size_t)(ring + tile);
+        scalar *const kept = out->rings + band->ring_start, *const low = kept + place;
+        const bool has_low = t >= band->start && t < band->end;
+        if (t == 0) /* no link has a lower end before the first particle */
+            clear_slots(kept + ring - tile, axis, tile, s->axes);
+        if ((t == band->start - tile || t + (ptrdiff_t)count > end) && t < end + tile)
+            clear_slots(low, axis, count, s->axes);
+        if (has_low)
+            three_point_tile(s, band, x, v, t, count, low, axis);
+        if (place == 0)
+            inlined_repeat_tile(low, ring, count, axis, s->axes);
+        const scalar *const middle = kept + place_before(place, band->offset, ring), *const high =
+                                                                                         kept +
+                                                                                         place_before(place,
+                                                                                                      2 * band->offset,
+                                                                                                      ring);
+        add_triple(out->force + t, s->stride, count, s->axes, has_low ? low : NULL,
+                   reaches(band, band->offset, t) ? middle : NULL, reaches(band, 2 * band->offset, t) ? high : NULL,
+                   axis);
+    }
 }
 
 /* See band_kernel. The rings contain the forces of earlier links. `t` is the first particle of a tile, place[r] its
@@ -511,42 +571,37 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
         const scene_band *band = &s->band[r];
         place[r] = (ptrdiff_t)from % band->ring;
         if (from == 0) { /* no link has a lower end before the first particle */
-            const size_t before = (size_t)(band->reach < tile ? (band->reach + lanes - 1) / lanes * lanes : tile);
+            const size_t before = (size_t)(band->offset < tile ? (band->offset + lanes - 1) / lanes * lanes : tile);
             clear_slots(out->rings + band->ring_start + band->ring - before, (size_t)(band->ring + tile), before, axes);
         }
     }
     for (ptrdiff_t t = (ptrdiff_t)from; t < (ptrdiff_t)to; t += tile) {
-        kept_forces plus[2 * most_bands], minus[2 * most_bands];
+        kept_forces plus[most_bands], minus[most_bands];
         size_t pluses = 0, minuses = 0;
         const size_t left = s->particles - (size_t)t, count = left < tile ? left : tile;
         for (size_t r = 0; r < s->bands; r++) {
             const scene_band *band = &s->band[r];
-            const ptrdiff_t ring = band->ring;
+            const ptrdiff_t ring = band->ring, other = place[r] - band->back;
             const size_t axis = (size_t)(ring + tile);
             scalar *const kept = out->rings + band->ring_start, *const force = kept + place[r];
             const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
             if ((t == band->start - tile || t + (ptrdiff_t)count > end) && t < end + tile)
                 clear_slots(force, axis, count, axes); /* upper ends of links may read slots without links */
             if (t >= band->start && t < band->end) {
-                if (band->three_points) {
-                    three_point_tile(s, band, x, v, t, count, force, axis);
-                    minus[minuses++] = (kept_forces){force, axis};
-                } else {
-                    forces(s, band, x, v, t, count, force, axis);
-                    if (axes > 1 && s->isotropic)
-                        replace_linear_forces(s, band, x, v, t, count, force, axis);
-                    plus[pluses++] = (kept_forces){force, axis};
-                }
+                forces(s, band, x, v, t, count, force, axis);
+                if (axes > 1 && s->isotropic)
+                    replace_linear_forces(s, band, x, v, t, count, force, axis);
+                plus[pluses++] = (kept_forces){force, axis};
             }
             if (place[r] == 0)
                 repeat(force, ring, count, axis, axes);
-            for (int twice = 0; twice < 2 && band->three_points && reaches(band, band->offset, t); twice++)
-                plus[pluses++] = (kept_forces){kept + place_before(place[r], band->middle_back, ring), axis};
-            if (reaches(band, band->reach, t))
-                minus[minuses++] = (kept_forces){kept + place_before(place[r], band->back, ring), axis};
+            if (t < band->end + band->offset && t + tile > band->start + band->offset)
+                minus[minuses++] = (kept_forces){kept + (other < 0 ? other + ring : other), axis};
             place[r] = place[r] + tile < ring ? place[r] + tile : 0;
         }
         sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
+        if (s->all_bands > s->bands)
+            add_three_point_bands(s, x, v, out, t, count);
     }
 }
 

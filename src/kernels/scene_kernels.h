@@ -36,7 +36,6 @@ typedef enum link_terms {
    i + 2 offset with the weights (w, -2w, w) and rest length 0, and its stiffness and damping are multiplied by w^2. */
 typedef struct scene_band {
     ptrdiff_t offset;
-    bool three_points;
     ptrdiff_t start, end;         /* slots, from the first tile with a lower end to the end of the last one */
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
@@ -50,10 +49,9 @@ typedef struct scene_band {
     scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act, or its root is negative */
     scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
-    ptrdiff_t reach;         /* offset, or with three points 2 offset */
-    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least reach + tile or all slots */
-    ptrdiff_t back;          /* reach modulo ring */
-    ptrdiff_t middle_back;   /* offset modulo ring */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots,
+                                with three points twice the offset */
+    ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
 /* Links that belong to no band. */
@@ -83,8 +81,8 @@ typedef struct scene_links {
     size_t particles;
     uint32_t axes;
     link_terms terms;
-    size_t stride; /* elements from one axis to the next */
-    size_t bands;
+    size_t stride;           /* elements from one axis to the next */
+    size_t bands, all_bands; /* all: with those of three-point links, which follow */
     const scene_band *band;
     unbanded_links unbanded;
     size_t weighted;                       /* 0: all weighted links are in bands */

@@ -37,7 +37,7 @@ static bool any_stretched(const scene_links *s, const scalar *x, scalar stretch)
 {
     bool longer = false;
     for (size_t i = 0; i < s->bands && !longer; i++)
-        longer = !s->band[i].three_points && band_stretched(s, &s->band[i], x, splat(stretch));
+        longer = band_stretched(s, &s->band[i], x, splat(stretch));
     return longer;
 }
 

@@ -241,7 +241,7 @@ SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const sca
             record[a] = x[a * s->stride + i];
             if (damped)
                 record[quad_size + a] = v[a * s->stride + i];
-            record[at_force + a] = s->bands > 0 ? out->force[a * s->stride + i] : 0;
+            record[at_force + a] = s->all_bands > 0 ? out->force[a * s->stride + i] : 0;
         }
     }
 }
@@ -294,7 +294,7 @@ static void compute_record_forces(const scene_links *s, const scalar *x, const s
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
-    if (s->bands == 0)
+    if (s->all_bands == 0)
         for (uint32_t a = 0; a < s->axes; a++)
             memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
     if (s->terms == FREEZING_TERMS)

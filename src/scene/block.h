@@ -62,7 +62,7 @@ typedef struct band_layout {
     uint8_t kind;        /* band_kind */
     bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
     size_t slots, coefficients, ring_start;
-    size_t reach, ring; /* see scene_band */
+    size_t ring; /* see scene_band */
 } band_layout;
 
 /* The coefficients of a tether. While it does not act, ARRAY_BAND_... and ARRAY_LINK_... have 0 instead. */
@@ -91,7 +91,9 @@ typedef struct scene_layout {
     size_t quantity; /* elements of a quantity */
     size_t masses;   /* elements of a quantity that depends on the mass */
     uint32_t bands;
-    band_layout band[most_bands];                    /* by ascending reach */
+    uint32_t three_point_bands;                      /* the last ones of these */
+    size_t reach;                                    /* largest distance of the particles of a banded link */
+    band_layout band[most_bands];                    /* by kind, tethers among other links, and ascending offset */
     size_t band_slots, band_coefficients, band_ring; /* of all bands */
     size_t unbanded;                                 /* links in no band, without weighted links */
     size_t loose;                                    /* weighted links that are defined to be in no band */

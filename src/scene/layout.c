@@ -96,18 +96,16 @@ static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_lay
             continue;
         const band_layout band = {.kind = kind,
                                   .offset = c->offset,
-                                  .reach = kind == BAND_OF_THREE_POINTS ? 2 * (size_t)c->offset : c->offset,
                                   .first = c->first,
                                   .end = c->last + 1,
                                   .equal = c->equal && !editable && kind != BAND_OF_TETHERS};
+        const bool three = kind == BAND_OF_THREE_POINTS;
         size_t at = l->bands++;
-        for (; at > 0 && l->band[at - 1].reach > band.reach; at--)
+        for (; at > (three ? l->bands - 1 - l->three_point_bands : 0) && l->band[at - 1].offset > c->offset; at--)
             l->band[at] = l->band[at - 1];
         l->band[at] = band;
-        if (kind == BAND_OF_THREE_POINTS)
-            l->loose -= c->count;
-        else
-            l->unbanded -= c->count;
+        *(three ? &l->loose : &l->unbanded) -= c->count;
+        l->three_point_bands += three;
     }
 }
 
@@ -125,8 +123,10 @@ static void find_bands(const spring_scene_def *def, scene_layout *l)
         band->coefficients = l->band_coefficients;
         band->ring_start = l->band_ring;
         /* the empty tiles before and behind the slots share a tile */
-        const size_t until_read = (band->reach + 2 * tile - 1) / tile * tile, all = slots + tile;
+        const size_t reach = band->kind == BAND_OF_THREE_POINTS ? 2 * (size_t)band->offset : band->offset;
+        const size_t until_read = (reach + 2 * tile - 1) / tile * tile, all = slots + tile;
         band->ring = until_read < all ? until_read : all;
+        l->reach = reach > l->reach ? reach : l->reach;
         l->band_slots += slots;
         l->band_coefficients += band->equal ? padding : slots;
         l->band_ring += l->axes * (band->ring + tile);

@@ -151,7 +151,6 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
         const band_layout *b = &l->band[i];
         band[i] = (scene_band){
             .offset = (ptrdiff_t)b->offset,
-            .three_points = b->kind == BAND_OF_THREE_POINTS,
             .start = (ptrdiff_t)(b->first / tile * tile),
             .end = (ptrdiff_t)b->end,
             .occupied = occupied + b->slots,
@@ -163,10 +162,8 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             .direction_scale = frozen != NULL ? frozen + b->slots : NULL,
             .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
-            .reach = (ptrdiff_t)b->reach,
             .ring = (ptrdiff_t)b->ring,
-            .back = (ptrdiff_t)(b->reach % b->ring),
-            .middle_back = (ptrdiff_t)(b->offset % b->ring),
+            .back = (ptrdiff_t)(b->offset % b->ring),
         };
     }
     return (scene_links){
@@ -174,7 +171,8 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
         .axes = l->axes,
         .terms = damped ? STIFFNESS_AND_DAMPING_TERM : STIFFNESS_TERM,
         .stride = l->stride,
-        .bands = l->bands,
+        .bands = l->bands - l->three_point_bands,
+        .all_bands = l->bands,
         .band = band,
         .unbanded =
             {
@@ -218,9 +216,9 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
                                   const scalar *v, scene_forces *out)
 {
     const common_kernels *const common = kernels->common;
-    if (links->bands > 0)
+    if (links->all_bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
-    if (links->bands == 0 || links->unbanded.count > 0)
+    if (links->all_bands == 0 || links->unbanded.count > 0)
         (out->records != NULL && links->terms != FREEZING_TERMS ? common->record_forces
                                                                 : common->unbanded_forces)(links, x, v, out);
     if (links->weighted > 0)
@@ -230,7 +228,7 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
 /* Whether bands have all links and weighted links, so that the forces on a part of the particles can be computed. */
 static inline bool only_bands(const scene_links *links)
 {
-    return links->bands > 0 && links->unbanded.count == 0 && links->weighted == 0;
+    return links->all_bands > 0 && links->unbanded.count == 0 && links->weighted == 0;
 }
 
 /* The same, with the forces of the callback at time t. */
@@ -294,7 +292,7 @@ SPRING_NOINLINE bool move_evaluate_move(scene_step *s, particle_kernel *first_ke
         evaluate(s, first->x, v, fraction);
         return second_kernel == NULL || move(s, second_kernel, second);
     }
-    const size_t ahead = (l->band[l->bands - 1].reach + chunk - 1) / chunk * chunk; /* reaches ascend */
+    const size_t ahead = (l->reach + chunk - 1) / chunk * chunk;
     band_kernel *const forces = s->kernels->band_forces;
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
         if (i < l->particles &&
