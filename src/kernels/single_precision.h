@@ -53,6 +53,7 @@
 #define spring_scene_tension            spring_scenef_tension
 #define spring_scene_time               spring_scenef_time
 #define spring_links_soften             spring_linksf_soften
+#define spring_links_tethers            spring_linksf_tethers
 #define spring_scene_v128               spring_scenef_v128
 #define spring_scene_v256               spring_scenef_v256
 #define spring_scene_v512               spring_scenef_v512
