@@ -107,9 +107,9 @@ typedef struct spring_link {
  * force on particle[i] is -weight[i] (stiffness (d - rest) + damping d').
  *
  * For rest = 0 the spring is linear. It is damped in all directions, and so exerts the external torque -damping d x d'.
- * This brakes the rotation of free bodies: a free hoop of 24 particles whose bending springs have a damping ratio of
- * 0.05 in its lowest mode of bending loses 34 % of its angular velocity in 1 s. Use damping to attach a particle, and
- * drag to damp bending of free bodies.
+ * This brakes the rotation of free bodies: the angular velocity of a free hoop of n particles, whose weights are
+ * (1/2, -1, 1/2), decays at the rate (1 - cos(2 pi/n))^2 damping/mass (tests/scene/test_links.c). Use damping to attach
+ * a particle, and drag to damp bending of free bodies.
  *
  * SPRING_SCENE_TENSION_ONLY does not concern weighted links. */
 typedef struct spring_weighted_link {
