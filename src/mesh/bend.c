@@ -84,21 +84,11 @@ static bool bends(const bend_model *b, size_t i, size_t j) /* the segment betwee
 
 /* ------------------------------------------------------------------------------------------------------------ rods */
 
-static double distance_between(const bend_model *b, size_t i, size_t j)
-{
-    double sum = 0;
-    for (uint32_t a = 0; a < b->axes; a++) {
-        const double d = b->position[j * b->axes + a] - b->position[i * b->axes + a];
-        sum += d * d;
-    }
-    return spring_sqrt(sum);
-}
-
 static void bend_rod(const bend_model *b, bend_links *out)
 {
     double l1 = 0;
     for (uint32_t i = 0; i + 1 < b->particles; i++) {
-        const double l2 = distance_between(b, i, i + 1);
+        const double *at = &b->position[i * b->axes], l2 = mesh_distance(at, at + b->axes, b->axes);
         out->valid &= l2 > 0 && spring_finite(l2);
         if (i > 0 && (bends(b, i - 1, i) || bends(b, i, i + 1))) {
             const double length = (bends(b, i - 1, i) ? l1 / 2 : 0) + (bends(b, i, i + 1) ? l2 / 2 : 0);

@@ -43,6 +43,14 @@ static inline bool mesh_same_edge(const mesh *m, uint32_t side, uint32_t other)
     return mesh_lower_end(m, side) == mesh_lower_end(m, other) && mesh_upper_end(m, side) == mesh_upper_end(m, other);
 }
 
+static inline double mesh_distance(const double *x, const double *y, uint32_t axes)
+{
+    double sum = 0;
+    for (uint32_t a = 0; a < axes; a++)
+        sum += (y[a] - x[a]) * (y[a] - x[a]);
+    return spring_sqrt(sum);
+}
+
 /* Counts, indices and positions. */
 SPRING_INTERNAL spring_status spring_mesh_check(const mesh *m);
 

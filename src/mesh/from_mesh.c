@@ -42,7 +42,7 @@ bool spring_mesh_has_areas(const mesh *m)
 }
 
 /* Stable counting sort of sides by one of their ends. from: NULL for 0, 1, 2 ... */
-static void sort_by_end(const mesh *m, bool upper, const uint32_t *from, uint32_t *to, uint32_t *start)
+static void sort_sides(const mesh *m, bool upper, const uint32_t *from, uint32_t *to, uint32_t *start)
 {
     const uint32_t sides = 3 * (uint32_t)m->triangles;
     memset(start, 0, (m->vertices + 1) * sizeof *start);
@@ -59,8 +59,8 @@ static void sort_by_end(const mesh *m, bool upper, const uint32_t *from, uint32_
 const uint32_t *spring_mesh_sort_sides(const mesh *m, uint32_t *work)
 {
     uint32_t *const by_upper = work + m->vertices + 1, *const sorted = by_upper + 3 * m->triangles;
-    sort_by_end(m, true, NULL, by_upper, work);
-    sort_by_end(m, false, by_upper, sorted, work);
+    sort_sides(m, true, NULL, by_upper, work);
+    sort_sides(m, false, by_upper, sorted, work);
     return sorted;
 }
 
@@ -96,8 +96,7 @@ static uint32_t first_in_cell(const weld_table *t, const double cell[3], const d
 {
     for (uint32_t v = *list_of(t, cell); v != no_vertex; v = t->next[v]) {
         const double *y = &t->mesh->position[3 * (size_t)v];
-        const double d[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
-        if (v < best && spring_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) <= t->weld)
+        if (v < best && mesh_distance(x, y, 3) <= t->weld)
             best = v;
     }
     return best;
@@ -133,16 +132,6 @@ static void weld_vertices(const mesh *m, double weld, uint32_t *welded, uint32_t
 
 /* ----------------------------------------------------------------------------------------------------------- links */
 
-static double distance_between(const mesh *m, uint32_t v, uint32_t w)
-{
-    double sum = 0;
-    for (size_t a = 0; a < 3; a++) {
-        const double d = m->position[3 * (size_t)w + a] - m->position[3 * (size_t)v + a];
-        sum += d * d;
-    }
-    return spring_sqrt(sum);
-}
-
 static size_t count_edges(const mesh *m, const uint32_t *sides)
 {
     size_t edges = 0;
@@ -177,8 +166,10 @@ spring_status spring_links_from_mesh(size_t vertices, const double *position, si
         if (i > 0 && mesh_same_edge(&m, sides[i - 1], sides[i]))
             continue;
         const uint32_t a = mesh_lower_end(&m, sides[i]), b = mesh_upper_end(&m, sides[i]);
-        *out++ =
-            (spring_link){.a = particle_of[a], .b = particle_of[b], .rest = distance_between(&m, a, b), .stiffness = 1};
+        *out++ = (spring_link){.a = particle_of[a],
+                               .b = particle_of[b],
+                               .rest = mesh_distance(&position[3 * (size_t)a], &position[3 * (size_t)b], 3),
+                               .stiffness = 1};
     }
     return SPRING_OK;
 }

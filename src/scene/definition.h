@@ -27,7 +27,7 @@ static inline scalar inverse_mass_of(const spring_scene_def *def, size_t i)
 }
 
 /* A tether acts while exactly one of its ends is pinned. */
-static inline bool link_acts(const spring_scene_def *def, const spring_link *link)
+static inline bool defined_link_acts(const spring_scene_def *def, const spring_link *link)
 {
     return (link->flags & SPRING_LINK_TETHER) == 0 || is_pinned(def, link->a) != is_pinned(def, link->b);
 }
@@ -36,9 +36,9 @@ static inline bool link_acts(const spring_scene_def *def, const spring_link *lin
 static inline double link_row(const spring_scene_def *def, const spring_link *link, uint32_t end)
 {
     const uint32_t other = end == link->a ? link->b : link->a;
-    return is_pinned(def, end) || !link_acts(def, link) ? 0
-           : is_pinned(def, other)                      ? link->stiffness
-                                                        : 2 * link->stiffness;
+    return is_pinned(def, end) || !defined_link_acts(def, link) ? 0
+           : is_pinned(def, other)                              ? link->stiffness
+                                                                : 2 * link->stiffness;
 }
 
 /* What a weighted link adds to the row sum of its particle[i] [N/m]; 0 for a pinned particle. */

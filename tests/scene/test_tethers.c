@@ -7,7 +7,7 @@ enum { room = 700 };
 
 typedef struct weighted_model {
     model m;
-    spring_weighted_link weighted[200];
+    spring_weighted_link weighted[room];
     double distance[2 * room];
     uint32_t work[2 * room];
     spring_link tether[room];
