@@ -61,12 +61,20 @@ AT(spring_batchf, gamma, 32, 16);
 AT(spring_batchf, accel, 40, 20);
 AT(spring_batchf, shared, 48, 24);
 
-SIZE(spring_link, 32, 32);
+SIZE(spring_link, 40, 40);
 AT(spring_link, a, 0, 0);
 AT(spring_link, b, 4, 4);
 AT(spring_link, rest, 8, 8);
 AT(spring_link, stiffness, 16, 16);
 AT(spring_link, damping, 24, 24);
+AT(spring_link, flags, 32, 32);
+
+SIZE(spring_weighted_link, 72, 72);
+AT(spring_weighted_link, particle, 0, 0);
+AT(spring_weighted_link, weight, 16, 16);
+AT(spring_weighted_link, rest, 48, 48);
+AT(spring_weighted_link, stiffness, 56, 56);
+AT(spring_weighted_link, damping, 64, 64);
 
 SIZE(spring_collider, 360, 352);
 AT(spring_collider, shape, 0, 0);
@@ -93,7 +101,7 @@ SIZE(spring_impulse, 48, 48);
 AT(spring_impulse, linear, 0, 0);
 AT(spring_impulse, angular, 24, 24);
 
-SIZE(spring_scene_def, 176, 128);
+SIZE(spring_scene_def, 192, 136);
 AT(spring_scene_def, axes, 0, 0);
 AT(spring_scene_def, flags, 4, 4);
 AT(spring_scene_def, methods, 8, 8);
@@ -112,16 +120,18 @@ AT(spring_scene_def, user, 120, 84);
 AT(spring_scene_def, max_speed, 128, 88);
 AT(spring_scene_def, colliders, 136, 96);
 AT(spring_scene_def, particle_radius, 144, 104);
-AT(spring_scene_def, radius, 152, 112);
-AT(spring_scene_def, friction, 160, 116);
-AT(spring_scene_def, mask, 168, 120);
+AT(spring_scene_def, weighted_links, 152, 112);
+AT(spring_scene_def, weighted_link, 160, 116);
+AT(spring_scene_def, radius, 168, 120);
+AT(spring_scene_def, friction, 176, 124);
+AT(spring_scene_def, mask, 184, 128);
 
 SIZE(spring_scene_energies, 24, 24);
 AT(spring_scene_energies, kinetic, 0, 0);
 AT(spring_scene_energies, elastic, 8, 8);
 AT(spring_scene_energies, gravity, 16, 16);
 
-SIZE(spring_scenef_def, 176, 128);
+SIZE(spring_scenef_def, 192, 136);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
@@ -140,9 +150,11 @@ AT(spring_scenef_def, user, 120, 84);
 AT(spring_scenef_def, max_speed, 128, 88);
 AT(spring_scenef_def, colliders, 136, 96);
 AT(spring_scenef_def, particle_radius, 144, 104);
-AT(spring_scenef_def, radius, 152, 112);
-AT(spring_scenef_def, friction, 160, 116);
-AT(spring_scenef_def, mask, 168, 120);
+AT(spring_scenef_def, weighted_links, 152, 112);
+AT(spring_scenef_def, weighted_link, 160, 116);
+AT(spring_scenef_def, radius, 168, 120);
+AT(spring_scenef_def, friction, 176, 124);
+AT(spring_scenef_def, mask, 184, 128);
 
 SIZE(spring_grid, 72, 72);
 AT(spring_grid, count, 0, 0);
@@ -218,9 +230,14 @@ VALUE(SPRING_SCENE_FORCE_IGNORES_VELOCITY, 4);
 VALUE(SPRING_SCENE_TENSION_ONLY, 8);
 VALUE(SPRING_SCENE_FORCES, 16);
 
+VALUE(SPRING_LINK_TENSION_ONLY, 1);
+VALUE(SPRING_LINK_TETHER, 2);
+
 VALUE(SPRING_GRID_STRUCTURAL, 1);
 VALUE(SPRING_GRID_SHEAR, 2);
 VALUE(SPRING_GRID_BEND, 4);
+VALUE(SPRING_BEND_ROWS, 1);
+VALUE(SPRING_BEND_DIAGONALS, 2);
 
 VALUE(SPRING_GRID_FIRST_X, 1);
 VALUE(SPRING_GRID_LAST_X, 2);

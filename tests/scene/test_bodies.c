@@ -278,7 +278,7 @@ static double block_error(spring_method m, double A, double end, double dt, bool
         v[a] = v[3 + a] = moving ? velocity[a] : 0;
     }
     const uint8_t pinned[2] = {1, 0};
-    const spring_link link = {0, 1, 10, 0.7 * block_omega * block_omega, 0};
+    const spring_link link = {.a = 0, .b = 1, .rest = 10, .stiffness = 0.7 * block_omega * block_omega};
     const spring_scene_def def = {.particles = 2,
                                   .position = x,
                                   .velocity = v,
