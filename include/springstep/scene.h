@@ -242,9 +242,9 @@ typedef struct spring_scene_def {
     double particle_radius;       /**< [m] >= 0, radius of every particle in contacts */
     size_t weighted_links;        /**< number, less than 2^29; on 32-bit systems at most 2^23 - 1 */
     const spring_weighted_link *weighted_link; /**< [weighted_links] */
-    const double *radius;         /**< [particles] [m] >= 0, instead of particle_radius; NULL: equal */
-    const double *friction;       /**< [particles] >= 0: factor of the friction of colliders; NULL: 1 */
-    const uint32_t *mask;         /**< [particles] see spring_collider; NULL: all bits; 0: it never collides */
+    const double *radius;                      /**< [particles] [m] >= 0, instead of particle_radius; NULL: equal */
+    const double *friction;                    /**< [particles] >= 0: factor of the friction of colliders; NULL: 1 */
+    const uint32_t *mask; /**< [particles] see spring_collider; NULL: all bits; 0: it never collides */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */

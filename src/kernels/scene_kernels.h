@@ -173,7 +173,7 @@ typedef struct collider_bounds {
     unsigned count;
     scalar turning;                                         /* largest of contact_body.turning */
     scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, with the radius of particles */
-    collider_bound each[most_colliders]; /* [colliders of the definition] */
+    collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;
 
 /* A copy of what a motion overwrites. */

@@ -519,9 +519,9 @@ SPRING_INLINE spring_collider random_collider(uint32_t axes)
         c.velocity[a] = random_uniform(-1, 1);
         c.velocity_to[a] = c.velocity[a] + random_uniform(-0.5, 0.5);
         c.spin[a] = random_uniform(-3, 3);
-        c.acceleration[a] = random_bits() % 3 ? 0 : random_uniform(-5, 5);
-        c.spin_acceleration[a] = random_bits() % 3 ? 0 : random_uniform(-5, 5);
-        c.surface[a] = random_bits() % 3 ? 0 : random_uniform(-1, 1);
+        c.acceleration[a] = c.radius > 0.4 ? 8 * c.at[a] : 0;
+        c.spin_acceleration[a] = c.radius < 0.3 ? 8 * c.at[a] : 0;
+        c.surface[a] = c.friction > 0.6 ? 2 * c.at[a] : 0;
     }
     random_unit(c.axis[0], axes);
     const double *const u = c.axis[0];
