@@ -254,6 +254,37 @@ static void print_mesh_links(void)
     printf("mesh %zu %zu %zu %016" PRIx64 "\n", found, links, bends, hash);
 }
 
+/* Bending by rows and columns, or by any four particles, links that only pull, tethers, and links of rest length 0. */
+static void print_further_links(spring_method m)
+{
+    const bool plain = spring_method_describe(m)->positions_only;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int kind = 0; kind < (m == SPRING_LEAPFROG ? 3 : 2); kind++) {
+            sheet s = make_sheet(axes, kind == 1, !plain);
+            for (size_t i = 0; i < s.links; i++) {
+                s.link[i].flags = axes > 1 && !plain && i % 3 == 0 ? 1 + (uint32_t)(i / 3 % 2) : 0;
+                s.link[i].rest = i % 7 == 0 ? 0 : s.link[i].rest;
+                s.link[i].damping *= kind == 2 ? 1e4 : 1;
+            }
+            for (uint32_t i = 0; i + 2 < particles; i++) {
+                const uint32_t step = i % 7 < 5 || i + 14 >= particles ? 1 : 7;
+                spring_weighted_link w = {
+                    {i, i + step, i + 2 * step, (i + 4) % particles}, {0.5, -1, 0.5, 0}, 0, 40, 0};
+                if (kind != 0 && i % 2 == 0) {
+                    w.weight[2] = 0.25;
+                    w.weight[3] = 0.25;
+                    w.rest = i % 3 == 0 && axes > 1 ? 0.05 : 0;
+                }
+                w.damping = plain ? 0 : kind == 2 ? 90 : 0.03;
+                if (w.weight[3] == 0 ||
+                    (w.particle[3] != i && w.particle[3] != i + step && w.particle[3] != i + 2 * step))
+                    s.bend[s.bends++] = w;
+            }
+            static const char *const names[] = {"bend-rows", "bend-list", "bend-heavy"};
+            print_scene(names[kind], &s, m, 1, 1);
+        }
+}
+
 static void print_scenes(spring_method m)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
@@ -590,6 +621,9 @@ int main(void)
             print_slack_scenes(m);
     }
     print_heavy_damping();
+    print_further_links(SPRING_LEAPFROG);
+    print_further_links(SPRING_RK4);
+    print_further_links(SPRING_SRKN6);
     print_contacts(SPRING_LEAPFROG);
     print_contacts(SPRING_SYMPLECTIC_EULER);
     print_contacts(SPRING_RK4);
