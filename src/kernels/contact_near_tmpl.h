@@ -96,7 +96,7 @@ SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t a
 
 static bool find_near_colliders(const collider_bounds *c, const scene_particles *p, const kept_motion *kept,
                                 const scalar *x, const scalar *radius, size_t radius_stride, size_t first, size_t count,
-                                uint32_t near[contact_chunk])
+                                uint32_t nearby[contact_chunk])
 {
     real low[3], minus_high[3];
     for (uint32_t a = 0; a < 3; a++)
@@ -115,7 +115,7 @@ static bool find_near_colliders(const collider_bounds *c, const scene_particles 
     }
     lane_mask found = {0};
     if (left == 0)
-        memset(near, 0, count * sizeof *near);
+        memset(nearby, 0, count * sizeof *nearby);
     for (size_t i = 0; i < count && left > 0; i += lanes) {
         const real3 from = load_place(kept->x0[0] + i, contact_chunk, p->axes);
         const real3 to = load_place(x + first + i, p->stride, p->axes);
@@ -126,7 +126,7 @@ static bool find_near_colliders(const collider_bounds *c, const scene_particles 
             bits |= bits_where(touch, UINT32_C(1) << index[k]);
             found |= touch;
         }
-        store_bits(near + i, bits);
+        store_bits(nearby + i, bits);
     }
     return any(found);
 }

@@ -219,7 +219,7 @@ typedef void keep_kernel(const scene_particles *, const scene_motion *, size_t f
    a bit. radius: [m] of particles, or of all if radius_stride is 0 */
 typedef bool near_kernel(const collider_bounds *, const scene_particles *, const kept_motion *, const scalar *x,
                          const scalar *radius, size_t radius_stride, size_t first, size_t count,
-                         uint32_t near[contact_chunk]);
+                         uint32_t nearby[contact_chunk]);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {

@@ -319,11 +319,11 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     double stretch = 0;
     if (b->shape == SPRING_CAPSULE)
         stretch = length3(subtract(b->end.segment, b->start.segment));
-    const bool far = !(angle < 0.5);
-    b->growth = far ? 1 : 1 / (1 - angle);
-    b->reach = far ? infinite : (radius + stretch + angle * core) * b->growth;
+    const bool unbounded = !(angle < 0.5);
+    b->growth = unbounded ? 1 : 1 / (1 - angle);
+    b->reach = unbounded ? infinite : (radius + stretch + angle * core) * b->growth;
     const double shift = length3(subtract(b->end.at, b->start.at));
-    b->turning = far ? 0 : angle * b->growth;
+    b->turning = unbounded ? 0 : angle * b->growth;
     for (int a = 0; a < 3; a++) {
         b->low[a] = b->turns ? -infinite : infinite;
         b->high[a] = b->turns ? infinite : -infinite;
@@ -331,7 +331,7 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
     if (!b->turns) {
         bound_pose(b, &b->start, radius + stretch);
         bound_pose(b, &b->end, radius + stretch);
-    } else if (!far && b->shape != SPRING_PLANE) {
+    } else if (!unbounded && b->shape != SPRING_PLANE) {
         const double reach = core + radius + b->turning * (core + radius + shift);
         for (int a = 0; a < 3; a++) {
             b->low[a] = fmin(component(b->start.at, a), component(b->end.at, a)) - reach;
@@ -569,17 +569,17 @@ SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, u
 /* --------------------------------------------------------------------------------------------------------- friction */
 
 /* Sliding over the rest of a step. */
-typedef struct sliding {
+typedef struct slide_result {
     bool sticks;  /* at the end */
     vector3 mean; /* [m/s] velocity */
     vector3
         kick; /* [m/s] the velocity from which the last kick, A/2 with friction F/2, ends on the velocity at the end */
-} sliding;
+} slide_result;
 
 /* u' = A - F u/|u| from u0 for a unit of time, with the stop at u = 0 and what follows. On a line it is exact. Where
    friction turns, the time is divided into parts. */
 SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, double ay, double az, double F,
-                                int most_parts, sliding *out)
+                                int most_parts, slide_result *out)
 {
     const vector3 u0 = {ux, uy, uz}, A = {ax, ay, az};
     out->sticks = true;
@@ -645,7 +645,7 @@ SPRING_NOINLINE void slide_from(double ux, double uy, double uz, double ax, doub
         out->kick = add_scaled(add_scaled(u, -0.5, A), 0.5 * F, direction);
 }
 
-SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, sliding *out)
+SPRING_INLINE void slide(vector3 u0, vector3 A, double F, int most_parts, slide_result *out)
 {
     slide_from(u0.x, u0.y, u0.z, A.x, A.y, A.z, F, most_parts, out);
 }
@@ -880,7 +880,7 @@ static int press_from_start(const contact_setting *s, contact_particle *p, const
     const vector3 mean = scale(1 / m->left, along);
     const vector3 u0 = tangential(subtract(start, m->velocity), m->n), A = scale(2, subtract(mean, u0));
     double lambda = fmax(0, -inward) / (duration * toward);
-    sliding end = {false, mean, mean};
+    slide_result end = {false, mean, mean};
     vector3 shift = zero3; /* by friction */
     bool clear = false;
     const int passes = mu > 0 ? friction_passes : 0;
@@ -1193,7 +1193,7 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     if (s->count == 1)
         return 1;
     const double way = length3(p->d);
-    uint32_t near = 0;
+    uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
         const double margin = p->radius + b->turning * way + 4 * slop_of(s, p, b);
@@ -1202,23 +1202,23 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
             const double from = component(p->x0, a), to = from + component(p->d, a);
             meets = !(fmax(from, to) < b->low[a] - margin) && !(fmin(from, to) > b->high[a] + margin);
         }
-        near |= (uint32_t)meets << i;
+        nearby |= (uint32_t)meets << i;
     }
-    return near;
+    return nearby;
 }
 
 /* Step 5, after all colliders. clear: bits of the colliders outside of which the path is known to end */
-static void leave(const contact_setting *s, contact_particle *p, uint32_t near, uint32_t clear)
+static void leave(const contact_setting *s, contact_particle *p, uint32_t nearby, uint32_t clear)
 {
     constraint c[most_constraints];
     uint32_t inside = 0;
-    for (int pass = 0; pass < corner_passes && (pass > 0 || (near & ~clear) != 0); pass++) {
+    for (int pass = 0; pass < corner_passes && (pass > 0 || (nearby & ~clear) != 0); pass++) {
         unsigned count = 0;
         bool any_inside = false;
         const vector3 x = add(p->x0, p->d);
         const double way = length3(p->d);
         for (unsigned i = 0; i < s->count; i++) {
-            if ((near >> i & 1) == 0)
+            if ((nearby >> i & 1) == 0)
                 continue;
             const unsigned before = count,
                            found = add_constraints(p, &s->body[i], i, true, x, (double)INFINITY, c, count);
@@ -1233,7 +1233,7 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
         if (!any_inside)
             break;
         p->d = add(p->d, least_change(c, count));
-        near |= near_path(s, p);
+        nearby |= near_path(s, p);
     }
     if (inside == 0)
         return;
@@ -1243,16 +1243,16 @@ static void leave(const contact_setting *s, contact_particle *p, uint32_t near, 
 
 void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
-    uint32_t near = p->near == UINT32_MAX ? near_path(s, p) : p->near, clear = 0, last = 0;
+    uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
     p->touched = 0;
     for (unsigned i = 0; i < s->count; i++)
-        near &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
+        nearby &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
     for (int round = 0; round < contact_rounds; round++) {
         meeting each[2];
         meeting *first = NULL, *next = &each[0]; /* first: of all colliders */
         for (unsigned i = 0; i < s->count; i++) {
             const uint32_t bit = UINT32_C(1) << i;
-            if ((near & ~clear & ~last & bit) == 0)
+            if ((nearby & ~clear & ~last & bit) == 0)
                 continue;
             next->b = &s->body[i];
             next->index = i;
@@ -1269,9 +1269,9 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
         last = UINT32_C(1) << first->index;
         p->touched |= last;
         clear = (collide(s, p, first) & CLEAR) != 0 ? last : 0;
-        near = near_path(s, p) | p->touched;
+        nearby = near_path(s, p) | p->touched;
     }
-    leave(s, p, near, clear);
+    leave(s, p, nearby, clear);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- queries */

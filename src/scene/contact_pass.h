@@ -204,7 +204,7 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
                                   size_t count)
 {
     kept_motion kept;
-    uint32_t near[contact_chunk], before[contact_chunk];
+    uint32_t nearby[contact_chunk], before[contact_chunk];
     const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
     memcpy(before, t->before + from, count * sizeof *before);
     uint32_t stops = 0; /* at colliders, in a kick */
@@ -217,7 +217,7 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
     bool some = stops != 0 || !fine;
     if (!kicks) {
         memset(t->touched + from, 0, count * sizeof *t->touched);
-        some = kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, near) || some;
+        some = kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, nearby) || some;
     }
     if (!some)
         return true;
@@ -226,13 +226,13 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
         const size_t i = from + k;
         const uint32_t stop = kicks ? t->touched[i] : m->ends_previous ? before[k] : 0;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
-        if (pinned || (fine && stop == 0 && (kicks || near[k] == 0))) {
+        if (pinned || (fine && stop == 0 && (kicks || nearby[k] == 0))) {
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
         contact_state q;
         prepare_state(s, p, m, &kept, i, k, &q);
-        q.c.near = !kicks && fine && stop == 0 ? near[k] : UINT32_MAX; /* its path is another one after a stop */
+        q.c.nearby = !kicks && fine && stop == 0 ? nearby[k] : UINT32_MAX; /* its path is another one after a stop */
         all_fine = (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, stop)) && all_fine;
     }
     return all_fine;
