@@ -754,7 +754,7 @@ static void transform_state(const double matrix[12], const model *m, state *y)
 static spring_link any_coefficients(const model *m, size_t i)
 {
     spring_link link = m->link[i];
-    link.rest = random_uniform(0, 1);
+    link.rest = one_in(4) ? 0 : random_uniform(0, 1);
     link.stiffness = one_in(3) ? 0 : random_log(3, 60);
     link.damping = one_in(2) ? 0 : random_uniform(0, 0.6);
     if (one_in(3))
