@@ -281,7 +281,7 @@ static void plain_steps(void)
         const double reach = fmin(reaches[number % 6], most_damping);
         const double angle =
             h * speed / shortest; /* by which a link turns in a step; the turning term grows with its square */
-        const double bound = 4 * EPS * (speed + place / h) * (1 + reach * place / shortest) * (1 + angle * angle);
+        const double bound = 8 * EPS * (speed + place / h) * (1 + reach * place / shortest) * (1 + angle * angle);
         for (size_t i = 0; i < axes * m.def.particles; i++) {
             CHECK_CLOSE(got.v[i], want.v[i], bound, "rounding errors of the residual and of the series");
             CHECK_CLOSE(got.x[i], want.x[i], h * bound + 4 * EPS * place, "the same, in half a step");
