@@ -118,15 +118,16 @@ struct spring_scene {
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
     bool bounds_known;
-    double roots_dt;        /* [s] step for which ARRAY_ROOTS is known; 0: none */
-    uint32_t colliders;     /* at most layout.colliders */
-    double colliders_set;   /* [s] time of their poses */
+    double roots_dt;       /* [s] step for which ARRAY_ROOTS is known; 0: none */
+    uint32_t colliders;    /* at most layout.colliders */
+    double colliders_base; /* [s] since they were set, at step colliders_from of the run: never a difference of times */
+    uint64_t colliders_from;
     double particle_radius; /* [m] */
     scene_bounds bounds;
 };
 
-/* Places the colliders for a drift from t0 to t1, into ARRAY_PLACED. */
-SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double t0, double t1);
+/* Places the colliders for a drift into ARRAY_PLACED. time0, time1: its start and end [s] since they were set. */
+SPRING_INTERNAL void spring_scene_place_colliders(spring_scene *s, double time0, double time1);
 
 /* Adds the accelerations by the touched colliders to the acceleration of a particle. Returns the size of the rest that
    static friction does not balance. */
@@ -179,6 +180,12 @@ static inline const scalar *scene_read_axis(const spring_scene *s, scene_array a
 {
     const void *start = (const char *)s + s->layout.offset[a];
     return (const scalar *)start + axis * s->layout.stride + padding;
+}
+
+/* [s] since the colliders were set. */
+static inline double colliders_time(const spring_scene *s)
+{
+    return s->colliders_base + (double)(s->steps - s->colliders_from) * s->dt;
 }
 
 /* The arrays of a buffer. */

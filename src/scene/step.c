@@ -114,6 +114,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
+    const double colliders_base = same_run ? s->colliders_base : colliders_time(s);
+    const uint64_t colliders_from = same_run ? s->colliders_from : 0;
     if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
@@ -127,6 +129,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         .h = (scalar)dt,
         .t0 = t0,
         .dt = dt,
+        .colliders_base = colliders_base,
+        .colliders_from = (double)colliders_from,
         .predicts = spring_scene_steppers[m].predicts,
         .contacts = {.count = s->colliders, .collider = scene_read(s, ARRAY_PLACED), .axes = s->layout.axes}};
     choose_damping(&step, &links, &spring_scene_steppers[m]);
@@ -145,6 +149,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     s->t0 = t0;
     s->dt = dt;
     s->steps = before + n;
+    s->colliders_base = colliders_base;
+    s->colliders_from = colliders_from;
     return SPRING_OK;
 }
 
@@ -175,7 +181,7 @@ bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
         return false;
     const scalar *all = forces_of_state(s);
     if (s->colliders > 0)
-        spring_scene_place_colliders(s, time_of(s), time_of(s));
+        spring_scene_place_colliders(s, colliders_time(s), colliders_time(s));
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, accel[3] = {0};
