@@ -28,6 +28,7 @@
 #define spring_scene_check           spring_scenef_check
 #define spring_scene_check_colliders spring_scenef_check_colliders
 #define spring_scene_def             spring_scenef_def
+#define spring_scene_describe        spring_scenef_describe
 #define spring_scene_drive           spring_scenef_drive
 #define spring_scene_energy          spring_scenef_energy
 #define spring_scene_find_bounds     spring_scenef_find_bounds
@@ -37,7 +38,10 @@
 #define spring_scene_get             spring_scenef_get
 #define spring_scene_getf            spring_scenef_getf
 #define spring_scene_get_link        spring_scenef_get_link
+#define spring_scene_identify        spring_scenef_identify
 #define spring_scene_init            spring_scenef_init
+#define spring_scene_load            spring_scenef_load
+#define spring_scene_save            spring_scenef_save
 #define spring_scene_steppers        spring_scenef_steppers
 #define spring_scene_set             spring_scenef_set
 #define spring_scene_set_force       spring_scenef_set_force
@@ -45,6 +49,7 @@
 #define spring_scene_set_link        spring_scenef_set_link
 #define spring_scene_set_mass        spring_scenef_set_mass
 #define spring_scene_set_pinned      spring_scenef_set_pinned
+#define spring_scene_set_time        spring_scenef_set_time
 #define spring_scene_stable_step     spring_scenef_stable_step
 #define spring_scene_tension         spring_scenef_tension
 #define spring_scene_time            spring_scenef_time

@@ -114,6 +114,7 @@ struct spring_scene {
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
     uint64_t damped_links;
+    uint64_t ends;   /* spring_scene_identify() */
     uint32_t buffer; /* 0 or 1: holds the state */
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
@@ -138,6 +139,10 @@ SPRING_INTERNAL double spring_scene_balanced(const scene_kernels *kernels, const
    which dt times the sum of 2 damping/mass over its links (damping/mass to a pin), hG, is at most `most`, and a link
    takes the smaller factor of its ends. Stores 1/(1 + (hG/2)^2) of each particle in ARRAY_SUMS, see damp_bounces(). */
 SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double most);
+
+/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
+   also their directions, unless links may be edited. */
+SPRING_INTERNAL uint64_t spring_scene_identify(const spring_scene_def *def);
 
 /* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
@@ -246,6 +251,17 @@ static inline const scalar *scene_state(const spring_scene *s, spring_quantity q
 static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32_t axis)
 {
     return scene_axis(s, state_array(s, q), axis);
+}
+
+static inline bool scene_finite(const spring_scene *s)
+{
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->layout.particles; i++)
+            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
+                return false;
+    }
+    return true;
 }
 
 static inline double inverse_mass_at(const spring_scene *s, size_t i)

@@ -383,6 +383,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     scene_store_gravity(s, def->gravity);
     fill_particles(s, def);
     fill_links(s, def);
+    s->ends = spring_scene_identify(def);
     *result = s;
     return SPRING_OK;
 }

@@ -24,17 +24,6 @@ double spring_scene_time(const spring_scene *s)
     return s != NULL ? time_of(s) : (double)NAN;
 }
 
-static bool finite_scene(const spring_scene *s)
-{
-    for (uint32_t a = 0; a < s->layout.axes; a++) {
-        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
-        for (size_t i = 0; i < s->layout.particles; i++)
-            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
-                return false;
-    }
-    return true;
-}
-
 /* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
    finite. Padding lanes become 0: a NaN there would make later steps fail, and no caller can overwrite it. */
 static void invalidate(spring_scene *s)
@@ -107,7 +96,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const spring_status status = check_advance(s, m, dt);
     if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
         return status;
-    if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
+    if (s->lost && !scene_finite(s)) /* the caller has not set it anew */
         return SPRING_ENONFINITE;
     s->lost = false;
     const bool rollback = (s->layout.flags & SPRING_SCENE_NO_UNDO) == 0;
@@ -177,7 +166,7 @@ static const scalar *forces_of_state(spring_scene *s)
 
 bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
 {
-    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
+    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !scene_finite(s))
         return false;
     const scalar *all = forces_of_state(s);
     if (s->colliders > 0)

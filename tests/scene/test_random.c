@@ -673,6 +673,126 @@ static void equal_runs(void)
     CHECK(contacts > scenes / 10, "contacts took place");
 }
 
+/* ----------------------------------------------------------------------------------------------------- saved states */
+
+typedef struct saved {
+    uint8_t *room, *bytes;
+    size_t size;
+} saved;
+
+/* What a state may need, besides its header: docs/details.md lists it. */
+static double content_of(const spring_scene *s)
+{
+    const scene_layout *const l = &s->layout;
+    const double quantity = (double)(l->axes * l->particles * sizeof(scalar));
+    const bool editable = (l->flags & SPRING_SCENE_EDITABLE) != 0, holds = (l->flags & SPRING_SCENE_FORCES) != 0;
+    return quantity * (2 + (s->force_cache != NO_FORCE) + holds) + s->colliders * (double)sizeof(spring_collider) +
+           editable * ((double)l->particles * (sizeof(scalar) + 1) + 3.0 * (double)(l->links * sizeof(scalar)));
+}
+
+/* The state at an odd address, in memory that ends behind it. */
+static saved save(const spring_scene *s)
+{
+    saved y = {.size = 0};
+    CHECK(spring_scene_save(s, NULL, &y.size) == SPRING_OK, "the size");
+    CHECK((double)y.size <= 1.1 * content_of(s) + 256, "a small header and little padding");
+    y.room = malloc(y.size + 1);
+    y.bytes = y.room + 1;
+    memset(y.room, 0x5a, y.size + 1);
+    size_t size = below(y.size);
+    CHECK(spring_scene_save(s, y.bytes, &size) == SPRING_ENOMEM && size == y.size && y.bytes[below(size)] == 0x5a,
+          "too small: nothing is written but the size");
+    size = y.size + below(2);
+    CHECK(spring_scene_save(s, y.bytes, &size) == SPRING_OK && size == y.size, "as large as announced");
+    return y;
+}
+
+/* Damaged, truncated and extended states change nothing. */
+static void check_damage(const block *b, const saved *y)
+{
+    const block kept = copy_of(b);
+    uint8_t *const longer = calloc(1, y->size + 8), *const bytes = memcpy(longer, y->bytes, y->size);
+    for (int i = 0; i < 3; i++) {
+        const size_t at = below(y->size);
+        const uint8_t bit = (uint8_t)(1 << below(8));
+        bytes[at] ^= bit;
+        CHECK(spring_scene_load(b->s, bytes, y->size) == SPRING_EINVAL, "a bit is wrong");
+        bytes[at] ^= bit;
+        CHECK(spring_scene_load(b->s, bytes, below(y->size)) == SPRING_EINVAL, "the end is missing");
+    }
+    CHECK(spring_scene_load(b->s, longer, y->size + 1 + below(8)) == SPRING_EINVAL, "something follows");
+    CHECK(memcmp(kept.s, b->s, b->bytes) == 0, "nothing has changed");
+    free(longer);
+    free(kept.room);
+}
+
+/* Replaces a scene by another one of the same definition, with a life of its own, which loads its state. */
+static void travel(block *b, const model *m)
+{
+    const saved y = save(b->s);
+    block other = block_of(&m->def);
+    if (m->def.colliders > 0)
+        set_colliders((spring_scene *[]){other.s, other.s}, m);
+    spring_scene_set_gravity(other.s, (double[]){0.3, 0.2, 0.1});
+    spring_scene_set(other.s, SPRING_FORCE, m->velocity, 0, 0, m->def.velocity != NULL ? m->def.particles : 0);
+    spring_scene_set_mass(other.s, 0, 1, (double[]){2.2});
+    spring_scene_set_pinned(other.s, 0, 1, (uint8_t[]){one_in(2)});
+    spring_scene_tear(other.s, 1, NULL, NULL, 0, NULL);
+    const double dt = one_in(8) ? 1e3 : random_log(0.003, 0.1); /* now and then it is lost */
+    spring_scene_advance(other.s, any_method(&m->def), dt, below(4));
+    check_damage(&other, &y);
+    CHECK(spring_scene_load(other.s, y.bytes, y.size) == SPRING_OK, "a state of the same definition");
+    const saved again = save(other.s);
+    CHECK(again.size == y.size && memcmp(again.bytes, y.bytes, y.size) == 0, "all of it has been loaded");
+    CHECK(difference(b->s, other.s, m) == NULL && step_difference(b->s, other.s) == NULL, "the same scene");
+    free(y.room);
+    free(again.room);
+    free(b->room);
+    *b = other;
+}
+
+static const char *run_and_travel(const model *m, push *p)
+{
+    block one = block_of(&m->def), other = block_of(&m->def);
+    if (m->def.colliders > 0)
+        set_colliders((spring_scene *[]){one.s, other.s}, m);
+    spring_method method = any_method(&m->def);
+    double dt = random_log(0.003, 0.1);
+    const char *differs = NULL;
+    for (int round = 0; round < rounds && differs == NULL; round++) {
+        const double t = random_uniform(-1e3, 1e3);
+        const bool last = round == rounds - 1;
+        if (one_in(2))
+            change((spring_scene *[]){one.s, other.s}, m, p);
+        if (one_in(5))
+            CHECK(spring_scene_set_time(one.s, t) == SPRING_OK && spring_scene_set_time(other.s, t) == SPRING_OK,
+                  "any time");
+        if (one_in(2))
+            travel(&other, m);
+        differs = advance_both(&one, &other, m, method, one_in(8) ? -dt : dt,
+                               last && m->def.particles < 100 ? 200 : 1 + below(4));
+        if (one_in(5))
+            method = any_method(&m->def);
+        if (one_in(5))
+            dt = random_log(0.003, 0.1);
+    }
+    free(one.room);
+    free(other.room);
+    return differs;
+}
+
+static void saved_states(void)
+{
+    static model m;
+    push p;
+    contacts = 0;
+    for (size_t i = 0; i < scenes; i++) {
+        build_any(&m, &p, i, false);
+        check_none(i, run_and_travel(&m, &p));
+    }
+    CHECK(contacts > scenes / 10, "contacts took place");
+}
+
 /* ----------------------------------------------------------------------------------------------------------- forces */
 
 static void forces(void)
@@ -930,6 +1050,7 @@ int main(int argc, char **argv)
 {
     static const test tests[] = {
         {"equal runs", equal_runs},
+        {"saved and loaded scenes go on alike", saved_states},
         {"forces against a plain loop", forces},
         {"edits", edits},
     };

@@ -1,0 +1,718 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Saving and loading the state of a scene, and setting its time.
+ *
+ * Format    Little-endian: a header of 64-bit words, sections of numbers, each padded with zeros to a multiple of 8
+ *           bytes, and a check value. docs/details.md describes it. list_sections() is the only list of the sections:
+ *           the size, save and load follow it. A new field is a row there, or a word of the header.
+ * Loading   checks everything before it changes the scene. Sections are checked and read in the order of the list, so
+ *           that the check of a section may use those before it.
+ * Check     XXH64. Unlike CRC-32 and FNV-1a it has four independent lanes of 8 bytes, so that it takes less time than
+ *           the copy of the numbers from memory. Those two would take longer than two steps. Source: Collet, xxHash
+ *           fast digest algorithm, version 0.2.0.
+ */
+#include "stored_links.h"
+
+/* ------------------------------------------------------------------------------------------------------ check value */
+
+static const uint64_t prime1 = UINT64_C(0x9E3779B185EBCA87), prime2 = UINT64_C(0xC2B2AE3D27D4EB4F),
+                      prime3 = UINT64_C(0x165667B19E3779F9), prime4 = UINT64_C(0x85EBCA77C2B2AE63);
+
+static bool little_endian(void)
+{
+    const uint16_t one = 1;
+    uint8_t first;
+    memcpy(&first, &one, sizeof first);
+    return first == 1;
+}
+
+/* Copies numbers of this processor to or from a state. */
+static void copy_numbers(void *to, const void *from, size_t count, size_t size)
+{
+    if (little_endian()) {
+        memcpy(to, from, count * size);
+        return;
+    }
+    uint8_t *const out = to;
+    const uint8_t *const in = from;
+    for (size_t i = 0; i < count * size; i += size)
+        for (size_t k = 0; k < size; k++)
+            out[i + k] = in[i + size - 1 - k];
+}
+
+static uint64_t word_at(const uint8_t *at)
+{
+    uint64_t word;
+    copy_numbers(&word, at, 1, sizeof word);
+    return word;
+}
+
+static uint64_t rotated(uint64_t x, unsigned by)
+{
+    return x << by | x >> (64 - by);
+}
+
+static uint64_t next_of_lane(uint64_t lane, uint64_t word)
+{
+    return rotated(lane + word * prime2, 31) * prime1;
+}
+
+static uint64_t with_word(uint64_t hash, uint64_t word)
+{
+    return rotated(hash ^ next_of_lane(0, word), 27) * prime1 + prime4;
+}
+
+/* size: a multiple of 8, at least 32 */
+static uint64_t check_value(const uint8_t *bytes, size_t size)
+{
+    enum { lanes = 4, word = 8 };
+    uint64_t lane[lanes] = {prime1 + prime2, prime2, 0, 0 - prime1};
+    size_t i = 0;
+    for (; i + lanes * word <= size; i += lanes * word) {
+        lane[0] = next_of_lane(lane[0], word_at(bytes + i));
+        lane[1] = next_of_lane(lane[1], word_at(bytes + i + word));
+        lane[2] = next_of_lane(lane[2], word_at(bytes + i + 2 * word));
+        lane[3] = next_of_lane(lane[3], word_at(bytes + i + 3 * word));
+    }
+    uint64_t hash = rotated(lane[0], 1) + rotated(lane[1], 7) + rotated(lane[2], 12) + rotated(lane[3], 18);
+    for (int k = 0; k < lanes; k++)
+        hash = (hash ^ next_of_lane(0, lane[k])) * prime1 + prime4;
+    hash += size;
+    for (; i < size; i += word)
+        hash = with_word(hash, word_at(bytes + i));
+    hash = (hash ^ hash >> 33) * prime2;
+    hash = (hash ^ hash >> 29) * prime3;
+    return hash ^ hash >> 32;
+}
+
+#include "../simd/size_begin.h"
+
+uint64_t spring_scene_identify(const spring_scene_def *def)
+{
+    const bool directed = def->axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
+    uint64_t hash = 0;
+    for (size_t i = 0; i < def->links; i++) {
+        const uint64_t a = def->link[i].a, b = def->link[i].b;
+        hash = with_word(hash, directed || a < b ? a | b << 32 : b | a << 32);
+    }
+    return hash;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- header */
+
+/* The words of the header. Up to WORD_CALLBACK, they must be those of the scene that loads the state. */
+enum {
+    WORD_MAGIC,
+    WORD_VERSION,
+    WORD_PRECISION, /* [bytes] of a number */
+    WORD_AXES,
+    WORD_FLAGS,
+    WORD_METHODS,
+    WORD_MOST_COLLIDERS, /* of the definition */
+    WORD_PARTICLES,
+    WORD_LINKS,
+    WORD_WEIGHTED_LINKS,
+    WORD_ENDS, /* spring_scene_identify() */
+    WORD_CALLBACK,
+    WORD_BYTES, /* of the state */
+    WORD_KEPT,  /* cached_force */
+    WORD_COLLIDERS,
+    WORD_TOUCHING, /* particles that touch colliders */
+    WORD_T0,
+    WORD_DT,
+    WORD_STEPS,
+    WORD_COLLIDERS_BASE,
+    WORD_COLLIDERS_FROM,
+    WORD_GRAVITY,
+    WORD_COUNT = WORD_GRAVITY + 3
+};
+
+static const char magic[] = "SPRSTATE";
+enum { format_version = 1, word_bytes = sizeof(uint64_t) };
+
+static uint64_t bits_of(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static double value_of(uint64_t bits)
+{
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static size_t count_touching(const spring_scene *s)
+{
+    const uint32_t *const touched = scene_read(s, touched_in(s->buffer));
+    size_t count = 0;
+    for (size_t i = 0; i < s->layout.particles && s->colliders > 0; i++)
+        count += touched[i] != 0;
+    return count;
+}
+
+/* All words but WORD_BYTES. */
+static void make_header(const spring_scene *s, uint64_t header[WORD_COUNT])
+{
+    header[WORD_MAGIC] = word_at((const uint8_t *)magic);
+    header[WORD_VERSION] = format_version;
+    header[WORD_PRECISION] = sizeof(scalar);
+    header[WORD_AXES] = s->layout.axes;
+    header[WORD_FLAGS] = s->layout.flags;
+    header[WORD_METHODS] = s->layout.methods;
+    header[WORD_MOST_COLLIDERS] = s->layout.colliders;
+    header[WORD_PARTICLES] = s->layout.particles;
+    header[WORD_LINKS] = s->layout.links;
+    header[WORD_WEIGHTED_LINKS] = 0;
+    header[WORD_ENDS] = s->ends;
+    header[WORD_CALLBACK] = s->force != NULL;
+    header[WORD_KEPT] = s->force_cache;
+    header[WORD_COLLIDERS] = s->colliders;
+    header[WORD_TOUCHING] = count_touching(s);
+    header[WORD_T0] = bits_of(s->t0);
+    header[WORD_DT] = bits_of(s->dt);
+    header[WORD_STEPS] = s->steps;
+    header[WORD_COLLIDERS_BASE] = bits_of(s->colliders_base);
+    header[WORD_COLLIDERS_FROM] = s->colliders_from;
+    for (int a = 0; a < 3; a++)
+        header[WORD_GRAVITY + a] = bits_of(s->gravity[a]);
+}
+
+static bool header_valid(const spring_scene *s, const uint64_t header[WORD_COUNT])
+{
+    const double t0 = value_of(header[WORD_T0]), dt = value_of(header[WORD_DT]);
+    const double base = value_of(header[WORD_COLLIDERS_BASE]);
+    const uint64_t steps = header[WORD_STEPS], from = header[WORD_COLLIDERS_FROM];
+    uint64_t own[WORD_COUNT];
+    make_header(s, own);
+    for (int i = 0; i <= WORD_CALLBACK; i++)
+        if (header[i] != own[i])
+            return false;
+    for (uint32_t a = 0; a < s->layout.axes; a++)
+        if (!scene_fits(value_of(header[WORD_GRAVITY + a])))
+            return false;
+    const bool predicts = s->layout.offset[ARRAY_FORCE_1] != s->layout.offset[ARRAY_FORCE_0];
+    return header[WORD_KEPT] <= (predicts ? PREDICTED_FORCE : FORCE) && header[WORD_COLLIDERS] <= s->layout.colliders &&
+           header[WORD_TOUCHING] <= (header[WORD_COLLIDERS] > 0 ? s->layout.particles : 0) && scene_fits(dt) &&
+           from <= steps && spring_finite(t0 + (double)steps * dt) && spring_finite(base + (double)(steps - from) * dt);
+}
+
+/* --------------------------------------------------------------------------------------------------------- sections */
+
+typedef struct section section;
+
+/* A state that is being checked. */
+typedef struct arriving {
+    const spring_scene *s;
+    const uint64_t *header;
+    const uint8_t *masses, *pins; /* editable scenes */
+    double lightest;              /* [1/kg] largest inverse mass of a free particle */
+} arriving;
+
+/* How a section is written, checked and read. */
+typedef struct section_kind {
+    void (*write)(const spring_scene *s, const section *row, uint8_t *out);
+    bool (*valid)(arriving *state, const section *row, const uint8_t *in);
+    void (*read)(spring_scene *s, const section *row, const uint8_t *in);
+} section_kind;
+
+struct section {
+    const section_kind *kind;
+    scene_array array;
+    size_t count; /* elements */
+    size_t bits;  /* of an element */
+};
+
+static size_t section_bytes(const section *row)
+{
+    return (row->count * row->bits + 63) / 64 * word_bytes;
+}
+
+static scalar number_at(const uint8_t *at, size_t i)
+{
+    scalar number;
+    copy_numbers(&number, at + i * sizeof number, 1, sizeof number);
+    return number;
+}
+
+static bool bit_at(const uint8_t *at, size_t i)
+{
+    return (at[i / 8] >> i % 8 & 1) != 0;
+}
+
+/* Sets bit i, which is 0. */
+static void set_bit(uint8_t *at, size_t i, bool bit)
+{
+    at[i / 8] = (uint8_t)(at[i / 8] | bit << i % 8);
+}
+
+/* A quantity: particles within axes. */
+
+#include "../simd/size_end.h"
+
+static void write_quantity(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const size_t particles = s->layout.particles;
+    for (uint32_t a = 0; a < s->layout.axes; a++)
+        copy_numbers(out + a * particles * sizeof(scalar), scene_read_axis(s, row->array, a), particles,
+                     sizeof(scalar));
+}
+
+static void read_quantity(spring_scene *s, const section *row, const uint8_t *in)
+{
+    const size_t particles = s->layout.particles;
+    for (uint32_t a = 0; a < s->layout.axes; a++)
+        copy_numbers(scene_axis(s, row->array, a), in + a * particles * sizeof(scalar), particles, sizeof(scalar));
+}
+
+static bool all_numbers_finite(arriving *state, const section *row, const uint8_t *in)
+{
+    (void)state;
+    for (size_t i = 0; i < row->count; i++)
+        if (!scalar_finite(number_at(in, i)))
+            return false;
+    return true;
+}
+
+/* Kept forces may be infinite: RKN8 uses the last ones only in the next call, which then fails. */
+static bool any_numbers(arriving *state, const section *row, const uint8_t *in)
+{
+    (void)state, (void)row, (void)in;
+    return true;
+}
+
+/* Coefficients of links, in the order of their indices. With one axis, the rest length of a link from the upper to the
+   lower end is negative. */
+
+/* One coefficient of all links. In an editable scene it is stored by slot. */
+typedef struct coefficients {
+    const uint32_t *slots;
+    size_t band_slots;
+    size_t banded, unbanded; /* [bytes] from the start of the block to that of slot 0 */
+} coefficients;
+
+static coefficients coefficients_of(const spring_scene *s, scene_array unbanded)
+{
+    const scene_array banded = unbanded == ARRAY_LINK_STIFFNESS ? ARRAY_BAND_STIFFNESS
+                               : unbanded == ARRAY_LINK_REST    ? ARRAY_BAND_REST
+                                                                : ARRAY_BAND_DAMPING;
+    return (coefficients){scene_read(s, ARRAY_SLOTS), s->layout.band_slots, s->layout.offset[banded],
+                          s->layout.offset[unbanded]};
+}
+
+/* The place of the coefficient of a link, in bytes from the start of the block. */
+static size_t coefficient_at(const coefficients *c, size_t link)
+{
+    const size_t slot = c->slots != NULL ? c->slots[link] : link;
+    return slot < c->band_slots ? c->banded + slot * sizeof(scalar)
+                                : c->unbanded + (slot - c->band_slots) * sizeof(scalar);
+}
+
+/* Whether a link, in the order of its stored ends, runs from the upper to the lower end. */
+static bool stored_downwards(const spring_scene *s, size_t link)
+{
+    const link_place at = scene_link_place(s, link);
+    return at.a > at.b;
+}
+
+static bool is_signed(const spring_scene *s, const section *row)
+{
+    return row->array == ARRAY_LINK_REST && s->layout.axes == 1;
+}
+
+static void write_coefficients(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const coefficients c = coefficients_of(s, row->array);
+    const bool has_sign = is_signed(s, row);
+    for (size_t i = 0; i < row->count; i++) {
+        scalar number;
+        memcpy(&number, (const char *)s + coefficient_at(&c, i), sizeof number);
+        if (has_sign && stored_downwards(s, i))
+            number = -number;
+        copy_numbers(out + i * sizeof number, &number, 1, sizeof number);
+    }
+}
+
+static void read_coefficients(spring_scene *s, const section *row, const uint8_t *in)
+{
+    const coefficients c = coefficients_of(s, row->array);
+    const bool has_sign = is_signed(s, row);
+    for (size_t i = 0; i < row->count; i++) {
+        scalar number = number_at(in, i);
+        if (has_sign && stored_downwards(s, i))
+            number = -number;
+        memcpy((char *)s + coefficient_at(&c, i), &number, sizeof number);
+    }
+}
+
+static bool rests_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    for (size_t i = 0; i < row->count; i++) {
+        const double rest = (double)number_at(in, i);
+        if (!spring_finite(rest) || (spring_sign_bit(rest) && state->s->layout.axes > 1))
+            return false;
+    }
+    return true;
+}
+
+/* The inverse mass of a particle after loading. */
+static double arriving_inverse_mass(const arriving *state, size_t i)
+{
+    return bit_at(state->pins, i) ? 0 : (double)number_at(state->masses, i);
+}
+
+/* Stiffness or damping, as spring_scene_check() requires. */
+static bool strengths_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    for (size_t i = 0; i < row->count; i++) {
+        const double strength = (double)number_at(in, i);
+        if (!(strength >= 0) || !scene_fits(strength))
+            return false;
+        if (scene_fits(2 * (strength * state->lightest)))
+            continue;
+        const link_place at = scene_link_place(state->s, i);
+        if (!scene_fits(2 * (strength * fmax(arriving_inverse_mass(state, at.a), arriving_inverse_mass(state, at.b)))))
+            return false;
+    }
+    return true;
+}
+
+#include "../simd/size_begin.h"
+
+/* Damping, the last of the coefficients. */
+static void read_last_coefficients(spring_scene *s, const section *row, const uint8_t *in)
+{
+    read_coefficients(s, row, in);
+    int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
+    const coefficients k = coefficients_of(s, ARRAY_LINK_STIFFNESS);
+    s->damped_links = 0;
+    for (size_t i = 0; i < row->count; i++) {
+        const size_t slot = k.slots != NULL ? k.slots[i] : i;
+        const bool damped = number_at(in, i) > 0;
+        scalar stiffness;
+        memcpy(&stiffness, (const char *)s + coefficient_at(&k, i), sizeof stiffness);
+        s->damped_links += damped;
+        if (slot < k.band_slots)
+            occupied[slot] = damped || stiffness > 0 ? -1 : 0;
+    }
+}
+
+/* Inverse masses of particles while they are free, and pins. */
+
+static void write_masses(const spring_scene *s, const section *row, uint8_t *out)
+{
+    copy_numbers(out, scene_read(s, row->array), row->count, sizeof(scalar));
+}
+
+static bool masses_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    state->masses = in;
+    for (size_t i = 0; i < row->count; i++)
+        if (!scene_not_negative((double)number_at(in, i)))
+            return false;
+    return true;
+}
+
+static void read_masses(spring_scene *s, const section *row, const uint8_t *in)
+{
+    copy_numbers(scene_memory(s, row->array), in, row->count, sizeof(scalar));
+}
+
+static void write_pins(const spring_scene *s, const section *row, uint8_t *out)
+{
+    for (size_t i = 0; i < row->count; i++)
+        set_bit(out, i, inverse_mass_at(s, i) == 0);
+}
+
+static bool pins_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    state->pins = in;
+    for (size_t i = 0; i < row->count; i++) {
+        const double inverse = arriving_inverse_mass(state, i);
+        if (!bit_at(in, i) && (inverse == 0 || !scene_fits(state->s->drag * inverse)))
+            return false;
+        state->lightest = fmax(state->lightest, inverse);
+    }
+    return true;
+}
+
+static void read_pins(spring_scene *s, const section *row, const uint8_t *in)
+{
+    const scalar *const freed = scene_read(s, ARRAY_FREE_MASS);
+    for (size_t i = 0; i < row->count; i++)
+        scene_set_inverse_mass(s, i, bit_at(in, i) ? 0 : freed[i]);
+}
+
+/* Colliders. */
+
+/* The numbers of a collider, in the order of the format. */
+static const struct {
+    size_t offset, count;
+} collider_numbers[] = {
+    {offsetof(spring_collider, at), 3},          {offsetof(spring_collider, to), 3},
+    {offsetof(spring_collider, axis), 9},        {offsetof(spring_collider, half), 3},
+    {offsetof(spring_collider, radius), 1},      {offsetof(spring_collider, velocity), 3},
+    {offsetof(spring_collider, velocity_to), 3}, {offsetof(spring_collider, spin), 3},
+    {offsetof(spring_collider, friction), 1},    {offsetof(spring_collider, restitution), 1},
+};
+enum { collider_fields = sizeof collider_numbers / sizeof collider_numbers[0], collider_words = 1 + 30 };
+
+static void write_colliders(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const spring_collider *const c = scene_read(s, row->array);
+    for (size_t i = 0; i < row->count; i++) {
+        const uint64_t shape = c[i].shape;
+        copy_numbers(out, &shape, 1, word_bytes);
+        out += word_bytes;
+        for (int k = 0; k < collider_fields; k++) {
+            copy_numbers(out, (const char *)&c[i] + collider_numbers[k].offset, collider_numbers[k].count, word_bytes);
+            out += collider_numbers[k].count * word_bytes;
+        }
+    }
+}
+
+static spring_collider collider_at(const uint8_t *in, size_t i)
+{
+    in += i * collider_words * word_bytes;
+    spring_collider c = {.shape = (spring_shape)word_at(in)};
+    in += word_bytes;
+    for (int k = 0; k < collider_fields; k++) {
+        copy_numbers((char *)&c + collider_numbers[k].offset, in, collider_numbers[k].count, word_bytes);
+        in += collider_numbers[k].count * word_bytes;
+    }
+    return c;
+}
+
+static bool colliders_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    for (size_t i = 0; i < row->count; i++) {
+        const spring_collider c = collider_at(in, i);
+        if (word_at(in + i * collider_words * word_bytes) > SPRING_BOX ||
+            spring_scene_check_colliders(state->s, &c, 1, NULL, NULL) != SPRING_OK)
+            return false;
+    }
+    return true;
+}
+
+static void read_colliders(spring_scene *s, const section *row, const uint8_t *in)
+{
+    spring_collider *const c = scene_memory(s, row->array);
+    for (size_t i = 0; i < row->count; i++)
+        c[i] = collider_at(in, i);
+}
+
+/* The particles that touch colliders, and their bits. */
+
+static void write_touching(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const uint32_t *const touched = scene_read(s, touched_in(s->buffer));
+    for (size_t i = 0; i < row->count; i++)
+        set_bit(out, i, touched[i] != 0);
+}
+
+static bool touching_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < row->count; i++)
+        count += bit_at(in, i);
+    return count == state->header[WORD_TOUCHING];
+}
+
+static void read_touching(spring_scene *s, const section *row, const uint8_t *in)
+{
+    uint32_t *const touched = scene_memory(s, touched_in(s->buffer));
+    for (size_t i = 0; i < row->count; i++)
+        touched[i] = bit_at(in, i);
+}
+
+static void write_touched(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const uint32_t *touched = scene_read(s, touched_in(s->buffer));
+    for (size_t i = 0; i < row->count; touched++)
+        if (*touched != 0) {
+            for (size_t k = 0; k < row->bits / 8; k++)
+                *out++ = (uint8_t)(*touched >> 8 * k);
+            i++;
+        }
+}
+
+static uint32_t touched_at(const section *row, const uint8_t *in, size_t i)
+{
+    uint32_t bits = 0;
+    for (size_t k = 0; k < row->bits / 8; k++)
+        bits |= (uint32_t)in[i * row->bits / 8 + k] << 8 * k;
+    return bits;
+}
+
+static bool touched_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    for (size_t i = 0; i < row->count; i++) {
+        const uint64_t bits = touched_at(row, in, i);
+        if (bits == 0 || bits >> state->header[WORD_COLLIDERS] != 0)
+            return false;
+    }
+    return true;
+}
+
+/* After read_touching(). */
+static void read_touched(spring_scene *s, const section *row, const uint8_t *in)
+{
+    uint32_t *touched = scene_memory(s, touched_in(s->buffer));
+    for (size_t i = 0; i < row->count; touched++)
+        if (*touched != 0)
+            *touched = touched_at(row, in, i++);
+}
+
+static const section_kind quantity = {write_quantity, all_numbers_finite, read_quantity},
+                          kept_force = {write_quantity, any_numbers, read_quantity},
+                          masses = {write_masses, masses_valid, read_masses},
+                          pins = {write_pins, pins_valid, read_pins},
+                          rests = {write_coefficients, rests_valid, read_coefficients},
+                          stiffnesses = {write_coefficients, strengths_valid, read_coefficients},
+                          dampings = {write_coefficients, strengths_valid, read_last_coefficients},
+                          colliders = {write_colliders, colliders_valid, read_colliders},
+                          touching = {write_touching, touching_valid, read_touching},
+                          touched = {write_touched, touched_valid, read_touched};
+
+enum { most_sections = 12 };
+
+/* Lists the sections of a state, in their order. Returns their number. */
+static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT], section list[most_sections])
+{
+    const scene_layout *const l = &s->layout;
+    const bool editable = (l->flags & SPRING_SCENE_EDITABLE) != 0, holds = (l->flags & SPRING_SCENE_FORCES) != 0;
+    const size_t numbers = l->axes * l->particles, particles = editable ? l->particles : 0;
+    const size_t links = editable ? l->links : 0, number = 8 * sizeof(scalar);
+    const size_t bodies = (size_t)header[WORD_COLLIDERS];
+    const section rows[] = {
+        {&quantity, positions_in(s->buffer), numbers, number},
+        {&quantity, velocities_in(s->buffer), numbers, number},
+        {&kept_force, forces_in(s->buffer), header[WORD_KEPT] != NO_FORCE ? numbers : 0, number},
+        {&quantity, ARRAY_HELD, holds ? numbers : 0, number},
+        {&masses, ARRAY_FREE_MASS, particles, number},
+        {&pins, ARRAY_INVERSE_MASS, particles, 1},
+        {&rests, ARRAY_LINK_REST, links, number},
+        {&stiffnesses, ARRAY_LINK_STIFFNESS, links, number},
+        {&dampings, ARRAY_LINK_DAMPING, links, number},
+        {&colliders, ARRAY_COLLIDERS, bodies, 64 * collider_words},
+        {&touching, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
+        {&touched, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
+    };
+    int count = 0;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        if (rows[i].count > 0)
+            list[count++] = rows[i];
+    return count;
+}
+
+static size_t state_bytes(const section *list, int count)
+{
+    size_t bytes = (WORD_COUNT + 1) * word_bytes; /* with the check value */
+    for (int i = 0; i < count; i++)
+        bytes += section_bytes(&list[i]);
+    return bytes;
+}
+
+/* ------------------------------------------------------------------------------------------------- public functions */
+
+spring_status spring_scene_save(const spring_scene *s, void *out, size_t *bytes)
+{
+    if (s == NULL || bytes == NULL)
+        return SPRING_EINVAL;
+    if (s->lost && !scene_finite(s))
+        return SPRING_ENONFINITE;
+    uint64_t header[WORD_COUNT];
+    section list[most_sections];
+    make_header(s, header);
+    const int count = list_sections(s, header, list);
+    const size_t room = *bytes, size = state_bytes(list, count);
+    *bytes = size;
+    if (out == NULL)
+        return SPRING_OK;
+    if (room < size)
+        return SPRING_ENOMEM;
+    header[WORD_BYTES] = size;
+    copy_numbers(out, header, WORD_COUNT, word_bytes);
+    uint8_t *at = (uint8_t *)out + sizeof header;
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++) {
+        const size_t all = section_bytes(&list[i]), zeros = list[i].bits == 1 ? all : word_bytes;
+        memset(at + all - zeros, 0, zeros); /* padding, and the bytes to which bits are added */
+        list[i].kind->write(s, &list[i], at);
+    }
+    const uint64_t check = check_value(out, size - word_bytes);
+    copy_numbers(at, &check, 1, word_bytes);
+    return SPRING_OK;
+}
+
+spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
+{
+    uint64_t header[WORD_COUNT];
+    section list[most_sections];
+    if (s == NULL || in == NULL || bytes < sizeof header)
+        return SPRING_EINVAL;
+    copy_numbers(header, in, WORD_COUNT, word_bytes);
+    if (header[WORD_BYTES] != bytes || !header_valid(s, header))
+        return SPRING_EINVAL;
+    const int count = list_sections(s, header, list);
+    const uint8_t *const end = (const uint8_t *)in + bytes - word_bytes;
+    if (state_bytes(list, count) != bytes || check_value(in, bytes - word_bytes) != word_at(end))
+        return SPRING_EINVAL;
+    arriving state = {.s = s, .header = header};
+    const uint8_t *at = (const uint8_t *)in + sizeof header;
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
+        if (!list[i].kind->valid(&state, &list[i], at))
+            return SPRING_EINVAL;
+    for (uint32_t buffer = 0; buffer < 2; buffer++) /* without colliders no step writes them */
+        if (scene_has(s, touched_in(buffer)))
+            memset(scene_memory(s, touched_in(buffer)), 0, s->layout.particles * sizeof(uint32_t));
+    at = (const uint8_t *)in + sizeof header;
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
+        list[i].kind->read(s, &list[i], at);
+    if ((s->layout.flags & SPRING_SCENE_EDITABLE) != 0)
+        s->bounds_known = false;
+    s->lost = false;
+    s->force_cache = (cached_force)header[WORD_KEPT];
+    s->colliders = (uint32_t)header[WORD_COLLIDERS];
+    s->t0 = value_of(header[WORD_T0]);
+    s->dt = value_of(header[WORD_DT]);
+    s->steps = header[WORD_STEPS];
+    s->colliders_base = value_of(header[WORD_COLLIDERS_BASE]);
+    s->colliders_from = header[WORD_COLLIDERS_FROM];
+    double gravity[3];
+    for (int a = 0; a < 3; a++)
+        gravity[a] = value_of(header[WORD_GRAVITY + a]);
+    scene_store_gravity(s, gravity);
+    return SPRING_OK;
+}
+
+spring_status spring_scene_set_time(spring_scene *s, double t)
+{
+    if (s == NULL || !spring_finite(t))
+        return SPRING_EINVAL;
+    s->colliders_base = colliders_time(s);
+    s->colliders_from = 0;
+    s->t0 = t;
+    s->steps = 0;
+    if (s->force != NULL) /* it may depend on the time */
+        scene_drop_forces(s);
+    return SPRING_OK;
+}
+
+spring_scene_info spring_scene_describe(const spring_scene *s)
+{
+    if (s == NULL)
+        return (spring_scene_info){0};
+    const scene_layout *const l = &s->layout;
+    return (spring_scene_info){
+        .particles = l->particles,
+        .links = l->links,
+        .axes = l->axes,
+        .flags = l->flags,
+        .methods = l->methods,
+        .colliders = l->colliders,
+    };
+}
+
+#include "../simd/size_end.h"
