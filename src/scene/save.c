@@ -565,16 +565,16 @@ static void read_touched(spring_scene *s, const section *row, const uint8_t *in)
             *touched = touched_at(row, in, i++);
 }
 
-static const section_kind quantity = {write_quantity, all_numbers_finite, read_quantity},
-                          kept_force = {write_quantity, any_numbers, read_quantity},
-                          masses = {write_masses, masses_valid, read_masses},
-                          pins = {write_pins, pins_valid, read_pins},
-                          rests = {write_coefficients, rests_valid, read_coefficients},
-                          stiffnesses = {write_coefficients, strengths_valid, read_coefficients},
-                          dampings = {write_coefficients, strengths_valid, read_last_coefficients},
-                          colliders = {write_colliders, colliders_valid, read_colliders},
-                          touching = {write_touching, touching_valid, read_touching},
-                          touched = {write_touched, touched_valid, read_touched};
+static const section_kind quantity_section = {write_quantity, all_numbers_finite, read_quantity},
+                          kept_force_section = {write_quantity, any_numbers, read_quantity},
+                          masses_section = {write_masses, masses_valid, read_masses},
+                          pins_section = {write_pins, pins_valid, read_pins},
+                          rests_section = {write_coefficients, rests_valid, read_coefficients},
+                          stiffnesses_section = {write_coefficients, strengths_valid, read_coefficients},
+                          dampings_section = {write_coefficients, strengths_valid, read_last_coefficients},
+                          colliders_section = {write_colliders, colliders_valid, read_colliders},
+                          touching_section = {write_touching, touching_valid, read_touching},
+                          touched_section = {write_touched, touched_valid, read_touched};
 
 enum { most_sections = 12 };
 
@@ -587,18 +587,18 @@ static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT
     const size_t links = editable ? l->links : 0, number = 8 * sizeof(scalar);
     const size_t bodies = (size_t)header[WORD_COLLIDERS];
     const section rows[] = {
-        {&quantity, positions_in(s->buffer), numbers, number},
-        {&quantity, velocities_in(s->buffer), numbers, number},
-        {&kept_force, forces_in(s->buffer), header[WORD_KEPT] != NO_FORCE ? numbers : 0, number},
-        {&quantity, ARRAY_HELD, holds ? numbers : 0, number},
-        {&masses, ARRAY_FREE_MASS, particles, number},
-        {&pins, ARRAY_INVERSE_MASS, particles, 1},
-        {&rests, ARRAY_LINK_REST, links, number},
-        {&stiffnesses, ARRAY_LINK_STIFFNESS, links, number},
-        {&dampings, ARRAY_LINK_DAMPING, links, number},
-        {&colliders, ARRAY_COLLIDERS, bodies, 64 * collider_words},
-        {&touching, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
-        {&touched, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
+        {&quantity_section, positions_in(s->buffer), numbers, number},
+        {&quantity_section, velocities_in(s->buffer), numbers, number},
+        {&kept_force_section, forces_in(s->buffer), header[WORD_KEPT] != NO_FORCE ? numbers : 0, number},
+        {&quantity_section, ARRAY_HELD, holds ? numbers : 0, number},
+        {&masses_section, ARRAY_FREE_MASS, particles, number},
+        {&pins_section, ARRAY_INVERSE_MASS, particles, 1},
+        {&rests_section, ARRAY_LINK_REST, links, number},
+        {&stiffnesses_section, ARRAY_LINK_STIFFNESS, links, number},
+        {&dampings_section, ARRAY_LINK_DAMPING, links, number},
+        {&colliders_section, ARRAY_COLLIDERS, bodies, 64 * collider_words},
+        {&touching_section, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
+        {&touched_section, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
     };
     int count = 0;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
