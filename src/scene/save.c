@@ -6,17 +6,15 @@
  *           bytes, and a check value. docs/details.md describes it. list_sections() is the only list of the sections:
  *           the size, save and load follow it. A new field is a row there, or a word of the header.
  * Loading   checks everything before it changes the scene. Sections are checked and read in the order of the list, so
- *           that the check of a section may use those before it.
- * Check     XXH64. Unlike CRC-32 and FNV-1a it has four independent lanes of 8 bytes, so that it takes less time than
- *           the copy of the numbers from memory. Those two would take longer than two steps. Source: Collet, xxHash
- *           fast digest algorithm, version 0.2.0.
+ *           that a section may use those before it.
+ * Check     Eight lanes of 64-bit words, each with one rotation and one multiplication per word. CRC-32 and FNV-1a take
+ *           a byte at a time, several times as long as two steps, and XXH64 has two multiplications per word. Adding a
+ *           word, the rotation and the multiplication by an odd number are bijections, so a change of one word always
+ *           changes the value. The rotation brings the sign bits of numbers where the multiplication spreads them.
  */
 #include "stored_links.h"
 
-/* ------------------------------------------------------------------------------------------------------ check value */
-
-static const uint64_t prime1 = UINT64_C(0x9E3779B185EBCA87), prime2 = UINT64_C(0xC2B2AE3D27D4EB4F),
-                      prime3 = UINT64_C(0x165667B19E3779F9), prime4 = UINT64_C(0x85EBCA77C2B2AE63);
+/* ------------------------------------------------------------------------------------------------ numbers of a state */
 
 static bool little_endian(void)
 {
@@ -27,7 +25,7 @@ static bool little_endian(void)
 }
 
 /* Copies numbers of this processor to or from a state. */
-static void copy_numbers(void *to, const void *from, size_t count, size_t size)
+static inline void copy_numbers(void *to, const void *from, size_t count, size_t size)
 {
     if (little_endian()) {
         memcpy(to, from, count * size);
@@ -40,49 +38,68 @@ static void copy_numbers(void *to, const void *from, size_t count, size_t size)
             out[i + k] = in[i + size - 1 - k];
 }
 
-static uint64_t word_at(const uint8_t *at)
+static inline uint64_t word_at(const uint8_t *at)
 {
     uint64_t word;
     copy_numbers(&word, at, 1, sizeof word);
     return word;
 }
 
-static uint64_t rotated(uint64_t x, unsigned by)
+static inline scalar number_at(const uint8_t *at, size_t i)
 {
-    return x << by | x >> (64 - by);
+    scalar number;
+    copy_numbers(&number, at + i * sizeof number, 1, sizeof number);
+    return number;
 }
 
-static uint64_t next_of_lane(uint64_t lane, uint64_t word)
+/* `hash` with one more word. */
+static inline uint64_t hashed(uint64_t hash, uint64_t word)
 {
-    return rotated(lane + word * prime2, 31) * prime1;
+    const uint64_t sum = hash + word;
+    return (sum << 31 | sum >> 33) * UINT64_C(0x9E3779B97F4A7C15);
 }
 
-static uint64_t with_word(uint64_t hash, uint64_t word)
-{
-    return rotated(hash ^ next_of_lane(0, word), 27) * prime1 + prime4;
-}
-
-/* size: a multiple of 8, at least 32 */
+/* size: a multiple of 8 */
 static uint64_t check_value(const uint8_t *bytes, size_t size)
 {
-    enum { lanes = 4, word = 8 };
-    uint64_t lane[lanes] = {prime1 + prime2, prime2, 0, 0 - prime1};
+    enum { lanes = 8, word = 8 };
+    uint64_t lane[lanes] = {0}, hash = size;
     size_t i = 0;
     for (; i + lanes * word <= size; i += lanes * word) {
-        lane[0] = next_of_lane(lane[0], word_at(bytes + i));
-        lane[1] = next_of_lane(lane[1], word_at(bytes + i + word));
-        lane[2] = next_of_lane(lane[2], word_at(bytes + i + 2 * word));
-        lane[3] = next_of_lane(lane[3], word_at(bytes + i + 3 * word));
+        SPRING_UNROLL
+        for (size_t k = 0; k < lanes; k++)
+            lane[k] = hashed(lane[k], word_at(bytes + i + k * word));
     }
-    uint64_t hash = rotated(lane[0], 1) + rotated(lane[1], 7) + rotated(lane[2], 12) + rotated(lane[3], 18);
-    for (int k = 0; k < lanes; k++)
-        hash = (hash ^ next_of_lane(0, lane[k])) * prime1 + prime4;
-    hash += size;
-    for (; i < size; i += word)
-        hash = with_word(hash, word_at(bytes + i));
-    hash = (hash ^ hash >> 33) * prime2;
-    hash = (hash ^ hash >> 29) * prime3;
+    for (size_t k = 0; i < size; i += word, k++)
+        lane[k] = hashed(lane[k], word_at(bytes + i));
+    for (size_t k = 0; k < lanes; k++)
+        hash = hashed(hash, lane[k]);
     return hash ^ hash >> 32;
+}
+
+/* Whether all numbers are finite, and not negative unless any_sign. The numbers of a word of a padded section are tested
+   at once: adding 1 to an exponent of ones carries into the sign. Adding 1 + headroom finds numbers that would not be
+   finite if they were multiplied by a number below 2^headroom, which is less than the largest. */
+static bool numbers_valid(const uint8_t *in, size_t count, bool any_sign, uint64_t headroom)
+{
+    const uint64_t first = sizeof(scalar) == sizeof(float) ? UINT64_C(1) << 32 | 1 : 1; /* bit 0 of each number */
+    const unsigned sign = 8 * sizeof(scalar) - 1, fraction = sizeof(scalar) == sizeof(float) ? 23 : 52;
+    const uint64_t exponents = (first << sign) - (first << fraction), one = first * (1 + headroom) << fraction;
+    const size_t bytes = (count * sizeof(scalar) + sizeof one - 1) / sizeof one * sizeof one;
+    uint64_t carries = 0, signs = 0;
+    size_t i = 0;
+    for (; i + 4 * sizeof one <= bytes; i += 4 * sizeof one) {
+        SPRING_UNROLL
+        for (size_t k = 0; k < 4; k++) {
+            carries |= (word_at(in + i + k * sizeof one) & exponents) + one;
+            signs |= word_at(in + i + k * sizeof one);
+        }
+    }
+    for (; i < bytes; i += sizeof one) {
+        carries |= (word_at(in + i) & exponents) + one;
+        signs |= word_at(in + i);
+    }
+    return ((carries | (any_sign ? 0 : signs)) & first << sign) == 0;
 }
 
 #include "../simd/size_begin.h"
@@ -93,7 +110,7 @@ uint64_t spring_scene_identify(const spring_scene_def *def)
     uint64_t hash = 0;
     for (size_t i = 0; i < def->links; i++) {
         const uint64_t a = def->link[i].a, b = def->link[i].b;
-        hash = with_word(hash, directed || a < b ? a | b << 32 : b | a << 32);
+        hash = hashed(hash, directed || a < b ? a | b << 32 : b | a << 32);
     }
     return hash;
 }
@@ -114,8 +131,9 @@ enum {
     WORD_WEIGHTED_LINKS,
     WORD_ENDS, /* spring_scene_identify() */
     WORD_CALLBACK,
-    WORD_BYTES, /* of the state */
-    WORD_KEPT,  /* cached_force */
+    WORD_BYTES,  /* of the state */
+    WORD_KEPT,   /* cached_force */
+    WORD_DAMPED, /* links */
     WORD_COLLIDERS,
     WORD_TOUCHING, /* particles that touch colliders */
     WORD_T0,
@@ -169,6 +187,7 @@ static void make_header(const spring_scene *s, uint64_t header[WORD_COUNT])
     header[WORD_ENDS] = s->ends;
     header[WORD_CALLBACK] = s->force != NULL;
     header[WORD_KEPT] = s->force_cache;
+    header[WORD_DAMPED] = s->damped_links;
     header[WORD_COLLIDERS] = s->colliders;
     header[WORD_TOUCHING] = count_touching(s);
     header[WORD_T0] = bits_of(s->t0);
@@ -193,8 +212,11 @@ static bool header_valid(const spring_scene *s, const uint64_t header[WORD_COUNT
     for (uint32_t a = 0; a < s->layout.axes; a++)
         if (!scene_fits(value_of(header[WORD_GRAVITY + a])))
             return false;
+    const bool editable = (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
     const bool predicts = s->layout.offset[ARRAY_FORCE_1] != s->layout.offset[ARRAY_FORCE_0];
-    return header[WORD_KEPT] <= (predicts ? PREDICTED_FORCE : FORCE) && header[WORD_COLLIDERS] <= s->layout.colliders &&
+    return header[WORD_KEPT] <= (predicts ? PREDICTED_FORCE : FORCE) &&
+           (editable ? header[WORD_DAMPED] <= s->layout.links : header[WORD_DAMPED] == s->damped_links) &&
+           header[WORD_COLLIDERS] <= s->layout.colliders &&
            header[WORD_TOUCHING] <= (header[WORD_COLLIDERS] > 0 ? s->layout.particles : 0) && scene_fits(dt) &&
            from <= steps && spring_finite(t0 + (double)steps * dt) && spring_finite(base + (double)(steps - from) * dt);
 }
@@ -207,8 +229,8 @@ typedef struct section section;
 typedef struct arriving {
     const spring_scene *s;
     const uint64_t *header;
-    const uint8_t *masses, *pins; /* editable scenes */
-    double lightest;              /* [1/kg] largest inverse mass of a free particle */
+    const uint8_t *masses, *pins; /* sections of editable scenes */
+    scalar lightest;              /* [1/kg] largest inverse mass of a free particle */
 } arriving;
 
 /* How a section is written, checked and read. */
@@ -230,50 +252,32 @@ static size_t section_bytes(const section *row)
     return (row->count * row->bits + 63) / 64 * word_bytes;
 }
 
-static scalar number_at(const uint8_t *at, size_t i)
-{
-    scalar number;
-    copy_numbers(&number, at + i * sizeof number, 1, sizeof number);
-    return number;
-}
+#include "../simd/size_end.h"
 
-static bool bit_at(const uint8_t *at, size_t i)
+static inline bool bit_at(const uint8_t *at, size_t i)
 {
     return (at[i / 8] >> i % 8 & 1) != 0;
 }
 
 /* Sets bit i, which is 0. */
-static void set_bit(uint8_t *at, size_t i, bool bit)
+static inline void set_bit(uint8_t *at, size_t i, bool bit)
 {
     at[i / 8] = (uint8_t)(at[i / 8] | bit << i % 8);
 }
 
-/* A quantity: particles within axes. */
-
-#include "../simd/size_end.h"
+/* A quantity: all particles on the first axis, then on the next. */
 
 static void write_quantity(const spring_scene *s, const section *row, uint8_t *out)
 {
     const size_t particles = s->layout.particles;
-    for (uint32_t a = 0; a < s->layout.axes; a++)
-        copy_numbers(out + a * particles * sizeof(scalar), scene_read_axis(s, row->array, a), particles,
-                     sizeof(scalar));
+    for (uint32_t a = 0; a < s->layout.axes; a++, out += particles * sizeof(scalar))
+        copy_numbers(out, scene_read_axis(s, row->array, a), particles, sizeof(scalar));
 }
 
-static void read_quantity(spring_scene *s, const section *row, const uint8_t *in)
-{
-    const size_t particles = s->layout.particles;
-    for (uint32_t a = 0; a < s->layout.axes; a++)
-        copy_numbers(scene_axis(s, row->array, a), in + a * particles * sizeof(scalar), particles, sizeof(scalar));
-}
-
-static bool all_numbers_finite(arriving *state, const section *row, const uint8_t *in)
+static bool quantity_valid(arriving *state, const section *row, const uint8_t *in)
 {
     (void)state;
-    for (size_t i = 0; i < row->count; i++)
-        if (!scalar_finite(number_at(in, i)))
-            return false;
-    return true;
+    return numbers_valid(in, row->count, true, 0);
 }
 
 /* Kept forces may be infinite: RKN8 uses the last ones only in the next call, which then fails. */
@@ -283,120 +287,67 @@ static bool any_numbers(arriving *state, const section *row, const uint8_t *in)
     return true;
 }
 
-/* Coefficients of links, in the order of their indices. With one axis, the rest length of a link from the upper to the
-   lower end is negative. */
+static void read_quantity(spring_scene *s, const section *row, const uint8_t *in)
+{
+    const size_t particles = s->layout.particles;
+    for (uint32_t a = 0; a < s->layout.axes; a++, in += particles * sizeof(scalar))
+        copy_numbers(scene_axis(s, row->array, a), in, particles, sizeof(scalar));
+}
 
-/* One coefficient of all links. In an editable scene it is stored by slot. */
-typedef struct coefficients {
-    const uint32_t *slots;
+/* A coefficient of all links of an editable scene, in the order of their indices. */
+
+typedef struct coefficient_storage {
+    const uint32_t *slots; /* NULL: each link has the slot of its index */
     size_t band_slots;
-    size_t banded, unbanded; /* [bytes] from the start of the block to that of slot 0 */
-} coefficients;
+    size_t banded, unbanded; /* [bytes] where the coefficient of slot 0 would be, from the start of the block */
+} coefficient_storage;
 
-static coefficients coefficients_of(const spring_scene *s, scene_array unbanded)
+static coefficient_storage storage_of(const spring_scene *s, scene_array unbanded)
 {
     const scene_array banded = unbanded == ARRAY_LINK_STIFFNESS ? ARRAY_BAND_STIFFNESS
                                : unbanded == ARRAY_LINK_REST    ? ARRAY_BAND_REST
                                                                 : ARRAY_BAND_DAMPING;
-    return (coefficients){scene_read(s, ARRAY_SLOTS), s->layout.band_slots, s->layout.offset[banded],
-                          s->layout.offset[unbanded]};
+    const size_t slots = s->layout.band_slots;
+    return (coefficient_storage){scene_read(s, ARRAY_SLOTS), slots, s->layout.offset[banded],
+                                 s->layout.offset[unbanded] - slots * sizeof(scalar)};
 }
 
-/* The place of the coefficient of a link, in bytes from the start of the block. */
-static size_t coefficient_at(const coefficients *c, size_t link)
+/* [bytes] from the start of the block; an editable scene stores all coefficients by slot. */
+static inline size_t coefficient_at(const coefficient_storage *c, size_t link)
 {
     const size_t slot = c->slots != NULL ? c->slots[link] : link;
-    return slot < c->band_slots ? c->banded + slot * sizeof(scalar)
-                                : c->unbanded + (slot - c->band_slots) * sizeof(scalar);
-}
-
-/* Whether a link, in the order of its stored ends, runs from the upper to the lower end. */
-static bool stored_downwards(const spring_scene *s, size_t link)
-{
-    const link_place at = scene_link_place(s, link);
-    return at.a > at.b;
-}
-
-static bool is_signed(const spring_scene *s, const section *row)
-{
-    return row->array == ARRAY_LINK_REST && s->layout.axes == 1;
+    return (slot < c->band_slots ? c->banded : c->unbanded) + slot * sizeof(scalar);
 }
 
 static void write_coefficients(const spring_scene *s, const section *row, uint8_t *out)
 {
-    const coefficients c = coefficients_of(s, row->array);
-    const bool has_sign = is_signed(s, row);
-    for (size_t i = 0; i < row->count; i++) {
-        scalar number;
-        memcpy(&number, (const char *)s + coefficient_at(&c, i), sizeof number);
-        if (has_sign && stored_downwards(s, i))
-            number = -number;
-        copy_numbers(out + i * sizeof number, &number, 1, sizeof number);
-    }
+    const coefficient_storage c = storage_of(s, row->array);
+    for (size_t i = 0; i < row->count; i++)
+        copy_numbers(out + i * sizeof(scalar), (const char *)s + coefficient_at(&c, i), 1, sizeof(scalar));
 }
 
 static void read_coefficients(spring_scene *s, const section *row, const uint8_t *in)
 {
-    const coefficients c = coefficients_of(s, row->array);
-    const bool has_sign = is_signed(s, row);
-    for (size_t i = 0; i < row->count; i++) {
-        scalar number = number_at(in, i);
-        if (has_sign && stored_downwards(s, i))
-            number = -number;
-        memcpy((char *)s + coefficient_at(&c, i), &number, sizeof number);
-    }
+    const coefficient_storage c = storage_of(s, row->array);
+    for (size_t i = 0; i < row->count; i++)
+        copy_numbers((char *)s + coefficient_at(&c, i), in + i * sizeof(scalar), 1, sizeof(scalar));
 }
 
-static bool rests_valid(arriving *state, const section *row, const uint8_t *in)
+/* Makes what follows from the coefficients of links, after they have been read. */
+static void settle_links(spring_scene *s, uint64_t damped)
 {
-    for (size_t i = 0; i < row->count; i++) {
-        const double rest = (double)number_at(in, i);
-        if (!spring_finite(rest) || (spring_sign_bit(rest) && state->s->layout.axes > 1))
-            return false;
-    }
-    return true;
-}
-
-/* The inverse mass of a particle after loading. */
-static double arriving_inverse_mass(const arriving *state, size_t i)
-{
-    return bit_at(state->pins, i) ? 0 : (double)number_at(state->masses, i);
-}
-
-/* Stiffness or damping, as spring_scene_check() requires. */
-static bool strengths_valid(arriving *state, const section *row, const uint8_t *in)
-{
-    for (size_t i = 0; i < row->count; i++) {
-        const double strength = (double)number_at(in, i);
-        if (!(strength >= 0) || !scene_fits(strength))
-            return false;
-        if (scene_fits(2 * (strength * state->lightest)))
-            continue;
-        const link_place at = scene_link_place(state->s, i);
-        if (!scene_fits(2 * (strength * fmax(arriving_inverse_mass(state, at.a), arriving_inverse_mass(state, at.b)))))
-            return false;
-    }
-    return true;
-}
-
-#include "../simd/size_begin.h"
-
-/* Damping, the last of the coefficients. */
-static void read_last_coefficients(spring_scene *s, const section *row, const uint8_t *in)
-{
-    read_coefficients(s, row, in);
+    const scene_layout *const l = &s->layout;
+    scalar *const damping = scene_memory(s, ARRAY_BAND_DAMPING), *const unbanded = scene_memory(s, ARRAY_LINK_DAMPING);
+    const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
-    const coefficients k = coefficients_of(s, ARRAY_LINK_STIFFNESS);
-    s->damped_links = 0;
-    for (size_t i = 0; i < row->count; i++) {
-        const size_t slot = k.slots != NULL ? k.slots[i] : i;
-        const bool damped = number_at(in, i) > 0;
-        scalar stiffness;
-        memcpy(&stiffness, (const char *)s + coefficient_at(&k, i), sizeof stiffness);
-        s->damped_links += damped;
-        if (slot < k.band_slots)
-            occupied[slot] = damped || stiffness > 0 ? -1 : 0;
+    for (size_t i = 0; i < l->unbanded && damped == 0; i++)
+        unbanded[i] = 0;
+    for (size_t i = 0; i < l->band_slots; i++) {
+        damping[i] = damped > 0 ? damping[i] : 0;
+        occupied[i] = stiffness[i] > 0 || damping[i] > 0 ? -1 : 0;
     }
+    s->damped_links = damped;
+    s->bounds_known = false;
 }
 
 /* Inverse masses of particles while they are free, and pins. */
@@ -409,10 +360,7 @@ static void write_masses(const spring_scene *s, const section *row, uint8_t *out
 static bool masses_valid(arriving *state, const section *row, const uint8_t *in)
 {
     state->masses = in;
-    for (size_t i = 0; i < row->count; i++)
-        if (!scene_not_negative((double)number_at(in, i)))
-            return false;
-    return true;
+    return numbers_valid(in, row->count, false, 0);
 }
 
 static void read_masses(spring_scene *s, const section *row, const uint8_t *in)
@@ -430,12 +378,14 @@ static bool pins_valid(arriving *state, const section *row, const uint8_t *in)
 {
     state->pins = in;
     for (size_t i = 0; i < row->count; i++) {
-        const double inverse = arriving_inverse_mass(state, i);
-        if (!bit_at(in, i) && (inverse == 0 || !scene_fits(state->s->drag * inverse)))
+        const scalar inverse = number_at(state->masses, i);
+        if (bit_at(in, i))
+            continue;
+        if (inverse == 0)
             return false;
-        state->lightest = fmax(state->lightest, inverse);
+        state->lightest = inverse > state->lightest ? inverse : state->lightest;
     }
-    return true;
+    return scene_fits(state->s->drag * (double)state->lightest);
 }
 
 static void read_pins(spring_scene *s, const section *row, const uint8_t *in)
@@ -443,6 +393,74 @@ static void read_pins(spring_scene *s, const section *row, const uint8_t *in)
     const scalar *const freed = scene_read(s, ARRAY_FREE_MASS);
     for (size_t i = 0; i < row->count; i++)
         scene_set_inverse_mass(s, i, bit_at(in, i) ? 0 : freed[i]);
+}
+
+#include "../simd/size_begin.h"
+
+/* The inverse mass of a particle in the state. */
+static double arriving_inverse_mass(const arriving *state, size_t i)
+{
+    return bit_at(state->pins, i) ? 0 : (double)number_at(state->masses, i);
+}
+
+/* Stiffness or damping. As in spring_scene_check(), twice the value divided by the mass of an end must be finite. Usually
+   all values would be valid for the lightest particle. */
+static bool strengths_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    uint64_t headroom = 0;
+    for (double bound = 0.5; bound <= (double)state->lightest; bound *= 2)
+        headroom++;
+    if (numbers_valid(in, row->count, false, headroom))
+        return true;
+    for (size_t i = 0; i < row->count; i++) {
+        const link_place at = scene_link_place(state->s, i);
+        const double lighter = fmax(arriving_inverse_mass(state, at.a), arriving_inverse_mass(state, at.b));
+        const double strength = (double)number_at(in, i);
+        if (!scene_not_negative(strength) || !scene_fits(2 * (strength * lighter)))
+            return false;
+    }
+    return true;
+}
+
+static bool dampings_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    size_t damped = 0;
+    for (size_t i = 0; i < row->count; i++)
+        damped += number_at(in, i) > 0;
+    return damped == state->header[WORD_DAMPED] && strengths_valid(state, row, in);
+}
+
+/* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored like
+   that; other links are stored with the sign for their order of the ends. */
+
+static bool rests_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    return numbers_valid(in, row->count, state->s->layout.axes == 1, 0);
+}
+
+static bool has_other_sign(const spring_scene *s, size_t link)
+{
+    const link_place at = scene_link_place(s, link);
+    return s->layout.axes == 1 && at.a > at.b;
+}
+
+static void write_rests(const spring_scene *s, const section *row, uint8_t *out)
+{
+    write_coefficients(s, row, out);
+    for (size_t i = 0; i < row->count && s->layout.axes == 1 && s->layout.unbanded > 0; i++)
+        if (has_other_sign(s, i))
+            out[(i + 1) * sizeof(scalar) - 1] ^= 0x80;
+}
+
+static void read_rests(spring_scene *s, const section *row, const uint8_t *in)
+{
+    read_coefficients(s, row, in);
+    const coefficient_storage c = storage_of(s, row->array);
+    for (size_t i = 0; i < row->count && s->layout.axes == 1 && s->layout.unbanded > 0; i++)
+        if (has_other_sign(s, i)) {
+            const scalar rest = -number_at(in, i);
+            memcpy((char *)s + coefficient_at(&c, i), &rest, sizeof rest);
+        }
 }
 
 /* Colliders. */
@@ -565,13 +583,13 @@ static void read_touched(spring_scene *s, const section *row, const uint8_t *in)
             *touched = touched_at(row, in, i++);
 }
 
-static const section_kind quantity_section = {write_quantity, all_numbers_finite, read_quantity},
+static const section_kind quantity_section = {write_quantity, quantity_valid, read_quantity},
                           kept_force_section = {write_quantity, any_numbers, read_quantity},
                           masses_section = {write_masses, masses_valid, read_masses},
                           pins_section = {write_pins, pins_valid, read_pins},
-                          rests_section = {write_coefficients, rests_valid, read_coefficients},
+                          rests_section = {write_rests, rests_valid, read_rests},
                           stiffnesses_section = {write_coefficients, strengths_valid, read_coefficients},
-                          dampings_section = {write_coefficients, strengths_valid, read_last_coefficients},
+                          dampings_section = {write_coefficients, dampings_valid, read_coefficients},
                           colliders_section = {write_colliders, colliders_valid, read_colliders},
                           touching_section = {write_touching, touching_valid, read_touching},
                           touched_section = {write_touched, touched_valid, read_touched};
@@ -595,7 +613,7 @@ static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT
         {&pins_section, ARRAY_INVERSE_MASS, particles, 1},
         {&rests_section, ARRAY_LINK_REST, links, number},
         {&stiffnesses_section, ARRAY_LINK_STIFFNESS, links, number},
-        {&dampings_section, ARRAY_LINK_DAMPING, links, number},
+        {&dampings_section, ARRAY_LINK_DAMPING, header[WORD_DAMPED] > 0 ? links : 0, number},
         {&colliders_section, ARRAY_COLLIDERS, bodies, 64 * collider_words},
         {&touching_section, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
         {&touched_section, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
@@ -671,7 +689,7 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
     for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
         list[i].kind->read(s, &list[i], at);
     if ((s->layout.flags & SPRING_SCENE_EDITABLE) != 0)
-        s->bounds_known = false;
+        settle_links(s, header[WORD_DAMPED]);
     s->lost = false;
     s->force_cache = (cached_force)header[WORD_KEPT];
     s->colliders = (uint32_t)header[WORD_COLLIDERS];
