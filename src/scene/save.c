@@ -193,8 +193,8 @@ static void make_header(const spring_scene *s, uint64_t header[WORD_COUNT])
     header[WORD_T0] = bits_of(s->t0);
     header[WORD_DT] = bits_of(s->dt);
     header[WORD_STEPS] = s->steps;
-    header[WORD_COLLIDERS_BASE] = bits_of(s->colliders_base);
-    header[WORD_COLLIDERS_FROM] = s->colliders_from;
+    header[WORD_COLLIDERS_BASE] = bits_of(s->colliders > 0 ? s->colliders_base : 0);
+    header[WORD_COLLIDERS_FROM] = s->colliders > 0 ? s->colliders_from : 0;
     for (int a = 0; a < 3; a++)
         header[WORD_GRAVITY + a] = bits_of(s->gravity[a]);
 }
@@ -712,6 +712,7 @@ spring_status spring_scene_set_time(spring_scene *s, double t)
     s->colliders_base = colliders_time(s);
     s->colliders_from = 0;
     s->t0 = t;
+    s->dt = 0;
     s->steps = 0;
     if (s->force != NULL) /* it may depend on the time */
         scene_drop_forces(s);

@@ -2,16 +2,18 @@
 """Particles joined by springs."""
 import copy
 import math
+import multiprocessing
 import pickle
 import subprocess
 import threading
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
 
 import springstep
 from scenes import FLOATS, OF_SCENES, cloth, fnv, rope
-from springstep import Scene, ffi, grid, lib
+from springstep import InvalidError, Scene, ffi, grid, lib
 from springstep._common import Guard
 
 
@@ -65,8 +67,90 @@ def test_a_snapshot_brings_back_what_was(dtype):
     assert (scene.position() == after[1]).all()
     with pytest.raises(ValueError, match="snapshot"):
         cloth(dtype=dtype, editable=True).restore(before)
-    with pytest.raises(TypeError, match="not copied"):
-        copy.copy(scene)
+
+
+def swing(t, position, velocity, force):
+    force[0] += 0.3 * np.sin(9 * t) - 0.1 * velocity[0]
+
+
+def saved_scenes(dtype):
+    """Scenes after an eventful life: edits, tears, contacts, held forces, a force, one axis."""
+    torn = cloth(9, dtype=dtype, editable=True, held_forces=True, colliders=2, mass=np.linspace(0.01, 0.02, 81))
+    torn.set_colliders([springstep.sphere([1, 1, -0.3], 0.4, velocity=[0, 0, 0.2])])
+    torn.set_held_force(np.full((81, 3), 0.01))
+    torn.advance(1e-3, 200)
+    torn.tear(1.02)
+    torn.set_pinned([True, False], 40)
+    torn.set_mass([0.5], 3)
+    damped = rope(dtype=dtype, force=swing, undo=False, tension_only=True)
+    water = Scene.from_grid(grid([7, 5], 0.2, 300.0, height=True, pinned=["first_x"]), dtype=dtype, methods=["rk4", "leapfrog"])
+    water.set_velocity(np.linspace(-1, 1, 35))
+    for scene in (torn, damped, water):
+        scene.advance(2e-3, 30)
+        yield scene
+
+
+def advanced(scene):
+    scene.advance(2e-3, 40)
+    return scene.position().tobytes() + scene.velocity().tobytes(), scene.save(), scene.time
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+@FLOATS
+def test_a_copy_goes_on_alike(copied, dtype):
+    for scene in saved_scenes(dtype):
+        state, twin = scene.save(), copied(scene)
+        assert twin.save() == state == scene.save() and type(twin) is Scene and twin.dtype == dtype
+        want = advanced(scene)
+        assert advanced(twin) == want
+        scene.load(memoryview(state))  # at any time, also again
+        assert advanced(scene) == want
+
+
+def test_a_copy_knows_its_pins():
+    torn = next(saved_scenes(np.float64))
+    twin = copy.copy(torn)
+    twin.drive(40, [0, 0, 0], 1.0)
+    with pytest.raises(InvalidError, match="not pinned"):
+        twin.drive(41, [0, 0, 0], 1.0)
+    torn.set_pinned([True] * 81)
+    copy.copy(torn).drive(41, [0, 0, 0], 1.0)
+
+
+def test_scenes_go_on_in_other_processes():
+    scenes = list(saved_scenes(np.float64))
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+        assert list(pool.map(advanced, scenes)) == [advanced(scene) for scene in scenes]
+
+
+def test_states_that_do_not_fit_are_refused():
+    scene = cloth(5)
+    scene.advance(1e-3, 10)
+    state = scene.save()
+    for other in (cloth(5, dtype=np.float32), cloth(6), cloth(5, editable=True), cloth(5, held_forces=True), cloth(5, force=swing),
+                  cloth(5, colliders=1), cloth(5, methods=["rk4"])):
+        before = other.save()
+        with pytest.raises(InvalidError, match="^state = .*not the state of a scene with this definition"):
+            other.load(state)
+        assert other.save() == before
+    for wrong in (b"", state[:-1], state + b"\0", state[:200] + bytes([state[200] ^ 1]) + state[201:]):
+        with pytest.raises(InvalidError):
+            scene.load(wrong)
+    with pytest.raises(TypeError):
+        scene.load("text")
+
+
+def test_scenes_that_meet_go_on_alike():
+    one, other = rope(), rope()
+    other.advance(3e-3, 77)
+    one.set_time(5.0)
+    other.set_time(5.0)
+    for scene in (one, other):
+        scene.set_position(np.arange(18.0).reshape(6, 3))
+        scene.set_velocity(np.zeros((6, 3)))
+    assert one.time == other.time == 5 and advanced(one) == advanced(other)
+    with pytest.raises(InvalidError, match="^t = nan"):
+        one.set_time(np.nan)
 
 
 def test_state_goes_in_and_out():
