@@ -126,7 +126,7 @@ static const cli_option options[] = {
      .help = "continue from a state that --save has written\n"
              "Give the same options of the scene, the same method and the same disturbances. The results are then\n"
              "those of one long run. H and N are further time and steps. Times of disturbances are those of the\n"
-             "scene, and T < start + H. Colliders are those of the state."},
+             "scene, with T < start + H, or later with --save. Colliders are those of the state."},
     {"hash", CLI_FLAG, .flag = &hash_alone,
      .help = "print only a hash of the final state, 16 hexadecimal digits\n"
              "The hash is FNV-1a with 64 bits, over the doubles of all positions and then of all velocities,\n"
@@ -244,7 +244,7 @@ static void check_time(const char *option, double t)
     if (!(t >= 0))
         cli_fail(CLI_USAGE, "--%s: \"%g\" is not a time T of at least 0 s", option, t);
     const double end = start_time + length.duration;
-    if (!(t < end))
+    if (!(t < end) && save == NULL)
         cli_fail(CLI_USAGE, "--%s: \"%g\" is after the run; T should be below %g s", option, t, end);
 }
 
