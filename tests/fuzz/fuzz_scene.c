@@ -689,17 +689,17 @@ static void ask(life *l)
 /* The second scene travels: a new scene of the first definition loads its state. */
 static void travel(life *l)
 {
-    static uint8_t state[1 << 17];
-    size_t bytes = sizeof state;
-    const spring_status status = spring_scene_save(l->other.s, state, &bytes);
+    static uint8_t saved[1 << 17];
+    size_t bytes = sizeof saved;
+    const spring_status status = spring_scene_save(l->other.s, saved, &bytes);
     must(status == (l->broken ? SPRING_ENONFINITE : SPRING_OK), "a state can be saved unless it is lost");
     if (status != SPRING_OK)
         return;
     must(spring_scene_init(l->other.block, l->other.bytes, &pristine.def, &l->other.s) == SPRING_OK, "as before");
-    state[bytes / 2] ^= 1;
-    must(spring_scene_load(l->other.s, state, bytes) == SPRING_EINVAL, "damaged");
-    state[bytes / 2] ^= 1;
-    must(spring_scene_load(l->other.s, state, bytes) == SPRING_OK, "of the same definition");
+    saved[bytes / 2] ^= 1;
+    must(spring_scene_load(l->other.s, saved, bytes) == SPRING_EINVAL, "damaged");
+    saved[bytes / 2] ^= 1;
+    must(spring_scene_load(l->other.s, saved, bytes) == SPRING_OK, "of the same definition");
 }
 
 /* A few steps of both, on a copy of the old one. A callback may look at the time, which is another. */
