@@ -690,7 +690,6 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
         list[i].kind->read(s, &list[i], at);
     if ((s->layout.flags & SPRING_SCENE_EDITABLE) != 0)
         settle_links(s, header[WORD_DAMPED]);
-    s->lost = false;
     s->force_cache = (cached_force)header[WORD_KEPT];
     s->colliders = (uint32_t)header[WORD_COLLIDERS];
     s->t0 = value_of(header[WORD_T0]);

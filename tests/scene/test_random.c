@@ -799,6 +799,11 @@ static void travel(block *b, const model *m)
     spring_scene_set_mass(other.s, 0, 1, (double[]){2.2});
     spring_scene_set_pinned(other.s, 0, 1, (uint8_t[]){one_in(2)});
     spring_scene_tear(other.s, 1, NULL, NULL, 0, NULL);
+    for (size_t i = 0; i < m->def.links; i++) {
+        spring_link link = m->link[i];
+        link.damping += 0.01;
+        spring_scene_set_link(other.s, i, &link);
+    }
     const double dt = one_in(8) ? 1e3 : random_log(0.003, 0.1); /* now and then it is lost */
     spring_scene_advance(other.s, any_method(&m->def), dt, below(4));
     check_damage(&other, &y);
@@ -826,9 +831,16 @@ static const char *run_and_travel(const model *m, push *p)
         const bool last = round == rounds - 1;
         if (one_in(2))
             change((spring_scene *[]){one.s, other.s}, m, p);
-        if (one_in(5))
+        if (one_in(5)) {
             CHECK(spring_scene_set_time(one.s, t) == SPRING_OK && spring_scene_set_time(other.s, t) == SPRING_OK,
                   "any time");
+            if (m->def.force != NULL) /* forces are evaluated again anyway */
+                spring_scene_set_force(other.s, m->def.force, p);
+        }
+        if (m->def.colliders > 0 && one_in(8))
+            CHECK(spring_scene_set_colliders(one.s, NULL, 0) == SPRING_OK &&
+                      spring_scene_set_colliders(other.s, NULL, 0) == SPRING_OK,
+                  "none");
         if (one_in(2))
             travel(&other, m);
         differs = advance_both(&one, &other, m, method, one_in(8) ? -dt : dt,
