@@ -258,11 +258,22 @@ await test("states that are damaged or of other scenes are refused, and change n
     const state = scene.save();
     const damaged = state.slice();
     damaged[210] ^= 4;
-    const what = /RangeError: state must be an undamaged state of a scene with this definition, got "?\d+ bytes/;
-    for (const wrong of [damaged, state.slice(1), state.slice(0, -8), new Uint8Array(0), rope({ editable: true }).save()])
-        assert.throws(() => scene.load(wrong), (error) => what.test(String(error)));
+    const what =
+        /RangeError: state must be an undamaged state of a scene with this definition, got "?\d+ bytes/;
+    for (const wrong of [
+        damaged,
+        state.slice(1),
+        state.slice(0, -8),
+        new Uint8Array(0),
+        rope({ editable: true }).save(),
+    ])
+        assert.throws(
+            () => scene.load(wrong),
+            (error) => what.test(String(error)),
+        );
     assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
-    for (const wrong of [null, "text", [...state], new Float64Array(4)]) assert.throws(() => scene.load(wrong), TypeError);
+    for (const wrong of [null, "text", [...state], new Float64Array(4)])
+        assert.throws(() => scene.load(wrong), TypeError);
     assert.deepEqual(scene.save(), state);
     scene.free();
 });
@@ -294,7 +305,9 @@ for (const name of ["rope", "cloth", "jelly", "water"])
         const folder = mkdtempSync(join(tmpdir(), "springstep-"));
         const run = (...words) =>
             native([
-                ...`--scene ${name} --method leapfrog --steps-per-frame ${n} --hash --poke ${push}`.split(" "),
+                ...`--scene ${name} --method leapfrog --steps-per-frame ${n} --hash --poke ${push}`.split(
+                    " ",
+                ),
                 ...words,
             ]);
         const [first, second] = ["first", "second"].map((file) => join(folder, file));

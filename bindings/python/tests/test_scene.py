@@ -28,6 +28,21 @@ def test_bits_are_those_of_spring_scene(method):
     assert scene.time == steps / 2048
 
 
+def test_states_travel_from_spring_scene_and_to_it(tmp_path):
+    state, other = tmp_path / "state", tmp_path / "other"
+    command = ["spring-scene", "--scene", "cloth", "--method", "leapfrog", "--dt", "0x1p-11", "--duration"]
+    subprocess.run([*command, "0.0625", "--save", state], capture_output=True, check=True)
+    scene = cloth(force_ignores_velocity=True, methods=["leapfrog"])
+    scene.load(state.read_bytes())
+    scene.advance(2**-11, 128)
+    subprocess.run([*command, "0.125", "--save", other], capture_output=True, check=True)
+    assert scene.save() == other.read_bytes() and scene.time == 0.125
+    state.write_bytes(scene.save())
+    scene.advance(2**-11, 128)
+    end = subprocess.run([*command, "0.0625", "--load", state, "--hash"], capture_output=True, text=True, check=True)
+    assert end.stdout.strip() == fnv(scene)
+
+
 def test_bits_in_float_are_those_of_c():
     g = grid([6], 0.3, 170.0, 0.2, pinned=["first_x"])
     definition = ffi.new("spring_scenef_def *", {"axes": 3, "particles": 6, "links": 5, "mass_all": 0.13})
