@@ -381,7 +381,8 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 SPRING_API spring_status spring_links_soften(const spring_scene_def *def, double dt, double fraction,
                                              spring_link *link);
 
-/** Returns the simulated time [s] since spring_scene_init(). NaN for NULL. */
+/** Returns the time of a scene [s]: the simulated time since spring_scene_init(), unless spring_scene_set_time() or
+    spring_scene_load() has changed it. NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
 
 /** The energies of a scene, as spring_scene_energy() returns them. */
@@ -649,11 +650,11 @@ SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
  * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
  * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
  * coefficients of links. Saving changes nothing. Equal states of the same kind of scene have equal bytes, so saved
- * states can be compared.
+ * states can be compared. (Fields of colliders that their shape does not use are saved as they were set.)
  *
  * @param[out]    out    the state, at any address; NULL: only *bytes is written
  * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may be another one after the next
- *                       step. At most 208 bytes more than the numbers above
+ *                       step. At most 256 bytes more than 1.1 times the numbers above (tests/scene/test_random.c)
  * @return SPRING_OK; SPRING_EINVAL: the scene or bytes is NULL; SPRING_ENOMEM: out is too small, and only *bytes was
  *         written; SPRING_ENONFINITE: the state was lost in a failed step, see SPRING_SCENE_NO_UNDO
  */
@@ -663,9 +664,9 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  * Loads a state into a scene of the same definition. The run then continues bit-identically.
  *
  * The call checks that the state is complete and undamaged, and that precision, axes, flags, methods, the numbers of
- * particles and links, the maximum number of colliders, the ends and the order of the links, and whether there is a
- * callback are those of this scene. It cannot check the following, which a run also depends on. They must be the same
- * as in the scene that was saved:
+ * particles and links, the maximum number of colliders, the ends and the order of the links, how many links are damped
+ * (unless the scene is editable), and whether there is a callback are those of this scene. It cannot check the
+ * following, which a run also depends on. They must be the same as in the scene that was saved:
  *  - drag, max_speed and particle_radius;
  *  - masses, pinned particles and the coefficients of links, unless the scene is editable;
  *  - the callback, and the data that it reads.
