@@ -30,6 +30,7 @@ static run_length length = {.duration = 5};
 static double frame_rate = 60, fps = 60, disturbance_time = disturbance_duration, rain;
 static double tear; /* length over rest length; 0: links do not tear */
 static bool tension_only;
+static double bend, tethers;
 static cli_words colliders;
 static double particle_radius;                                       /* [m] */
 static double poke[MOST_DISTURBANCES][5], box[MOST_DISTURBANCES][2]; /* t, x, y, force, area; t, mass */
@@ -86,6 +87,14 @@ static const cli_option options[] = {
              "The default is 1, and 1.25 for water on three axes. Links of water on one axis have no rest length,\n"
              "and their default is the full --stiffness. S > 1 multiplies it by 1 - 1/S, the transverse stiffness\n"
              "of a sheet with this stretch."},
+    {"bend", CLI_POSITIVE, .real = &bend, .value = "B",
+     .help = "rope, cloth, water: bending stiffness, EI [N m^2] or D [N m]\n"
+             "The rope gets the links of spring_bend_rod(). Sheets get those of spring_bend_grid() along rows,\n"
+             "columns and diagonals."},
+    {"tethers", CLI_POSITIVE, .real = &tethers, .value = "FRACTION",
+     .help = "tethers to the nearest pins, which limit the stretch; 0.05 is a good value\n"
+             "FRACTION is the stiffness of a tether, relative to the sum of the stiffness of the links of its\n"
+             "particle: see spring_links_tethers(). Not for scenes with one axis, and not for rkn8 and srkn6."},
     {"poke", CLI_REALS, .real = poke[0], .least = 5, .most = MOST_DISTURBANCES, .times = &pokes,
      .value = "T,X,Y,FORCE,AREA",
      .help = "push at time T [s] at (X, Y) [m] with FORCE [N] on AREA [m^2]; repeatable\n"
@@ -178,15 +187,16 @@ static bool is_disturbed(void)
 /* On one axis, the extension of a link has a sign, so options that need lengths are refused. */
 static void refuse_on_one_axis(const preset_settings *s)
 {
-    if (s->axes == 1 && (tension_only || tear > 0 || colliders.count > 0))
+    if (s->axes == 1 && (tension_only || tear > 0 || tethers > 0 || colliders.count > 0))
         cli_fail(CLI_USAGE, "--%s is not for scenes with one axis, such as this %s",
-                 tension_only ? "tension-only"
-                 : tear > 0   ? "tear"
-                              : "collider",
+                 tension_only  ? "tension-only"
+                 : tear > 0    ? "tear"
+                 : tethers > 0 ? "tethers"
+                               : "collider",
                  preset_names[kind]);
-    if (tension_only && spring_method_describe((spring_method)method)->positions_only)
-        cli_fail(CLI_USAGE, "--tension-only: the method \"%s\" requires smooth forces; choose another --method",
-                 spring_method_name((spring_method)method));
+    if ((tension_only || tethers > 0) && spring_method_describe((spring_method)method)->positions_only)
+        cli_fail(CLI_USAGE, "--%s: the method \"%s\" requires smooth forces; choose another --method",
+                 tension_only ? "tension-only" : "tethers", spring_method_name((spring_method)method));
 }
 
 static void refuse_methods_without_contacts(void)
@@ -210,6 +220,8 @@ static void refuse_what_does_not_count(void)
     if (line && cli_given(&link_choice))
         cli_fail(CLI_USAGE, "--links: \"%s\" is for other scenes; %s has only structural links", links[link_choice],
                  preset_names[kind]);
+    if (bend > 0 && (kind == PRESET_JELLY || kind == PRESET_CHAIN))
+        cli_fail(CLI_USAGE, "--bend: \"%g\" is for rope, cloth and water, not for %s", bend, preset_names[kind]);
     if (!is_disturbed() && cli_given(&disturbance_time))
         cli_fail(CLI_USAGE, "--push-duration: \"%g\" has no effect without --poke, --rain or --drop-box",
                  disturbance_time);
@@ -592,7 +604,11 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
         cli_columns(v.positions, frame_columns);
     if (hash_alone)
         return v;
-    cli_comment(v.output, "scene: %s, %zu particles, %zu links", preset_names[kind], r->def.particles, r->def.links);
+    char more[100] = "";
+    if (r->tethers > 0 || r->def.weighted_links > 0)
+        snprintf(more, sizeof more, ", %zu tethers, %zu weighted links", r->tethers, r->def.weighted_links);
+    cli_comment(v.output, "scene: %s, %zu particles, %zu links%s", preset_names[kind], r->def.particles,
+                r->def.links - r->tethers, more);
     cli_comment(v.output, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
                 length.dt, spring_scene_stable_step(scene, (spring_method)method));
     if (load != NULL)
@@ -629,6 +645,7 @@ int main(int argc, char **argv)
     collider_words_read(&colliders, (uint32_t)settings.axes, collider);
     preset r;
     start_preset(&r, &settings);
+    start_links(&r, bend, tethers);
     r.def.flags |= (tension_only ? SPRING_SCENE_TENSION_ONLY : 0) | (tear > 0 ? SPRING_SCENE_EDITABLE : 0);
     r.def.colliders = (uint32_t)colliders.count, r.def.particle_radius = particle_radius;
     disturbances *p = chosen_disturbances(&r, &settings);

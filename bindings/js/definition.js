@@ -6,7 +6,7 @@ import { check, checkFinite } from "./options.js";
 const flags = { editable: 1, noUndo: 2, tensionOnly: 8, heldForces: 16 };
 const forceIgnoresVelocity = 4;
 const names = [
-    ..."axes position velocity mass pinned links gravity drag maxSpeed methods".split(" "),
+    ..."axes position velocity mass pinned links weightedLinks gravity drag maxSpeed methods".split(" "),
     ..."force forceUsesVelocity component base colliders particleRadius count".split(" "),
     ...Object.keys(flags),
 ];
@@ -61,21 +61,24 @@ export function lend(take, values, Type = "float64", size = 8) {
 }
 
 const perLink = ["rest", "stiffness", "damping"];
+const optional = new Set(["damping", "flags"]);
+export const linkBytes = 40; // of spring_link
+export const weightedBytes = 72; // of spring_weighted_link
 
-/** How many links there are: of { ends, rest, stiffness, damping } or of a list of { a, b, rest, stiffness, damping }. */
+/** How many links there are: of { ends, rest, stiffness, damping, flags } or of a list of { a, b, rest ... }. */
 function countOf(links) {
     if (Array.isArray(links)) {
-        for (const link of links) checkKnown(link, ["a", "b", ...perLink]);
+        for (const link of links) checkKnown(link, ["a", "b", ...perLink, "flags"]);
         return links.length;
     }
     check(typeof links === "object" && links !== null, "links", "an object or an array", links, TypeError);
-    checkKnown(links, ["ends", ...perLink]);
+    checkKnown(links, ["ends", ...perLink, "flags"]);
     checkArray("links.ends", links.ends);
     check(links.ends.length % 2 === 0, "links.ends.length", "even", links.ends.length);
     const count = links.ends.length / 2;
-    for (const name of perLink) {
+    for (const name of [...perLink, "flags"]) {
         const value = links[name];
-        if (typeof value !== "number" && (name !== "damping" || value !== undefined))
+        if (typeof value !== "number" && (!optional.has(name) || value !== undefined))
             checkArray(`links.${name}`, value, count);
     }
     return count;
@@ -83,7 +86,7 @@ function countOf(links) {
 
 /** The value of a field of link i, as it is given. */
 function linkValue(links, i, field) {
-    if (Array.isArray(links)) return links[i][field] ?? (field === "damping" ? 0 : undefined);
+    if (Array.isArray(links)) return links[i][field] ?? (optional.has(field) ? 0 : undefined);
     if (field === "a" || field === "b") return links.ends[2 * i + (field === "a" ? 0 : 1)];
     const value = links[field] ?? 0;
     return typeof value === "number" ? value : value[i];
@@ -92,34 +95,86 @@ function linkValue(links, i, field) {
 /** Links in the layout of spring_link: [pointer, count]. */
 export function lendLinks(take, links) {
     const count = countOf(links);
-    const pointer = take(32 * count);
-    const ends = memory.uint32(pointer, 8 * count);
-    const values = memory.float64(pointer, 4 * count);
+    const pointer = take(linkBytes * count);
+    const ends = memory.uint32(pointer, 10 * count);
+    const values = memory.float64(pointer, 5 * count);
     for (let i = 0; i < count; i++)
         for (const [k, field] of ["a", "b"].entries()) {
             const end = linkValue(links, i, field);
             check(Number.isInteger(end) && end >= 0, `links[${i}].${field}`, "the index of a particle", end);
-            ends[8 * i + k] = Math.min(end, 0xffffffff);
+            ends[10 * i + k] = Math.min(end, 0xffffffff);
         }
     for (const [k, field] of perLink.entries())
         for (let i = 0; i < count; i++) {
             const value = linkValue(links, i, field);
             check(typeof value === "number", `links[${i}].${field}`, "a number", value, TypeError);
-            values[4 * i + 1 + k] = value;
+            values[5 * i + 1 + k] = value;
         }
+    for (let i = 0; i < count; i++) {
+        const value = linkValue(links, i, "flags");
+        check([0, 1, 2, 3].includes(value), `links[${i}].flags`, "0, TENSION_ONLY or TETHER", value);
+        ends[10 * i + 8] = value;
+    }
     return [pointer, count];
 }
 
-/** Links in the layout of spring_link as { ends, rest, stiffness, damping }. */
-export function linksAt(pointer, count) {
-    const words = memory.uint32(pointer, 8 * count);
-    const values = memory.float64(pointer, 4 * count);
-    const links = { ends: new Uint32Array(2 * count) };
+/** Weighted links in the layout of spring_weighted_link: [pointer, count]. */
+export function lendWeightedLinks(take, links) {
+    check(typeof links === "object" && links !== null, "weightedLinks", "an object", links, TypeError);
+    checkKnown(links, ["particles", "weights", ...perLink]);
+    checkArray("weightedLinks.particles", links.particles);
+    const { length } = links.particles;
+    check(length % 4 === 0, "weightedLinks.particles.length", "a multiple of 4", length);
+    checkArray("weightedLinks.weights", links.weights, length);
+    const count = length / 4;
+    const { rest = 0, stiffness, damping = 0 } = links;
+    const each = Object.entries({ rest, stiffness, damping });
+    for (const [name, value] of each)
+        if (typeof value !== "number") checkArray(`weightedLinks.${name}`, value, count);
+    const pointer = take(weightedBytes * count);
+    const words = memory.uint32(pointer, 18 * count);
+    const values = memory.float64(pointer, 9 * count);
+    for (let i = 0; i < length; i++) {
+        const [row, k] = [Math.floor(i / 4), i % 4];
+        const particle = links.particles[i];
+        const place = `weightedLinks.particles[${i}]`;
+        check(Number.isInteger(particle) && particle >= 0, place, "the index of a particle", particle);
+        words[18 * row + k] = Math.min(particle, 0xffffffff);
+        values[9 * row + 2 + k] = links.weights[i];
+    }
+    for (let i = 0; i < count; i++)
+        each.forEach(([, value], k) => (values[9 * i + 6 + k] = typeof value === "number" ? value : value[i]));
+    return [pointer, count];
+}
+
+/** Weighted links in the layout of spring_weighted_link as { particles, weights, rest, stiffness, damping }. */
+export function weightedLinksAt(pointer, count) {
+    const words = memory.uint32(pointer, 18 * count);
+    const values = memory.float64(pointer, 9 * count);
+    const links = { particles: new Uint32Array(4 * count), weights: new Float64Array(4 * count) };
     for (const field of perLink) links[field] = new Float64Array(count);
     for (let i = 0; i < count; i++) {
-        links.ends[2 * i] = words[8 * i];
-        links.ends[2 * i + 1] = words[8 * i + 1];
-        perLink.forEach((field, k) => (links[field][i] = values[4 * i + 1 + k]));
+        for (let k = 0; k < 4; k++) {
+            links.particles[4 * i + k] = words[18 * i + k];
+            links.weights[4 * i + k] = values[9 * i + 2 + k];
+        }
+        perLink.forEach((field, k) => (links[field][i] = values[9 * i + 6 + k]));
+    }
+    return links;
+}
+
+/** Links in the layout of spring_link as { ends, rest, stiffness, damping, flags }. */
+export function linksAt(pointer, count) {
+    const words = memory.uint32(pointer, 10 * count);
+    const values = memory.float64(pointer, 5 * count);
+    const links = { ends: new Uint32Array(2 * count) };
+    for (const field of perLink) links[field] = new Float64Array(count);
+    links.flags = new Uint32Array(count);
+    for (let i = 0; i < count; i++) {
+        links.ends[2 * i] = words[10 * i];
+        links.ends[2 * i + 1] = words[10 * i + 1];
+        perLink.forEach((field, k) => (links[field][i] = values[5 * i + 1 + k]));
+        links.flags[i] = words[10 * i + 8];
     }
     return links;
 }
@@ -214,8 +269,16 @@ function refuse(definition, axes) {
             "rkn8 and srkn6 require undamped links, no tensionOnly, no colliders and no forceUsesVelocity",
         );
     if (field === "flags") throw new TypeError("tensionOnly requires 2 or 3 axes");
-    if (field === "particles" || field === "links") throw new RangeError(`too many ${field} for a scene`);
+    if (["particles", "links", "weighted_links"].includes(field)) throw new RangeError(`too many ${field} for a scene`);
     const [array, part] = field.split(".");
+    if (field === "link.flags") throw new TypeError("flags of links require 2 or 3 axes");
+    if (array === "weighted_link") {
+        const what = { particle: "indices of different particles", weight: "finite numbers whose sum is 0" };
+        const { [part]: values, particles, weights } = definition.weightedLinks;
+        const row = (list) => Array.from(list.slice(4 * i, 4 * i + 4)).join();
+        const value = part === "particle" ? row(particles) : part === "weight" ? row(weights) : values?.[i] ?? values;
+        check(false, `weightedLinks[${i}].${part}`, what[part] ?? wanted[part], value, RangeError);
+    }
     if (array === "link") {
         const value = linkValue(definition.links, i, part);
         check(false, `links[${i}].${part}`, wanted[part], value);
@@ -235,7 +298,7 @@ function refuse(definition, axes) {
 /** Fills the definition in the module, and returns what of it JavaScript needs. `take` as in borrowed(). */
 export function define(take, definition) {
     checkKnown(definition, names);
-    const { axes = 3, position, velocity, mass = 1, pinned, links = [] } = definition;
+    const { axes = 3, position, velocity, mass = 1, pinned, links = [], weightedLinks } = definition;
     const { gravity = [0, 0, 0], drag = 0, maxSpeed = 0, methods = [] } = definition;
     const { force = null, forceUsesVelocity = false, component = 0, base } = definition;
     const { colliders = 0, particleRadius = 0, count } = definition;
@@ -268,8 +331,9 @@ export function define(take, definition) {
     const bits = Array.from(methods, (name) => 1 << methodNumber(name)).reduce((all, bit) => all | bit, 0);
     const optional = (values, Type, size) => (values ? lend(take, values, Type, size) : 0);
     const [linkPointer, linkCount] = lendLinks(take, links);
+    const [weightedPointer, weightedCount] = weightedLinks ? lendWeightedLinks(take, weightedLinks) : [0, 0];
     const pins = pinned && Array.from(pinned, (pin) => (pin ? 1 : 0));
-    const { def_begin, def_links, def_forces, def_check } = library();
+    const { def_begin, def_links, def_weighted_links, def_forces, def_check } = library();
     def_begin(
         axes,
         set,
@@ -285,6 +349,7 @@ export function define(take, definition) {
     checkUpTo("colliders", colliders, 32);
     check(colliders === 0 || axes > 1, "axes", "2 or 3 with colliders", axes);
     def_links(linkCount, linkPointer, colliders, particleRadius);
+    def_weighted_links(weightedCount, weightedPointer);
     const [x = 0, y = 0, z = 0] = gravity;
     def_forces(x, y, z, drag, maxSpeed, force !== null);
     if (def_check() !== 0) refuse({ ...definition, mass }, axes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Ropes, sheets and soft bodies, softer links, and the pieces of torn scenes.
-import { define, checkArray, checkCount, checkKnown, lendLinks, linksAt } from "./definition.js";
+import { define, checkArray, checkCount, checkKnown, lendLinks, linkBytes, linksAt } from "./definition.js";
 import { borrowed, library, memory } from "./module.js";
 import { check, isNumber } from "./options.js";
 
@@ -52,7 +52,7 @@ export function grid(definition) {
         const [particles, links] = memory.uint32(size, 2);
         const position = take(8 * particles * axes);
         const pins = take(particles);
-        const link = take(32 * links);
+        const link = take(linkBytes * links);
         grid_fill(position, pins, link);
         const made = {
             axes,

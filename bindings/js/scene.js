@@ -8,6 +8,7 @@ import {
     lend,
     lendColliders,
     lendLinks,
+    linkBytes,
     linksAt,
     methodNumber,
 } from "./definition.js";
@@ -343,17 +344,18 @@ export class Scene {
     getLink(index) {
         this.#checkIndex("link", index, this.links);
         return borrowed((take) => {
-            const pointer = take(32);
+            const pointer = take(linkBytes);
             this.#call("spring_scene_get_link", this.#scene, index, pointer);
             const [a, b] = memory.uint32(pointer, 2);
             const [rest, stiffness, damping] = memory.float64(pointer + 8, 3);
-            return { a, b, rest, stiffness, damping };
+            const [flags] = memory.uint32(pointer + 32, 1);
+            return { a, b, rest, stiffness, damping, flags };
         });
     }
 
     getLinks() {
         return borrowed((take) => {
-            const pointer = take(32 * this.links);
+            const pointer = take(linkBytes * this.links);
             this.#call("scene_links", this.#pointer, pointer);
             return linksAt(pointer, this.links);
         });

@@ -30,6 +30,36 @@ export interface Link {
     stiffness: number;
     /** [N s/m] >= 0, along the link; default 0 */
     damping?: number;
+    /** TENSION_ONLY or TETHER; default 0. setLinks() does not change it. */
+    flags?: number;
+}
+
+/** Flag of a link that pulls and never pushes, with two or three axes. */
+export declare const TENSION_ONLY: 1;
+/** Flag of a tension-only link that acts only while exactly one of its ends is pinned. */
+export declare const TETHER: 2;
+
+/** Springs between two weighted points: d is the sum of weight times position over up to four particles. */
+export interface WeightedLinks {
+    /** four particles of each link in turn */
+    particles: ArrayLike<number>;
+    /** their weights, whose sum is 0; 0: unused. [-1, a, b, c] attaches a particle to a point in a triangle */
+    weights: ArrayLike<number>;
+    /** [m] default 0: linear, and damped in all directions */
+    rest?: number | ArrayLike<number>;
+    /** [N/m] */
+    stiffness: number | ArrayLike<number>;
+    /** [N s/m] default 0 */
+    damping?: number | ArrayLike<number>;
+}
+
+/** Weighted links as bendRod() and similar functions return them. */
+export interface WeightedLinkArrays {
+    particles: Uint32Array;
+    weights: Float64Array;
+    rest: Float64Array;
+    stiffness: Float64Array;
+    damping: Float64Array;
 }
 
 /** All links as arrays. A number applies to every link. */
@@ -40,6 +70,8 @@ export interface Links {
     stiffness: number | ArrayLike<number>;
     /** default 0 */
     damping?: number | ArrayLike<number>;
+    /** default 0 */
+    flags?: number | ArrayLike<number>;
 }
 
 /** Links as arrays, as getLinks() returns them. */
@@ -48,6 +80,7 @@ export interface LinkArrays {
     rest: Float64Array;
     stiffness: Float64Array;
     damping: Float64Array;
+    flags: Uint32Array;
 }
 
 /**
@@ -132,6 +165,7 @@ export interface SceneDefinition {
     /** for each particle whether it ignores forces; default: none does */
     pinned?: ArrayLike<number | boolean>;
     links?: Links | readonly Link[];
+    weightedLinks?: WeightedLinks;
     /** [m/s^2] */
     gravity?: ArrayLike<number>;
     /** [N s/m] >= 0, on every particle */
@@ -195,6 +229,62 @@ export interface Grid {
 
 /** A rope, a sheet or a soft body: a part of a definition. Particle (i, j, k) has index i + count[0] (j + count[1] k). */
 export declare function grid(definition: GridDefinition): Grid;
+
+export interface BendOptions {
+    /** for each particle whether it is pinned: two next to each other are a clamp */
+    pinned?: ArrayLike<number | boolean>;
+    /** [s] damping over stiffness of each link; default 0 */
+    dampingTime?: number;
+}
+
+/** Bending stiffness EI [N m^2] of a rod, straight at rest: hair, a cable. For `weightedLinks` of a definition. */
+export declare function bendRod(
+    position: ArrayLike<number>,
+    rigidity: number,
+    options?: BendOptions & { axes?: 1 | 2 | 3 },
+): WeightedLinkArrays;
+
+/** Bending stiffness D [N m] of a sheet: cloth, paper. `diagonals: false` costs half as much. */
+export declare function bendGrid(
+    grid: { count: readonly number[]; spacing: number },
+    rigidity: number,
+    options?: BendOptions & { diagonals?: boolean },
+): WeightedLinkArrays;
+
+/** Bending stiffness D [N m] of a flat triangle mesh, such as that of fromMesh(). */
+export declare function bendMesh(
+    position: ArrayLike<number>,
+    triangles: ArrayLike<number>,
+    rigidity: number,
+    options?: BendOptions,
+): WeightedLinkArrays;
+
+/**
+ * The links of a definition, followed by tethers to the nearest pinned particles. They limit the stretch of ropes and cloth at
+ * a few steps per frame. `fraction`, by default 0.05, is their stiffness relative to the sum of the stiffness of their particle.
+ */
+export declare function tethers(definition: SceneDefinition, fraction?: number, slack?: number): LinkArrays;
+
+/** Particles and links of a triangle mesh for drawing, whose vertices may be split at seams. */
+export declare function fromMesh(mesh: {
+    /** [3 per vertex] [m] */
+    position: ArrayLike<number>;
+    /** [3 per triangle] vertices */
+    triangles: ArrayLike<number>;
+    /** [N/m] of every link */
+    stiffness: number;
+    /** [N s/m] of every link; default 0 */
+    damping?: number;
+    /** [m] vertices that are not farther apart become one particle; default 0; null: none do */
+    weld?: number | null;
+}): {
+    position: Float64Array;
+    links: LinkArrays;
+    /** of particles */
+    triangles: Uint32Array;
+    /** of each vertex */
+    particleOf: Uint32Array;
+};
 
 /** The links of a definition, softened until dt is at most `fraction`, by default 0.5, of the stable step of leapfrog. */
 export declare function soften(definition: SceneDefinition, dt: number, fraction?: number): LinkArrays;

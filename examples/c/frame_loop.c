@@ -70,7 +70,7 @@ static result run(const motion m)
     double x0[N][3] = {{0}}, v0[N][3] = {{m.speed}}, t = 0;
     const uint8_t pinned[N] = {1};
     for (uint32_t i = 1; i < N; i++) {
-        link[i - 1] = (spring_link){i - 1, i, spacing, stiffness, damping};
+        link[i - 1] = (spring_link){i - 1, i, spacing, stiffness, damping, 0};
         x0[i][1] = x0[i - 1][1] - spacing - mass * gravity * (N - i) / stiffness;
         v0[i][0] = m.speed;
     }

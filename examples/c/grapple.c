@@ -73,7 +73,7 @@ int main(void)
     for (uint32_t i = 0; i < N; i++) {
         x[i][0] = length * i / LINKS * sin(angle), x[i][1] = -length * i / LINKS * cos(angle), x[i][2] = 0;
         if (i < LINKS)
-            link[i] = (spring_link){i, i + 1, length / LINKS, 5e5, 10};
+            link[i] = (spring_link){i, i + 1, length / LINKS, 5e5, 10, 0};
     }
     const spring_scene_def def = {.flags = SPRING_SCENE_TENSION_ONLY | SPRING_SCENE_EDITABLE,
                                   .particles = N,

@@ -77,8 +77,48 @@ typedef struct spring_link {
     uint32_t b;       /**<         index of another particle */
     double rest;      /**< [m]     rest length >= 0 */
     double stiffness; /**< [N/m]   >= 0 */
-    double damping;   /**< [N s/m] >= 0, along the link */
+    double damping;   /**< [N s/m] >= 0, along the link; in all directions if rest is 0 */
+    uint32_t flags;   /**<         SPRING_LINK_... | ... */
 } spring_link;
+
+/** @name Flags of a link
+ *
+ * They require two or three axes, and are not allowed with RKN8 and SRKN6. spring_scene_set_link() does not change them.
+ * @{ */
+/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. */
+#define SPRING_LINK_TENSION_ONLY UINT32_C(1)
+/** A tension-only link that acts only while exactly one of its ends is pinned. It keeps a particle from moving away
+   from a pinned particle that it hangs on; see spring_links_tethers(). While it does not act, its tension and its
+   energy are 0, and it does not count in the stable step. spring_scene_set_pinned() may therefore lower the stable
+   step. */
+#define SPRING_LINK_TETHER UINT32_C(2)
+/** @} */
+
+/** A spring between two weighted points. Zero-initialise.
+ *
+ * Its vector is d = sum of weight[i] x[particle[i]], and its length is |d|. The weights (-1, 1) are those of a
+ * spring_link from particle[0] to particle[1]. With (-1, a, b, c), a + b + c = 1, a particle is attached to a point in a
+ * triangle. With (1/2, -1, 1/2), three particles resist bending; see spring_bend_rod(). The force on particle[i] is
+ *
+ *     rest > 0   -weight[i] tension d/length,   tension = stiffness (length - rest) + damping rate
+ *     rest = 0   -weight[i] (stiffness d + damping d'),   d' = sum of weight[i] v[particle[i]]
+ *
+ * where rate is the time derivative of the length. If rest > 0 and the length is 0, the force is 0. On one axis, the
+ * force on particle[i] is -weight[i] (stiffness (d - rest) + damping d').
+ *
+ * For rest = 0 the spring is linear. It is damped in all directions, and so exerts the external torque -damping d x d'.
+ * This brakes the rotation of free bodies: the angular velocity of a free hoop of n particles, whose weights are
+ * (1/2, -1, 1/2), decays at the rate (1 - cos(2 pi/n))^2 damping/mass (tests/scene/test_links.c). Use damping to attach
+ * a particle, and drag to damp bending of free bodies.
+ *
+ * SPRING_SCENE_TENSION_ONLY does not concern weighted links. */
+typedef struct spring_weighted_link {
+    uint32_t particle[4]; /**<         indices of different particles; ignored where the weight is 0 */
+    double weight[4];     /**<         0: unused. Their sum is 0, to 1e-12 of the largest */
+    double rest;          /**< [m]     rest length >= 0 */
+    double stiffness;     /**< [N/m]   >= 0 */
+    double damping;       /**< [N s/m] >= 0 */
+} spring_weighted_link;
 
 /** A callback that adds forces to force[axis][particle] [N].
  *
@@ -174,6 +214,8 @@ typedef struct spring_scene_def {
                                      fails with SPRING_EUNSTABLE; 0: no limit */
     uint32_t colliders;           /**< maximum number of colliders, at most 32; 0: none */
     double particle_radius;       /**< [m] >= 0, radius of every particle in contacts */
+    size_t weighted_links;        /**< number, less than 2^29; on 32-bit systems at most 2^23 - 1 */
+    const spring_weighted_link *weighted_link; /**< [weighted_links] */
 } spring_scene_def;
 
 /** A scene, in caller-owned memory. */
@@ -366,17 +408,20 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
  * Their damping does not change.
  *
  * For each particle, let K be the sum of 2 stiffness over its links, where a link counts once if its other end is
- * pinned. The factor of the particle is min(1, (2 fraction/dt)^2 mass/K). The stiffness of a link is multiplied by the
- * smaller factor of its two ends. Afterwards dt <= fraction spring_scene_stable_step(..., SPRING_LEAPFROG). If a link
- * was softened, this stable step is nearly dt/fraction. Drag and callbacks are not considered.
+ * pinned, and a tether that does not act does not count. Let W be the sum of its weighted links, as in
+ * spring_scene_stable_step(): they keep their stiffness. The factor of the particle is
+ * min(1, ((2 fraction/dt)^2 mass - W)/K). The stiffness of a link is multiplied by the smaller factor of its two ends.
+ * Afterwards dt <= fraction spring_scene_stable_step(..., SPRING_LEAPFROG). If a link was softened, this stable step is
+ * nearly dt/fraction. Drag and callbacks are not considered.
  *
- * The time is proportional to links (1 + particles/1024).
+ * The time is proportional to (links + weighted links) (1 + particles/512).
  *
  * @param[in]  def       definition of the scene
  * @param[in]  dt        time step > 0 [s]
  * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1; see spring_scene_stable_step()
  * @param[out] link      [links] the softened links; may be def->link
- * @return SPRING_OK; SPRING_EINVAL; otherwise as spring_scene_check(). Nothing is written after an error
+ * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: weighted links leave nothing to the links of a particle; otherwise
+ *         as spring_scene_check(). Nothing is written after an error
  */
 SPRING_API spring_status spring_links_soften(const spring_scene_def *def, double dt, double fraction,
                                              spring_link *link);
@@ -530,12 +575,27 @@ SPRING_API spring_status spring_scene_set_link(spring_scene *s, size_t index, co
 SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, size_t count, const spring_link *link);
 
 /**
+ * Changes weighted links first ... first + count - 1 of an editable scene. If one of the new links is invalid, none is
+ * changed.
+ *
+ * A link of a band whose weights are no longer (w, -2w, w), or whose rest length is no longer 0, leaves its band, and
+ * takes about eight times as long.
+ *
+ * @param[in] link  [count] the new values. Where a weight is not 0, the particle must be the one of the definition, and
+ *                  its weight there not 0
+ * @return SPRING_OK; SPRING_EINVAL: NULL, other particles, or values that spring_scene_check() rejects; SPRING_ERANGE:
+ *         the links do not exist; SPRING_EDISABLED: the scene is not editable
+ */
+SPRING_API spring_status spring_scene_set_weighted_links(spring_scene *s, size_t first, size_t count,
+                                                         const spring_weighted_link *link);
+
+/**
  * Cuts all links of an editable scene that are longer than a limit.
  *
  * Call it at a fixed interval, such as once per frame, because the result depends on how often the lengths are
  * compared. Links are compared in double precision and visited in the order of their indices. Links that are already
- * cut, and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. Use spring_links_components()
- * to find the pieces.
+ * cut, and tethers and links of rest length 0, are skipped. With one axis, the length is x_b - x_a. A weighted link that
+ * contains both ends of a link that is cut is cut as well. Use spring_links_components() to find the pieces.
  *
  * If no banded link tears, the lengths of banded links are compared with SIMD, which costs much less than a step; for
  * bands see spring_links_renumber().
@@ -573,6 +633,14 @@ SPRING_API spring_status spring_scene_transform(spring_scene *s, const double ma
  * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
  */
 SPRING_API spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_link *link);
+
+/** Copies the current values of a weighted link, rounded to the precision of the scene. Where its weight is 0 in the
+ * definition, the particle is 0.
+ *
+ * @return SPRING_OK; SPRING_EINVAL: NULL; SPRING_ERANGE: the link does not exist
+ */
+SPRING_API spring_status spring_scene_get_weighted_link(const spring_scene *s, size_t index,
+                                                        spring_weighted_link *link);
 
 /** Returns the smallest index of a link between particles a and b, in either order. Cut links are included. Returns
     SIZE_MAX if there is no such link, and for NULL. The search visits all links. */
@@ -632,7 +700,7 @@ SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 typedef struct spring_scene_info {
     size_t particles;      /**< number of particles */
     size_t links;          /**< number of links */
-    size_t weighted_links; /**< 0 */
+    size_t weighted_links; /**< number of weighted links */
     uint32_t axes;         /**< 1, 2 or 3 */
     uint32_t flags;        /**< flags of the definition */
     uint32_t methods;      /**< enabled methods, 1u << SPRING_EULER | ... */
@@ -649,7 +717,7 @@ SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
  * The state consists of everything that a run depends on besides the definition: positions, velocities, the time and
  * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
  * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
- * coefficients of links. Saving changes nothing. Equal states of the same kind of scene have equal bytes, so saved
+ * coefficients of links and weighted links. Saving changes nothing. Equal states of the same kind of scene have equal bytes, so saved
  * states can be compared. (Fields of colliders that their shape does not use are saved as they were set.)
  *
  * @param[out]    out    the state, at any address; NULL: only *bytes is written
@@ -664,9 +732,10 @@ SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, siz
  * Loads a state into a scene of the same definition. The run then continues bit-identically.
  *
  * The call checks that the state is complete and undamaged, and that precision, axes, flags, methods, the numbers of
- * particles and links, the maximum number of colliders, the ends and the order of the links, how many links are damped
- * (unless the scene is editable), and whether there is a callback are those of this scene. It cannot check the
- * following, which a run also depends on. They must be the same as in the scene that was saved:
+ * particles, links and weighted links, the maximum number of colliders, the ends, order and flags of links, the
+ * particles of weighted links, how many links are damped (unless the scene is editable), and whether there is a
+ * callback are those of this scene. It cannot check the following, which a run also depends on. They must be the same
+ * as in the scene that was saved:
  *  - drag, max_speed and particle_radius;
  *  - masses, pinned particles and the coefficients of links, unless the scene is editable;
  *  - the callback, and the data that it reads.
@@ -720,6 +789,8 @@ typedef struct spring_scenef_def {
     double max_speed;
     uint32_t colliders;
     double particle_radius;
+    size_t weighted_links;
+    const spring_weighted_link *weighted_link;
     /** @} */
 } spring_scenef_def;
 
@@ -728,7 +799,7 @@ typedef struct spring_scenef spring_scenef;
 /** The energies of a single-precision scene, in double. */
 typedef spring_scene_energies spring_scenef_energies;
 
-/** As the functions spring_scene_... and spring_links_soften(), for a single-precision scene.
+/** As the functions spring_scene_..., spring_links_soften() and spring_links_tethers(), for a single-precision scene.
  * @{ */
 SPRING_API spring_status spring_scenef_check(const spring_scenef_def *def, const char **field, size_t *index);
 SPRING_API spring_status spring_scenef_bytes(const spring_scenef_def *def, size_t *bytes);
@@ -738,6 +809,8 @@ SPRING_API spring_status spring_scenef_advance(spring_scenef *s, spring_method m
 SPRING_API double spring_scenef_stable_step(spring_scenef *s, spring_method m);
 SPRING_API spring_status spring_linksf_soften(const spring_scenef_def *def, double dt, double fraction,
                                               spring_link *link);
+SPRING_API spring_status spring_linksf_tethers(const spring_scenef_def *def, double fraction, double slack,
+                                               spring_link *out, size_t *count, uint32_t *work, double *distance);
 SPRING_API double spring_scenef_time(const spring_scenef *s);
 SPRING_API spring_scenef_energies spring_scenef_energy(const spring_scenef *s);
 SPRING_API bool spring_scenef_at_rest(spring_scenef *s, double v_tol, double a_tol);
@@ -751,6 +824,10 @@ SPRING_API spring_status spring_scenef_set_gravity(spring_scenef *s, const doubl
 SPRING_API spring_status spring_scenef_set_force(spring_scenef *s, spring_scenef_force_fn *force, void *user);
 SPRING_API spring_status spring_scenef_set_link(spring_scenef *s, size_t index, const spring_link *link);
 SPRING_API spring_status spring_scenef_get_link(const spring_scenef *s, size_t index, spring_link *link);
+SPRING_API spring_status spring_scenef_set_weighted_links(spring_scenef *s, size_t first, size_t count,
+                                                          const spring_weighted_link *link);
+SPRING_API spring_status spring_scenef_get_weighted_link(const spring_scenef *s, size_t index,
+                                                         spring_weighted_link *link);
 SPRING_API size_t spring_scenef_find_link(const spring_scenef *s, uint32_t a, uint32_t b);
 SPRING_API spring_status spring_scenef_set_pinned(spring_scenef *s, size_t first, size_t count, const uint8_t *pinned);
 SPRING_API spring_status spring_scenef_set_mass(spring_scenef *s, size_t first, size_t count, const double *mass);
@@ -777,7 +854,8 @@ SPRING_API spring_status spring_scenef_set_time(spring_scenef *s, double t);
 
 /** @name The springs of a grid
  *
- * Bend springs hardly resist small bending: their energy grows as the fourth power of the angle.
+ * Bend springs join second neighbours. They keep rows from being compressed or folded, but hardly resist bending: their
+ * energy grows as the fourth power of the angle. For bending stiffness, use spring_bend_grid().
  * @{ */
 #define SPRING_GRID_STRUCTURAL UINT32_C(1) /**< structural springs: to the next particle along each axis */
 #define SPRING_GRID_SHEAR      UINT32_C(2) /**< shear springs: the diagonals of the faces and body of each cell */
@@ -853,7 +931,8 @@ SPRING_API spring_status spring_grid_fill(const spring_grid *g, double *position
 
 /**
  * Renumbers particles so that linked particles are near each other in memory, and sorts links by their lower, then by
- * their upper ends. Call it before you create a scene, of either precision, from an unsorted mesh.
+ * their upper ends. Call it before you create a scene, of either precision, from an unsorted mesh. Tethers are renumbered
+ * and sorted, but have no influence on the numbering.
  *
  * A band is a set of links with a constant index offset between their ends. A scene evaluates bands faster than
  * unbanded links. The particles of a rope are put in order, and the particles of a sheet in rows, so that their links
@@ -880,7 +959,7 @@ SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, s
                                                uint32_t *link_order, uint32_t *work);
 
 /** Finds the connected components of particles and links, such as the pieces of a torn scene. A link without stiffness
- * and damping, such as a cut link, does not connect its ends.
+ * and damping, such as a cut link, does not connect its ends. A tether does not, either.
  *
  * @param[in]  particles  fewer than 2^32
  * @param[in]  links      number of links
@@ -891,6 +970,189 @@ SPRING_API spring_status spring_links_renumber(size_t particles, size_t links, s
  *         from a particle to itself, or stiffness or damping that is negative or not finite
  */
 SPRING_API size_t spring_links_components(size_t particles, size_t links, const spring_link *link, uint32_t *component);
+
+/**
+ * Makes tethers: a tension-only link (SPRING_LINK_TETHER) from each particle to the pinned particle that it hangs on, as
+ * long as the way to it along links. Tethers keep ropes and cloth from stretching at time steps for which their links
+ * are soft. A rope of 40 links that hangs at rest and takes 4 steps per frame of 1/60 s is 0.2 % too long with tethers
+ * of fraction 0.05, and 27 % without.
+ *
+ * There is one tether for each free particle that links connect with a pinned particle and that no link with stiffness
+ * joins to a pinned particle directly. Links without stiffness, tethers of the definition and weighted links do not
+ * connect particles. Tethers are in the ascending order of their particles:
+ *
+ *     a          the free particle
+ *     b          the pinned particle with the least sum of rest lengths along links; the first one of several
+ *     rest       this sum, times (1 + slack)
+ *     stiffness  fraction K, where K is the sum for the particle in spring_scene_stable_step(), without masses
+ *     flags      SPRING_LINK_TETHER
+ *
+ * The largest sum of the stable step grows at most by the factor 1 + fraction: with fraction 0.05, the stable step of
+ * leapfrog shrinks by at most 2.5 %. Append the tethers to the links of the definition. The pinned particles must not
+ * move toward each other so far that a tether would have to push: tethers only pull.
+ *
+ * The work is proportional to links times the number of sweeps over them, which is 2 to 10 for sorted ropes and sheets,
+ * and less than the number of links on the longest way for others. Call spring_links_renumber() first for an unsorted
+ * mesh.
+ *
+ * @param[in]     def       definition of the scene, without the tethers; two or three axes
+ * @param[in]     fraction  > 0; 0.05 is a good value
+ * @param[in]     slack     >= 0, relative excess length of the tethers
+ * @param[out]    out       [*count] the tethers; NULL: only *count is written
+ * @param[in,out] count     before: number of elements of out; after: number of tethers
+ * @param         work      [2*particles] work space, used only during the call
+ * @param         distance  [2*particles] [m] work space; afterwards, the first half contains the sum of rest lengths for
+ *                          each particle: 0 for pinned particles, INFINITY for particles that do not hang on one
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or an invalid fraction or slack; SPRING_EUNSUPPORTED: one axis; SPRING_ENOMEM:
+ *         out is too small, and only *count and the work space are written; otherwise as spring_scene_check()
+ */
+SPRING_API spring_status spring_links_tethers(const spring_scene_def *def, double fraction, double slack,
+                                              spring_link *out, size_t *count, uint32_t *work, double *distance);
+
+/**
+ * Makes the particles and links of a triangle mesh, such as an index buffer for drawing. Vertices that are split at
+ * seams, for texture coordinates or normals, are welded: they become one particle.
+ *
+ * In ascending order, a vertex is welded to the first particle within the distance `weld`, or becomes a particle itself.
+ * A particle is at the position of its first vertex, and particles are numbered in the order of their first vertices.
+ * Vertices without a triangle become particles, too. There is one link for each edge, from the particle with the lower
+ * index, sorted by a, then by b. Its rest length is the distance of its ends and its stiffness is 1 N/m: scale it. For
+ * a sheet of triangles, stiffness times 1.15 is about Young's modulus times the thickness.
+ *
+ *     for (size_t v = vertices; v-- > 0;)                                  // positions of the particles
+ *         memcpy(&x[3 * particle_of[v]], &position[3 * v], 3 * sizeof *x);
+ *     for (size_t i = 0; i < 3 * triangles; i++)                           // triangles of particles
+ *         triangle[i] = particle_of[triangle[i]];
+ *
+ * @param[in]     vertices     fewer than 2^32 - 1
+ * @param[in]     position     [3*vertices] [m]
+ * @param[in]     triangles    fewer than 2^29
+ * @param[in]     triangle     [3*triangles] indices of vertices
+ * @param[in]     weld         [m] 0: vertices at equal positions are welded; negative: none
+ * @param[out]    particle_of  [vertices] the particle of each vertex; may be NULL if out is
+ * @param[out]    particles    number of particles, at most `vertices`; may be NULL if out is
+ * @param[out]    out          [*links]; NULL: only *links is written
+ * @param[in,out] links        before: number of elements of out, of which 3*triangles are always enough; after: number
+ *                             of links
+ * @param         work         [3*vertices + 6*triangles + 1] work space, used only during the call
+ * @return SPRING_OK; SPRING_EINVAL: NULL, a position or `weld` that is not finite, or a triangle without area, also one
+ *         that welding makes of a triangle; SPRING_ERANGE: an index of a vertex or a count is too large; SPRING_ENOMEM:
+ *         out is too small. After an error nothing is written except the work space and, with SPRING_ENOMEM, *links
+ */
+SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *position, size_t triangles,
+                                                const uint32_t *triangle, double weld, uint32_t *particle_of,
+                                                size_t *particles, spring_link *out, size_t *links, uint32_t *work);
+
+/** @name Links with bending stiffness
+ *
+ * These functions make weighted links that resist bending of a rod or a sheet that is straight or flat at rest. The
+ * forces are linear in the positions, and do not resist stretching: that is for links. With damping_time > 0 they are
+ * damped in all directions, see spring_weighted_link.
+ *
+ * Clamps. Two pinned particles next to each other hold the direction of a rod: a segment between pinned particles does
+ * not bend, and bending at its end is concentrated on the free side, so the stiffness there is twice as large. Likewise
+ * for triangles whose three corners are pinned. Links between pinned particles only are left out.
+ *
+ * `*count` is the number of elements of `out` before the call, and the number of links after it. If out is NULL, only
+ * *count is written.
+ *
+ * They return SPRING_OK; SPRING_EINVAL: NULL, an invalid argument, or a stiffness or damping that is not finite;
+ * SPRING_ERANGE: an index of a particle or a count is too large; SPRING_ENOMEM: out is too small. After an error nothing
+ * is written except, with SPRING_ENOMEM, *count.
+ * @{ */
+
+#define SPRING_BEND_ROWS      UINT32_C(1) /**< along rows and columns */
+#define SPRING_BEND_DIAGONALS UINT32_C(2) /**< along the diagonals of cells */
+
+/**
+ * Makes links that resist bending of a rod: hair, a cable, an antenna. For particle i between segments of lengths l1 and
+ * l2, the weights of i - 1, i, i + 1 are (l2, -(l1 + l2), l1)/(l1 + l2), and
+ *
+ *     stiffness = rigidity/l ((l1 + l2)/(l1 l2))^2,   l = (l1 + l2)/2, without segments between pinned particles
+ *
+ * which is 4 rigidity/h^3 for segments of length h. The stiffness of the links of a rod of Young's modulus E and
+ * cross-section A is E A/h. To clamp the rod at its start, pin the particles 0 and 1.
+ *
+ * @param[in]     particles     of the rod, in order
+ * @param[in]     axes          1, 2 or 3; 0 means 3
+ * @param[in]     position      [particles*axes] [m] straight and different from one particle to the next; only the lengths
+ *                              of the segments are used
+ * @param[in]     pinned        [particles]; NULL: none
+ * @param[in]     rigidity      bending stiffness EI >= 0 [N m^2]; pi r^4 E/4 for a round rod
+ * @param[in]     damping_time  damping/stiffness >= 0 [s] of each link
+ * @param[out]    out           [*count] in the order of particles; NULL: only *count is written
+ * @param[in,out] count         at most particles - 2 links
+ * @par Accuracy  Order 2. With 20 segments, the deflection of a cantilever differs from F L^3/(3 EI) by 0.13 %, its first
+ *                frequency by 0.21 % and the buckling load of Euler by 0.21 %. With F L^2/EI = 1 ... 10, the tip is
+ *                within 0.002 L of the elastica (tests/scene/test_bend.c)
+ */
+SPRING_API spring_status spring_bend_rod(size_t particles, uint32_t axes, const double *position, const uint8_t *pinned,
+                                         double rigidity, double damping_time, spring_weighted_link *out,
+                                         size_t *count);
+
+/**
+ * Makes links that resist bending of a sheet: cloth, paper, a flag. For a grid with two axes that have more than one
+ * particle, and the distance h between neighbours, the weights are (1/2, -1, 1/2), and the stiffness is
+ *
+ *     SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS   8 D/(3 h^2) along rows and columns, 2 D/(3 h^2) along diagonals
+ *     SPRING_BEND_ROWS                           4 D/h^2 along rows and columns
+ *
+ * It is half as large along the edges of the sheet, and twice at clamps. With diagonals this is an isotropic plate of
+ * Poisson ratio 1/3. Rows and columns alone cost half as much and bend along their directions as a plate of Poisson
+ * ratio 0, but along a diagonal only half as stiffly, and they do not resist twisting. Their links form bands.
+ *
+ * @param[in]     g             the grid; its links need not exist
+ * @param[in]     pinned        [particles], as from spring_grid_fill(); NULL: none
+ * @param[in]     families      SPRING_BEND_ROWS or SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS
+ * @param[in]     rigidity      bending stiffness D >= 0 [N m]: E t^3/(12 (1 - nu^2)) for a plate of thickness t, and about
+ *                              weight/area (L/2)^3 if a strip of length L that is clamped at one end droops until the
+ *                              line from the clamp to its end is 41.5 degrees below the horizontal; 1e-6 to 1e-4 for
+ *                              cloth
+ * @param[in]     damping_time  damping/stiffness >= 0 [s] of each link
+ * @param[out]    out           [*count] rows, then columns, then the two directions of diagonals, each in the order of
+ *                              their middle particles; NULL: only *count is written
+ * @param[in,out] count         at most 4 links for each particle
+ * @par Accuracy  Exact for constant curvature, except that edges lack their diagonals. The deflection of a cantilever of
+ *                20 segments differs by 0.13 % from the theory of beams for rows and columns. With diagonals it is
+ *                between those of a plate and of a beam, but about 20 % larger for a strip of four particles
+ *                (tests/scene/test_bend.c)
+ */
+SPRING_API spring_status spring_bend_grid(const spring_grid *g, const uint8_t *pinned, uint32_t families,
+                                          double rigidity, double damping_time, spring_weighted_link *out,
+                                          size_t *count);
+
+/**
+ * Makes links that resist bending of a flat triangle mesh, one over each edge of two triangles. The weights are those of
+ * isometric bending: cotangents of the angles at the edge. The stiffness is rigidity/(area of both triangles), where a
+ * triangle whose corners are all pinned does not count.
+ *
+ * Triangles must be welded, see spring_links_from_mesh(): edges with one triangle do not resist bending.
+ *
+ * @param[in]     particles     fewer than 2^32 - 1
+ * @param[in]     position      [3*particles] [m] at rest
+ * @param[in]     triangles     fewer than 2^29
+ * @param[in]     triangle      [3*triangles] indices of particles
+ * @param[in]     pinned        [particles]; NULL: none
+ * @param[in]     rigidity      bending stiffness D >= 0 [N m], see spring_bend_grid()
+ * @param[in]     damping_time  damping/stiffness >= 0 [s] of each link
+ * @param[out]    out           [*count] in the order of the edges: by their lower, then by their upper ends; NULL: only
+ *                              *count is written
+ * @param[in,out] count         at most 3*triangles/2 links
+ * @param         work          [particles + 6*triangles + 1] work space, used only during the call
+ * @return SPRING_EINVAL also for a triangle without area, and for an edge that more than two triangles or two triangles
+ *         with the same corners have
+ * @par Accuracy  For equilateral triangles exact for constant curvature, with the Poisson ratio -1/3. Other meshes are
+ *                stiffer in some directions: by up to 1.5 times for squares with alternating diagonals, 3 times for
+ *                squares with parallel diagonals, and about 4 times for irregular meshes. As there are no links over the
+ *                outer edges, a square cantilever is softer than a beam, by up to 21 %. Prefer spring_bend_grid() for
+ *                grids of squares (tests/scene/test_bend.c)
+ */
+SPRING_API spring_status spring_bend_mesh(size_t particles, const double *position, size_t triangles,
+                                          const uint32_t *triangle, const uint8_t *pinned, double rigidity,
+                                          double damping_time, spring_weighted_link *out, size_t *count,
+                                          uint32_t *work);
+
+/** @} */
 
 /** @} */
 

@@ -10,7 +10,9 @@
  *           position and no velocity of earlier tiles, which a fused pass may have advanced already.
  * Law       delta (k (1 - rest/length) + c (relative velocity . delta)/length^2), or 0 if both ends are at one point.
  *           On one axis k (delta - rest) + c (relative velocity). A tension-only link has no force unless it is longer
- *           than its rest length and pulls.
+ *           than its rest length and pulls. A link of rest length 0 is linear: k delta + c (relative velocity).
+ *           A three-point link at i, i + offset and i + 2 offset has s = k (x_i - 2 x_mid + x_end), with c and
+ *           velocities added likewise; its forces are -s, 2 s and -s.
  * Accuracy  1/length is vec_inverse_sqrt(): 1 ulp, in float 1.5 ulp
  */
 #ifndef SPRINGSTEP_BANDS_TMPL_H
@@ -31,7 +33,7 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 /* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
    to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const mask *joined, const real *k,
-                             const real *rest, const real *c, bool damped, bool tension_only)
+                             const real *rest, const real *c, bool damped, bool bounded)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
@@ -53,15 +55,17 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         const real inverse = scale[m];
-        const real stretch = 1 - rest[m] * inverse;
+        const real stretch = 1 - (bounded ? vec_abs(rest[m]) : rest[m]) * inverse;
         scale[m] = k[m] * stretch;
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
         acts[m] = joined[m];
-        if (tension_only) /* NaN remains, so that it is detected */
-            scale[m] = vec_not_negative(scale[m]);
-        if (tension_only && damped)
-            acts[m] &= not_mask(stretch <= 0);
+        if (bounded) { /* NaN remains, so that it is detected */
+            const mask pulls = rest[m] < 0;
+            scale[m] = select_real(pulls, vec_not_negative(scale[m]), scale[m]);
+            if (damped)
+                acts[m] &= not_mask(pulls & (stretch <= 0));
+        }
     }
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
@@ -101,7 +105,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
                                bool shared)
 {
     const size_t stride = s->stride;
-    const bool tension_only = axes > 1 && s->tension_only;
+    const bool bounded = axes > 1 && s->bounded;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
@@ -133,7 +137,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
         if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
-            to_forces(axes, delta, relative, joined, k, rest, c, damped, tension_only);
+            to_forces(axes, delta, relative, joined, k, rest, c, damped, bounded);
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
@@ -204,7 +208,6 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const scalar *const stiffness = band->stiffness + slot * stride_c,
                         *const rest_length = band->rest + slot * stride_c, *const roots = band->root + slot;
     scalar *const scales = band->direction_scale + slot, *const turnings = band->turning + slot;
-    const bool tension_only = s->tension_only;
     const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     const size_t together = links_together(axes);
     size_t j = 0;
@@ -230,7 +233,7 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
     const size_t end = j;
     for (j = 0; j < end; j += lanes) {
         const ptrdiff_t number = (ptrdiff_t)j * stride_c;
-        const real root = vec_load(roots + j), c = root * root, inverse = vec_load(scales + j);
+        const real root = vec_not_negative(vec_load(roots + j)), c = root * root, inverse = vec_load(scales + j);
         real delta[3], square = splat(0), rate = splat(0), speed_square = splat(0);
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
@@ -241,10 +244,9 @@ SPRING_INLINE void tile_freezing_forces(const scene_links *s, const scene_band *
             rate += delta[a] * relative;
             speed_square += relative * relative;
         }
-        const real stretch = 1 - vec_load(rest_length + number) * inverse;
+        const real rest = vec_load(rest_length + number), stretch = 1 - vec_abs(rest) * inverse;
         mask acts = vec_load_mask(occupied + j);
-        if (tension_only)
-            acts &= not_mask(stretch <= 0);
+        acts &= not_mask((rest < 0) & (stretch <= 0));
         const real inverse_square = inverse * inverse, unit = root * inverse;
         real scale = vec_load(stiffness + number) * stretch + c * (rate * inverse_square);
         if (span > 0) {
@@ -345,6 +347,74 @@ SPRING_NOINLINE void damping_tile_on_3_axes(const scene_links *s, const scene_ba
     tile_damping_forces(s, band, x, v, t, slots, force, axis, 3);
 }
 
+/* Replaces the forces of links of rest length 0, which are linear and damped in all directions. Of these, other kernels
+   damp only the motion along the link and, in an exponential kick, none, since their roots are negative. */
+SPRING_NOINLINE void replace_linear_forces(const scene_links *s, const scene_band *band, const scalar *x,
+                                           const scalar *v, ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots;
+    const ptrdiff_t offset = band->offset, slot = t - band->start, stride_c = band->coefficient_stride;
+    const bool frozen = s->terms == FREEZING_TERMS || s->terms == DAMPING_TERM;
+    for (size_t j = 0; j < count; j += lanes) {
+        const ptrdiff_t i = slot + (ptrdiff_t)j, number = i * stride_c;
+        const mask joined = vec_load_mask(band->occupied + i);
+        const real rest = vec_load(band->rest + number);
+        const real k = s->terms == DAMPING_TERM ? splat(0) : vec_load(band->stiffness + number);
+        real c = frozen ? vec_load(band->root + i) : vec_load(band->damping + number);
+        if (frozen)
+            c *= c;
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < s->axes; a++) {
+            const scalar *const at = x + a * s->stride + t + j, *const with = v + a * s->stride + t + j;
+            const real pull =
+                k * (vec_load(at + offset) - vec_load(at)) + c * (vec_load(with + offset) - vec_load(with));
+            scalar *const to = force + a * axis + j;
+            vec_store(to, select_real(joined, select_real(rest == 0, pull, vec_load(to)), splat(0)));
+        }
+    }
+}
+
+/* The second difference of three numbers that are `offset` apart. */
+SPRING_INLINE real second_difference(const scalar *at, ptrdiff_t offset)
+{
+    const real middle = vec_load(at + offset);
+    return (vec_load(at) - middle) + (vec_load(at + 2 * offset) - middle);
+}
+
+/* A tile_kernel for three-point links. Axes are independent. */
+SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band, const scalar *x, const scalar *v,
+                                    ptrdiff_t t, size_t slots, scalar *force, size_t axis)
+{
+    const size_t left = (size_t)(band->end - t), count = left < slots ? left : slots, stride = s->stride;
+    const uint32_t axes = s->axes;
+    const ptrdiff_t offset = band->offset, slot = t - band->start;
+    const bool stiff = s->terms != DAMPING_TERM, damped = s->terms != STIFFNESS_TERM;
+    const scalar *const root = s->terms > STIFFNESS_AND_DAMPING_TERM ? band->root + slot : NULL;
+    const scalar *const stiffness = band->stiffness + slot;
+    const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
+    const int8_t *const occupied = band->occupied + slot;
+    for (size_t j = 0; j < count; j += lanes) {
+        const mask joined = vec_load_mask(occupied + j);
+        const real k = vec_load(stiffness + j);
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < 3; a++) {
+            const real pull = stiff && a < axes ? k * second_difference(x + a * stride + t + j, offset) : splat(0);
+            if (a < axes)
+                vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
+        }
+    }
+    for (size_t j = 0; j < count && damped; j += lanes) {
+        const mask joined = vec_load_mask(occupied + j);
+        const real r = vec_load(damping + j), c = root != NULL ? r * r : r;
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < axes; a++) {
+            const real pull = c * second_difference(v + a * stride + t + j, offset);
+            scalar *const to = force + a * axis + j;
+            vec_store(to, select_real(joined, vec_load(to) + pull, splat(0)));
+        }
+    }
+}
+
 /* Forces to be added to the particles of a tile, or subtracted. Forces along axis a are at force + a * axis. */
 typedef struct kept_forces {
     const scalar *force;
@@ -426,6 +496,70 @@ SPRING_NOINLINE void repeat_tile(scalar *force, ptrdiff_t ring, size_t slots, si
     inlined_repeat_tile(force, ring, slots, axis, axes);
 }
 
+/* ---------------------------------------------------------------------------------------------- three-point links */
+
+/* Whether links of a band whose lower ends are `distance` before a tile at t act on it. */
+SPRING_INLINE bool reaches(const scene_band *band, ptrdiff_t distance, ptrdiff_t t)
+{
+    return t < band->end + distance && t + tile > band->start + distance;
+}
+
+/* The place in a ring that is `distance` before a place. */
+SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t distance, ptrdiff_t ring)
+{
+    const ptrdiff_t other = place - distance % ring;
+    return other < 0 ? other + ring : other;
+}
+
+/* Adds 2 middle - low - high to the forces on a tile. Any of them may be NULL. */
+SPRING_INLINE void add_triple(scalar *to, size_t stride, size_t count, uint32_t axes, const scalar *low,
+                              const scalar *middle, const scalar *high, size_t axis)
+{
+    const bool whole = low != NULL && middle != NULL && high != NULL;
+    for (uint32_t a = 0; a < axes; a++)
+        for (size_t j = 0; j < count; j += lanes) {
+            const size_t i = a * axis + j;
+            real sum = vec_load(to + a * stride + j);
+            if (whole) {
+                sum += 2 * vec_load(middle + i) - (vec_load(low + i) + vec_load(high + i));
+            } else {
+                sum -= low != NULL ? vec_load(low + i) : splat(0);
+                sum += middle != NULL ? 2 * vec_load(middle + i) : splat(0);
+                sum -= high != NULL ? vec_load(high + i) : splat(0);
+            }
+            vec_store(to + a * stride + j, sum);
+        }
+}
+
+/* Adds the forces of the bands of three-point links on a tile, which follow the other bands. As for_each_tile(). */
+SPRING_NOINLINE void add_three_point_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
+                                           ptrdiff_t t, size_t count)
+{
+    for (const scene_band *band = s->band + s->bands; band < s->band + s->all_bands; band++) {
+        const ptrdiff_t ring = band->ring, place = t % ring;
+        const ptrdiff_t end = (band->end + (ptrdiff_t)lanes - 1) / (ptrdiff_t)lanes * (ptrdiff_t)lanes;
+        const size_t axis = (size_t)(ring + tile);
+        scalar *const kept = out->rings + band->ring_start, *const low = kept + place;
+        const bool has_low = t >= band->start && t < band->end;
+        if (t == 0) /* no link has a lower end before the first particle */
+            clear_slots(kept + ring - tile, axis, tile, s->axes);
+        if ((t == band->start - tile || t + (ptrdiff_t)count > end) && t < end + tile)
+            clear_slots(low, axis, count, s->axes);
+        if (has_low)
+            three_point_tile(s, band, x, v, t, count, low, axis);
+        if (place == 0)
+            inlined_repeat_tile(low, ring, count, axis, s->axes);
+        const scalar *const middle = kept + place_before(place, band->offset, ring), *const high =
+                                                                                         kept +
+                                                                                         place_before(place,
+                                                                                                      2 * band->offset,
+                                                                                                      ring);
+        add_triple(out->force + t, s->stride, count, s->axes, has_low ? low : NULL,
+                   reaches(band, band->offset, t) ? middle : NULL, reaches(band, 2 * band->offset, t) ? high : NULL,
+                   axis);
+    }
+}
+
 /* See band_kernel. The rings contain the forces of earlier links. `t` is the first particle of a tile, place[r] its
    place in ring r, `axis` the stride between the axes of a ring, and `end` the end of the vectors that have links. */
 SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out, size_t from,
@@ -455,6 +589,8 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
                 clear_slots(force, axis, count, axes); /* upper ends of links may read slots without links */
             if (t >= band->start && t < band->end) {
                 forces(s, band, x, v, t, count, force, axis);
+                if (axes > 1 && s->isotropic)
+                    replace_linear_forces(s, band, x, v, t, count, force, axis);
                 plus[pluses++] = (kept_forces){force, axis};
             }
             if (place[r] == 0)
@@ -464,6 +600,8 @@ SPRING_INLINE void for_each_tile(const scene_links *s, const scalar *x, const sc
             place[r] = place[r] + tile < ring ? place[r] + tile : 0;
         }
         sum(out->force + t, s->stride, count, plus, pluses, minus, minuses);
+        if (s->all_bands > s->bands)
+            add_three_point_bands(s, x, v, out, t, count);
     }
 }
 

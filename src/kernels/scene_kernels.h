@@ -21,6 +21,8 @@ enum {
 };
 _Static_assert(tile % padding == 0, "a tile consists of whole vectors");
 
+static const uint32_t no_slot = UINT32_MAX;
+
 /* Which terms of the law of a link are computed. */
 typedef enum link_terms {
     STIFFNESS_TERM,             /* no link is damped */
@@ -30,21 +32,25 @@ typedef enum link_terms {
 } link_terms;
 
 /* A band: links whose upper end is `offset` particles after the lower end. A band has a slot for each particle of the
-   tiles that contain lower ends. */
+   tiles that contain lower ends. In a band of three-point links, a link joins the particles i, i + offset and
+   i + 2 offset with the weights (w, -2w, w) and rest length 0, and its stiffness and damping are multiplied by w^2. */
 typedef struct scene_band {
     ptrdiff_t offset;
     ptrdiff_t start, end;         /* slots, from the first tile with a lower end to the end of the last one */
     const int8_t *occupied;       /* -1 where a link acts, else 0 */
     ptrdiff_t coefficient_stride; /* from slot to slot: 1, or 0: one vector of coefficients for all slots */
     const scalar *stiffness;      /* [N/m] */
-    const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end */
+    const scalar *rest;           /* [m]; negative on one axis if the link runs from the upper to the lower end, on
+                                     several axes if it pulls and never pushes */
     const scalar *damping;        /* [N s/m]; NULL: no link of the scene is damped */
     /* Of an exponential kick, by slot; NULL: the scene has none. */
-    const scalar *root;      /* [(N s/m)^(1/2)] square root of the damping, which may be saturated */
-    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act */
+    /* [(N s/m)^(1/2)] square root of the damping, which may be saturated; negative for rest length 0 on several axes */
+    const scalar *root;
+    scalar *direction_scale; /* root/length, on one axis root; 0: the link does not act, or its root is negative */
     scalar *turning;         /* [(N s/m)^(1/2) m/s] 2 root times delta of scene/exponential_kick.h */
     size_t ring_start;       /* of its ring of forces in scene_forces.rings */
-    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots */
+    ptrdiff_t ring;          /* slots of the ring: a multiple of tile, at least offset + tile or all slots,
+                                with three points twice the offset */
     ptrdiff_t back;          /* offset modulo ring */
 } scene_band;
 
@@ -57,15 +63,32 @@ typedef struct unbanded_links {
     scalar *direction_scale, *turning;
 } unbanded_links;
 
+/* A weighted link that is not in a band. Its vector is the sum of weight[i] (x[particle[i]] - x[particle[0]]) for i > 0.
+   This equals the sum of weight[i] x[particle[i]] since the sum of the weights is 0, and a translation adds no rounding
+   error. */
+typedef struct stored_weighted {
+    uint32_t particle[4]; /* first the particle with the largest weight */
+    uint32_t slot;        /* among the slots of all bands; no_slot: it cannot be in a band */
+    uint8_t points;       /* number of particles; 0: none */
+    uint8_t place[4];     /* index of each particle in spring_weighted_link */
+    bool banded;          /* a band computes its forces */
+    scalar weight[4];
+    scalar stiffness, rest, damping;
+    scalar root, direction_scale, turning; /* as in scene_band */
+} stored_weighted;
+
 typedef struct scene_links {
     size_t particles;
     uint32_t axes;
     link_terms terms;
-    size_t stride; /* elements from one axis to the next */
-    size_t bands;
+    size_t stride;           /* elements from one axis to the next */
+    size_t bands, all_bands; /* all: with those of three-point links, which follow */
     const scene_band *band;
     unbanded_links unbanded;
-    bool tension_only; /* links pull and never push */
+    size_t weighted;                       /* 0: all weighted links are in bands */
+    struct stored_weighted *weighted_link; /* [weighted] */
+    bool bounded;                          /* on two or three axes, some links pull and never push */
+    bool isotropic; /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */
     scalar turning_weight; /* DAMPING_TERM: factor of the turning terms, which are added to the rates of links */

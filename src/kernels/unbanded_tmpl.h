@@ -9,15 +9,17 @@
 #define SPRINGSTEP_UNBANDED_TMPL_H
 
 #include "../simd/quad_tmpl.h"
+#include "link_law.h"
 #include "bands_tmpl.h"
 
 /* The force of a link divided by the vector between its ends. rate: relative velocity . delta */
-SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped,
-                                bool tension_only)
+SPRING_INLINE scalar link_scale(const unbanded_links *l, size_t j, scalar square, scalar rate, bool damped)
 {
-    const scalar stretch = 1 - l->rest[j] / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
+    const bool pulls = l->rest[j] < 0;
+    const scalar rest = pulls ? -l->rest[j] : l->rest[j];
+    const scalar stretch = 1 - rest / scalar_sqrt(square), pull = l->stiffness[j] * stretch;
     const scalar scale = damped ? pull + l->damping[j] * (rate / square) : pull;
-    return tension_only && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is detected */
+    return pulls && (stretch <= 0 || scale <= 0) ? 0 : scale; /* NaN is not slack, so that it is detected */
 }
 
 /* A cut link has no force, however far apart its ends are. */
@@ -28,12 +30,12 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
 
 /* Quantities have an array for each axis. */
 SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
-                                uint32_t axes, bool damped, bool tension_only)
+                                uint32_t axes, bool damped)
 {
     const unbanded_links *const l = &s->unbanded;
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
-        scalar delta[3], scale = 1, square = 0, rate = 0;
+        scalar delta[3] = {0}, scale = 1, square = 0, rate = 0;
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
             delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
@@ -41,14 +43,18 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
             if (damped)
                 rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
         }
-        if (!link_acts(l, j, damped) || (axes > 1 && !(square > 0)))
+        const bool linear = axes == 1 || l->rest[j] == 0;
+        if (!link_acts(l, j, damped) || (!linear && !(square > 0)))
             continue;
-        if (axes == 1) {
-            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]);
+        if (!linear)
+            scale = link_scale(l, j, square, rate, damped);
+        SPRING_UNROLL
+        for (uint32_t a = 0; a < axes; a++) {
+            if (!linear)
+                continue;
+            delta[a] = l->stiffness[j] * (axes == 1 ? delta[a] - l->rest[j] : delta[a]);
             if (damped)
-                delta[0] += l->damping[j] * (v[to] - v[from]);
-        } else {
-            scale = link_scale(l, j, square, rate, damped, tension_only);
+                delta[a] += l->damping[j] * (v[a * s->stride + to] - v[a * s->stride + from]);
         }
         SPRING_UNROLL
         for (uint32_t a = 0; a < axes; a++) {
@@ -60,25 +66,30 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
 
 /* Not inlined, since it is called for few links. */
 SPRING_NOINLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,
-                                   size_t stride, bool damped, bool tension_only)
+                                   size_t stride, bool damped)
 {
+    const bool linear = l->rest[j] == 0;
     const size_t a = stride * l->a[j], b = stride * l->b[j];
     const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
+    const quad relative = damped ? quad_minus(quad_load(v + b), quad_load(v + a)) : quad_all(0);
     const scalar square = quad_dot(delta, delta);
-    if (!link_acts(l, j, damped) || !(square > 0))
+    if (!link_acts(l, j, damped) || (!linear && !(square > 0)))
         return;
-    const scalar rate = damped ? quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a))) : 0;
-    const quad pull = quad_times(quad_all(link_scale(l, j, square, rate, damped, tension_only)), delta);
+    const scalar scale = linear ? l->stiffness[j] : link_scale(l, j, square, quad_dot(delta, relative), damped);
+    quad pull = quad_times(quad_all(scale), delta);
+    if (linear && damped)
+        pull = quad_plus(pull, quad_times(quad_all(l->damping[j]), relative));
     quad_store(force + a, quad_plus(quad_load(force + a), pull));
     quad_store(force + b, quad_minus(quad_load(force + b), pull));
 }
 
 /* Quantities are quads: x, v and force of particle i are at stride * i. Four links share a square root and a quotient.
    */
-SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, const scalar *v, scalar *force,
-                              size_t stride, bool damped, bool tension_only)
+SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scalar *v, scalar *force, size_t stride,
+                              bool damped)
 {
-    const unbanded_links own = *links, *const l = &own; /* a local copy, so that stores cannot alias its fields */
+    const unbanded_links own = s->unbanded, *const l = &own; /* a local copy, so that stores cannot alias its fields */
+    const bool bounded = s->bounded, isotropic = damped && s->isotropic;
     const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
@@ -100,20 +111,21 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
                 rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
         }
         const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
-        const quad stretch = quad_minus(quad_all(1), quad_over(quad_load(l->rest + j), quad_sqrt(square)));
+        const quad signed_rest = quad_load(l->rest + j), rest = bounded ? quad_abs(signed_rest) : signed_rest;
+        const quad stretch = quad_minus(quad_all(1), quad_over(rest, quad_sqrt(square)));
         quad scale = quad_times(quad_load(l->stiffness + j), stretch);
         if (damped)
             scale = quad_plus(scale, quad_times(quad_load(l->damping + j),
                                                 quad_over(quad_of(rates[0], rates[1], rates[2], rates[3]), square)));
-        if (SPRING_UNLIKELY(!quad_finite(quad_plus(scale, square)))) { /* both ends at one point, or very far apart */
+        const bool linear = isotropic && l->rest[j] * l->rest[j + 1] * l->rest[j + 2] * l->rest[j + 3] == 0;
+        /* both ends at one point, or very far apart, or a link of rest length 0 */
+        if (SPRING_UNLIKELY(linear || !quad_finite(quad_plus(scale, square)))) {
             for (size_t m = 0; m < some; m++)
-                one_quad_link(l, j + m, x, v, force, stride, damped, tension_only);
+                one_quad_link(l, j + m, x, v, force, stride, damped);
             continue;
         }
-        if (tension_only)
-            scale = quad_where_positive(scale, scale);
-        if (tension_only && damped)
-            scale = quad_where_positive(scale, stretch);
+        if (bounded)
+            scale = quad_zero_where(scale, scale, damped ? stretch : scale, signed_rest);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {
             const size_t a = stride * l->a[j + m], b = stride * l->b[j + m];
@@ -123,7 +135,7 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
         }
     }
     for (size_t j = fours; j < l->count; j++)
-        one_quad_link(l, j, x, v, force, stride, damped, tension_only);
+        one_quad_link(l, j, x, v, force, stride, damped);
 }
 
 /* ------------------------------------------------------------------------------------- links of an exponential kick */
@@ -132,39 +144,35 @@ SPRING_INLINE void quad_links(const unbanded_links *links, const scalar *x, cons
 SPRING_NOINLINE void all_unbanded_freezing(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const unbanded_links *const l = &s->unbanded;
-    const scalar span = s->turning_time, inverse_span = span > 0 ? 1 / (2 * span) : 0;
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
         const scalar root = l->root[j], c = root * root;
-        scalar delta[3], square = 0, rate = 0, across = 0, scale = 1;
+        scalar delta[3], relative[3], square = 0, rate = 0, across = 0, scale = 1;
         for (uint32_t a = 0; a < s->axes; a++) {
-            const scalar relative = v[a * s->stride + to] - v[a * s->stride + from];
+            relative[a] = v[a * s->stride + to] - v[a * s->stride + from];
             delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
             square += delta[a] * delta[a];
-            rate += delta[a] * relative;
-            across += relative * relative;
+            rate += delta[a] * relative[a];
+            across += relative[a] * relative[a];
         }
         l->direction_scale[j] = l->turning[j] = 0;
         if (!link_acts(l, j, true))
             continue;
-        if (s->axes == 1) {
+        if (s->axes == 1 || l->rest[j] == 0) {
             l->direction_scale[j] = root;
-            delta[0] = l->stiffness[j] * (delta[0] - l->rest[j]) + c * (v[to] - v[from]);
+            for (uint32_t a = 0; a < s->axes; a++)
+                delta[a] = l->stiffness[j] * (s->axes == 1 ? delta[a] - l->rest[j] : delta[a]) + c * relative[a];
         } else {
-            const scalar inverse = 1 / scalar_sqrt(square), stretch = 1 - l->rest[j] * inverse;
-            if (square == 0 || (s->tension_only && stretch <= 0))
+            const bool pulls = l->rest[j] < 0;
+            const scalar rest = pulls ? -l->rest[j] : l->rest[j];
+            const scalar inverse = 1 / scalar_sqrt(square), stretch = 1 - rest * inverse;
+            if (square == 0 || (pulls && stretch <= 0))
                 continue;
             const scalar inverse_square = inverse * inverse;
-            scale = l->stiffness[j] * stretch + c * (rate * inverse_square);
+            const scalar turning = turning_rate(s->turning_time, inverse_square, across * square - rate * rate);
             l->direction_scale[j] = root * inverse;
-            if (span > 0) {
-                const scalar angle = span * inverse_square, turn = angle * angle * (across * square - rate * rate);
-                const scalar turned = turn < 0 ? 0 : turn > 1 ? 1 : turn;
-                const scalar turning =
-                    (turned + turned * turned * ((scalar)0.25 + (scalar)0.125 * turned)) * inverse_span;
-                l->turning[j] = turning * (2 * (root * inverse) * square);
-                scale -= c * turning;
-            }
+            l->turning[j] = turning * (2 * (root * inverse) * square);
+            scale = l->stiffness[j] * stretch + c * (rate * inverse_square) - c * turning;
         }
         for (uint32_t a = 0; a < s->axes; a++) {
             out->force[a * s->stride + from] += scale * delta[a];
@@ -181,15 +189,17 @@ SPRING_INLINE void all_unbanded_damping(const scene_links *s, const scalar *x, c
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
         const scalar scale = l->direction_scale[j];
-        scalar delta[3] = {1}, rate = 0;
+        scalar delta[3] = {1}, relative[3], rate = 0;
         for (uint32_t a = 0; a < axes; a++) {
             delta[a] = axes > 1 ? x[a * s->stride + to] - x[a * s->stride + from] : 1;
-            rate += delta[a] * (v[a * s->stride + to] - v[a * s->stride + from]);
+            relative[a] = v[a * s->stride + to] - v[a * s->stride + from];
+            rate += delta[a] * relative[a];
         }
         const scalar pull = scale * (scale * rate + s->turning_weight * l->turning[j]);
         for (uint32_t a = 0; a < axes; a++) {
-            out->force[a * s->stride + from] += pull * delta[a];
-            out->force[a * s->stride + to] -= pull * delta[a];
+            const scalar force = scale < 0 ? scale * scale * relative[a] : pull * delta[a];
+            out->force[a * s->stride + from] += force;
+            out->force[a * s->stride + to] -= force;
         }
     }
 }
@@ -202,9 +212,10 @@ SPRING_INLINE void quad_damping(const scene_links *s, const scalar *x, const sca
     for (size_t j = 0; j < l->count; j++) {
         const size_t a = stride * l->a[j], b = stride * l->b[j];
         const quad delta = quad_minus(quad_load(x + b), quad_load(x + a));
-        const scalar rate = quad_dot(delta, quad_minus(quad_load(v + b), quad_load(v + a)));
-        const scalar scale = l->direction_scale[j];
-        const quad pull = quad_times(quad_all(scale * (scale * rate + weight * l->turning[j])), delta);
+        const quad relative = quad_minus(quad_load(v + b), quad_load(v + a));
+        const scalar scale = l->direction_scale[j], rate = quad_dot(delta, relative);
+        const quad pull = scale < 0 ? quad_times(quad_all(scale * scale), relative)
+                                    : quad_times(quad_all(scale * (scale * rate + weight * l->turning[j])), delta);
         quad_store(force + a, quad_plus(quad_load(force + a), pull));
         quad_store(force + b, quad_minus(quad_load(force + b), pull));
     }
@@ -230,7 +241,7 @@ SPRING_INLINE void fill_records(const scene_links *s, const scalar *x, const sca
             record[a] = x[a * s->stride + i];
             if (damped)
                 record[quad_size + a] = v[a * s->stride + i];
-            record[at_force + a] = s->bands > 0 ? out->force[a * s->stride + i] : 0;
+            record[at_force + a] = s->all_bands > 0 ? out->force[a * s->stride + i] : 0;
         }
     }
 }
@@ -256,7 +267,7 @@ SPRING_INLINE void all_records(const scene_links *s, const scalar *x, const scal
     if (s->terms == DAMPING_TERM)
         quad_damping(s, records, records + quad_size, records + at_force, stride);
     else
-        quad_links(&s->unbanded, records, records + quad_size, records + at_force, stride, damped, s->tension_only);
+        quad_links(s, records, records + quad_size, records + at_force, stride, damped);
     if (s->axes == 3)
         forces_of_records(s, out, 3, damped);
     else
@@ -273,37 +284,25 @@ static void compute_record_forces(const scene_links *s, const scalar *x, const s
         all_records(s, x, v, out, true);
 }
 
-/* function(..., axes, damped, false) with both as constants. */
-#define SPRING_BY_AXES(axes, damped, function, ...)                                                              \
-    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true, false) : function(__VA_ARGS__, 1, false, false)   \
-       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true, false) : function(__VA_ARGS__, 2, false, false) \
-       : (damped) ? function(__VA_ARGS__, 3, true, false)                                                        \
-                   : function(__VA_ARGS__, 3, false, false))
-
-/* Neither `damped` nor `tension_only` is a constant. */
-SPRING_NOINLINE void any_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
-{
-    const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
-    if (s->axes == 3)
-        all_unbanded(s, x, v, out, 3, damped, s->tension_only);
-    else if (s->axes == 2)
-        all_unbanded(s, x, v, out, 2, damped, s->tension_only);
-    else
-        all_unbanded(s, x, v, out, 1, damped, false);
-}
+/* function(..., axes, damped) with both as constants. */
+#define SPRING_BY_AXES(axes, damped, function, ...)                                                \
+    ((axes) == 1   ? (damped) ? function(__VA_ARGS__, 1, true) : function(__VA_ARGS__, 1, false)   \
+       : (axes) == 2 ? (damped) ? function(__VA_ARGS__, 2, true) : function(__VA_ARGS__, 2, false) \
+       : (damped) ? function(__VA_ARGS__, 3, true)                                                 \
+                   : function(__VA_ARGS__, 3, false))
 
 static void compute_unbanded_forces(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out)
 {
     const bool damped = s->terms == STIFFNESS_AND_DAMPING_TERM;
-    if (s->bands == 0)
+    if (s->all_bands == 0)
         for (uint32_t a = 0; a < s->axes; a++)
             memset(out->force + a * s->stride, 0, s->particles * sizeof *out->force);
     if (s->terms == FREEZING_TERMS)
         all_unbanded_freezing(s, x, v, out);
     else if (s->terms == DAMPING_TERM)
         all_unbanded_damping(s, x, v, out, s->axes);
-    else if (s->tension_only || SPRING_COMPACT)
-        any_unbanded(s, x, v, out);
+    else if (SPRING_COMPACT)
+        all_unbanded(s, x, v, out, s->axes, damped);
     else
         SPRING_BY_AXES(s->axes, damped, all_unbanded, s, x, v, out);
 }

@@ -41,7 +41,7 @@ size_t spring_links_components(size_t particles, size_t links, const spring_link
     for (size_t i = 0; i < particles; i++)
         component[i] = (uint32_t)i;
     for (size_t i = 0; i < links; i++) {
-        if (!(link[i].stiffness > 0 || link[i].damping > 0))
+        if (!(link[i].stiffness > 0 || link[i].damping > 0) || (link[i].flags & SPRING_LINK_TETHER) != 0)
             continue;
         const uint32_t a = root_of(component, link[i].a), b = root_of(component, link[i].b);
         component[a < b ? b : a] = a < b ? a : b;

@@ -126,7 +126,8 @@ static spring_link make_link(const spring_grid *g, uint32_t a, uint32_t b, const
 {
     const int *s = d->step;
     const double length = g->height ? 0 : g->spacing * spring_sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-    return (spring_link){a, b, length / stretch_of(g), g->stiffness, g->damping};
+    return (spring_link){
+        .a = a, .b = b, .rest = length / stretch_of(g), .stiffness = g->stiffness, .damping = g->damping};
 }
 
 spring_status spring_grid_fill(const spring_grid *g, double *position, uint8_t *pinned, spring_link *link)

@@ -48,19 +48,25 @@ static uint32_t degree(const graph *g, uint32_t v)
     return g->start[v + 1] - g->start[v];
 }
 
+/* Whether a link is in the graph. Tethers lead from anywhere to a few particles. */
+static bool counts(const spring_link *link, double longest)
+{
+    return !(link->rest > longest) && (link->flags & SPRING_LINK_TETHER) == 0;
+}
+
 /* Lists the neighbours that are joined by links of at most this rest length. */
 static void list_neighbours(graph *g, double longest)
 {
     memset(g->start, 0, (g->particles + 1) * sizeof *g->start);
     for (size_t i = 0; i < g->links; i++)
-        if (!(g->link[i].rest > longest)) {
+        if (counts(&g->link[i], longest)) {
             g->start[g->link[i].a]++;
             g->start[g->link[i].b]++;
         }
     for (size_t v = 0; v < g->particles; v++)
         g->start[v + 1] += g->start[v];
     for (size_t i = g->links; i-- > 0;)
-        if (!(g->link[i].rest > longest)) {
+        if (counts(&g->link[i], longest)) {
             g->neighbour[--g->start[g->link[i].a]] = g->link[i].b;
             g->neighbour[--g->start[g->link[i].b]] = g->link[i].a;
         }
@@ -137,6 +143,8 @@ static size_t count_offsets(graph *g)
     for (size_t i = 0; i < g->links; i++) {
         const uint32_t a = g->number[g->link[i].a], b = g->number[g->link[i].b];
         const uint32_t offset = a < b ? b - a : a - b;
+        if (!counts(&g->link[i], (double)INFINITY))
+            continue;
         offsets += seen[offset] == 0;
         seen[offset] = 1;
     }
@@ -148,7 +156,8 @@ static void find_order(graph *g, uint32_t *order)
     const double longer = 1.25; /* than the shortest link: between the edge of a square and its diagonal */
     double shortest = (double)INFINITY;
     for (size_t i = 0; i < g->links; i++)
-        shortest = g->link[i].rest < shortest ? g->link[i].rest : shortest;
+        if (counts(&g->link[i], shortest))
+            shortest = g->link[i].rest;
     list_neighbours(g, longer * shortest);
     number_by_levels(g);
     number_by_chains(g, order);

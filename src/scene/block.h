@@ -33,6 +33,9 @@ typedef enum scene_array {
     ARRAY_LINK_STIFFNESS, /* [N/m] */
     ARRAY_LINK_REST,      /* [m] */
     ARRAY_LINK_DAMPING,   /* [N s/m] */
+    ARRAY_FLAGS,          /* by link: spring_link.flags; only if one is not 0 */
+    ARRAY_TETHERS,        /* tether */
+    ARRAY_WEIGHTED,       /* stored_weighted */
     ARRAY_SLOTS,   /* by link: its slot among the slots of all bands, or band_slots + its index among unbanded links */
     ARRAY_RECORDS, /* see kernels/unbanded_tmpl.h */
     ARRAY_ROOTS,   /* scene_band.root and unbanded_links.root, by slot like ARRAY_SLOTS */
@@ -48,14 +51,25 @@ typedef enum scene_array {
     ARRAY_COUNT
 } scene_array;
 
+/* What a band consists of. Bands of tethers are found after those of other links, and bands of three-point links last,
+   so that the former do not change how the latter are added up. */
+typedef enum band_kind { BAND_OF_LINKS, BAND_OF_TETHERS, BAND_OF_THREE_POINTS } band_kind;
+
 /* A band: its links, and where its slots, coefficients and ring start in the arrays of all bands. */
 typedef struct band_layout {
-    uint32_t offset;     /* upper end of a link minus its lower end */
+    uint32_t offset;     /* upper end of a link minus its lower end; three points: from one to the next */
     uint32_t first, end; /* range of the lower ends */
+    uint8_t kind;        /* band_kind */
     bool equal;          /* all links are equal and stay so: one vector of coefficients for all slots */
     size_t slots, coefficients, ring_start;
-    size_t ring, back; /* see scene_band */
+    size_t ring; /* see scene_band */
 } band_layout;
+
+/* The coefficients of a tether. While it does not act, ARRAY_BAND_... and ARRAY_LINK_... have 0 instead. */
+typedef struct tether {
+    uint32_t link;
+    scalar stiffness, damping;
+} tether;
 
 /* In which directions a pressed particle is free. */
 typedef enum freedom { FREE_IN_PLANE, FREE_ALONG_LINE, HELD } freedom;
@@ -72,14 +86,17 @@ typedef struct pressed_particle {
 
 typedef struct scene_layout {
     uint32_t axes, flags, methods, colliders;
-    size_t particles, links;
+    size_t particles, links, weighted, tethers;
     size_t stride;   /* elements from one axis of a quantity to the next */
     size_t quantity; /* elements of a quantity */
     size_t masses;   /* elements of a quantity that depends on the mass */
     uint32_t bands;
-    band_layout band[most_bands];                    /* by ascending offset */
+    uint32_t three_point_bands;                      /* the last ones of these */
+    size_t reach;                                    /* largest distance of the particles of a banded link */
+    band_layout band[most_bands];                    /* by kind, tethers among other links, and ascending offset */
     size_t band_slots, band_coefficients, band_ring; /* of all bands */
-    size_t unbanded;                                 /* links in no band */
+    size_t unbanded;                                 /* links in no band, without weighted links */
+    size_t loose;                                    /* weighted links that are defined to be in no band */
     size_t offset[ARRAY_COUNT];                      /* [bytes] from the start of the block; SIZE_MAX: absent */
     uint64_t bytes;                                  /* of the block; may exceed the address space */
 } scene_layout;
@@ -113,9 +130,10 @@ struct spring_scene {
     scalar inverse_mass_vector[padding]; /* for scenes without ARRAY_INVERSE_MASS */
     double t0, dt;                       /* time is t0 + steps dt */
     uint64_t steps;
-    uint64_t damped_links;
-    uint64_t ends;   /* spring_scene_identify() */
-    uint32_t buffer; /* 0 or 1: holds the state */
+    uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
+    size_t loose;                           /* weighted links that are in no band now */
+    uint64_t ends;                          /* spring_scene_identify() */
+    uint32_t buffer;                        /* 0 or 1: holds the state */
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
     bool bounds_known;
@@ -142,7 +160,13 @@ SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double 
 
 /* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
    also their directions, unless links may be edited. */
-SPRING_INTERNAL uint64_t spring_scene_identify(const spring_scene_def *def);
+SPRING_INTERNAL uint64_t spring_scene_identify(const spring_scene *s, const spring_scene_def *def);
+
+/* Adds the forces of weighted links that are not in bands, with the arguments of an unbanded_kernel. */
+SPRING_INTERNAL void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force);
+
+/* The vector of a weighted link in double, from the state; d: [3] */
+SPRING_INTERNAL void spring_scene_weighted_vector(const spring_scene *s, const stored_weighted *l, double d[3]);
 
 /* The bounds for the current links and masses. */
 SPRING_INTERNAL const scene_bounds *spring_scene_find_bounds(spring_scene *s);
@@ -275,9 +299,18 @@ static inline bool scene_callback_uses_velocity(const spring_scene *s)
     return s->force != NULL && (s->layout.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
 }
 
-static inline bool scene_tension_only(const spring_scene *s)
+/* The flags of a link, which include those of the scene. */
+static inline uint32_t scene_link_flags(const spring_scene *s, size_t index)
 {
-    return (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    const uint8_t *const flags = scene_read(s, ARRAY_FLAGS);
+    const bool all = (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    return (flags != NULL ? flags[index] : 0) | (all ? SPRING_LINK_TENSION_ONLY : 0);
+}
+
+/* Whether a link pulls and never pushes. rest: its rest length [m] */
+static inline bool scene_tension_only(const spring_scene *s, size_t index, scalar rest)
+{
+    return scene_link_flags(s, index) != 0 && rest > 0;
 }
 
 /* Whether forces other than drag depend on velocities. */

@@ -3,6 +3,8 @@
 #include "definition.h"
 #include "steppers.h"
 
+#include "../simd/size_begin.h"
+
 typedef struct def_error {
     spring_status status;
     const char *field;
@@ -51,10 +53,14 @@ static def_error check_head(const spring_scene_def *def)
         return (def_error){SPRING_ERANGE, "particles", 0};
     if (def->links > UINT32_MAX / 8 || def->links > SIZE_MAX / 64 / sizeof(double))
         return (def_error){SPRING_ERANGE, "links", 0};
+    if (def->weighted_links > UINT32_MAX / 8 || def->weighted_links > SIZE_MAX / 64 / sizeof(double))
+        return (def_error){SPRING_ERANGE, "weighted_links", 0};
     if (def->position == NULL)
         return invalid("position", 0);
     if (def->link == NULL && def->links > 0)
         return invalid("link", 0);
+    if (def->weighted_link == NULL && def->weighted_links > 0)
+        return invalid("weighted_link", 0);
     if (def->mass == NULL && def->mass_all != 0 && !scene_mass_valid(def->mass_all))
         return invalid("mass_all", 0);
     for (uint32_t a = 0; a < axes_of(def); a++)
@@ -93,6 +99,10 @@ static def_error check_links(const spring_scene_def *def)
             return (def_error){SPRING_ERANGE, "link.b", i};
         if (link->a == link->b)
             return invalid("link.b", i);
+        if ((link->flags & ~(SPRING_LINK_TENSION_ONLY | SPRING_LINK_TETHER)) != 0)
+            return invalid("link.flags", i);
+        if (link->flags != 0 && axes_of(def) == 1)
+            return (def_error){SPRING_EUNSUPPORTED, "link.flags", i};
         const char *field = scene_link_invalid_field(link);
         if (field == NULL)
             field = scene_link_overflows(link, (double)inverse_mass_of(def, link->a),
@@ -103,11 +113,35 @@ static def_error check_links(const spring_scene_def *def)
     return no_error;
 }
 
+static def_error check_weighted_links(const spring_scene_def *def)
+{
+    for (size_t i = 0; i < def->weighted_links; i++) {
+        const spring_weighted_link *link = &def->weighted_link[i];
+        double inverse[4] = {0};
+        for (int k = 0; k < 4; k++) {
+            if (link->weight[k] == 0)
+                continue;
+            if (link->particle[k] >= def->particles)
+                return (def_error){SPRING_ERANGE, "weighted_link.particle", i};
+            for (int before = 0; before < k; before++)
+                if (link->weight[before] != 0 && link->particle[before] == link->particle[k])
+                    return invalid("weighted_link.particle", i);
+            inverse[k] = (double)inverse_mass_of(def, link->particle[k]);
+        }
+        const char *field = weighted_invalid_field(link);
+        if (field == NULL)
+            field = weighted_overflows(link, inverse);
+        if (field != NULL)
+            return invalid(field, i);
+    }
+    return no_error;
+}
+
 /* Rejects methods that evaluate forces at positions alone and require smooth motion, if forces depend on velocities or
    have a kink, or if there are contacts. */
 static def_error check_velocities(const spring_scene_def *def)
 {
-    const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0 || def->colliders > 0;
+    const bool kinked = (def->flags & SPRING_SCENE_TENSION_ONLY) != 0 || link_flags(def) != 0 || def->colliders > 0;
     const bool called = def->force != NULL && (def->flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY) == 0;
     for (int m = 0; m < SPRING_METHOD_COUNT; m++)
         if ((def->methods & 1u << m) != 0 && spring_method_describe((spring_method)m)->positions_only &&
@@ -126,6 +160,8 @@ static def_error check(const spring_scene_def *def)
     if (found.status == SPRING_OK)
         found = check_links(def);
     if (found.status == SPRING_OK)
+        found = check_weighted_links(def);
+    if (found.status == SPRING_OK)
         found = check_velocities(def);
     return found;
 }
@@ -139,3 +175,5 @@ spring_status spring_scene_check(const spring_scene_def *def, const char **field
         *index = found.index;
     return found.status;
 }
+
+#include "../simd/size_end.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Changing the links, masses and pins of a scene, and the velocities of pinned particles. */
-#include "stored_links.h"
+#include "weighted_links.h"
 
 #include "../simd/size_begin.h"
 
@@ -46,13 +46,16 @@ spring_status spring_scene_get_link(const spring_scene *s, size_t index, spring_
     if (index >= s->layout.links)
         return SPRING_ERANGE;
     const stored_link at = scene_link(s, index);
+    const tether *const defined = scene_tether(s, index);
+    const uint8_t *const flags = scene_read(s, ARRAY_FLAGS);
     const bool reversed = s->layout.axes == 1 && spring_sign_bit((double)at.rest);
     *link = (spring_link){
         .a = reversed ? at.b : at.a,
         .b = reversed ? at.a : at.b,
         .rest = fabs((double)at.rest),
-        .stiffness = (double)at.stiffness,
-        .damping = (double)at.damping,
+        .stiffness = (double)(defined != NULL ? defined->stiffness : at.stiffness),
+        .damping = (double)(defined != NULL ? defined->damping : at.damping),
+        .flags = flags != NULL ? flags[index] : 0,
     };
     return SPRING_OK;
 }
@@ -117,6 +120,15 @@ static bool proposal_valid(const spring_scene *s, const proposal *p)
     for (size_t i = 0; grows && spring_scene_get_link(s, i, &link) == SPRING_OK; i++)
         if (scene_link_overflows(&link, proposed_inverse_mass(s, p, link.a), proposed_inverse_mass(s, p, link.b)))
             return false;
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; grows && i < s->layout.weighted; i++) {
+        const spring_weighted_link now = scene_weighted(&weighted[i]);
+        double inverse[4];
+        for (int k = 0; k < 4; k++)
+            inverse[k] = now.weight[k] != 0 ? proposed_inverse_mass(s, p, now.particle[k]) : 0;
+        if (weighted_overflows(&now, inverse) != NULL)
+            return false;
+    }
     return true;
 }
 
@@ -139,7 +151,8 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
         return SPRING_ERANGE;
     if (!proposal_valid(s, p))
         return SPRING_EINVAL;
-    if (proposal_moves(s, p)) {
+    const bool moves = proposal_moves(s, p);
+    if (moves) {
         scene_drop_forces(s);
         s->bounds_known = false;
     }
@@ -153,6 +166,12 @@ static spring_status propose(spring_scene *s, const proposal *p, const void *arr
             scene_clear_touched(s, i, 1);
         freed[i] = inverse;
         scene_set_inverse_mass(s, i, pinned ? 0 : inverse);
+    }
+    const tether *const tethers = scene_read(s, ARRAY_TETHERS);
+    for (size_t i = 0; moves && i < s->layout.tethers; i++) { /* some begin or cease to act */
+        spring_link link;
+        spring_scene_get_link(s, tethers[i].link, &link);
+        scene_replace_link(s, tethers[i].link, &link);
     }
     return SPRING_OK;
 }

@@ -328,7 +328,7 @@ static inline bool damping_term(scene_step *s, const scene_links *links, const s
                                 particle_kernel *kernel, const scene_motion *m)
 {
     const scene_layout *l = &s->scene->layout;
-    if (l->unbanded > 0) {
+    if (!only_bands(links)) {
         evaluate_links(s->kernels, links, x, v, &s->forces);
         return move(s, kernel, m);
     }

@@ -11,6 +11,8 @@
 #include "definition.h"
 #include "steppers.h"
 
+#include "../simd/size_begin.h"
+
 /* ------------------------------------------------------------------------------------------------------------ bands */
 
 static uint32_t lower_end(const spring_link *link)
@@ -28,27 +30,26 @@ typedef struct candidate {
     uint32_t offset; /* 0: this entry is free */
     uint32_t first, last, count;
     bool equal;
-    const spring_link *sample;
+    const spring_link *sample; /* NULL: a three-point link */
 } candidate;
 
 enum { candidates = 256, probes = 8 };
 
 static bool equal_links(const spring_link *a, const spring_link *b)
 {
-    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest &&
+    return a->stiffness == b->stiffness && a->damping == b->damping && a->rest == b->rest && a->flags == b->flags &&
            (a->a > a->b) == (b->a > b->b);
 }
 
-static void count_link(candidate table[candidates], const spring_link *link)
+static void count_link(candidate table[candidates], uint32_t offset, uint32_t lower, const spring_link *link)
 {
-    const uint32_t offset = offset_of(link), lower = lower_end(link);
     const uint32_t hash = offset * 2654435761u >> 24; /* Knuth's multiplicative hash: the high bits */
     for (uint32_t probe = 0; probe < probes; probe++) {
         candidate *c = &table[(hash + probe) % candidates];
         if (c->offset == 0)
-            *c = (candidate){offset, lower, lower, 1, true, link};
+            *c = (candidate){offset, lower, lower, 1, link != NULL, link};
         else if (c->offset == offset && lower > c->last) {
-            c->equal = c->equal && equal_links(link, c->sample);
+            c->equal = c->equal && link != NULL && c->sample != NULL && equal_links(link, c->sample);
             c->last = lower;
             c->count++;
         }
@@ -71,22 +72,50 @@ static uint32_t count_longer(const candidate table[candidates], const candidate 
     return longer;
 }
 
-static void find_bands(const spring_scene_def *def, scene_layout *l)
+static band_kind kind_of(const spring_link *link)
+{
+    return (link->flags & SPRING_LINK_TETHER) != 0 ? BAND_OF_TETHERS : BAND_OF_LINKS;
+}
+
+/* Finds the bands of a kind, as many as there is still room for. */
+static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
 {
     const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
+    const uint32_t room = most_bands - l->bands;
     candidate table[candidates] = {{0}};
-    for (size_t i = 0; i < def->links; i++)
-        count_link(table, &def->link[i]);
-    for (const candidate *c = table; c < table + candidates; c++) {
-        if (!makes_a_band(c) || count_longer(table, c) >= most_bands)
-            continue;
-        size_t at = l->bands++;
-        for (; at > 0 && l->band[at - 1].offset > c->offset; at--)
-            l->band[at] = l->band[at - 1];
-        l->band[at] =
-            (band_layout){.offset = c->offset, .first = c->first, .end = c->last + 1, .equal = c->equal && !editable};
-        l->unbanded -= c->count;
+    for (size_t i = 0; i < def->links && kind != BAND_OF_THREE_POINTS; i++)
+        if (kind_of(&def->link[i]) == kind)
+            count_link(table, offset_of(&def->link[i]), lower_end(&def->link[i]), &def->link[i]);
+    for (size_t i = 0; i < def->weighted_links && kind == BAND_OF_THREE_POINTS; i++) {
+        const three_points points = three_points_of(&def->weighted_link[i]);
+        if (points.offset > 0)
+            count_link(table, points.offset, points.lower, NULL);
     }
+    for (const candidate *c = table; c < table + candidates; c++) {
+        if (!makes_a_band(c) || count_longer(table, c) >= room)
+            continue;
+        const band_layout band = {.kind = kind,
+                                  .offset = c->offset,
+                                  .first = c->first,
+                                  .end = c->last + 1,
+                                  .equal = c->equal && !editable && kind != BAND_OF_TETHERS};
+        const bool three = kind == BAND_OF_THREE_POINTS;
+        size_t at = l->bands++;
+        for (; at > (three ? l->bands - 1 - l->three_point_bands : 0) && l->band[at - 1].offset > c->offset; at--)
+            l->band[at] = l->band[at - 1];
+        l->band[at] = band;
+        *(three ? &l->loose : &l->unbanded) -= c->count;
+        l->three_point_bands += three;
+    }
+}
+
+static void find_bands(const spring_scene_def *def, scene_layout *l)
+{
+    find_bands_of(BAND_OF_LINKS, def, l);
+    if (l->tethers > 0)
+        find_bands_of(BAND_OF_TETHERS, def, l);
+    if (l->weighted > 0)
+        find_bands_of(BAND_OF_THREE_POINTS, def, l);
     for (uint32_t r = 0; r < l->bands; r++) {
         band_layout *band = &l->band[r];
         const size_t slots = (band->end + tile - 1) / tile * tile - band->first / tile * tile;
@@ -94,9 +123,10 @@ static void find_bands(const spring_scene_def *def, scene_layout *l)
         band->coefficients = l->band_coefficients;
         band->ring_start = l->band_ring;
         /* the empty tiles before and behind the slots share a tile */
-        const size_t until_read = ((size_t)band->offset + 2 * tile - 1) / tile * tile, all = slots + tile;
+        const size_t reach = band->kind == BAND_OF_THREE_POINTS ? 2 * (size_t)band->offset : band->offset;
+        const size_t until_read = (reach + 2 * tile - 1) / tile * tile, all = slots + tile;
         band->ring = until_read < all ? until_read : all;
-        band->back = band->offset % band->ring;
+        l->reach = reach > l->reach ? reach : l->reach;
         l->band_slots += slots;
         l->band_coefficients += band->equal ? padding : slots;
         l->band_ring += l->axes * (band->ring + tile);
@@ -141,13 +171,21 @@ static storage_needs needs_of(uint32_t methods)
     return most;
 }
 
+static size_t count_tethers(const spring_scene_def *def)
+{
+    size_t tethers = 0;
+    for (size_t i = 0; i < def->links; i++)
+        tethers += kind_of(&def->link[i]) == BAND_OF_TETHERS;
+    return tethers;
+}
+
 /* Whether a scene has so few particles and links that it has neither bands, which are computed in whole SIMD vectors,
    nor records. The results of bands and of unbanded links differ in rounding errors, so this limit is part of the
    results. */
 static bool has_few_links(const spring_scene_def *def)
 {
     const size_t few = 12;
-    return axes_of(def) > 1 && def->particles <= few && def->links <= few;
+    return axes_of(def) > 1 && def->particles <= few && def->links - count_tethers(def) <= few;
 }
 
 /* A row of the table of arrays. */
@@ -166,7 +204,8 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const storage_needs needs = needs_of(l->methods);
     const bool predicts = needs.predicts && velocity_used, kicks = needs.predicts && damped;
     const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
-    const bool collides = l->colliders > 0;
+    const bool collides = l->colliders > 0, flagged = link_flags(def) != 0;
+    const bool loose = l->loose > 0 || (editable && l->weighted > 0);
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
@@ -176,7 +215,8 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_V_1] = {number, quantity, rollback},
         [ARRAY_FORCE_0] = {number, quantity, true},
         [ARRAY_FORCE_1] = {number, quantity, predicts},
-        [ARRAY_PREDICTED] = {number, quantity, predicts && damped && l->unbanded > 0 && (l->bands > 0 || !records)},
+        [ARRAY_PREDICTED] = {number, quantity,
+                             predicts && damped && (loose || (l->unbanded > 0 && (l->bands > 0 || !records)))},
         [ARRAY_STAGES] = {number, needs.stages * quantity, needs.stages > 0},
         [ARRAY_INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
         [ARRAY_FREE_MASS] = {number, l->particles, editable},
@@ -191,6 +231,9 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_LINK_STIFFNESS] = {number, unbanded, l->unbanded > 0},
         [ARRAY_LINK_REST] = {number, unbanded, l->unbanded > 0},
         [ARRAY_LINK_DAMPING] = {number, unbanded, l->unbanded > 0 && damped},
+        [ARRAY_FLAGS] = {1, l->links, flagged},
+        [ARRAY_TETHERS] = {sizeof(tether), l->tethers, l->tethers > 0},
+        [ARRAY_WEIGHTED] = {sizeof(stored_weighted), l->weighted, l->weighted > 0},
         [ARRAY_SLOTS] = {index, l->links, l->bands > 0},
         [ARRAY_RECORDS] = {number, l->particles * quad_size * (damped ? 3 : 2), records},
         [ARRAY_ROOTS] = {number, l->band_slots + unbanded, kicks},
@@ -246,7 +289,10 @@ static spring_status make_layout(const spring_scene_def *def, scene_layout *l)
         .colliders = def->colliders,
         .particles = def->particles,
         .links = def->links,
+        .weighted = def->weighted_links,
+        .tethers = count_tethers(def),
         .unbanded = def->links,
+        .loose = def->weighted_links,
     };
     const bool each_mass = def->mass != NULL || def->pinned != NULL || (def->flags & SPRING_SCENE_EDITABLE) != 0;
     if (!has_few_links(def))
@@ -298,12 +344,23 @@ static void fill_particles(spring_scene *s, const spring_scene_def *def)
         freed[i] = free_inverse_mass_of(def, i);
 }
 
-static const band_layout *band_of(const scene_layout *l, uint32_t offset)
+static const band_layout *band_of(const scene_layout *l, band_kind kind, uint32_t offset)
 {
-    for (const band_layout *band = l->band; band < l->band + l->bands && band->offset <= offset; band++)
-        if (band->offset == offset)
+    for (const band_layout *band = l->band; band < l->band + l->bands; band++)
+        if (band->offset == offset && band->kind == kind)
             return band;
     return NULL;
+}
+
+/* The slot of a link in its band, or no_slot. next: least lower end that each band still accepts */
+static uint32_t slot_in_band(const scene_layout *l, band_kind kind, uint32_t offset, uint32_t lower,
+                             uint32_t next[most_bands])
+{
+    const band_layout *const band = band_of(l, kind, offset);
+    if (band == NULL || lower < next[band - l->band])
+        return no_slot;
+    next[band - l->band] = lower + 1;
+    return (uint32_t)(band->slots + lower - band->first / tile * tile);
 }
 
 /* Copies the first element of a vector to the others. */
@@ -318,26 +375,29 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
     const scene_layout *l = &s->layout;
     uint32_t *slots = scene_memory(s, ARRAY_SLOTS), *link_a = scene_memory(s, ARRAY_LINK_A),
              *link_b = scene_memory(s, ARRAY_LINK_B);
-    uint32_t next[most_bands] = {0}; /* least lower end that each band still accepts */
-    uint32_t unbanded = 0;
+    uint8_t *const flags = scene_memory(s, ARRAY_FLAGS);
+    tether *tethers = scene_memory(s, ARRAY_TETHERS);
+    uint32_t next[most_bands] = {0}, unbanded = 0;
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
-        const uint32_t lower = lower_end(link);
-        const band_layout *band = band_of(l, offset_of(link));
-        size_t slot;
-        if (band != NULL && lower >= next[band - l->band]) {
-            next[band - l->band] = lower + 1;
-            slot = band->slots + lower - band->first / tile * tile;
-        } else {
-            slot = l->band_slots + unbanded;
+        uint32_t slot = slot_in_band(l, kind_of(link), offset_of(link), lower_end(link), next);
+        if (slot == no_slot) {
+            slot = (uint32_t)l->band_slots + unbanded;
             link_a[unbanded] = link->a;
             link_b[unbanded] = link->b;
             unbanded++;
         }
         if (slots != NULL)
-            slots[i] = (uint32_t)slot;
-        scene_write_link(s, i, link);
-        s->damped_links += (scalar)link->damping > 0;
+            slots[i] = slot;
+        if (flags != NULL)
+            flags[i] = (uint8_t)link->flags;
+        if (kind_of(link) == BAND_OF_TETHERS)
+            *tethers++ = (tether){.link = (uint32_t)i};
+    }
+    for (size_t i = 0; i < def->links; i++) {
+        const spring_link acting = acting_link(s, i, &def->link[i]);
+        scene_write_link(s, i, &acting);
+        scene_count_damped(s, acting.rest, acting.damping, true);
     }
     const scene_array coefficients[] = {ARRAY_BAND_STIFFNESS, ARRAY_BAND_REST, ARRAY_BAND_DAMPING};
     for (int k = 0; k < 3; k++) {
@@ -345,6 +405,40 @@ static void fill_links(spring_scene *s, const spring_scene_def *def)
         for (uint32_t r = 0; r < l->bands && all != NULL; r++)
             if (l->band[r].equal)
                 spread(all + l->band[r].coefficients);
+    }
+}
+
+/* The particles of a weighted link; see stored_weighted. */
+static stored_weighted particles_of(const spring_weighted_link *link)
+{
+    stored_weighted to = {.slot = no_slot};
+    int first = 0;
+    for (int i = 1; i < 4; i++)
+        if (fabs(link->weight[i]) > fabs(link->weight[first]))
+            first = i;
+    for (int i = 0; i < 4; i++) {
+        const int place = i == 0 ? first : i <= first ? i - 1 : i;
+        if (link->weight[place] == 0)
+            continue;
+        to.place[to.points] = (uint8_t)place;
+        to.particle[to.points++] = link->particle[place];
+    }
+    return to;
+}
+
+static void fill_weighted_links(spring_scene *s, const spring_scene_def *def)
+{
+    uint32_t next[most_bands] = {0};
+    stored_weighted *const all = scene_memory(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < def->weighted_links; i++) {
+        const spring_weighted_link *link = &def->weighted_link[i];
+        const three_points points = three_points_of(link);
+        all[i] = particles_of(link);
+        if (points.offset > 0)
+            all[i].slot = slot_in_band(&s->layout, BAND_OF_THREE_POINTS, points.offset, points.lower, next);
+        scene_write_weighted(s, &all[i], link);
+        s->damped_links += all[i].damping > 0;
+        s->loose += !all[i].banded;
     }
 }
 
@@ -383,7 +477,10 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     scene_store_gravity(s, def->gravity);
     fill_particles(s, def);
     fill_links(s, def);
-    s->ends = spring_scene_identify(def);
+    fill_weighted_links(s, def);
+    s->ends = spring_scene_identify(s, def);
     *result = s;
     return SPRING_OK;
 }
+
+#include "../simd/size_end.h"

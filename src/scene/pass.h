@@ -165,7 +165,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             .turning = frozen != NULL ? frozen + all_slots + b->slots : NULL,
             .ring_start = b->ring_start,
             .ring = (ptrdiff_t)b->ring,
-            .back = (ptrdiff_t)b->back,
+            .back = (ptrdiff_t)(b->offset % b->ring),
         };
     }
     return (scene_links){
@@ -173,7 +173,8 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
         .axes = l->axes,
         .terms = damped ? STIFFNESS_AND_DAMPING_TERM : STIFFNESS_TERM,
         .stride = l->stride,
-        .bands = l->bands,
+        .bands = l->bands - l->three_point_bands,
+        .all_bands = l->bands,
         .band = band,
         .unbanded =
             {
@@ -187,7 +188,10 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
                 .direction_scale = frozen != NULL ? frozen + l->band_slots : NULL,
                 .turning = frozen != NULL ? frozen + all_slots + l->band_slots : NULL,
             },
-        .tension_only = scene_tension_only(s),
+        .weighted = s->loose > 0 ? l->weighted : 0,
+        .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
+        .bounded = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
+        .isotropic = s->isotropic_links > 0,
     };
 }
 
@@ -214,11 +218,19 @@ static inline void evaluate_links(const scene_kernels *kernels, const scene_link
                                   const scalar *v, scene_forces *out)
 {
     const common_kernels *const common = kernels->common;
-    if (links->bands > 0)
+    if (links->all_bands > 0)
         kernels->band_forces(links, x, v, out, 0, links->particles);
-    if (links->bands == 0 || links->unbanded.count > 0)
+    if (links->all_bands == 0 || links->unbanded.count > 0)
         (out->records != NULL && links->terms != FREEZING_TERMS ? common->record_forces
                                                                 : common->unbanded_forces)(links, x, v, out);
+    if (links->weighted > 0)
+        spring_scene_add_weighted(links, x, v, out->force);
+}
+
+/* Whether bands have all links and weighted links, so that the forces on a part of the particles can be computed. */
+static inline bool only_bands(const scene_links *links)
+{
+    return links->all_bands > 0 && links->unbanded.count == 0 && links->weighted == 0;
 }
 
 /* The same, with the forces of the callback at time t. */
@@ -267,7 +279,7 @@ static inline bool move(const scene_step *s, particle_kernel *kernel, const scen
  * of the step. Then, unless second_kernel is NULL, advances all particles by `second`, which uses these forces and does
  * not change positions. Returns false if a result is not finite.
  *
- * The results are those of move(), evaluate() and move(). If all links lie in bands and there is no callback, it is one
+ * The results are those of move(), evaluate() and move(). If all links are in bands and there is no callback, it is one
  * fused pass: the forces on a chunk of particles are computed as soon as `first` has advanced the other ends of their
  * links, and `second` advances the chunk while it is in the cache.
  */
@@ -276,14 +288,13 @@ SPRING_NOINLINE bool move_evaluate_move(scene_step *s, particle_kernel *first_ke
                                         const scene_motion *second)
 {
     const scene_layout *l = &s->scene->layout;
-    if (l->unbanded > 0 || s->scene->force != NULL || l->bands == 0) {
+    if (!only_bands(s->links) || s->scene->force != NULL) {
         if (!move(s, first_kernel, first))
             return false;
         evaluate(s, first->x, v, fraction);
         return second_kernel == NULL || move(s, second_kernel, second);
     }
-    /* offsets ascend */
-    const size_t ahead = (l->band[l->bands - 1].offset + chunk - 1) / chunk * chunk;
+    const size_t ahead = (l->reach + chunk - 1) / chunk * chunk;
     band_kernel *const forces = s->kernels->band_forces;
     for (size_t i = 0; i < l->particles + ahead; i += chunk) {
         if (i < l->particles &&

@@ -12,7 +12,7 @@
  *           word, the rotation and the multiplication by an odd number are bijections, so a change of one word always
  *           changes the value. The rotation brings the sign bits of numbers where the multiplication spreads them.
  */
-#include "stored_links.h"
+#include "weighted_links.h"
 
 /* ----------------------------------------------------------------------------------------------- numbers of a state */
 
@@ -104,14 +104,20 @@ static bool numbers_valid(const uint8_t *in, size_t count, bool any_sign, uint64
 
 #include "../simd/size_begin.h"
 
-uint64_t spring_scene_identify(const spring_scene_def *def)
+uint64_t spring_scene_identify(const spring_scene *s, const spring_scene_def *def)
 {
-    const bool directed = def->axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
+    const bool directed = s->layout.axes == 1 && (def->flags & SPRING_SCENE_EDITABLE) == 0;
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
     uint64_t hash = 0;
     for (size_t i = 0; i < def->links; i++) {
         const uint64_t a = def->link[i].a, b = def->link[i].b;
         hash = hashed(hash, directed || a < b ? a | b << 32 : b | a << 32);
+        if (def->link[i].flags != 0)
+            hash = hashed(hash, def->link[i].flags);
     }
+    for (size_t i = 0; i < def->weighted_links; i++)
+        for (uint64_t k = 0; k < weighted[i].points; k++)
+            hash = hashed(hash, weighted[i].particle[k] | k << 32 | (uint64_t)weighted[i].place[k] << 40);
     return hash;
 }
 
@@ -133,7 +139,7 @@ enum {
     WORD_CALLBACK,
     WORD_BYTES,  /* of the state */
     WORD_KEPT,   /* cached_force */
-    WORD_DAMPED, /* links */
+    WORD_DAMPED, /* links; of an editable scene those that are damped when they act */
     WORD_COLLIDERS,
     WORD_TOUCHING, /* particles that touch colliders */
     WORD_T0,
@@ -171,6 +177,20 @@ static size_t count_touching(const spring_scene *s)
     return count;
 }
 
+static uint64_t count_damped(const spring_scene *s)
+{
+    uint64_t count = s->damped_links;
+    const tether *const tethers = scene_read(s, ARRAY_TETHERS);
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    if ((s->layout.flags & SPRING_SCENE_EDITABLE) == 0)
+        return count;
+    for (size_t i = 0; i < s->layout.weighted; i++)
+        count -= weighted[i].damping > 0;
+    for (size_t i = 0; i < s->layout.tethers; i++)
+        count += tethers[i].damping > 0 && !(scene_link(s, tethers[i].link).damping > 0);
+    return count;
+}
+
 /* All words but WORD_BYTES. */
 static void make_header(const spring_scene *s, uint64_t header[WORD_COUNT])
 {
@@ -183,11 +203,11 @@ static void make_header(const spring_scene *s, uint64_t header[WORD_COUNT])
     header[WORD_MOST_COLLIDERS] = s->layout.colliders;
     header[WORD_PARTICLES] = s->layout.particles;
     header[WORD_LINKS] = s->layout.links;
-    header[WORD_WEIGHTED_LINKS] = 0;
+    header[WORD_WEIGHTED_LINKS] = s->layout.weighted;
     header[WORD_ENDS] = s->ends;
     header[WORD_CALLBACK] = s->force != NULL;
     header[WORD_KEPT] = s->force_cache;
-    header[WORD_DAMPED] = s->damped_links;
+    header[WORD_DAMPED] = count_damped(s);
     header[WORD_COLLIDERS] = s->colliders;
     header[WORD_TOUCHING] = count_touching(s);
     header[WORD_T0] = bits_of(s->t0);
@@ -215,7 +235,7 @@ static bool header_valid(const spring_scene *s, const uint64_t header[WORD_COUNT
     const bool editable = (s->layout.flags & SPRING_SCENE_EDITABLE) != 0;
     const bool predicts = s->layout.offset[ARRAY_FORCE_1] != s->layout.offset[ARRAY_FORCE_0];
     return header[WORD_KEPT] <= (predicts ? PREDICTED_FORCE : FORCE) &&
-           (editable ? header[WORD_DAMPED] <= s->layout.links : header[WORD_DAMPED] == s->damped_links) &&
+           (editable ? header[WORD_DAMPED] <= s->layout.links : header[WORD_DAMPED] == own[WORD_DAMPED]) &&
            header[WORD_COLLIDERS] <= s->layout.colliders &&
            header[WORD_TOUCHING] <= (header[WORD_COLLIDERS] > 0 ? s->layout.particles : 0) && scene_fits(dt) &&
            from <= steps && spring_finite(t0 + (double)steps * dt) && spring_finite(base + (double)(steps - from) * dt);
@@ -337,16 +357,26 @@ static void read_coefficients(spring_scene *s, const section *row, const uint8_t
 static void settle_links(spring_scene *s, uint64_t damped)
 {
     const scene_layout *const l = &s->layout;
+    const coefficient_storage rest = storage_of(s, ARRAY_LINK_REST), d = storage_of(s, ARRAY_LINK_DAMPING);
     scalar *const damping = scene_memory(s, ARRAY_BAND_DAMPING), *const unbanded = scene_memory(s, ARRAY_LINK_DAMPING);
     const scalar *const stiffness = scene_read(s, ARRAY_BAND_STIFFNESS);
     int8_t *const occupied = scene_memory(s, ARRAY_OCCUPIED);
+    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
     for (size_t i = 0; i < l->unbanded && damped == 0; i++)
         unbanded[i] = 0;
+    for (size_t i = 0; i < l->tethers && damped == 0; i++)
+        tethers[i].damping = 0;
     for (size_t i = 0; i < l->band_slots; i++) {
         damping[i] = damped > 0 ? damping[i] : 0;
         occupied[i] = stiffness[i] > 0 || damping[i] > 0 ? -1 : 0;
     }
-    s->damped_links = damped;
+    s->damped_links = s->isotropic_links = 0;
+    for (size_t i = 0; i < l->links && damped > 0; i++) {
+        scalar size, damper;
+        memcpy(&size, (const char *)s + coefficient_at(&rest, i), sizeof size);
+        memcpy(&damper, (const char *)s + coefficient_at(&d, i), sizeof damper);
+        scene_count_damped(s, (double)size, (double)damper, true);
+    }
     s->bounds_known = false;
 }
 
@@ -422,6 +452,37 @@ static bool strengths_valid(arriving *state, const section *row, const uint8_t *
     return true;
 }
 
+/* Stiffness or damping of tethers: while they do not act, they have coefficients of 0 elsewhere. */
+
+static scalar *of_tether(tether *t, scene_array array)
+{
+    return array == ARRAY_LINK_STIFFNESS ? &t->stiffness : &t->damping;
+}
+
+static void write_strengths(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const tether *const tethers = scene_read(s, ARRAY_TETHERS);
+    write_coefficients(s, row, out);
+    for (size_t i = 0; i < s->layout.tethers; i++) {
+        tether t = tethers[i];
+        copy_numbers(out + t.link * sizeof(scalar), of_tether(&t, row->array), 1, sizeof(scalar));
+    }
+}
+
+static void read_strengths(spring_scene *s, const section *row, const uint8_t *in)
+{
+    tether *const tethers = scene_memory(s, ARRAY_TETHERS);
+    const coefficient_storage c = storage_of(s, row->array);
+    read_coefficients(s, row, in);
+    for (size_t i = 0; i < s->layout.tethers; i++) {
+        const link_place at = scene_link_place(s, tethers[i].link);
+        const bool acts = (inverse_mass_at(s, at.a) == 0) != (inverse_mass_at(s, at.b) == 0);
+        const scalar strength = number_at(in, tethers[i].link), acting = acts ? strength : 0;
+        *of_tether(&tethers[i], row->array) = strength;
+        memcpy((char *)s + coefficient_at(&c, tethers[i].link), &acting, sizeof acting);
+    }
+}
+
 static bool dampings_valid(arriving *state, const section *row, const uint8_t *in)
 {
     size_t damped = 0;
@@ -431,23 +492,32 @@ static bool dampings_valid(arriving *state, const section *row, const uint8_t *i
 }
 
 /* Rest lengths. With one axis, a link from the upper to the lower end has a negative one. Links of bands are stored like
-   that; other links are stored with the sign for their order of the ends. */
+   that, other links with the sign for their order of the ends. With more axes, links with flags are stored with a sign. */
 
 static bool rests_valid(arriving *state, const section *row, const uint8_t *in)
 {
     return numbers_valid(in, row->count, state->s->layout.axes == 1, 0);
 }
 
+/* Whether the stored rest length has another sign than that of the state. */
 static bool has_other_sign(const spring_scene *s, size_t link)
 {
+    if (s->layout.axes > 1)
+        return scene_link_flags(s, link) != 0;
     const link_place at = scene_link_place(s, link);
-    return s->layout.axes == 1 && at.a > at.b;
+    return at.a > at.b;
+}
+
+static bool signs_differ(const spring_scene *s)
+{
+    const bool flagged = scene_has(s, ARRAY_FLAGS) || (s->layout.flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    return s->layout.axes == 1 ? s->layout.unbanded > 0 : flagged;
 }
 
 static void write_rests(const spring_scene *s, const section *row, uint8_t *out)
 {
     write_coefficients(s, row, out);
-    for (size_t i = 0; i < row->count && s->layout.axes == 1 && s->layout.unbanded > 0; i++)
+    for (size_t i = 0; i < row->count && signs_differ(s); i++)
         if (has_other_sign(s, i))
             out[(i + 1) * sizeof(scalar) - 1] ^= 0x80;
 }
@@ -456,11 +526,80 @@ static void read_rests(spring_scene *s, const section *row, const uint8_t *in)
 {
     read_coefficients(s, row, in);
     const coefficient_storage c = storage_of(s, row->array);
-    for (size_t i = 0; i < row->count && s->layout.axes == 1 && s->layout.unbanded > 0; i++)
+    for (size_t i = 0; i < row->count && signs_differ(s); i++)
         if (has_other_sign(s, i)) {
             const scalar rest = -number_at(in, i);
             memcpy((char *)s + coefficient_at(&c, i), &rest, sizeof rest);
         }
+}
+
+/* Weighted links of an editable scene: four weights, rest length, stiffness, damping, and 1 if a band computes it. */
+
+enum { weighted_numbers = 8 };
+
+static void write_weighted(const spring_scene *s, const section *row, uint8_t *out)
+{
+    const stored_weighted *const all = scene_read(s, row->array);
+    for (size_t i = 0; i < row->count; i++) {
+        const stored_weighted *const l = &all[i];
+        scalar numbers[weighted_numbers] = {0, 0, 0, 0, l->rest, l->stiffness, l->damping, l->banded};
+        for (int k = 0; k < l->points; k++)
+            numbers[l->place[k]] = l->weight[k];
+        copy_numbers(out + i * sizeof numbers, numbers, weighted_numbers, sizeof(scalar));
+    }
+}
+
+static spring_weighted_link weighted_at(const stored_weighted *l, const uint8_t *in)
+{
+    spring_weighted_link link = {
+        .rest = (double)number_at(in, 4), .stiffness = (double)number_at(in, 5), .damping = (double)number_at(in, 6)};
+    for (int k = 0; k < l->points; k++) {
+        link.particle[l->place[k]] = l->particle[k];
+        link.weight[l->place[k]] = (double)number_at(in, l->place[k]);
+    }
+    return link;
+}
+
+static bool weighted_valid(arriving *state, const section *row, const uint8_t *in)
+{
+    const stored_weighted *l = scene_read(state->s, row->array);
+    for (size_t i = 0; i < row->count; i++, l++, in += weighted_numbers * sizeof(scalar)) {
+        spring_weighted_link link = weighted_at(l, in);
+        const double rounding = sizeof(scalar) < sizeof(double) ? 4 * (double)SCALAR_EPSILON : 1e-12;
+        double inverse[4] = {0}, sum = 0, largest = 0;
+        for (int k = 0; k < 4; k++) {
+            inverse[k] = link.weight[k] != 0 ? arriving_inverse_mass(state, link.particle[k]) : 0;
+            sum += link.weight[k];
+            largest = fmax(largest, fabs(link.weight[k]));
+        }
+        const scalar banded = number_at(in, 7);
+        if (!spring_finite(sum) || !(fabs(sum) <= rounding * largest) || !scene_not_negative(link.rest) ||
+            !scene_not_negative(link.stiffness) || !scene_not_negative(link.damping) ||
+            weighted_overflows(&link, inverse) != NULL || (banded != 0 && banded != 1) ||
+            (banded == 1 && (l->slot == no_slot || three_points_of(&link).offset == 0)))
+            return false;
+    }
+    return true;
+}
+
+/* After settle_links(). */
+static void read_weighted(spring_scene *s, const section *row, const uint8_t *in)
+{
+    stored_weighted *l = scene_memory(s, row->array);
+    s->loose = 0;
+    for (size_t i = 0; i < row->count; i++, l++, in += weighted_numbers * sizeof(scalar)) {
+        const spring_weighted_link link = weighted_at(l, in);
+        scene_write_weighted(s, l, &link);
+        if (l->banded && number_at(in, 7) == 0) { /* before its weights were rounded, it did not fit into a band */
+            l->banded = false;
+            const link_place at = scene_slot_place(s, l->slot);
+            ((scalar *)scene_memory(s, ARRAY_BAND_STIFFNESS))[at.index] = 0;
+            ((scalar *)scene_memory(s, ARRAY_BAND_DAMPING))[at.index] = 0;
+            ((int8_t *)scene_memory(s, ARRAY_OCCUPIED))[at.slot] = 0;
+        }
+        s->damped_links += l->damping > 0;
+        s->loose += !l->banded;
+    }
 }
 
 /* Colliders. */
@@ -588,13 +727,14 @@ static const section_kind quantity_section = {write_quantity, quantity_valid, re
                           masses_section = {write_masses, masses_valid, read_masses},
                           pins_section = {write_pins, pins_valid, read_pins},
                           rests_section = {write_rests, rests_valid, read_rests},
-                          stiffnesses_section = {write_coefficients, strengths_valid, read_coefficients},
-                          dampings_section = {write_coefficients, dampings_valid, read_coefficients},
+                          stiffnesses_section = {write_strengths, strengths_valid, read_strengths},
+                          dampings_section = {write_strengths, dampings_valid, read_strengths},
+                          weighted_section = {write_weighted, weighted_valid, read_weighted},
                           colliders_section = {write_colliders, colliders_valid, read_colliders},
                           touching_section = {write_touching, touching_valid, read_touching},
                           touched_section = {write_touched, touched_valid, read_touched};
 
-enum { most_sections = 12 };
+enum { most_sections = 13 };
 
 /* Lists the sections of a state, in their order. Returns their number. */
 static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT], section list[most_sections])
@@ -614,6 +754,7 @@ static int list_sections(const spring_scene *s, const uint64_t header[WORD_COUNT
         {&rests_section, ARRAY_LINK_REST, links, number},
         {&stiffnesses_section, ARRAY_LINK_STIFFNESS, links, number},
         {&dampings_section, ARRAY_LINK_DAMPING, header[WORD_DAMPED] > 0 ? links : 0, number},
+        {&weighted_section, ARRAY_WEIGHTED, editable ? l->weighted : 0, weighted_numbers * number},
         {&colliders_section, ARRAY_COLLIDERS, bodies, 64 * collider_words},
         {&touching_section, touched_in(s->buffer), bodies > 0 ? l->particles : 0, 1},
         {&touched_section, touched_in(s->buffer), (size_t)header[WORD_TOUCHING], (bodies + 7) / 8 * 8},
@@ -686,9 +827,15 @@ spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes)
         if (scene_has(s, touched_in(buffer)))
             memset(scene_memory(s, touched_in(buffer)), 0, s->layout.particles * sizeof(uint32_t));
     at = (const uint8_t *)in + sizeof header;
-    for (int i = 0; i < count; at += section_bytes(&list[i]), i++)
+    bool settled = (s->layout.flags & SPRING_SCENE_EDITABLE) == 0;
+    for (int i = 0; i < count; at += section_bytes(&list[i]), i++) {
+        if (list[i].kind == &weighted_section) { /* all coefficients of links have been read */
+            settle_links(s, header[WORD_DAMPED]);
+            settled = true;
+        }
         list[i].kind->read(s, &list[i], at);
-    if ((s->layout.flags & SPRING_SCENE_EDITABLE) != 0)
+    }
+    if (!settled)
         settle_links(s, header[WORD_DAMPED]);
     s->force_cache = (cached_force)header[WORD_KEPT];
     s->colliders = (uint32_t)header[WORD_COLLIDERS];
@@ -726,6 +873,7 @@ spring_scene_info spring_scene_describe(const spring_scene *s)
     return (spring_scene_info){
         .particles = l->particles,
         .links = l->links,
+        .weighted_links = l->weighted,
         .axes = l->axes,
         .flags = l->flags,
         .methods = l->methods,

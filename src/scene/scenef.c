@@ -12,4 +12,6 @@
 #include "step.c"
 #include "steppers.c"
 #include "tear.c"
+#include "tethers.c"
 #include "transform.c"
+#include "weighted.c"

@@ -4,10 +4,10 @@
  *
  * Method    Gershgorin's circles: no eigenvalue of M^-1 K exceeds the largest absolute row sum of that matrix. A link
  *           adds at most 2 stiffness/mass to the row of each of its particles, or stiffness/mass if its other end is
- *           pinned.
+ *           pinned. A weighted link adds stiffness/mass |w_i| times the sum of |w_j| of its particles that are free.
  */
 #include "steppers.h"
-#include "stored_links.h"
+#include "weighted_links.h"
 
 #include <limits.h>
 #include <string.h>
@@ -19,6 +19,20 @@ typedef enum link_coefficient { STIFFNESS, DAMPING } link_coefficient;
 static double coefficient_of(const stored_link *link, link_coefficient which)
 {
     return (double)(which == STIFFNESS ? link->stiffness : link->damping);
+}
+
+/* What a weighted link adds to the sums of its particles. Returns false if it adds nothing. */
+static bool terms_of_weighted(const spring_scene *s, size_t index, link_coefficient which, spring_weighted_link *link,
+                              double term[4])
+{
+    const stored_weighted *const all = scene_read(s, ARRAY_WEIGHTED);
+    *link = scene_weighted(&all[index]);
+    const double value = which == STIFFNESS ? link->stiffness : link->damping;
+    double inverse[4];
+    weighted_inverse_masses(s, link, inverse);
+    for (int k = 0; k < 4; k++)
+        term[k] = value * weighted_row(link->weight, inverse, k);
+    return value > 0;
 }
 
 static int exponent_of(double value)
@@ -55,6 +69,14 @@ static int largest_exponent(const spring_scene *s, link_coefficient which, doubl
         const int exponent = exponent_of(value) + (a > b ? a : b);
         largest = exponent > largest ? exponent : largest;
     }
+    spring_weighted_link link;
+    double term[4];
+    for (size_t i = 0; i < s->layout.weighted; i++)
+        for (int k = 0; terms_of_weighted(s, i, which, &link, term) && k < 4; k++)
+            if (term[k] > 0) {
+                const int exponent = exponent_of(term[k]) + mass_exponent(s, link.particle[k], by_mass);
+                largest = exponent > largest ? exponent : largest;
+            }
     return largest > lowest ? largest : 0;
 }
 
@@ -74,6 +96,12 @@ static int add_up_links(spring_scene *s, link_coefficient which, double own, boo
         sum[link.a] += (scalar)ldexp(value, twice_a + mass_exponent(s, link.a, by_mass) - exponent);
         sum[link.b] += (scalar)ldexp(value, twice_b + mass_exponent(s, link.b, by_mass) - exponent);
     }
+    spring_weighted_link link;
+    double term[4];
+    for (size_t i = 0; i < s->layout.weighted; i++)
+        for (int k = 0; terms_of_weighted(s, i, which, &link, term) && k < 4; k++)
+            if (term[k] > 0)
+                sum[link.particle[k]] += (scalar)ldexp(term[k], mass_exponent(s, link.particle[k], by_mass) - exponent);
     return exponent;
 }
 
@@ -106,7 +134,19 @@ void spring_scene_find_roots(spring_scene *s, double dt, double most)
         const double larger =
             fmax(sum_of_particle(s, link.a, exponent, 0, true), sum_of_particle(s, link.b, exponent, 0, true));
         const double factor = fmin(1, ldexp(most / (dt * larger), -exponent));
-        root[scene_link_place(s, i).slot] = (scalar)spring_sqrt((double)link.damping * factor);
+        const double size = spring_sqrt((double)link.damping * factor);
+        root[scene_link_place(s, i).slot] = (scalar)(link.rest == 0 && s->layout.axes > 1 ? -size : size);
+    }
+    stored_weighted *const weighted = scene_memory(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < s->layout.weighted; i++) {
+        stored_weighted *const link = &weighted[i];
+        double larger = 0;
+        for (int k = 0; k < link->points; k++)
+            larger = fmax(larger, link->weight[k] != 0 ? sum_of_particle(s, link->particle[k], exponent, 0, true) : 0);
+        const double factor = larger > 0 ? fmin(1, ldexp(most / (dt * larger), -exponent)) : 1;
+        link->root = (scalar)spring_sqrt((double)link->damping * factor);
+        if (link->banded)
+            root[link->slot] = (scalar)(fabs((double)link->weight[1]) * spring_sqrt((double)link->damping * factor));
     }
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double reach = dt * ldexp(sum_of_particle(s, i, exponent, 0, true), exponent);

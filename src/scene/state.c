@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Reading and setting the state of a scene: positions, velocities, energies, tension, gravity and the callback. */
 #include "../kernels/link_law.h"
-#include "stored_links.h"
+#include "weighted_links.h"
 
 /* The length of a link and its rate of change. On one axis both have the sign of the link. */
 typedef struct link_extent {
@@ -41,8 +41,17 @@ spring_scene_energies spring_scene_energy(const spring_scene *s)
     for (size_t i = 0; i < s->layout.links; i++) {
         const stored_link link = scene_link(s, i);
         const double extension = length_and_rate(s, &link).length - (double)link.rest;
-        if (link.stiffness > 0 && (extension > 0 || !scene_tension_only(s)))
+        if (link.stiffness > 0 && (extension > 0 || !scene_tension_only(s, i, link.rest)))
             e.elastic += (double)link.stiffness * extension * extension / 2;
+    }
+    const stored_weighted *const weighted = scene_read(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < s->layout.weighted; i++) {
+        double d[3];
+        spring_scene_weighted_vector(s, &weighted[i], d);
+        const double length = s->layout.axes == 1 ? d[0] : spring_sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        const double extension = length - (double)weighted[i].rest;
+        if (weighted[i].stiffness > 0)
+            e.elastic += (double)weighted[i].stiffness * extension * extension / 2;
     }
     return e;
 }
@@ -58,7 +67,7 @@ double spring_scene_tension(const spring_scene *s, size_t index)
     const link_extent now = length_and_rate(s, &link);
     const double tension =
         link_tension((double)link.stiffness, (double)link.rest, (double)link.damping, now.length, now.rate);
-    if (scene_tension_only(s) && (now.length <= (double)link.rest || tension <= 0))
+    if (scene_tension_only(s, index, link.rest) && (now.length <= (double)link.rest || tension <= 0))
         return 0;
     return reversed ? -tension : tension;
 }

@@ -6,7 +6,7 @@
  *           of all limits. Only if a link may be, all links are tested in double, in the order of their indices.
  */
 #include "pass.h"
-#include "stored_links.h"
+#include "weighted_links.h"
 
 /* The least limit of a link; NaN if one is negative or NaN. Four independent minima overlap their latencies. */
 static double least_limit(const double *limit, size_t links)
@@ -77,6 +77,22 @@ static bool any_longer(const scene_kernels *kernels, spring_scene *s, double str
            kernels->common->stretched(&links, scene_state(s, SPRING_POSITION, 0), (scalar)stretch);
 }
 
+/* Cuts the weighted links that contain both ends of a link. */
+static void cut_weighted_links(spring_scene *s, const spring_link *link)
+{
+    const stored_weighted *const all = scene_read(s, ARRAY_WEIGHTED);
+    for (size_t i = 0; i < s->layout.weighted; i++) {
+        int ends = 0;
+        for (int k = 0; k < all[i].points; k++)
+            ends += all[i].particle[k] == link->a || all[i].particle[k] == link->b;
+        if (ends < 2)
+            continue;
+        spring_weighted_link cut = scene_weighted(&all[i]);
+        cut.stiffness = cut.damping = 0;
+        spring_scene_set_weighted_links(s, i, 1, &cut);
+    }
+}
+
 spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene *s, double stretch, const double *limit,
                                      uint32_t *torn, size_t capacity, size_t *count)
 {
@@ -92,10 +108,11 @@ spring_status spring_scene_tear_with(const scene_kernels *kernels, spring_scene 
     for (size_t i = 0; i < links; i++) {
         spring_link link;
         spring_scene_get_link(s, i, &link);
-        if (!is_longer(s, &link, limit != NULL ? limit[i] : stretch))
+        if ((link.flags & SPRING_LINK_TETHER) != 0 || !is_longer(s, &link, limit != NULL ? limit[i] : stretch))
             continue;
         link.stiffness = link.damping = 0;
         scene_replace_link(s, i, &link);
+        cut_weighted_links(s, &link);
         if (found < capacity)
             torn[found] = (uint32_t)i;
         found++;

@@ -34,10 +34,20 @@ SPRING_INLINE quad quad_over(quad a, quad b)
     return quad_of(a.at[0] / b.at[0], a.at[1] / b.at[1], a.at[2] / b.at[2], a.at[3] / b.at[3]);
 }
 
-SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+SPRING_INLINE quad quad_zero_where(quad a, quad b, quad c, quad sign)
 {
-    return quad_of(b.at[0] > 0 ? a.at[0] : 0, b.at[1] > 0 ? a.at[1] : 0, b.at[2] > 0 ? a.at[2] : 0,
-                   b.at[3] > 0 ? a.at[3] : 0);
+    quad r = a;
+    for (int i = 0; i < quad_size; i++)
+        r.at[i] = sign.at[i] >= 0 || (b.at[i] > 0 && c.at[i] > 0) ? a.at[i] : 0;
+    return r;
+}
+
+SPRING_INLINE quad quad_abs(quad a)
+{
+    quad r = a;
+    for (int i = 0; i < quad_size; i++)
+        r.at[i] = a.at[i] < 0 ? -a.at[i] : a.at[i];
+    return r;
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

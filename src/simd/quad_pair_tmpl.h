@@ -34,9 +34,15 @@ SPRING_INLINE quad quad_over(quad a, quad b)
     return (quad){a.low / b.low, a.high / b.high};
 }
 
-SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+SPRING_INLINE quad quad_zero_where(quad a, quad b, quad c, quad sign)
 {
-    return (quad){select_real(b.low > 0, a.low, splat(0)), select_real(b.high > 0, a.high, splat(0))};
+    return (quad){select_real((sign.low >= 0) | ((b.low > 0) & (c.low > 0)), a.low, splat(0)),
+                  select_real((sign.high >= 0) | ((b.high > 0) & (c.high > 0)), a.high, splat(0))};
+}
+
+SPRING_INLINE quad quad_abs(quad a)
+{
+    return (quad){vec_abs(a.low), vec_abs(a.high)};
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

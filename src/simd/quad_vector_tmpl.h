@@ -33,9 +33,16 @@ SPRING_INLINE quad quad_over(quad a, quad b)
     return a / b;
 }
 
-SPRING_INLINE quad quad_where_positive(quad a, quad b) /* else 0 */
+/* a, but 0 where `sign` is negative and b or c is not positive. */
+SPRING_INLINE quad quad_zero_where(quad a, quad b, quad c, quad sign)
 {
-    return (quad)((quad_bits)a & (quad_bits)(b > 0));
+    return (quad)((quad_bits)a & (quad_bits)((sign >= 0) | ((b > 0) & (c > 0))));
+}
+
+SPRING_INLINE quad quad_abs(quad a)
+{
+    const quad minus_zero = {-(scalar)0, -(scalar)0, -(scalar)0, -(scalar)0};
+    return (quad)((quad_bits)a & ~(quad_bits)minus_zero);
 }
 
 SPRING_INLINE quad quad_sqrt(quad a)

@@ -333,6 +333,14 @@ def test_damping_and_drag_leave_the_stiffness():
         assert one[limit]['steps_per_frame'] == other[limit]['steps_per_frame'], 'damping does not limit leapfrog'
 
 
+def test_tethers_save_steps():
+    """README's cloth needs less than half of the steps, and its most stretched link is stretched less."""
+    rows = [hang(f'0.02 --scene cloth {options}')['scene'] for options in ['', '--tethers 0.05', '--tethers 0.05 --bend 1e-3']]
+    steps = [row['steps_per_frame'] for row in rows]
+    assert steps[0] == 23 and steps[1] <= 12 and steps[2] <= 12
+    assert rows[1]['link_stretch'] < 0.7 * rows[0]['link_stretch']
+
+
 def test_a_hammock(tmp_path):
     """A taut rope between two points sags by the cube root of 1/stiffness, far more than its links stretch."""
     path = mesh_file(tmp_path, 'v 0 1 0', 'v 1 0.99 0', 'v 2 0.99 0', 'v 3 1 0', 'l 1 2 3 4')
@@ -354,6 +362,9 @@ def test_a_hammock(tmp_path):
     ('--sag 0.02 --scene rope --error 0.1', 2, ['--error: "0.1"', '--sag']),
     ('--sag 0.02 --scene rope --duration 3', 2, ['--duration: "3"', '--sag']),
     ('--sag 0.02 --scene rope --hertz 3', 2, ['--hertz: "3"', 'scene']),
+    ('--sag 0.02 --scene jelly --bend 3', 2, ['--bend: "3"', 'rope, cloth and water']),
+    ('--error 0.02 --duration 1 --scene water --tethers 0.05', 2, ['--tethers: "0.05"', 'one axis']),
+    ('--error 0.02 --duration 1 --hertz 2 --tethers 0.05', 2, ['--tethers: "0.05"', 'scene']),
     ('--sag 0.02 --presets', 2, ['--sag: "0.02"', '--presets']),
 ])
 def test_what_does_not_hang(options, status, words):

@@ -215,7 +215,7 @@ OTHER = [  # a run, and runs that do not
     ('rope --duration 0.5', ['--end-mass 0.15', '--gravity 3', '--size 8', '--length 2.5', '--drag 0.1', '--damping 1', '--stretch 1.1']),
     ('water --duration 0.25 --steps-per-frame 21', ['--method rk4', '--poke 0,2,2,1,1', '--axes 3', '--links structural', '--drop-box 0,1']),
     ('water --duration 1 --rain 20', ['--seed 2', '--rain 0']),
-    ('cloth --duration 0.5', ['--tension-only', '--tear 1.01', '--collider plane:z=-.1', '--stiffness 9', '--mass 3']),
+    ('cloth --duration 0.5', ['--bend 1e-3', '--tethers 0.05', '--tension-only', '--tear 1.01', '--collider plane:z=-.1', '--stiffness 9', '--mass 3']),
 ]
 
 
@@ -424,9 +424,29 @@ def test_links_that_tear_take_their_energy_away():
 
 
 @pytest.mark.parametrize('args', ['--scene chain --tension-only', '--scene water --tear 2', '--scene cloth --tear 0',
-                                  '--scene cloth --tension-only --method rkn8'])
+                                  '--scene cloth --tension-only --method rkn8', '--scene water --tethers 0.1',
+                                  '--scene cloth --tethers 0.1 --method srkn6', '--scene rope --tethers 0'])
 def test_refused_for_tension_and_tear(args):
     is_failure(run(SCENE, '--method', 'leapfrog', *args.split()), 2, '--te')
+
+
+# --- bending and tethers ----------------------------------------------------------------------------------------------
+
+def test_a_rod_bends_as_a_beam(tmp_path):
+    """The rope is pinned at one particle, a hinge, so it falls as far; a stiffer rod stays straighter."""
+    def bow(bend):
+        path = tmp_path / 'rope.tsv'
+        run(SCENE, '--scene', 'rope', '--method', 'leapfrog', '--duration', '0.3', '--positions', path, *bend)
+        last = parse(path.read_text())[-20:]
+        at = [(float(row['x_m']), float(row['z_m'])) for row in last]
+        ends, middle = [[at[i][k] - at[0][k] for k in range(2)] for i in (19, 10)]
+        return abs(ends[0] * middle[1] - ends[1] * middle[0]) / math.hypot(*ends)
+    assert bow(['--bend', '10']) < 0.2 * bow([])
+
+
+@pytest.mark.parametrize('scene', ['jelly', 'chain'])
+def test_refused_for_bending(scene):
+    is_failure(run(SCENE, '--scene', scene, '--method', 'leapfrog', '--bend', '1'), 2, '--bend: "1"', scene)
 
 
 # --- colliders --------------------------------------------------------------------------------------------------------

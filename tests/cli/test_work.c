@@ -85,7 +85,7 @@ static void count_calls(void *user, double t, size_t particles, const double *co
 static void predicted_velocity(void)
 {
     const double position[] = {0, 0.8};
-    const spring_link link = {0, 1, 0.5, 2.7, 0};
+    const spring_link link = {0, 1, 0.5, 2.7, 0, 0};
     uint64_t calls = 0;
     const spring_scene_def def = {.axes = 1,
                                   .particles = 2,

@@ -27,7 +27,7 @@ typedef double scalar;
 
 typedef spring_scene scene;
 
-enum { most_particles = 80, most_links = 1000, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };
+enum { most_particles = 80, most_links = 1000, most_weighted = 40, most_calls = 40, guard = 2 * SPRING_SCENE_ALIGN };
 
 static void must(bool holds, const char *what)
 {
@@ -100,6 +100,7 @@ typedef struct definition {
     double position[3 * most_particles], velocity[3 * most_particles], mass[most_particles];
     uint8_t pinned[most_particles];
     spring_link link[most_links];
+    spring_weighted_link weighted[most_weighted];
 } definition;
 
 #define CALLBACK(name)                                                                        \
@@ -125,7 +126,38 @@ static spring_link any_link(size_t particles)
 {
     const uint32_t count = (uint32_t)(particles > 1 ? particles : 2), a = choose(count),
                    b = (a + 1 + choose(count - 1)) % count, other = choose(64) == 63 ? choose(count + 1) : b;
-    return (spring_link){a, other, size(), size(), choose(2) == 0 ? 0 : size()};
+    return (spring_link){a, other, size(), size(), choose(2) == 0 ? 0 : size(), 0};
+}
+
+/* Weights (w, -2w, w) at particles in a row, or any, whose sum may not be 0. */
+static spring_weighted_link any_weighted(size_t particles, size_t i)
+{
+    const uint32_t count = (uint32_t)(particles > 1 ? particles : 2), offset = 1 + choose(3);
+    spring_weighted_link w = {.stiffness = size(), .damping = choose(2) == 0 ? 0 : size()};
+    if (choose(2) == 0)
+        return (spring_weighted_link){
+            {(uint32_t)i, (uint32_t)i + offset, (uint32_t)i + 2 * offset}, {0.5, -1, 0.5}, 0, w.stiffness, w.damping};
+    w.rest = choose(2) == 0 ? 0 : size();
+    for (uint32_t k = 0; k < 4; k++)
+        w.particle[k] = choose(16) == 15 ? choose(count + 1) : (choose(count) + k) % count;
+    for (int k = 0; k < 3; k++) {
+        w.weight[k] = choose(3) - 1.0;
+        w.weight[3] -= w.weight[k];
+    }
+    w.weight[3] += choose(64) == 63 ? number() : 0;
+    return w;
+}
+
+/* Weighted links and flags of links, for definitions without a callback. */
+static void further_links(definition *d)
+{
+    const uint32_t how = take(), tethers = 1 + choose(4);
+    for (size_t i = 0; how & 1 && i < d->def.links; i++)
+        d->link[i].flags = i % tethers == 0 ? choose(32) == 31 ? 4 : how >> 4 & 3 : 0;
+    d->def.weighted_links = how & 2 ? choose(most_weighted + 1) : 0;
+    for (size_t i = 0; i < d->def.weighted_links; i++)
+        d->weighted[i] = any_weighted(d->def.particles, i);
+    d->def.weighted_link = d->weighted;
 }
 
 static void loose(definition *d)
@@ -218,6 +250,8 @@ static void define(definition *d)
         d->def.force = choose(2) == 0 || d->def.flags & SPRING_SCENE_FORCE_IGNORES_VELOCITY ? still : moving;
     d->def.colliders = choose(4) == 3 ? choose(34) : 0;
     d->def.particle_radius = d->def.colliders > 0 ? size() : 0;
+    if ((what & 128) == 0)
+        further_links(d);
 }
 
 /* --------------------------------------------------------------------------------------------------------- a scene */
@@ -399,6 +433,7 @@ static spring_status set_link(scene *s)
 static void link_is_set(life *l)
 {
     must(l->d->def.flags & SPRING_SCENE_EDITABLE && with.first < l->d->def.links, "it may be changed");
+    with.link[0].flags = l->d->link[with.first].flags; /* which stay */
     l->d->link[with.first] = with.link[0];
 }
 
@@ -640,6 +675,18 @@ static void get(life *l)
 }
 
 /* Some links tear; then nothing is longer than its limit, and the pieces are those of the links that are left. */
+static void cut_weighted(definition *d, const spring_link *link)
+{
+    for (size_t i = 0; i < d->def.weighted_links; i++) {
+        spring_weighted_link *const w = &d->weighted[i];
+        int ends = 0;
+        for (int k = 0; k < 4; k++)
+            ends += w->weight[k] != 0 && (w->particle[k] == link->a || w->particle[k] == link->b);
+        if (ends == 2)
+            w->stiffness = w->damping = 0;
+    }
+}
+
 static void tear(life *l)
 {
     static double limit[most_links];
@@ -661,7 +708,9 @@ static void tear(life *l)
     must(l->d->def.flags & SPRING_SCENE_EDITABLE && count <= l->d->def.links, "links may tear");
     for (size_t i = 0; i < count; i++) {
         must(torn[i] < l->d->def.links && (i == 0 || torn[i - 1] < torn[i]), "in their order");
+        must((l->d->link[torn[i]].flags & SPRING_LINK_TETHER) == 0, "a tether is not cut by its length");
         l->d->link[torn[i]].stiffness = l->d->link[torn[i]].damping = 0;
+        cut_weighted(l->d, &l->d->link[torn[i]]);
         must(spring_scene_tension(l->one.s, torn[i]) == 0 || l->broken || wild, "a torn link does not pull");
     }
     must(spring_scene_tear(l->one.s, stretch, limits, NULL, 0, &again) == SPRING_OK && again == 0, "none tears twice");
@@ -669,7 +718,8 @@ static void tear(life *l)
     must(pieces > 0 && pieces <= l->d->def.particles && component[0] == 0, "the pieces of what is left");
     for (size_t i = 0; i < l->d->def.links; i++)
         must(component[l->d->link[i].a] == component[l->d->link[i].b] ||
-                 !(l->d->link[i].stiffness > 0 || l->d->link[i].damping > 0),
+                 !(l->d->link[i].stiffness > 0 || l->d->link[i].damping > 0) ||
+                 (l->d->link[i].flags & SPRING_LINK_TETHER) != 0,
              "a link joins its ends");
 }
 

@@ -95,7 +95,9 @@ typedef struct sheet {
     size_t links;
     double position[3 * particles], gravity[3];
     uint8_t pinned[particles];
-    spring_link link[most_links];
+    spring_link link[most_links + particles]; /* and tethers */
+    size_t bends;
+    spring_weighted_link bend[4 * particles];
 } sheet;
 
 /* A sheet of 7 x 5, or a height field. Jumbled, its links and their strengths have no order. */
@@ -143,6 +145,8 @@ static sheet make_sheet(uint32_t axes, bool jumbled, bool damped)
                           .mass_all = 0.3,                                                                             \
                           .pinned = given->pinned,                                                                     \
                           .link = given->link,                                                                         \
+                          .weighted_links = given->bends,                                                              \
+                          .weighted_link = given->bend,                                                                \
                           .drag = 0.07};                                                                               \
         for (int i = 0; i < 3; i++)                                                                                    \
             def.gravity[i] = given->gravity[i] * scale;                                                                \
@@ -177,6 +181,107 @@ static void print_heavy_damping(void)
                 s.link[i].damping *= 1e4;
             static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
             print_scene(names[kind], &s, SPRING_LEAPFROG, 1, 1);
+        }
+}
+
+/* Bending by rows, columns and diagonals, attachments with rest lengths, and tethers. */
+static void print_bending(spring_method m)
+{
+    const bool smooth = spring_method_describe(m)->positions_only;
+    const spring_grid grid = {.count = {7, 5}, .spacing = 0.1};
+    sheet s = make_sheet(3, false, !smooth);
+    s.bends = 4 * particles;
+    if (spring_bend_grid(&grid, s.pinned, SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS, 0.03, smooth ? 0 : 1e-3, s.bend,
+                         &s.bends) != SPRING_OK)
+        return;
+    for (uint32_t i = 0; i < 8; i++)
+        s.bend[s.bends++] = (spring_weighted_link){.particle = {i, i + 9, i + 10, i + 17},
+                                                   .weight = {-1, 0.25, 0.5, 0.25},
+                                                   .rest = i % 3 * 0.1,
+                                                   .stiffness = 3 + i};
+    spring_scene_def def = {.particles = particles, .links = s.links, .position = s.position, .pinned = s.pinned};
+    def.link = s.link, def.weighted_links = s.bends, def.weighted_link = s.bend;
+    uint32_t work[2 * particles];
+    double distance[2 * particles];
+    size_t tethers = particles;
+    if (!smooth && spring_links_tethers(&def, 0.05, 0.01, s.link + s.links, &tethers, work, distance) == SPRING_OK)
+        s.links += tethers;
+    print_scene("bending", &s, m, 1, 1);
+}
+
+static uint64_t digest_weighted(uint64_t hash, const spring_weighted_link *link, size_t links)
+{
+    for (size_t i = 0; i < links; i++) {
+        for (int k = 0; k < 4; k++)
+            hash = digest_bits(hash, link[i].particle[k], 4);
+        hash = digest(digest(hash, link[i].weight, 4), &link[i].stiffness, 1);
+    }
+    return hash;
+}
+
+/* The links of a rod with unequal segments and of a mesh with vertices that are split. */
+static void print_mesh_links(void)
+{
+    enum { vertices = 4 * particles, triangles = 2 * particles };
+    double position[3 * vertices];
+    uint32_t triangle[3 * triangles], particle_of[vertices], work[3 * vertices + 6 * triangles + 1];
+    spring_link link[3 * triangles];
+    spring_weighted_link bend[3 * triangles];
+    size_t corners = 0, found, links = 3 * triangles, bends = 3 * triangles;
+    for (uint32_t i = 0; i < vertices; i++) {
+        const uint32_t p = i % particles, x = p % 7, y = p / 7;
+        position[3 * i] = x / 7. + p * p % 11 / 91. + i / particles / 4096.;
+        position[3 * i + 1] = y / 7. - p * p % 13 / 97.;
+        position[3 * i + 2] = p * p % 5 / 89.;
+        if (i < particles && x < 6 && y < 4) {
+            const uint32_t square[6] = {i, i + 1, i + 8, i, i + 8, i + 7};
+            for (int k = 0; k < 6; k++)
+                triangle[corners++] = square[k] + (i * 5 + (uint32_t)k * 3) % 4 * particles;
+        }
+    }
+    uint64_t hash = no_digest;
+    if (spring_links_from_mesh(vertices, position, corners / 3, triangle, 1e-3, particle_of, &found, link, &links,
+                               work) == SPRING_OK)
+        for (size_t i = 0; i < links; i++)
+            hash = digest(digest_bits(hash, link[i].a * UINT64_C(1000) + link[i].b, 8), &link[i].rest, 1);
+    for (size_t i = 0; i < corners; i++)
+        triangle[i] = particle_of[triangle[i]];
+    if (spring_bend_mesh(found, position, corners / 3, triangle, NULL, 0.3, 0, bend, &bends, work) == SPRING_OK)
+        hash = digest_weighted(hash, bend, bends);
+    bends = 3 * triangles;
+    if (spring_bend_rod(particles, 3, position, NULL, 0.3, 0, bend, &bends) == SPRING_OK)
+        hash = digest_weighted(hash, bend, bends);
+    printf("mesh %zu %zu %zu %016" PRIx64 "\n", found, links, bends, hash);
+}
+
+/* Bending by rows and columns, or by any four particles, links that only pull, tethers, and links of rest length 0. */
+static void print_further_links(spring_method m)
+{
+    const bool plain = spring_method_describe(m)->positions_only;
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int kind = 0; kind < (m == SPRING_LEAPFROG ? 3 : 2); kind++) {
+            sheet s = make_sheet(axes, kind == 1, !plain);
+            for (size_t i = 0; i < s.links; i++) {
+                s.link[i].flags = axes > 1 && !plain && i % 3 == 0 ? 1 + (uint32_t)(i / 3 % 2) : 0;
+                s.link[i].rest = i % 7 == 0 ? 0 : s.link[i].rest;
+                s.link[i].damping *= kind == 2 ? 1e4 : 1;
+            }
+            for (uint32_t i = 0; i + 2 < particles; i++) {
+                const uint32_t step = i % 7 < 5 || i + 14 >= particles ? 1 : 7;
+                spring_weighted_link w = {
+                    {i, i + step, i + 2 * step, (i + 4) % particles}, {0.5, -1, 0.5, 0}, 0, 40, 0};
+                if (kind != 0 && i % 2 == 0) {
+                    w.weight[2] = 0.25;
+                    w.weight[3] = 0.25;
+                    w.rest = i % 3 == 0 && axes > 1 ? 0.05 : 0;
+                }
+                w.damping = plain ? 0 : kind == 2 ? 90 : 0.03;
+                if (w.weight[3] == 0 ||
+                    (w.particle[3] != i && w.particle[3] != i + step && w.particle[3] != i + 2 * step))
+                    s.bend[s.bends++] = w;
+            }
+            static const char *const names[] = {"bend-rows", "bend-list", "bend-heavy"};
+            print_scene(names[kind], &s, m, 1, 1);
         }
 }
 
@@ -587,9 +692,16 @@ int main(void)
             print_slack_scenes(m);
     }
     print_heavy_damping();
+    print_further_links(SPRING_LEAPFROG);
+    print_further_links(SPRING_RK4);
+    print_further_links(SPRING_SRKN6);
     print_contacts(SPRING_LEAPFROG);
     print_contacts(SPRING_SYMPLECTIC_EULER);
     print_contacts(SPRING_RK4);
+    for (int j = 0; j < SPRING_METHOD_COUNT; j++)
+        if (spring_method_describe(spring_method_at(j))->scenes)
+            print_bending(spring_method_at(j));
+    print_mesh_links();
     print_states();
     return 0;
 }

@@ -61,12 +61,20 @@ AT(spring_batchf, gamma, 32, 16);
 AT(spring_batchf, accel, 40, 20);
 AT(spring_batchf, shared, 48, 24);
 
-SIZE(spring_link, 32, 32);
+SIZE(spring_link, 40, 40);
 AT(spring_link, a, 0, 0);
 AT(spring_link, b, 4, 4);
 AT(spring_link, rest, 8, 8);
 AT(spring_link, stiffness, 16, 16);
 AT(spring_link, damping, 24, 24);
+AT(spring_link, flags, 32, 32);
+
+SIZE(spring_weighted_link, 72, 72);
+AT(spring_weighted_link, particle, 0, 0);
+AT(spring_weighted_link, weight, 16, 16);
+AT(spring_weighted_link, rest, 48, 48);
+AT(spring_weighted_link, stiffness, 56, 56);
+AT(spring_weighted_link, damping, 64, 64);
 
 SIZE(spring_collider, 248, 248);
 AT(spring_collider, shape, 0, 0);
@@ -81,7 +89,7 @@ AT(spring_collider, spin, 208, 208);
 AT(spring_collider, friction, 232, 232);
 AT(spring_collider, restitution, 240, 240);
 
-SIZE(spring_scene_def, 152, 112);
+SIZE(spring_scene_def, 168, 120);
 AT(spring_scene_def, axes, 0, 0);
 AT(spring_scene_def, flags, 4, 4);
 AT(spring_scene_def, methods, 8, 8);
@@ -100,6 +108,8 @@ AT(spring_scene_def, user, 120, 84);
 AT(spring_scene_def, max_speed, 128, 88);
 AT(spring_scene_def, colliders, 136, 96);
 AT(spring_scene_def, particle_radius, 144, 104);
+AT(spring_scene_def, weighted_links, 152, 112);
+AT(spring_scene_def, weighted_link, 160, 116);
 
 SIZE(spring_scene_energies, 24, 24);
 AT(spring_scene_energies, kinetic, 0, 0);
@@ -115,7 +125,7 @@ AT(spring_scene_info, flags, 28, 16);
 AT(spring_scene_info, methods, 32, 20);
 AT(spring_scene_info, colliders, 36, 24);
 
-SIZE(spring_scenef_def, 152, 112);
+SIZE(spring_scenef_def, 168, 120);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
@@ -134,6 +144,8 @@ AT(spring_scenef_def, user, 120, 84);
 AT(spring_scenef_def, max_speed, 128, 88);
 AT(spring_scenef_def, colliders, 136, 96);
 AT(spring_scenef_def, particle_radius, 144, 104);
+AT(spring_scenef_def, weighted_links, 152, 112);
+AT(spring_scenef_def, weighted_link, 160, 116);
 
 SIZE(spring_grid, 72, 72);
 AT(spring_grid, count, 0, 0);
@@ -208,9 +220,14 @@ VALUE(SPRING_SCENE_FORCE_IGNORES_VELOCITY, 4);
 VALUE(SPRING_SCENE_TENSION_ONLY, 8);
 VALUE(SPRING_SCENE_FORCES, 16);
 
+VALUE(SPRING_LINK_TENSION_ONLY, 1);
+VALUE(SPRING_LINK_TETHER, 2);
+
 VALUE(SPRING_GRID_STRUCTURAL, 1);
 VALUE(SPRING_GRID_SHEAR, 2);
 VALUE(SPRING_GRID_BEND, 4);
+VALUE(SPRING_BEND_ROWS, 1);
+VALUE(SPRING_BEND_DIAGONALS, 2);
 
 VALUE(SPRING_GRID_FIRST_X, 1);
 VALUE(SPRING_GRID_LAST_X, 2);

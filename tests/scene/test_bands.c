@@ -10,7 +10,7 @@ static uint32_t bands_of(uint32_t links, uint32_t offset, uint32_t first, uint32
     spring_link link[64];
     for (uint32_t i = 0; i < links; i++) {
         const uint32_t lower = i + 1 < links ? first + i : last;
-        link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0};
+        link[i] = (spring_link){lower, lower + offset, 0.6, 2.7, 0, 0};
     }
     const uint32_t more = 13; /* so that the scene is not small */
     const spring_scene_def def = {
@@ -43,7 +43,7 @@ static void few_links_form_no_band(void)
             build(&m, (uint32_t[]){n, 1, 1}, axes, 0);
             m.def.links = n - 1;
             for (uint32_t i = 0; i + 1 < n; i++)
-                m.link[i] = (spring_link){i, i + 1, 0.3, 20, 0};
+                m.link[i] = (spring_link){i, i + 1, 0.3, 20, 0, 0};
             spring_scene *s = scene_of(&m.def);
             CHECK(s->layout.bands == (axes == 1 || n > 12), "a sorted rope of 12 particles has no band");
             free(s);
@@ -68,7 +68,7 @@ static void many_offsets(void)
         for (uint32_t k = 1; k <= offsets; k++) {
             const uint32_t offset = descending ? offsets + 1 - k : k;
             for (uint32_t i = offset % 5 == 0 ? 1 : 0; i < lowers; i++)
-                m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0};
+                m.link[m.def.links++] = (spring_link){i, i + offset, 0.6, 0.27 * offset, 0, 0};
         }
         check_layout(&m, most_bands, (offsets - most_bands) * (lowers - 1), "the longest have bands");
     }
@@ -83,7 +83,7 @@ static void offsets_that_meet(void)
     static model m;
     for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++) {
         for (uint32_t i = 0; i < most_bands * lowers; i++)
-            m.link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0};
+            m.link[i] = (spring_link){i % lowers, i % lowers + (i / lowers + 1) * widths[w], 0.6, 2.7, 0, 0};
         m.def = (spring_scene_def){.axes = 1,
                                    .particles = lowers + most_bands * widths[w],
                                    .links = most_bands * lowers,
@@ -104,14 +104,14 @@ static void stray_links(void)
     for (uint32_t i = 1; i + 1 < particles; i++) {
         const uint32_t lower[] = {i, i == late + 3 ? late : i};
         for (int k = i == late ? 2 : 0; k < (i == again || i == late + 3 ? 2 : 1); k++)
-            m.link[m.def.links++] = (spring_link){lower[k], lower[k] + 1, 0.6, 2.7, 0};
+            m.link[m.def.links++] = (spring_link){lower[k], lower[k] + 1, 0.6, 2.7, 0, 0};
     }
-    m.link[m.def.links++] = (spring_link){0, 1, 0.6, 2.7, 0};
+    m.link[m.def.links++] = (spring_link){0, 1, 0.6, 2.7, 0, 0};
     check_layout(&m, 1, 3, "a band, and three unbanded links");
     build(&m, (uint32_t[]){most, 1, 1}, 2, 0);
     m.def.links = most - 1;
     for (uint32_t i = 0; i + 1 < most; i++)
-        m.link[i] = (spring_link){0, i + 1, 0.5, 2, 0};
+        m.link[i] = (spring_link){0, i + 1, 0.5, 2, 0, 0};
     check_layout(&m, 0, most - 1, "one link makes no band");
     build(&m, (uint32_t[]){5, 6, 7}, 3, 0);
     check_layout(&m, 16, 0, "a block with diagonals and bending links has sixteen offsets, and each its band");

@@ -428,7 +428,7 @@ static void heavy_damping(void)
 static void pressed_by_damping(void)
 {
     const double x[] = {0, 0, 0, 0, 1, 0}, v[] = {0, 0, 0, 0, -1, 0};
-    const spring_link link = {0, 1, 1, 10, 1000};
+    const spring_link link = {0, 1, 1, 10, 1000, 0};
     const spring_scene_def def = {.particles = 2,
                                   .links = 1,
                                   .position = x,

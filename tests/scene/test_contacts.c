@@ -451,7 +451,7 @@ static double capstan(int steps_per_frame)
         x[3 * i + 1] = around * sin(phi) - beyond;
         x[3 * i + 2] = 0;
         if (i + 1 < count)
-            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping};
+            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping, 0};
     }
     pinned[count - 1] = 1;
     const spring_scene_def def = {.flags = SPRING_SCENE_FORCES | SPRING_SCENE_FORCE_IGNORES_VELOCITY,

@@ -271,7 +271,7 @@ static void beyond_the_largest_number_of_terms(void)
 {
     const double x[] = {0, 0, 1.1, 0}, v[] = {0.2, -0.1, 0, 0.3};
     for (double damping = 1e3; damping < 1e25; damping *= 1e7) {
-        const spring_link link = {0, 1, 1, 30, damping};
+        const spring_link link = {0, 1, 1, 30, damping, 0};
         const spring_scene_def def = {
             .axes = 2, .particles = 2, .links = 1, .position = x, .velocity = v, .mass_all = 1.3, .link = &link};
         spring_scene *s = scene_of(&def);
@@ -349,7 +349,7 @@ static void speed_at_the_ends_of_steps(void)
 {
     const double x[] = {0, 1}, pi = 3.141592653589793;
     const uint8_t pinned[] = {1, 0};
-    const spring_link link = {0, 1, 0.4, 2.7, 0};
+    const spring_link link = {0, 1, 0.4, 2.7, 0, 0};
     spring_scene_def def = {
         .axes = 1, .particles = 2, .links = 1, .position = x, .pinned = pinned, .link = &link, .mass_all = 1.3};
     const double dt = 2 * sin(pi / 10) / sqrt(2.7 / 1.3);

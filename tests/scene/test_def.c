@@ -117,7 +117,7 @@ static void do_nothing(void *user, double t, size_t particles, const scalar *con
 static void combinations(void)
 {
     const double x[] = {0, 1, 2, 3, 4, 5}, largest = (double)SCALAR_MAX, mass[] = {1.5, 2, 3};
-    spring_link link = {0, 1, 0.7, 0, 0};
+    spring_link link = {0, 1, 0.7, 0, 0, 0};
     good.def = (spring_scene_def){.axes = 1, .flags = SPRING_SCENE_TENSION_ONLY, .particles = 2, .position = x};
     spring_scene_def *d = &good.def;
     check_refused(SPRING_EUNSUPPORTED, "flags", 0);
@@ -126,7 +126,7 @@ static void combinations(void)
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
         d->methods = 1u << spring_method_at(i);
         for (int kind = 0; kind < 5; kind++) {
-            const spring_link damped = {0, 1, 0.7, 2, 0.1};
+            const spring_link damped = {0, 1, 0.7, 2, 0.1, 0};
             *d = (spring_scene_def){.axes = 2, .methods = d->methods, .particles = 2, .position = x, .link = &damped};
             d->colliders = kind == 0 ? 32 : 0; /* a bit for each */
             d->flags = kind == 1 ? SPRING_SCENE_TENSION_ONLY : kind == 4 ? SPRING_SCENE_FORCE_IGNORES_VELOCITY : 0;
@@ -324,10 +324,10 @@ static double link_cost(unsigned kind, double damping, uint32_t flags)
     static double zeros[3 * (many + 1)];
     static spring_link link[many];
     for (uint32_t i = 0; i < many; i++)
-        link[i] = (spring_link){i, i + 1, 0.4, kind == 0 ? 12.5 : 12.5 + i, damping};
+        link[i] = (spring_link){i, i + 1, 0.4, kind == 0 ? 12.5 : 12.5 + i, damping, 0};
     if (kind == 2)
         for (uint32_t i = 0; i < many; i++) /* descending: no band */
-            link[i] = (spring_link){many - 1 - i, many - i, 0.4, 12.5, damping};
+            link[i] = (spring_link){many - 1 - i, many - i, 0.4, 12.5, damping, 0};
     const spring_scene_def def = {
         .flags = flags, .particles = many + 1, .position = zeros, .link = link, .links = many};
     spring_scene_def less = def;

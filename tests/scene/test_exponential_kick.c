@@ -7,17 +7,34 @@
 
 /* ---------------------------------------------------------------------------------------------------- a plain step */
 
+enum { most_all = most_links + most_weighted };
+
 /* The step of scene/exponential_kick.h in double, by a loop over links and sums of T_k(Y) r. */
 typedef struct plain_kick {
     const spring_scene_def *def;
     uint32_t axes;
-    double h, root[most_links], scale[most_links], turning[most_links], weight[most]; /* 1/mass' */
+    double h, weight[most];                                    /* 1/mass' */
+    double root[most_all], scale[most_all], turning[most_all]; /* of links, then of weighted links */
     double r[3 * most], r2[3 * most];
 } plain_kick;
 
-static bool tension_only(const spring_scene_def *def)
+/* A link as a weighted link. */
+static spring_weighted_link link_at(const spring_scene_def *def, size_t j)
 {
-    return (def->flags & SPRING_SCENE_TENSION_ONLY) != 0;
+    if (j >= def->links)
+        return def->weighted_link[j - def->links];
+    const spring_link *l = &def->link[j];
+    return (spring_weighted_link){
+        .particle = {l->a, l->b}, .weight = {-1, 1}, l->rest, l->stiffness, is_idle(def, l) ? 0 : l->damping};
+}
+
+static void add_to_particles(const spring_weighted_link *w, uint32_t axes, const double *force, double factor,
+                             const double *mass_factor, double *out)
+{
+    for (int i = 0; i < 4; i++)
+        for (uint32_t a = 0; a < axes && w->weight[i] != 0; a++)
+            out[w->particle[i] * axes + a] -= (double)(scalar)w->weight[i] * factor * force[a] *
+                                              (mass_factor != NULL ? mass_factor[w->particle[i]] : 1);
 }
 
 /* sqrt(damping), saturated. Returns the largest h G. */
@@ -27,19 +44,25 @@ static double find_roots(plain_kick *k)
     static double sum[most];
     double reach = 0;
     memset(sum, 0, sizeof sum);
-    for (size_t j = 0; j < def->links; j++) {
-        const spring_link *l = &def->link[j];
-        sum[l->a] += (double)(scalar)l->damping * (pinned_in(def, l->b) ? 1 : 2);
-        sum[l->b] += (double)(scalar)l->damping * (pinned_in(def, l->a) ? 1 : 2);
+    for (size_t j = 0; j < def->links + def->weighted_links; j++) {
+        const spring_weighted_link w = link_at(def, j);
+        double free = 0;
+        for (int i = 0; i < 4; i++)
+            free += w.weight[i] != 0 && !pinned_in(def, w.particle[i]) ? fabs(w.weight[i]) : 0;
+        for (int i = 0; i < 4; i++)
+            if (w.weight[i] != 0)
+                sum[w.particle[i]] += (double)(scalar)w.damping * fabs(w.weight[i]) * free;
     }
     for (size_t i = 0; i < def->particles; i++) {
         sum[i] = pinned_in(def, i) ? 0 : k->h * sum[i] / mass_in(def, i);
         reach = fmax(reach, sum[i]);
     }
-    for (size_t j = 0; j < def->links; j++) {
-        const spring_link *l = &def->link[j];
-        const double most_of_ends = fmax(sum[l->a], sum[l->b]);
-        k->root[j] = sqrt((double)(scalar)l->damping * fmin(1, most_damping / most_of_ends));
+    for (size_t j = 0; j < def->links + def->weighted_links; j++) {
+        const spring_weighted_link w = link_at(def, j);
+        double most_of_ends = 0;
+        for (int i = 0; i < 4; i++)
+            most_of_ends = fmax(most_of_ends, w.weight[i] != 0 ? sum[w.particle[i]] : 0);
+        k->root[j] = sqrt((double)(scalar)w.damping * fmin(1, most_damping / most_of_ends));
     }
     return fmin(reach, most_damping);
 }
@@ -51,39 +74,38 @@ static void find_residual(plain_kick *k, const double *x, const double *v, const
     const uint32_t axes = k->axes;
     memset(k->r2, 0, sizeof k->r2);
     memcpy(k->r, force, 3 * def->particles * sizeof *force);
-    for (size_t j = 0; j < def->links; j++) {
-        const spring_link *l = &def->link[j];
-        double delta[3] = {0}, relative[3] = {0}, square = 0, dot = 0, speed = 0;
+    for (size_t j = 0; j < def->links + def->weighted_links; j++) {
+        const spring_weighted_link w = link_at(def, j);
+        const spring_link *const l = j < def->links ? &def->link[j] : NULL;
+        double delta[3] = {0}, relative[3] = {0}, square = 0, dot = 0, speed = 0, sizes;
+        weighted_vector(&w, axes, x, delta, &sizes);
+        weighted_vector(&w, axes, v, relative, &sizes);
         for (uint32_t a = 0; a < axes; a++) {
-            delta[a] = x[l->b * axes + a] - x[l->a * axes + a];
-            relative[a] = v[l->b * axes + a] - v[l->a * axes + a];
             square += delta[a] * delta[a];
             dot += delta[a] * relative[a];
             speed += relative[a] * relative[a];
         }
-        double length = sqrt(square), rate = dot / length, tension, turned = 0;
+        const double c = k->root[j] * k->root[j], length = sqrt(square), rate = length > 0 ? dot / length : 0;
+        const bool linear = axes == 1 || w.rest == 0;
         k->scale[j] = k->turning[j] = 0;
-        if ((l->stiffness == 0 && l->damping == 0) || (axes > 1 && tension_only(def) && length <= l->rest))
+        if ((w.stiffness == 0 && w.damping == 0) || (l != NULL && is_idle(def, l)) ||
+            (l != NULL && pulls_only(def, l) && length <= w.rest) || (!linear && length == 0))
             continue;
-        k->scale[j] = k->root[j] / length;
-        if (axes == 1) {
-            length = delta[0];
-            rate = relative[0];
-            k->scale[j] = k->root[j];
-            delta[0] = 1;
-        } else if (turns) {
+        double turned = 0, pull[3];
+        if (!linear && turns) {
             const double t = fmin(1, fmax(0, k->h * k->h * (speed - rate * rate) / square));
             turned = length / (2 * k->h) * t * (1 + t / 4 + t * t / 8);
         }
+        k->scale[j] = linear ? -k->root[j] : k->root[j] / length;
         k->turning[j] = 2 * k->root[j] * turned;
-        tension = l->stiffness * (length - l->rest) + k->root[j] * k->root[j] * (rate - turned);
         for (uint32_t a = 0; a < axes; a++) {
-            const double along = axes == 1 ? 1 : delta[a] / length, push = -k->root[j] * k->turning[j];
-            k->r[l->a * axes + a] += tension * along;
-            k->r[l->b * axes + a] -= tension * along;
-            k->r2[l->a * axes + a] += push * along;
-            k->r2[l->b * axes + a] -= push * along;
+            const double along = linear ? 0 : delta[a] / length;
+            pull[a] = linear ? w.stiffness * (delta[a] - (axes == 1 ? w.rest : 0)) + c * relative[a]
+                             : (w.stiffness * (length - w.rest) + c * (rate - turned)) * along;
+            delta[a] = along;
         }
+        add_to_particles(&w, axes, pull, 1, NULL, k->r);
+        add_to_particles(&w, axes, delta, -k->root[j] * k->turning[j], NULL, k->r2);
     }
     for (size_t i = 0; i < def->particles; i++) {
         const double mass = mass_in(def, i), q = k->h * def->drag / mass;
@@ -102,18 +124,16 @@ static void apply_y(const plain_kick *k, double rho, const double *x, const doub
     const spring_scene_def *def = k->def;
     const uint32_t axes = k->axes;
     memcpy(out, u, axes * def->particles * sizeof *u);
-    for (size_t j = 0; j < def->links; j++) {
-        const spring_link *l = &def->link[j];
-        double delta[3] = {1}, rate = 0;
-        for (uint32_t a = 0; a < axes; a++) {
-            delta[a] = axes > 1 ? x[l->b * axes + a] - x[l->a * axes + a] : 1;
-            rate += delta[a] * (u[l->b * axes + a] - u[l->a * axes + a]);
-        }
-        for (uint32_t a = 0; a < axes; a++) {
-            const double pull = k->h / rho * k->scale[j] * k->scale[j] * rate * delta[a];
-            out[l->a * axes + a] += k->weight[l->a] * pull;
-            out[l->b * axes + a] -= k->weight[l->b] * pull;
-        }
+    for (size_t j = 0; j < def->links + def->weighted_links; j++) {
+        const spring_weighted_link w = link_at(def, j);
+        double delta[3], relative[3], rate = 0, sizes;
+        weighted_vector(&w, axes, x, delta, &sizes);
+        weighted_vector(&w, axes, u, relative, &sizes);
+        for (uint32_t a = 0; a < axes; a++)
+            rate += delta[a] * relative[a];
+        for (uint32_t a = 0; a < axes && k->scale[j] > 0; a++)
+            relative[a] = rate * delta[a];
+        add_to_particles(&w, axes, relative, k->h / rho * k->scale[j] * k->scale[j], k->weight, out);
     }
 }
 
@@ -218,6 +238,10 @@ static void plain_steps(void)
         build(&m, grids[number / 3 % 5], axes, (number * 389) % feature_masks | DAMPED);
         const bool damped_callback = number % 7 == 0, called = number % 7 < 3;
         field f = {axes, called ? 3.1 : 0, damped_callback && axes > 1 ? 0.7 : 0};
+        if (number % 5 < 3)
+            add_further_links(&m, true);
+        for (size_t j = 0; j < m.def.links && number % 11 == 0; j++)
+            m.link[j].rest = j % 3 == 0 ? 0 : m.link[j].rest;
         m.def.methods = 1u << SPRING_LEAPFROG;
         m.def.flags |= (number % 4 == 0 && axes > 1 ? SPRING_SCENE_TENSION_ONLY : 0u) |
                        (damped_callback ? 0u : SPRING_SCENE_FORCE_IGNORES_VELOCITY);
@@ -232,6 +256,8 @@ static void plain_steps(void)
             continue;
         for (size_t j = 0; j < m.def.links; j++)
             m.link[j].damping *= more;
+        for (size_t j = 0; j < m.def.weighted_links; j++)
+            m.weighted[j].damping *= more;
         s = scene_of(&m.def);
         get_state(s, m.def.particles, &want);
         k.def = &m.def;
@@ -246,7 +272,7 @@ static void plain_steps(void)
             place = fmax(place, fabs(want.x[i]));
         }
         double shortest = place; /* link: the rounding errors of positions turn it most */
-        for (size_t j = 0; j < m.def.links && axes > 1; j++)
+        for (size_t j = 0; j < m.def.links + m.def.weighted_links && axes > 1; j++)
             shortest = fmin(shortest, k.scale[j] > 0 ? k.root[j] / k.scale[j] : shortest);
         /* The residual is as large as h Z v, and the terms of the series cancel. */
         const double reach = fmin(reaches[number % 6], most_damping);

@@ -122,7 +122,7 @@ static void stiff_between_pins(void)
     const int far = sizeof(scalar) == 4 ? 100 : 900;
     const double x[] = {0, 1, 2}, mass[] = {1, 1, ldexp(1.7, far / 2)};
     const uint8_t pinned[] = {1, 1, 0};
-    const spring_link link[] = {{1, 2, 0.7, 3.1, 0.4}, {0, 1, 0.7, ldexp(1, far), ldexp(1, far)}};
+    const spring_link link[] = {{1, 2, 0.7, 3.1, 0.4, 0}, {0, 1, 0.7, ldexp(1, far), ldexp(1, far), 0}};
     spring_scene_def def = {
         .axes = 1, .particles = 3, .links = 2, .position = x, .mass = mass, .pinned = pinned, .link = link};
     spring_scene *s = scene_of(&def);
@@ -141,7 +141,7 @@ static void light_and_heavy(void)
     const double big = EPS < 1e-10 ? 1e300 : 1e30, tiny = EPS < 1e-10 ? 1e-100 : 1e-20, rate = 1e12; /* k/m [1/s^2] */
     const double huge = EPS < 1e-10 ? 1.7e308 : 3e38; /* twice this is infinite */
     const double position[] = {0, 1, 2, 3}, mass[] = {big, big, tiny, tiny};
-    const spring_link link[] = {{0, 1, 1, huge, 0}, {2, 3, 1, rate * tiny, 0}};
+    const spring_link link[] = {{0, 1, 1, huge, 0, 0}, {2, 3, 1, rate * tiny, 0, 0}};
     const spring_scene_def def = {
         .axes = 1, .particles = 4, .links = 2, .position = position, .mass = mass, .link = link};
     spring_scene *s = scene_of(&def);
@@ -158,7 +158,7 @@ static void sums_that_overflow(void)
         return; /* floats do not reach it */
     for (int how = 0; how < 4; how++) {
         const double damping = how & 1 ? 0.3 : 0, drag = how & 2 ? 0.7 : 0;
-        const spring_link link[] = {{0, 1, 1, huge, damping}, {0, 2, 1, huge, 0}, {0, 3, 1, huge, 0}};
+        const spring_link link[] = {{0, 1, 1, huge, damping, 0}, {0, 2, 1, huge, 0, 0}, {0, 3, 1, huge, 0, 0}};
         const spring_scene_def def = {
             .axes = 1, .particles = 4, .links = 3, .position = position, .link = link, .drag = drag};
         spring_scene *s = scene_of(&def);
@@ -509,7 +509,7 @@ static void many_links(void)
         x[i] = random_uniform(0, 100);
     for (size_t i = 0; i < links; i++) {
         const uint32_t a = (uint32_t)(random_bits() % particles), b = (uint32_t)(random_bits() % (particles - 1));
-        link[i] = (spring_link){a, b < a ? b : b + 1, random_uniform(0, 1), 1.5, 0};
+        link[i] = (spring_link){a, b < a ? b : b + 1, random_uniform(0, 1), 1.5, 0, 0};
     }
     const spring_scene_def def = {.particles = particles, .links = links, .position = x, .link = link, .mass_all = 3};
     spring_scene *s = scene_of(&def);

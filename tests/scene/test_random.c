@@ -49,7 +49,7 @@ enum { after_grids = 8, after_pairs = 14, after_bands = 17, special_count = size
 
 static void add_link(model *m, uint32_t a, uint32_t b)
 {
-    m->link[m->def.links++] = (spring_link){a, b, 0.8, 13.7, m->link[0].damping};
+    m->link[m->def.links++] = (spring_link){a, b, 0.8, 13.7, m->link[0].damping, 0};
 }
 
 /* Links of one offset between lower ends that begin and end anywhere, with gaps. */
@@ -125,6 +125,12 @@ static void place_oddly(model *m, bool all_defined)
         spring_link *link = &m->link[i];
         if (link->a == at || link->a == at + 1 || link->b == at || link->b == at + 1)
             link->stiffness = link->damping = 0;
+    }
+    for (size_t i = 0; i < m->def.weighted_links && k >= infinite; i++) {
+        spring_weighted_link *w = &m->weighted[i];
+        for (int j = 0; j < 4; j++)
+            if (w->weight[j] != 0 && (w->particle[j] == at || w->particle[j] == at + 1))
+                w->stiffness = w->damping = 0;
     }
 }
 
@@ -212,12 +218,16 @@ static void build_any(model *m, push *p, size_t number, bool all_defined)
         def->links = def->links < 12 ? def->links : 12;
     if (one_in(2))
         vary_links(m, (features & DAMPED) != 0);
+    if (one_in(2))
+        add_further_links(m, (features & DAMPED) != 0);
     if (one_in(8)) /* only springs, or one damper */
         for (size_t i = 1; i < def->links; i++)
             m->link[i].damping = 0;
     const double heavy = one_in(3) ? random_log(1, 1e4) : 1; /* so heavy that leapfrog applies it as a series */
     for (size_t i = 0; i < def->links; i++)
         m->link[i].damping *= heavy;
+    for (size_t i = 0; i < def->weighted_links; i++)
+        m->weighted[i].damping *= heavy;
     if (def->particles > 1 && one_in(3))
         place_oddly(m, all_defined);
     else if (axes > 1 && one_in(3)) {
@@ -296,7 +306,10 @@ static void add_absent(model *m, bool damped)
     static const double zeros[3 * most];
     spring_scene_def *def = &m->def;
     const uint32_t contacts = 1u << SPRING_LEAPFROG | 1u << SPRING_RK4 | 1u << SPRING_SYMPLECTIC_EULER;
-    const bool few = def->particles <= 12 && def->links <= 12;
+    size_t tethers = 0;
+    for (size_t i = 0; i < def->links; i++)
+        tethers += (m->link[i].flags & SPRING_LINK_TETHER) != 0;
+    const bool few = def->particles <= 12 && def->links - tethers <= 12;
     for (size_t i = 0; i < def->particles && def->mass == NULL; i++)
         m->mass[i] = mass_in(def, i);
     for (size_t i = 0; i < def->particles && def->pinned == NULL; i++)
@@ -337,6 +350,7 @@ static void query(spring_scene *s, const model *m)
     static float outf[3 * most];
     static uint32_t touching[most];
     spring_link link;
+    spring_weighted_link weighted;
     switch (below(10)) {
     case 0:
     case 1:
@@ -364,6 +378,7 @@ static void query(spring_scene *s, const model *m)
     default:
         spring_scene_find_link(s, (uint32_t)below(m->def.particles), (uint32_t)below(m->def.particles));
         spring_scene_get_link(s, below(m->def.links + 1), &link);
+        spring_scene_get_weighted_link(s, below(m->def.weighted_links + 1), &weighted);
     }
 }
 
@@ -392,7 +407,9 @@ static void fail(const block *b, const model *m)
     spring_scene *const s = b->s;
     static const double nothing[12] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     const spring_collider wrong = {.shape = SPRING_SPHERE, .radius = -1};
-    const spring_link link = {0, 0, 1, 1, 1};
+    const spring_link link = {0, 0, 1, 1, 1, 0};
+    spring_weighted_link unbalanced = m->weighted[0];
+    unbalanced.weight[0] += 1;
     const uint8_t pinned = 1;
     const size_t beyond = s->layout.particles + below(3);
     const block kept = copy_of(b);
@@ -405,6 +422,7 @@ static void fail(const block *b, const model *m)
         spring_scene_set_gravity(s, nothing),
         spring_scene_set_colliders(s, &wrong, 1),
         spring_scene_set_link(s, 0, &link),
+        spring_scene_set_weighted_links(s, 0, 1, &unbalanced),
         spring_scene_set_pinned(s, beyond, 1, &pinned),
         spring_scene_set_mass(s, 0, 1, nothing),
         spring_scene_tear(s, NAN, NULL, NULL, 0, NULL),
@@ -486,6 +504,12 @@ static void change(spring_scene *const s[2], const model *m, push *p)
     spring_link link = m->link[k];
     link.damping *= pinned;
     link.stiffness *= 0.7;
+    const size_t w = below(m->def.weighted_links + 1);
+    spring_weighted_link weighted = m->weighted[w]; /* which may leave its band */
+    for (int j = 0; j < 4; j++)
+        weighted.weight[j] *= v[0];
+    weighted.rest = pinned ? 0.3 : 0;
+    weighted.damping *= pinned;
     p->strength = random_uniform(0, 1);
     const bool editable = (m->def.flags & SPRING_SCENE_EDITABLE) != 0;
     for (int j = 0; j < 2; j++) {
@@ -508,7 +532,7 @@ static void change(spring_scene *const s[2], const model *m, push *p)
             break;
         case 4:
             if (editable)
-                spring_scene_set_link(s[j], k, &link);
+                spring_scene_set_link(s[j], k, &link), spring_scene_set_weighted_links(s[j], w, 1, &weighted);
             break;
         case 5:
             spring_scene_set_force(s[j], m->def.force, p);
@@ -619,12 +643,15 @@ static const char *run_both(const model *m, push *p)
     more = *m;
     more.def.position = more.position;
     more.def.link = more.link;
+    more.def.weighted_link = more.weighted;
     more.def.velocity = m->def.velocity == NULL ? NULL : more.velocity;
     more.def.mass = m->def.mass == NULL ? NULL : more.mass;
     more.def.pinned = m->def.pinned == NULL ? NULL : more.pinned;
     bool damped = false;
     for (size_t i = 0; i < m->def.links; i++)
         damped = damped || m->link[i].damping > 0;
+    for (size_t i = 0; i < m->def.weighted_links; i++)
+        damped = damped || m->weighted[i].damping > 0;
     add_absent(&more, damped);
     if (m->def.force == push_all && !p->rubs && !damped)
         more.def.flags |= IGNORES; /* then leapfrog keeps forces, which are the same */
@@ -635,6 +662,7 @@ static const char *run_both(const model *m, push *p)
     }
     memset(more.position, 0xff, sizeof more.position); /* nothing is read from there any more */
     memset(more.link, 0xff, sizeof more.link);
+    memset(more.weighted, 0xff, sizeof more.weighted);
     if (m->def.colliders > 0)
         set_colliders((spring_scene *[]){one.s, other.s}, m);
     spring_method method = any_method(&m->def);
@@ -688,7 +716,8 @@ static double content_of(const spring_scene *s)
     const double quantity = (double)(l->axes * l->particles * sizeof(scalar));
     const bool editable = (l->flags & SPRING_SCENE_EDITABLE) != 0, holds = (l->flags & SPRING_SCENE_FORCES) != 0;
     return quantity * (2 + (s->force_cache != NO_FORCE) + holds) + s->colliders * (double)sizeof(spring_collider) +
-           editable * ((double)l->particles * (sizeof(scalar) + 1) + 3.0 * (double)(l->links * sizeof(scalar)));
+           editable * ((double)l->particles * (sizeof(scalar) + 1) +
+                       (3.0 * (double)l->links + 8.0 * (double)l->weighted) * sizeof(scalar));
 }
 
 /* The state at an odd address, in memory that ends behind it. */
@@ -804,6 +833,11 @@ static void travel(block *b, const model *m)
         link.damping += 0.01;
         spring_scene_set_link(other.s, i, &link);
     }
+    for (size_t i = 0; i < m->def.weighted_links; i++) {
+        spring_weighted_link link = m->weighted[i];
+        link.stiffness += 0.1;
+        spring_scene_set_weighted_links(other.s, i, 1, &link);
+    }
     const double dt = one_in(8) ? 1e3 : random_log(0.003, 0.1); /* now and then it is lost */
     spring_scene_advance(other.s, any_method(&m->def), dt, below(4));
     check_damage(&other, &y);
@@ -907,7 +941,8 @@ static const char *run_and_meet(model *m, push *p)
         if ((m->def.flags & SPRING_SCENE_EDITABLE) != 0)
             CHECK(spring_scene_set_mass(s, 0, n, m->mass) == SPRING_OK &&
                       spring_scene_set_pinned(s, 0, n, m->pinned) == SPRING_OK &&
-                      spring_scene_set_links(s, 0, m->def.links, m->link) == SPRING_OK,
+                      spring_scene_set_links(s, 0, m->def.links, m->link) == SPRING_OK &&
+                      spring_scene_set_weighted_links(s, 0, m->def.weighted_links, m->weighted) == SPRING_OK,
                   "those of the definition");
         CHECK(spring_scene_set(s, SPRING_POSITION, m->position, 0, 0, n) == SPRING_OK &&
                   spring_scene_set(s, SPRING_VELOCITY, m->velocity, 0, 0, n) == SPRING_OK,
@@ -945,7 +980,7 @@ static void forces(void)
 {
     static model m;
     push p;
-    size_t bands = 0, full = 0, unbanded = 0, both = 0, records = 0;
+    size_t bands = 0, full = 0, unbanded = 0, both = 0, records = 0, three_points = 0, loose = 0, tethers = 0;
     for (size_t i = 0; i < scenes; i++) {
         build_any(&m, &p, i, true);
         spring_scene *s = scene_of(&m.def);
@@ -954,15 +989,19 @@ static void forces(void)
         unbanded += s->layout.bands == 0 && s->layout.unbanded > 0;
         both += s->layout.bands > 0 && s->layout.unbanded > 0;
         records += scene_has(s, ARRAY_RECORDS);
+        three_points += s->layout.weighted > s->layout.loose;
+        loose += s->layout.loose > 0;
+        tethers += s->layout.tethers > 0;
         free(s);
         for (int k = 0; k < kernel_count; k++)
             if (kernels_of(k) != NULL)
                 check_forces(&m, kernels_of(k));
     }
     printf("# %zu scenes with bands alone, %zu with the most bands, %zu with unbanded links alone, %zu with both, "
-           "%zu with records\n",
-           bands, full, unbanded, both, records);
-    CHECK(fmin(fmin((double)bands, (double)full), fmin((double)unbanded, fmin((double)both, (double)records))) > 3,
+           "%zu with records, %zu with bands of weighted links, %zu with other weighted links, %zu with tethers\n",
+           bands, full, unbanded, both, records, three_points, loose, tethers);
+    CHECK(fmin(fmin((double)bands, (double)full), fmin((double)unbanded, fmin((double)both, (double)records))) > 3 &&
+              fmin((double)three_points, fmin((double)loose, (double)tethers)) > (double)scenes / 20,
           "all kinds of layouts");
 }
 
@@ -1007,7 +1046,7 @@ static bool tear(spring_scene *s, model *m, const state *y)
         const spring_link *const link = &m->link[i];
         limit[i] = one_in(4) ? INFINITY : random_log(0.8, 3);
         length[i] = evaluate_link(link, m->def.axes, y->x, y->v).length;
-        if ((link->stiffness > 0 || link->damping > 0) && link->rest > 0)
+        if ((link->stiffness > 0 || link->damping > 0) && link->rest > 0 && (link->flags & SPRING_LINK_TETHER) == 0)
             longest = fmax(longest, length[i] / link->rest);
         else
             length[i] = 0;
@@ -1018,6 +1057,14 @@ static bool tear(spring_scene *s, model *m, const state *y)
         if (length[i] > (limits ? limit[i] : stretch) * (double)(scalar)m->link[i].rest) {
             m->link[i].stiffness = m->link[i].damping = 0;
             want[count++] = (uint32_t)i;
+            for (size_t j = 0; j < m->def.weighted_links; j++) {
+                spring_weighted_link *const w = &m->weighted[j];
+                int ends = 0;
+                for (int k = 0; k < 4; k++)
+                    ends += w->weight[k] != 0 && (w->particle[k] == m->link[i].a || w->particle[k] == m->link[i].b);
+                if (ends == 2)
+                    w->stiffness = w->damping = 0;
+            }
         }
     CHECK(spring_scene_tear_with(any_kernels(), s, stretch, limits ? limit : NULL, torn, most_links, &found) ==
                   SPRING_OK &&
@@ -1037,7 +1084,17 @@ static bool edit(spring_scene *s, model *m, state *y)
     double numbers[12];
     for (int k = 0; k < 12; k++)
         numbers[k] = random_uniform(-1.5, 1.5);
-    switch (below(11)) {
+    switch (below(12)) {
+    case 10: /* weighted links, which stay in their bands */
+        if (m->def.weighted_links > 0) {
+            const size_t first = below(m->def.weighted_links), count = 1 + below(m->def.weighted_links - first);
+            for (size_t k = first; k < first + count; k++) {
+                m->weighted[k].stiffness = one_in(3) ? 0 : random_log(3, 60);
+                m->weighted[k].damping = one_in(2) ? 0 : random_uniform(0, 0.6);
+            }
+            CHECK(spring_scene_set_weighted_links(s, first, count, m->weighted + first) == SPRING_OK, "editable");
+        }
+        return m->def.weighted_links > 0;
     case 0: /* links */
         if (m->def.links > 0) {
             const size_t first = below(m->def.links), count = 1 + below(m->def.links - first);

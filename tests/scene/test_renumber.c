@@ -32,7 +32,7 @@ static uint32_t below(size_t n)
 
 static void join(model *m, size_t a, size_t b, double rest)
 {
-    m->link[m->links] = (spring_link){(uint32_t)a, (uint32_t)b, rest, 2.7 + (double)m->links, 0.6};
+    m->link[m->links] = (spring_link){(uint32_t)a, (uint32_t)b, rest, 2.7 + (double)m->links, 0.6, 0};
     m->links++;
 }
 

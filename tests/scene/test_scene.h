@@ -81,7 +81,7 @@ SPRING_INLINE spring_scene *scene_of(const spring_scene_def *def)
 
 /* ---------------------------------------------------------------------------------------------------------- models */
 
-enum { most = 3100, most_links = 20000 }; /* particles and links of a model */
+enum { most = 3100, most_links = 20000, most_weighted = 4000 }; /* particles and links of a model */
 
 /* features of a model, random numbers where there are numbers */
 enum {
@@ -103,6 +103,7 @@ typedef struct model {
     double position[3 * most], velocity[3 * most], mass[most];
     uint8_t pinned[most];
     spring_link link[most_links];
+    spring_weighted_link weighted[most_weighted];
 } model;
 
 SPRING_INLINE void reverse(spring_link *link)
@@ -160,7 +161,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     for (size_t i = 0; i < 20 && features & STRAY && particles > 1; i++) {
         const uint32_t one = (uint32_t)(random_bits() % particles);
         const uint32_t other = (uint32_t)(random_bits() % (particles - 1));
-        m->link[links++] = (spring_link){one, other < one ? other : other + 1, 0.8, 9.7, m->link[0].damping};
+        m->link[links++] = (spring_link){one, other < one ? other : other + 1, 0.8, 9.7, m->link[0].damping, 0};
     }
     if (features & SHUFFLED)
         shuffle(m->link, links);
@@ -169,7 +170,7 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     for (size_t i = particles; i < particles + 20 && i < most; i++)
         m->mass[i] = NAN;
     for (size_t i = links; i < links + 20 && i < most_links; i++)
-        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1};
+        m->link[i] = (spring_link){UINT32_MAX, 0, NAN, -1, 1, 0};
     m->def = (spring_scene_def){
         .axes = axes,
         .flags = features & EDITABLE ? SPRING_SCENE_EDITABLE : 0,
@@ -184,6 +185,63 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
         .gravity = {features & GRAVITY ? 1.1 : 0, features & GRAVITY ? -9.81 : 0, features & GRAVITY ? 0.4 : 0},
         .drag = features & DRAG ? 0.37 : 0,
     };
+    use_all_methods(&m->def);
+}
+
+/* Weights that add up to 0: (w, -2w, w) at lower, lower + offset and lower + 2 offset, or with offset 0 any. */
+SPRING_INLINE spring_weighted_link random_weighted(size_t particles, uint32_t offset, uint32_t lower)
+{
+    spring_weighted_link w = {.stiffness = random_bits() % 8 ? random_log(3, 60) : 0};
+    if (offset > 0) {
+        const double weight = random_bits() % 2 ? 0.5 : random_uniform(-1, 1);
+        const uint32_t unused = (uint32_t)(random_bits() % 4), down = random_bits() % 2;
+        for (uint32_t i = 0, k = 0; i < 4; i++) {
+            w.particle[i] = i == unused ? UINT32_MAX : lower + (down ? 2 - k : k) * offset;
+            w.weight[i] = i == unused ? 0 : k == 1 ? -2 * weight : weight;
+            k += i != unused;
+        }
+        return w;
+    }
+    const uint32_t points = 2 + (uint32_t)(random_bits() % 3);
+    double sum = 0;
+    for (uint32_t i = 0; i < points; i++) {
+        bool other;
+        do {
+            w.particle[i] = (uint32_t)(random_bits() % particles);
+            other = true;
+            for (uint32_t j = 0; j < i; j++)
+                other = other && w.particle[j] != w.particle[i];
+        } while (!other);
+        w.weight[i] = i + 1 < points ? random_uniform(-1, 1) : -sum;
+        sum += w.weight[i];
+    }
+    w.rest = random_bits() % 2 ? random_uniform(0.01, 1) : 0;
+    return w;
+}
+
+/* Weighted links in bands and in no order, and flags of links. */
+SPRING_INLINE void add_further_links(model *m, bool damped)
+{
+    static const uint32_t offsets[] = {1, 2, 5, 8, 31, 33, 64, 100};
+    const size_t particles = m->def.particles;
+    size_t count = 0;
+    const unsigned bands = (unsigned)(random_bits() % 3), strays = (unsigned)(random_bits() % 12);
+    for (unsigned b = 0; b < bands; b++) {
+        const uint32_t offset = offsets[random_bits() % (sizeof offsets / sizeof offsets[0])];
+        for (uint32_t i = 0; i + 2 * (size_t)offset < particles && count < most_weighted - 20; i++)
+            if (random_bits() % 8)
+                m->weighted[count++] = random_weighted(particles, offset, i);
+    }
+    for (unsigned i = 0; i < strays && particles >= 4; i++)
+        m->weighted[count++] = random_weighted(particles, 0, 0);
+    for (size_t i = 0; i < count; i++)
+        m->weighted[i].damping = damped && random_bits() % 2 ? random_uniform(0, 0.6) : 0;
+    m->def.weighted_links = count;
+    m->def.weighted_link = m->weighted;
+    const unsigned flags = (unsigned)(random_bits() % 4); /* none, of some links, tethers among them */
+    for (size_t i = 0; i < m->def.links && m->def.axes > 1 && flags > 0; i++)
+        m->link[i].flags = random_bits() % 3 ? 0 : (uint32_t)(1 + random_bits() % flags);
+    m->def.methods = 0;
     use_all_methods(&m->def);
 }
 
@@ -257,6 +315,83 @@ SPRING_INLINE link_force evaluate_link(const spring_link *link, uint32_t axes, c
                          (double)(scalar)link->rest);
 }
 
+/* Whether a link pulls only, and whether it is a tether that does not act. */
+SPRING_INLINE bool pulls_only(const spring_scene_def *def, const spring_link *link)
+{
+    return ((def->flags & SPRING_SCENE_TENSION_ONLY) != 0 || link->flags != 0) && link->rest > 0;
+}
+
+SPRING_INLINE bool is_idle(const spring_scene_def *def, const spring_link *link)
+{
+    return (link->flags & SPRING_LINK_TETHER) != 0 && pinned_in(def, link->a) == pinned_in(def, link->b);
+}
+
+/* Index of the particle with the largest weight. */
+SPRING_INLINE int heaviest(const spring_weighted_link *w)
+{
+    int first = 0;
+    for (int i = 1; i < 4; i++)
+        first = fabs(w->weight[i]) > fabs(w->weight[first]) ? i : first;
+    return first;
+}
+
+/* The sum of weight (q - q of the heaviest), with weights in the precision of the scene. *size: of its terms */
+SPRING_INLINE void weighted_vector(const spring_weighted_link *w, uint32_t axes, const double *q, double d[3],
+                                   double *size)
+{
+    const int first = heaviest(w);
+    *size = 0;
+    for (uint32_t a = 0; a < axes; a++) {
+        d[a] = 0;
+        for (int i = 0; i < 4; i++)
+            if (i != first && w->weight[i] != 0) {
+                const double from = q[w->particle[i] * axes + a] - q[w->particle[first] * axes + a];
+                d[a] += (double)(scalar)w->weight[i] * from;
+                *size += fabs(w->weight[i] * from);
+            }
+    }
+}
+
+SPRING_INLINE link_force evaluate_weighted(const spring_weighted_link *w, uint32_t axes, const double *x,
+                                           const double *v, double *size)
+{
+    double d[3], rate[3], places, speeds;
+    weighted_vector(w, axes, x, d, &places);
+    weighted_vector(w, axes, v, rate, &speeds);
+    const link_force f =
+        link_evaluate(axes, d, rate, (double)(scalar)w->stiffness, (double)(scalar)w->damping, (double)(scalar)w->rest);
+    const double turns = w->rest > 0 && axes > 1 && f.length > 0 ? 1 + places / f.length : 1; /* a rounded direction */
+    *size = (w->stiffness * (places + 2 * w->rest) + w->damping * speeds) * turns;
+    return f;
+}
+
+/* Adds the forces of weighted links, as plain_forces() does. */
+SPRING_INLINE void plain_weighted_forces(const spring_scene_def *def, uint32_t axes, const double *x, const double *v,
+                                         double *force, double *size)
+{
+    for (size_t i = 0; i < def->weighted_links; i++) {
+        const spring_weighted_link *w = &def->weighted_link[i];
+        double larger, sum = 0;
+        if (w->stiffness == 0 && w->damping == 0)
+            continue;
+        const link_force f = evaluate_weighted(w, axes, x, v, &larger);
+        for (int k = 0; k < 4; k++) {
+            const double weight = (double)(scalar)w->weight[k];
+            if (k == heaviest(w) || weight == 0)
+                continue;
+            for (uint32_t a = 0; a < axes; a++) {
+                force[w->particle[k] * axes + a] -= weight * f.force[a];
+                force[w->particle[heaviest(w)] * axes + a] += weight * f.force[a];
+            }
+            sum += fabs(weight);
+            if (size != NULL)
+                size[w->particle[k]] += fabs(weight) * larger;
+        }
+        if (size != NULL && sum > 0)
+            size[w->particle[heaviest(w)]] += 2 * sum * larger;
+    }
+}
+
 /* Adds the forces of the links; size[i] is the sum over the links of particle i of stiffness (length + 2 rest) +
    damping |relative velocity|, what the rounding errors of its force are relative to. size may be NULL. */
 SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, const double *x, const double *v,
@@ -265,9 +400,9 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
     for (size_t i = 0; i < def->links; i++) {
         const spring_link *link = &def->link[i];
         const link_force f = evaluate_link(link, axes, x, v);
-        if (link->stiffness == 0 && link->damping == 0) /* at any distance */
+        if ((link->stiffness == 0 && link->damping == 0) || is_idle(def, link)) /* at any distance */
             continue;
-        if ((def->flags & SPRING_SCENE_TENSION_ONLY) != 0 && (f.length <= (double)(scalar)link->rest || f.tension <= 0))
+        if (pulls_only(def, link) && (f.length <= (double)(scalar)link->rest || f.tension <= 0))
             continue;
         for (uint32_t a = 0; a < axes; a++) {
             force[link->a * axes + a] += f.force[a];
@@ -282,6 +417,7 @@ SPRING_INLINE void plain_forces(const spring_scene_def *def, uint32_t axes, cons
         size[link->a] += larger;
         size[link->b] += larger;
     }
+    plain_weighted_forces(def, axes, x, v, force, size);
 }
 
 typedef struct seen_forces {
@@ -313,7 +449,25 @@ SPRING_INLINE void check_forces(const model *m, const scene_kernels *kernels)
     def.force = look;
     def.user = &all;
     def.max_speed = 0;
+    static spring_weighted_link defined[most_weighted];
+    const bool edited = (def.flags & SPRING_SCENE_EDITABLE) != 0 && def.weighted_links > 0;
+    for (size_t i = 0; i < def.weighted_links && edited; i++) { /* at other places, in or out of bands */
+        defined[i] = m->weighted[i];
+        const int first = heaviest(&defined[i]);
+        const double most_weight = defined[i].weight[first], half = most_weight / 2;
+        int others = 0;
+        for (int k = 0; k < 4; k++)
+            others += k != first && defined[i].weight[k] != 0;
+        for (int k = 0; k < 4 && others == 2; k++) /* (w, -2w, w), or (w, w, -2w) times numbers that round */
+            if (k != first && defined[i].weight[k] != 0)
+                defined[i].weight[k] = -half;
+        defined[i].rest = i % 3 == 0 ? defined[i].rest : 0;
+        defined[i].stiffness = 1;
+    }
+    def.weighted_link = edited ? defined : def.weighted_link;
     spring_scene *s = scene_of(&def);
+    if (edited)
+        CHECK(spring_scene_set_weighted_links(s, 0, def.weighted_links, m->weighted) == SPRING_OK, "as defined");
     get_state(s, particles, &y);
     CHECK(spring_scene_advance_with(kernels, s, SPRING_EULER, 1e-3, 1) == SPRING_OK, "a small step");
     memset(force, 0, particles * axes * sizeof force[0]);
@@ -324,6 +478,10 @@ SPRING_INLINE void check_forces(const model *m, const scene_kernels *kernels)
         degree[m->def.link[i].a]++;
         degree[m->def.link[i].b]++;
     }
+    for (size_t i = 0; i < m->def.weighted_links; i++)
+        for (int k = 0; k < 4; k++)
+            if (m->weighted[i].weight[k] != 0)
+                degree[m->weighted[i].particle[k]]++;
     for (size_t i = 0; i < particles; i++)
         for (uint32_t a = 0; a < axes; a++)
             CHECK_CLOSE(all.force[i * axes + a], force[i * axes + a], (15 + degree[i]) * EPS * size[i],

@@ -244,7 +244,7 @@ static void velocity_alone_overflows(void)
     const double x[] = {0, 0.5}, v[] = {0, large};
     const uint8_t pinned[] = {1, 0};
     for (unsigned damped = 0; damped < 2; damped++) {
-        const spring_link link = {0, 1, 0.5, large, damped ? 1e-3 : 0};
+        const spring_link link = {0, 1, 0.5, large, damped ? 1e-3 : 0, 0};
         const spring_scene_def def = {
             .axes = 1, .particles = 2, .links = 1, .position = x, .velocity = v, .pinned = pinned, .link = &link};
         spring_scene *s = scene_of(&def), *twin = scene_of(&def);
@@ -336,7 +336,7 @@ static void masses_of_the_freed(void)
 {
     const double x[] = {0, 1, 2}, mass[] = {0, 0.4, -3};
     const uint8_t pinned[] = {1, 1, 1}, freed[] = {0};
-    const spring_link link[] = {{0, 1, 0.5, 3, 0}, {1, 2, 0.5, 3, 0}};
+    const spring_link link[] = {{0, 1, 0.5, 3, 0, 0}, {1, 2, 0.5, 3, 0, 0}};
     const struct {
         const double *mass;
         double all, want[3];
@@ -391,7 +391,7 @@ static void links_found(void)
                 CHECK(spring_scene_find_link(s, want->a, want->b) == least &&
                           spring_scene_find_link(s, want->b, want->a) == least,
                       "the first between these two");
-                const spring_link cut = {want->a, want->b, 1, 0, 0};
+                const spring_link cut = {want->a, want->b, 1, 0, 0, 0};
                 if (features & EDITABLE && spring_scene_set_link(s, i, &cut) == SPRING_OK)
                     CHECK(spring_scene_find_link(s, want->a, want->b) == least, "cut ones, too");
             }
@@ -426,7 +426,7 @@ static void refused_calls(void)
         x[3 * i] = i;
         mass[i] = i == 0 ? tiny : 1;
         if (i < links)
-            link[i] = (spring_link){i, i + 1, 0.5, i == 2 ? huge : 3, i == 4 ? huge : 0}, limit[i] = 1;
+            link[i] = (spring_link){i, i + 1, 0.5, i == 2 ? huge : 3, i == 4 ? huge : 0, 0}, limit[i] = 1;
     }
     spring_scene_def def = {.flags = SPRING_SCENE_EDITABLE,
                             .methods = 1u << SPRING_LEAPFROG,
@@ -458,7 +458,7 @@ static void refused_calls(void)
         if (i < 2)
             REFUSES(SPRING_EINVAL, spring_scene_advance(s, SPRING_LEAPFROG, bad[i], 1));
         for (int k = 0; k < 4 && i < 3; k++) {
-            spring_link last[] = {{links - 2, links - 1, 0.3, 2, 0}, link[links - 1]}; /* the first is valid */
+            spring_link last[] = {{links - 2, links - 1, 0.3, 2, 0, 0}, link[links - 1]}; /* the first is valid */
             double *const number[] = {&last[1].rest, &last[1].stiffness, &last[1].damping,
                                       &limit[k % 2 ? 0 : links - 1]};
             *number[k] = bad[i];
@@ -487,7 +487,8 @@ static void refused_calls(void)
     REFUSES(SPRING_EINVAL, spring_scene_set_pinned(s, 0, 2, free_all)); /* the mass of the first */
     for (size_t i = 2; i <= 5; i++)
         REFUSES(SPRING_EINVAL, spring_scene_set_mass(s, i, 1, &light)); /* for a link at either end */
-    const spring_link stiff = {6, 7, 1, 20 * huge, 0}, ends[] = {{6, 8, 1, 1, 0}, {5, 7, 1, 1, 0}, {6, 6, 1, 1, 0}};
+    const spring_link stiff = {6, 7, 1, 20 * huge, 0, 0},
+                      ends[] = {{6, 8, 1, 1, 0, 0}, {5, 7, 1, 1, 0, 0}, {6, 6, 1, 1, 0, 0}};
     REFUSES(SPRING_EINVAL, spring_scene_set_link(s, 6, &stiff));
     for (int i = 0; i < 3; i++)
         REFUSES(SPRING_EINVAL, spring_scene_set_link(s, 6, &ends[i]));

@@ -10,7 +10,7 @@ static void at_the_limit(void)
     for (uint32_t i = 0; i < 40; i++) {
         x[3 * i] = 1.5 * i;
         if (i > 0)
-            link[i - 1] = (spring_link){i, i - 1, 1, 3, 0.1};
+            link[i - 1] = (spring_link){i, i - 1, 1, 3, 0.1, 0};
     }
     const spring_scene_def def = {
         .flags = SPRING_SCENE_EDITABLE, .particles = 40, .links = 39, .position = x, .link = link};
@@ -56,7 +56,7 @@ static void components(void)
         const size_t particles = 2 + random_bits() % (n - 2), links = random_bits() % n;
         for (size_t i = 0; i < links; i++) {
             const uint32_t a = (uint32_t)(random_bits() % particles), b = (uint32_t)(random_bits() % (particles - 1));
-            link[i] = (spring_link){a, b < a ? b : b + 1, 1, random_bits() % 3 ? 2 : 0, random_bits() % 3 ? 0 : 0.1};
+            link[i] = (spring_link){a, b < a ? b : b + 1, 1, random_bits() % 3 ? 2 : 0, random_bits() % 3 ? 0 : 0.1, 0};
         }
         spread_least(particles, links, link, least);
         size_t count = 0;
@@ -73,9 +73,9 @@ static void components(void)
 static void bad_components(void)
 {
     uint32_t got[3] = {7, 7, 7};
-    const spring_link good = {0, 1, 1, 1, 0};
-    const spring_link bad[] = {{0, 3, 1, 1, 0},   {3, 0, 1, 1, 0},  {1, 1, 1, 1, 0},
-                               {0, 1, 1, NAN, 0}, {0, 1, 1, 1, -1}, {0, 1, 1, INFINITY, 0}};
+    const spring_link good = {0, 1, 1, 1, 0, 0};
+    const spring_link bad[] = {{0, 3, 1, 1, 0, 0},   {3, 0, 1, 1, 0, 0},  {1, 1, 1, 1, 0, 0},
+                               {0, 1, 1, NAN, 0, 0}, {0, 1, 1, 1, -1, 0}, {0, 1, 1, INFINITY, 0, 0}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         CHECK(spring_links_components(3, 2, (spring_link[]){good, bad[i]}, got) == 0 && got[0] == 7, "a bad link");
     CHECK(spring_links_components(3, 1, NULL, got) == 0 && spring_links_components(3, 1, &good, NULL) == 0 &&

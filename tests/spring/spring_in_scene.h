@@ -17,7 +17,7 @@ static inline spring_state advance_in_scene(spring_method m, spring_params p, do
 {
     const double position[] = {0, from.x}, velocity[] = {0, from.v};
     const uint8_t pinned[] = {1, 0};
-    const spring_link link = {0, 1, 0, p.stiffness, 0};
+    const spring_link link = {0, 1, 0, p.stiffness, 0, 0};
     const spring_scene_def def = {.axes = 1,
                                   .methods = 1u << m,
                                   .particles = 2,

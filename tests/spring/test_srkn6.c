@@ -95,7 +95,7 @@ static spring_scene *pendulum(double drag)
 {
     static const double position[] = {0, 0, 1.1, -0.2}, velocity[] = {0, 0, 0.3, 0.7}, mass[] = {1, 0.7};
     static const uint8_t pinned[] = {1, 0};
-    static const spring_link link = {0, 1, 0.9, 31.3, 0};
+    static const spring_link link = {0, 1, 0.9, 31.3, 0, 0};
     const spring_scene_def def = {.axes = 2,
                                   .methods = 1u << SPRING_SRKN6,
                                   .particles = 2,

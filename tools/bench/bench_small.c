@@ -163,13 +163,13 @@ typedef struct subject {
 static spring_scene *make_scene(const subject *s)
 {
     static const uint8_t first[most_particles] = {1};
-    static const spring_link one = {0, 1, 0, 1.3, 0}, pendulum = {0, 1, 1, 52, 0};
+    static const spring_link one = {0, 1, 0, 1.3, 0, 0}, pendulum = {0, 1, 1, 52, 0, 0};
     static const double unit[] = {0, 1}, swing[] = {0, 0, 1.2, -0.1}, swing_v[] = {0, 0, -0.3, 0.4},
                         row_v[most_particles] = {0, 1.4142135623730951};
     const double row[most_particles] = {(1 - 1 / omega) / sqrt(2), (1 + 1 / omega) / sqrt(2)};
     spring_link stiff[most_links];
     for (uint32_t i = 0; i < most_links; i++)
-        stiff[i] = (spring_link){2 * i, 2 * i + 1, 0, mass * omega * omega / 2, 0};
+        stiff[i] = (spring_link){2 * i, 2 * i + 1, 0, mass * omega * omega / 2, 0, 0};
     spring_scene_def def[SMALL_SCENES] = {
         [DUFFING] =
             {.axes = 1, .particles = 2, .links = 1, .position = unit, .pinned = first, .link = &one, .force = cubic},

@@ -286,7 +286,7 @@ static double spring_case(contact_scheme scheme, double dt, double restitution)
 {
     const double x[6] = {0, -10, 0, 0, 1, 0}, mass = 0.7;
     const uint8_t pinned[2] = {1, 0};
-    const spring_link link = {0, 1, 9.5, mass * omega * omega, 0}; /* along a line: linear */
+    const spring_link link = {0, 1, 9.5, mass * omega * omega, 0, 0}; /* along a line: linear */
     const spring_scene_def def = {
         .particles = 2, .links = 1, .position = x, .mass_all = mass, .pinned = pinned, .link = &link};
     spring_collider c = ground;
@@ -395,7 +395,7 @@ static double capstan(contact_scheme scheme, double dt, double friction)
         const double beyond = along < tail ? tail - along : fmax(along - length + tail, 0);
         x[3 * i] = -around * cos(phi), x[3 * i + 1] = around * sin(phi) - beyond, x[3 * i + 2] = 0;
         if (i + 1 < count)
-            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping};
+            link[i] = (spring_link){(uint32_t)i, (uint32_t)i + 1, spacing - load / stiffness, stiffness, damping, 0};
     }
     pinned[count - 1] = 1, v[3 * (count - 1) + 1] = -speed;
     const spring_scene_def def = {.flags = SPRING_SCENE_FORCES,

@@ -5,7 +5,9 @@
  *
  *     tension = stiffness (length - rest) + damping rate,    force on a = tension (b - a)/length,    on b the opposite
  *
- * On one axis length and rate are the differences b - a of position and velocity, with their sign.
+ * On one axis length and rate are the differences b - a of position and velocity, with their sign. A link of rest
+ * length 0 is linear: force on a = stiffness (b - a) + damping (derivative of b - a). A weighted link has the sum of
+ * weight x in place of b - a, and the force on a particle is -weight times the "force on a".
  */
 #ifndef HARNESS_LINK_H
 #define HARNESS_LINK_H
@@ -40,6 +42,8 @@ static inline link_force link_evaluate(size_t axes, const double *delta, const d
     r.force[0] = r.scale * delta[0];
     r.force[1] = r.scale * delta[1];
     r.force[2] = r.scale * z;
+    for (size_t d = 0; d < axes && rest == 0; d++)
+        r.force[d] = stiffness * delta[d] + damping * relative[d];
     return r;
 }
 

@@ -80,7 +80,7 @@ static void build_one(const scene_case *c, scene_problem *p)
     p->position[0] = c->x;
     p->velocity[0] = c->v;
     p->pinned[1] = true;
-    p->link[0] = (spring_link){0, 1, 0, mass, 0};
+    p->link[0] = (spring_link){0, 1, 0, mass, 0, 0};
     p->def.force = c->force;
     p->def.user = (void *)c;
     if (c->force == cubic_driven)
@@ -137,7 +137,7 @@ static void build_stiff_and_soft(const scene_case *c, scene_problem *p)
     (void)c;
     make(p, 1, 6, 3);
     for (uint32_t i = 0; i < 3; i++)
-        p->link[i] = (spring_link){2 * i, 2 * i + 1, 0, mass * omega * omega / 2, 0};
+        p->link[i] = (spring_link){2 * i, 2 * i + 1, 0, mass * omega * omega / 2, 0, 0};
     p->position[0] = (1 - 1 / omega) / sqrt(2);
     p->position[1] = (1 + 1 / omega) / sqrt(2);
     p->velocity[1] = sqrt(2);
@@ -156,7 +156,7 @@ static void build_elastic_pendulum(const scene_case *c, scene_problem *p)
     p->position[3] = -0.1;
     p->velocity[2] = -0.3;
     p->velocity[3] = 0.4;
-    p->link[0] = (spring_link){0, 1, 1, 52, 0};
+    p->link[0] = (spring_link){0, 1, 1, 52, 0, 0};
     p->def.gravity[1] = -9.81;
 }
 
@@ -169,7 +169,7 @@ static void make_row(scene_problem *p, size_t particles, double spacing, double 
         p->position[2 * i] = 0.6 * spacing * stretch * i;
         p->position[2 * i + 1] = -0.8 * spacing * stretch * i;
         if (i > 0)
-            p->link[i - 1] = (spring_link){i - 1, i, spacing, 0, 0};
+            p->link[i - 1] = (spring_link){i - 1, i, spacing, 0, 0, 0};
     }
     p->def.gravity[1] = -9.81;
 }
@@ -211,18 +211,18 @@ static void build_patchwork(const scene_case *c, scene_problem *p)
     }
     spring_link *link = p->link;
     for (uint32_t i = 1; i < particles; i++)
-        *link++ = i % 4 == 0 ? (spring_link){i, i - 1, 0.25, 31, 0} : (spring_link){i - 1, i, 0.25, 31, 0};
+        *link++ = i % 4 == 0 ? (spring_link){i, i - 1, 0.25, 31, 0, 0} : (spring_link){i - 1, i, 0.25, 31, 0, 0};
     for (uint32_t i = 2; i < particles; i++)
-        *link++ = (spring_link){i - 2, i, 0.5 + 0.03 * (i % 3), 23, 0};
+        *link++ = (spring_link){i - 2, i, 0.5 + 0.03 * (i % 3), 23, 0, 0};
     for (uint32_t i = 3; i < particles; i++)
         if (i != gap)
-            *link++ = (spring_link){i - 3, i, 0.8, 17, 0};
+            *link++ = (spring_link){i - 3, i, 0.8, 17, 0, 0};
     for (uint32_t i = 4; i < particles; i++)
-        *link++ = (spring_link){i - 4, i, 1.1, 4.0 * (i % 3), 0.1};
+        *link++ = (spring_link){i - 4, i, 1.1, 4.0 * (i % 3), 0.1, 0};
     for (uint32_t i = 5; i < particles; i++)
-        *link++ = (spring_link){i - 5, i, 1.4, 3, 0.3 * (i % 2)};
-    *link++ = (spring_link){1, 9, 2.1, 12, 0};
-    *link++ = (spring_link){10, 4, 1.9, 14, 0.2};
+        *link++ = (spring_link){i - 5, i, 1.4, 3, 0.3 * (i % 2), 0};
+    *link++ = (spring_link){1, 9, 2.1, 12, 0, 0};
+    *link++ = (spring_link){10, 4, 1.9, 14, 0.2, 0};
     if (axes > 1)
         p->def.pinned = NULL;
     p->def.gravity[axes - 1] = -9.81;
@@ -295,7 +295,7 @@ static void build_mode(const scene_case *c, scene_problem *p)
         const uint32_t row = i * N, last = N * N - N,
                        twice[][2] = {{row, row + 1}, {row + N - 2, row + N - 1}, {i, N + i}, {last - N + i, last + i}};
         for (int side = 0; side < 4; side++)
-            p->link[links++] = (spring_link){twice[side][0], twice[side][1], 0, 2 * g.stiffness, 0};
+            p->link[links++] = (spring_link){twice[side][0], twice[side][1], 0, 2 * g.stiffness, 0, 0};
     }
     for (size_t i = 0; i < p->def.particles; i++)
         if (!p->pinned[i])
@@ -318,7 +318,7 @@ static void build_chain(const scene_case *c, scene_problem *p)
         p->position[i] = chain_spacing * i + (inside ? 0.1 * sin(1.7 * i) : 0);
         p->velocity[i] = inside ? 0.15 * cos(2.3 * i) : 0;
         if (i > 0)
-            p->link[i - 1] = (spring_link){i - 1, i, chain_spacing, chain_stiffness, 0};
+            p->link[i - 1] = (spring_link){i - 1, i, chain_spacing, chain_stiffness, 0, 0};
     }
 }
 
@@ -369,7 +369,7 @@ static void build_pair(const scene_case *c, scene_problem *p)
     }
     for (size_t i = 0; i < 2; i++)
         weigh(p, i, pair_mass[i]);
-    p->link[0] = (spring_link){0, 1, pair_rest, pair_stiffness, 0};
+    p->link[0] = (spring_link){0, 1, pair_rest, pair_stiffness, 0, 0};
 }
 
 static void build_damped_pair(const scene_case *c, scene_problem *p)

@@ -124,10 +124,10 @@ static hanging examine(preset *scene)
     return h;
 }
 
-/* Links with two pinned ends or without length do not count. */
+/* Tethers and links with two pinned ends or without length do not count. */
 static bool counts(const preset *scene, const spring_link *link)
 {
-    return link->rest > 0 && !(scene->pinned[link->a] && scene->pinned[link->b]);
+    return link->rest > 0 && link->flags == 0 && !(scene->pinned[link->a] && scene->pinned[link->b]);
 }
 
 /* The stiffness with which the links at the pins would carry the scene if all pulled straight up. A scene that could
@@ -140,7 +140,7 @@ static double first_trial(const hanging *h, double sag)
     for (size_t i = 0; i < scene->def.particles; i++)
         weight += scene->pinned[i] ? 0 : scene->def.mass_all * h->gravity;
     for (size_t i = 0; i < scene->def.links; i++)
-        if (scene->pinned[scene->link[i].a] != scene->pinned[scene->link[i].b])
+        if (scene->link[i].flags == 0 && scene->pinned[scene->link[i].a] != scene->pinned[scene->link[i].b])
             rest += scene->link[i].rest;
     return margin * weight / (sag * rest);
 }
@@ -153,6 +153,8 @@ static void set_links(preset *scene, double stiffness, double damping)
         scene->link[i].stiffness = stiffness;
         scene->link[i].damping = damping;
     }
+    if (scene->fraction > 0)
+        start_links(scene, 0, scene->fraction);
 }
 
 static _Noreturn void refuse_sag(double sag, double stiffness, const char *why)

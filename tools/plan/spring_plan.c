@@ -18,6 +18,7 @@
 
 static double error = NAN, duration = NAN, sag = NAN;
 static double mass = NAN, stiffness = NAN, damping = NAN, hertz = NAN, damping_ratio = NAN, drag = NAN;
+static double bend = NAN, tethers = NAN;
 static int kind = -1;
 static uint64_t size;
 static const char *mesh;
@@ -47,6 +48,12 @@ static const cli_option options[] = {
              "face of four corners. The highest vertices are pinned, and gravity pulls the others. For example:\n"
              "spring-plan --error 0.05 --duration 1 --mesh flag.obj --stiffness 300 --mass 0.01"},
     {"drag", CLI_NOT_NEGATIVE, .real = &drag, .value = "D", .help = "drag on a particle of the scene [N s/m]"},
+    {"bend", CLI_POSITIVE, .real = &bend, .value = "B",
+     .help = "rope, cloth, water: bending stiffness, EI [N m^2] or D [N m]"},
+    {"tethers", CLI_POSITIVE, .real = &tethers, .value = "FRACTION",
+     .help = "rope, cloth, jelly, meshes: tethers to the nearest pins, such as 0.05\n"
+             "With tethers, a scene sags less at the same stiffness, so that it needs fewer steps. See --tethers of\n"
+             "spring-scene."},
     {"sag", CLI_POSITIVE, .real = &sag, .value = "S",
      .help = "print the stiffness with which --scene or --mesh becomes at most S longer\n"
              "S is from 1e-4 to 1, and 0.02 is 2 %. The steps for this stiffness are also printed. For example:\n"
@@ -115,6 +122,8 @@ static void check_presets(void)
     refuse("mass", mass, "is not for --presets");
     refuse("damping", damping, "is not for --presets");
     refuse("drag", drag, "is not for --presets");
+    refuse("bend", bend, "is not for --presets");
+    refuse("tethers", tethers, "is not for --presets");
     if (size > 0)
         cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is not for --presets", size);
 }
@@ -155,11 +164,17 @@ static void check_usage(void)
     if (kind >= 0 || mesh != NULL) {
         refuse("hertz", hertz, "is for one spring, not for a scene");
         refuse("damping-ratio", damping_ratio, "is for one spring, not for a scene");
+        if (mesh != NULL || kind == PRESET_JELLY || kind == PRESET_CHAIN)
+            refuse("bend", bend, "is for rope, cloth and water");
+        if (kind == PRESET_CHAIN || kind == PRESET_WATER)
+            refuse("tethers", tethers, "is not for scenes with one axis");
         if (mesh != NULL && size > 0)
             cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for --scene; a mesh has a fixed size", size);
         return;
     }
     refuse("drag", drag, "is for a scene; for one spring use --damping");
+    refuse("bend", bend, "is for a scene");
+    refuse("tethers", tethers, "is for a scene");
     if (size > 0)
         cli_fail(CLI_USAGE, "--size: \"%" PRIu64 "\" is for a scene", size);
     if (isnan(hertz) == isnan(stiffness))
@@ -329,7 +344,9 @@ static preset chosen_scene(disturbances **poke)
 {
     if (mesh != NULL) {
         const mesh_settings settings = {or_else(mass, 1), or_else(stiffness, 1), or_else(damping, 0), or_else(drag, 0)};
-        return mesh_read(mesh, &settings);
+        preset read = mesh_read(mesh, &settings);
+        start_links(&read, 0, or_else(tethers, 0));
+        return read;
     }
     preset_settings chosen = preset_unchosen((preset_kind)kind);
     chosen.size = size;
@@ -338,7 +355,9 @@ static preset chosen_scene(disturbances **poke)
     chosen.damping = damping;
     chosen.drag = drag;
     const preset_settings settings = preset_chosen(&chosen);
-    return poked_preset(&settings, poke);
+    preset scene = poked_preset(&settings, poke);
+    start_links(&scene, or_else(bend, 0), or_else(tethers, 0));
+    return scene;
 }
 
 static const plan_row *first_stepper(void)

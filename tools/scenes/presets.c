@@ -172,6 +172,55 @@ void preset_clear(preset *r)
     free(r->pinned);
     free(r->mass);
     free(r->link);
+    free(r->bend);
+}
+
+static spring_status make_bend(const preset *r, double rigidity, spring_weighted_link *out, size_t *count)
+{
+    const uint32_t *n = r->count;
+    const spring_grid g = {
+        .count = {n[0], n[1], n[2]}, .height = r->def.axes == 1, .spacing = r->start[3] - r->start[0]};
+    return n[1] == 1
+               ? spring_bend_rod(n[0], r->def.axes, r->position, r->pinned, rigidity, 0, out, count)
+               : spring_bend_grid(&g, r->pinned, SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS, rigidity, 0, out, count);
+}
+
+spring_status preset_bend(preset *r, double rigidity)
+{
+    size_t count = 0;
+    spring_status status = make_bend(r, rigidity, NULL, &count);
+    if (status != SPRING_OK || count == 0)
+        return status;
+    free(r->bend);
+    r->def.weighted_links = 0;
+    r->def.weighted_link = r->bend = malloc(count * sizeof *r->bend);
+    if (r->bend == NULL)
+        return SPRING_ENOMEM;
+    status = make_bend(r, rigidity, r->bend, &count);
+    r->def.weighted_links = count;
+    return status;
+}
+
+spring_status preset_tether(preset *r, double fraction)
+{
+    const size_t particles = r->def.particles;
+    size_t count = particles;
+    r->def.links -= r->tethers;
+    r->tethers = 0;
+    r->fraction = fraction;
+    spring_link *link = realloc(r->link, (r->def.links + particles) * sizeof *link);
+    uint32_t *work = malloc(2 * particles * sizeof *work);
+    double *distance = malloc(2 * particles * sizeof *distance);
+    spring_status status = SPRING_ENOMEM;
+    if (link != NULL)
+        r->def.link = r->link = link;
+    if (link != NULL && work != NULL && distance != NULL)
+        status = spring_links_tethers(&r->def, fraction, 0, link + r->def.links, &count, work, distance);
+    if (status == SPRING_OK)
+        r->def.links += r->tethers = count;
+    free(work);
+    free(distance);
+    return status;
 }
 
 bool preset_takes(const preset *r, spring_method m)

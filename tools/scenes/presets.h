@@ -65,12 +65,22 @@ typedef struct preset {
     uint8_t *pinned;   /* [particles] */
     double *mass;      /* [particles] */
     spring_link *link; /* [links] */
+    size_t tethers;    /* the last of the links */
+    double fraction;   /* of the tethers */
+    spring_weighted_link *bend;
 } preset;
 
 /** Makes the definition of a scene, without its methods. On failure (SPRING_ERANGE: the size is out of range;
     SPRING_ENOMEM) nothing is allocated. */
 spring_status preset_init(preset *r, const preset_settings *s);
 void preset_clear(preset *r);
+
+/** Adds bending stiffness to a rope (EI [N m^2]) or a sheet (D [N m]). SPRING_EINVAL for other scenes; SPRING_ENOMEM */
+spring_status preset_bend(preset *r, double rigidity);
+
+/** Adds tethers with this fraction of the stiffness, or replaces them. SPRING_ENOMEM; otherwise as
+    spring_links_tethers(). On failure there are none. */
+spring_status preset_tether(preset *r, double fraction);
 
 /** Returns true if the scene supports the method. */
 bool preset_takes(const preset *r, spring_method m);

@@ -15,6 +15,19 @@ void start_preset(preset *r, const preset_settings *s)
         cli_fail(CLI_FAILED, "no memory for a scene of this --size");
 }
 
+void start_links(preset *r, double bend, double tethers)
+{
+    spring_status status = bend > 0 ? preset_bend(r, bend) : SPRING_OK;
+    if (status == SPRING_EINVAL)
+        cli_fail(CLI_USAGE, "--bend: \"%g\" is too large; the stiffness should be finite", bend);
+    if (status == SPRING_OK && tethers > 0)
+        status = preset_tether(r, tethers);
+    if (status != SPRING_OK && status != SPRING_ENOMEM)
+        cli_fail(CLI_USAGE, "--tethers: \"%g\": %s", tethers, spring_status_string(status));
+    if (status != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for tethers or weighted links");
+}
+
 spring_scene *start_definition(const spring_scene_def *def, size_t *bytes)
 {
     size_t needed = 0;

@@ -9,6 +9,9 @@
 /** As preset_init(). */
 void start_preset(preset *r, const preset_settings *s);
 
+/** Adds bending stiffness and tethers if they are > 0: preset_bend() and preset_tether(). */
+void start_links(preset *r, double bend, double tethers);
+
 /** Creates a scene in one block of *bytes bytes (NULL: not needed); release it with free(). */
 spring_scene *start_definition(const spring_scene_def *def, size_t *bytes);
 

@@ -19,7 +19,9 @@ for (const name of ["Module", "instantiate"]) {
         return new.target ? new plain(...values) : plain(...values);
     };
 }
-const { components, grid, hasSimd, methods: offered, ready, Scene, soften } = await import("../scenes.js");
+const { bendGrid, bendMesh, bendRod, components, fromMesh, grid, hasSimd, methods: offered } =
+    await import("../scenes.js");
+const { ready, Scene, soften, TENSION_ONLY, TETHER, tethers } = await import("../scenes.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
 function offers(definition, method) {
@@ -527,7 +529,7 @@ await test("pins, drive, masses", () => {
 
 await test("links: get, set, cut, tear, tension, pieces", () => {
     const scene = rope({ editable: true });
-    assert.deepEqual(scene.getLink(2), { a: 2, b: 3, rest: 0.5, stiffness: 300, damping: 0.2 });
+    assert.deepEqual(scene.getLink(2), { a: 2, b: 3, rest: 0.5, stiffness: 300, damping: 0.2, flags: 0 });
     assert.equal(scene.findLink(3, 2), 2);
     assert.equal(scene.findLink(0, 2), -1);
     scene.setLink(2, { rest: 0.4 });
@@ -542,6 +544,67 @@ await test("links: get, set, cut, tear, tension, pieces", () => {
     scene.cut(3);
     assert.deepEqual([...scene.components().component], [0, 1, 1, 2, 3]);
     assert.equal(components(3, [{ a: 0, b: 2, rest: 1, stiffness: 1 }]).count, 2);
+    scene.free();
+});
+
+await test("flags of links, bending, tethers, attachments", () => {
+    const sheet = { count: [9, 9], spacing: 0.1 };
+    const cloth = {
+        ...grid({ ...sheet, stiffness: 20, families: ["structural", "shear"], pinned: ["firstY"] }),
+        mass: 0.01,
+        gravity: [0, 9.81, 0],
+        drag: 0.02,
+    };
+    const { pinned } = cloth;
+    const weightedLinks = bendGrid(sheet, 1e-3, { pinned, diagonals: false });
+    assert.equal(weightedLinks.stiffness.length, 2 * 63 - 7); // none in the pinned row
+    const links = tethers(cloth);
+    const added = 9 * 7; // the second row is next to the pins
+    assert.equal(links.flags.length, cloth.links.flags.length + added);
+    assert.ok(links.flags.subarray(-added).every((flag) => flag === TETHER));
+    assert.deepEqual([...links.ends.subarray(-2)], [80, 8]);
+    const lowest = [cloth, { ...cloth, links, weightedLinks }].map((definition) => {
+        const scene = new Scene(definition);
+        scene.advance("leapfrog", 1 / 480, 4800);
+        const y = Math.max(...scene.get("position").filter((_, i) => i % 3 === 1));
+        scene.free();
+        return y;
+    });
+    assert.ok(lowest[0] > 0.87 && lowest[1] < 0.82, String(lowest));
+
+    const position = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0.25, 0.25, 0];
+    const lamp = new Scene({
+        position,
+        pinned: [1, 1, 1, 0],
+        gravity: [0, 0, -10],
+        weightedLinks: { particles: [3, 0, 1, 2], weights: [-1, 0.5, 0.25, 0.25], stiffness: 400, damping: 2 },
+    });
+    lamp.advance("leapfrog", 0.01, 1000);
+    assert.ok(Math.abs(lamp.get("position", 3)[2] + 10 / 400) < 1e-6);
+    lamp.free();
+    const slack = { a: 0, b: 1, rest: 2, stiffness: 5, flags: TENSION_ONLY };
+    const pair = new Scene({ position: position.slice(0, 6), links: [slack] });
+    assert.equal(pair.tension(0), 0);
+    assert.equal(pair.getLinks().flags[0], TENSION_ONLY);
+    pair.free();
+    const rod = bendRod([0, 0, 1, 0, 3, 0, 4, 0], 6, { axes: 2, dampingTime: 0.5 });
+    assert.deepEqual([...rod.particles.subarray(0, 3)], [0, 1, 2]);
+    assert.deepEqual([...rod.stiffness], [9, 9]);
+    assert.equal(rod.damping[1], 4.5);
+});
+
+await test("a mesh with a seam", () => {
+    const position = [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0];
+    const triangles = [0, 1, 2, 3, 5, 4];
+    const mesh = fromMesh({ position, triangles, stiffness: 30, damping: 0.5 });
+    assert.deepEqual([...mesh.particleOf], [0, 1, 2, 1, 2, 3]);
+    assert.deepEqual([...mesh.triangles], [0, 1, 2, 1, 3, 2]);
+    assert.deepEqual([...mesh.links.ends], [0, 1, 0, 2, 1, 2, 1, 3, 2, 3]);
+    assert.equal(mesh.links.rest[2], Math.SQRT2);
+    const bend = bendMesh(mesh.position, mesh.triangles, 2);
+    assert.deepEqual([...bend.particles, ...bend.stiffness], [1, 2, 0, 3, 2]);
+    assert.equal(fromMesh({ position, triangles, stiffness: 30, weld: null }).links.rest.length, 6);
+    const scene = new Scene({ position: mesh.position, links: mesh.links, weightedLinks: bend });
     scene.free();
 });
 

@@ -20,7 +20,11 @@ __attribute__((import_module("springstep"), import_name("force"))) void call_for
                                                                                    double *const *force);
 
 /* definition.js fills these structures. */
-_Static_assert(sizeof(spring_link) == 32 && offsetof(spring_link, rest) == 8, "spring_link");
+_Static_assert(sizeof(spring_link) == 40 && offsetof(spring_link, rest) == 8 && offsetof(spring_link, flags) == 32,
+               "spring_link");
+_Static_assert(sizeof(spring_weighted_link) == 72 && offsetof(spring_weighted_link, weight) == 16 &&
+                   offsetof(spring_weighted_link, rest) == 48,
+               "spring_weighted_link");
 _Static_assert(sizeof(spring_collider) == 8 * 31 && offsetof(spring_collider, axis) == 8 * 7 &&
                    offsetof(spring_collider, velocity) == 8 * 20 && offsetof(spring_collider, restitution) == 8 * 30,
                "spring_collider");
@@ -121,6 +125,12 @@ void def_links(size_t links, const spring_link *link, uint32_t colliders, double
     def.particle_radius = particle_radius;
 }
 
+EXPORT(def_weighted_links) void def_weighted_links(size_t links, const spring_weighted_link *link)
+{
+    def.weighted_links = links;
+    def.weighted_link = link;
+}
+
 /* Checks the definition; failure_field() and failure_index() say what is wrong with it. */
 EXPORT(def_check) spring_status def_check(void)
 {
@@ -133,6 +143,13 @@ EXPORT(def_check) spring_status def_check(void)
 EXPORT(def_soften) spring_status def_soften(double dt, double fraction, spring_link *link)
 {
     return spring_links_soften(&def, dt, fraction, link);
+}
+
+EXPORT(def_tethers)
+spring_status def_tethers(double fraction, double slack, spring_link *out, size_t *count, uint32_t *work,
+                          double *distance)
+{
+    return spring_links_tethers(&def, fraction, slack, out, count, work, distance);
 }
 
 EXPORT(scene_show) const float *scene_show(shown *s)
@@ -312,6 +329,14 @@ spring_status grid_begin(uint32_t x, uint32_t y, uint32_t z, uint32_t axes, bool
 EXPORT(grid_fill) spring_status grid_fill(double *position, uint8_t *pinned, spring_link *link)
 {
     return spring_grid_fill(&grid, position, pinned, link);
+}
+
+EXPORT(grid_bend)
+spring_status grid_bend(const uint8_t *pinned, bool diagonals, double rigidity, double damping_time,
+                        spring_weighted_link *out, size_t *count)
+{
+    return spring_bend_grid(&grid, pinned, SPRING_BEND_ROWS | (diagonals ? SPRING_BEND_DIAGONALS : 0), rigidity,
+                            damping_time, out, count);
 }
 
 /* Methods in the order of tables: a number, or -1 behind the last. */

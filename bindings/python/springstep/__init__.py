@@ -11,7 +11,8 @@ from springstep._colliders import Collider, box, capsule, plane, sphere
 from springstep._common import (InvalidError, Method, MethodName, NonFiniteError, RangeError, SpringError, UnstableError,
                                 UnsupportedError, _text, methods, self_test)
 from springstep._force import Force
-from springstep._links import LINK, Grid, components, grid
+from springstep._links import LINK, TENSION_ONLY, TETHER, WEIGHTED_LINK, Grid, components, grid
+from springstep._mesh import Mesh, bend_grid, bend_mesh, bend_rod, from_mesh, tethers
 from springstep._native import ffi, lib
 from springstep._scene import Energies, Scene, Snapshot
 from springstep._spring import Spring
@@ -20,7 +21,8 @@ from springstep._sweep import sweep
 __version__ = _text(lib.spring_version())
 
 __all__ = [
-    "Batch", "Clock", "Collider", "Energies", "Force", "Grid", "InvalidError", "LINK", "Method", "MethodName", "NonFiniteError",
-    "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "UnstableError", "UnsupportedError", "box", "capsule",
-    "components", "ffi", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep",
+    "Batch", "Clock", "Collider", "Energies", "Force", "Grid", "InvalidError", "LINK", "Mesh", "Method", "MethodName",
+    "NonFiniteError", "RangeError", "Scene", "Snapshot", "Spring", "SpringError", "TENSION_ONLY", "TETHER", "UnstableError",
+    "UnsupportedError", "WEIGHTED_LINK", "bend_grid", "bend_mesh", "bend_rod", "box", "capsule", "components", "ffi",
+    "from_mesh", "grid", "lib", "methods", "plane", "self_test", "sphere", "sweep", "tethers",
 ]

@@ -12,15 +12,29 @@ from numpy.typing import ArrayLike, NDArray
 from springstep._common import fail, invalid, names_of
 from springstep._native import ffi, lib
 
-_FORMATS: dict[str, Any] = {"double": np.float64, "uint32_t": np.uint32}
+_FORMATS: dict[str, Any] = {"double": np.float64, "uint32_t": np.uint32, "double[4]": (np.float64, 4),
+                            "uint32_t[4]": (np.uint32, 4)}
 
-#: A link, as in C: a and b [indices of particles], rest [m], stiffness [N/m], damping [N s/m].
-LINK: np.dtype[np.void] = np.dtype({
-    "names": [name for name, _ in ffi.typeof("spring_link").fields],
-    "formats": [_FORMATS[field.type.cname] for _, field in ffi.typeof("spring_link").fields],
-    "offsets": [field.offset for _, field in ffi.typeof("spring_link").fields],
-    "itemsize": ffi.sizeof("spring_link"),
-})
+
+
+def _dtype(struct: str) -> np.dtype[np.void]:
+    """Return a structure of C as a dtype."""
+    fields = ffi.typeof(struct).fields
+    return np.dtype({
+        "names": [name for name, _ in fields],
+        "formats": [_FORMATS[field.type.cname] for _, field in fields],
+        "offsets": [field.offset for _, field in fields],
+        "itemsize": ffi.sizeof(struct),
+    })
+
+
+#: A link, as in C: a and b [indices of particles], rest [m], stiffness [N/m], damping [N s/m], flags, see TENSION_ONLY.
+LINK: np.dtype[np.void] = _dtype("spring_link")
+#: A weighted link, as in C: particle [4 indices], weight [4], rest [m], stiffness [N/m], damping [N s/m].
+WEIGHTED_LINK: np.dtype[np.void] = _dtype("spring_weighted_link")
+#: Values of `flags` of a link: it pulls only; and it acts only while exactly one of its ends is pinned.
+TENSION_ONLY: int = lib.SPRING_LINK_TENSION_ONLY
+TETHER: int = lib.SPRING_LINK_TETHER
 
 Family = Literal["structural", "shear", "bend"]
 Face = Literal["first_x", "last_x", "first_y", "last_y", "first_z", "last_z"]
@@ -81,17 +95,8 @@ def grid(count: Iterable[SupportsIndex], spacing: float, stiffness: float, dampi
         Positions, pinned particles and links.
     """
     shape = tuple(operator.index(number) for number in count)
-    if not 1 <= len(shape) <= 3:
-        invalid("count", shape, reason="not one to three numbers")
-    if not all(0 <= number < 2**32 for number in shape):
-        fail(lib.SPRING_ERANGE, "count", shape)
-    if axes not in (1, 2, 3):
-        invalid("axes", axes, reason="not 1, 2 or 3")
-    c = ffi.new("spring_grid *", {
-        "count": [*shape, 1, 1][:3], "axes": 1 if height else axes, "height": height, "spacing": spacing, "stretch": stretch,
-        "families": _bits("families", families, _FAMILIES), "stiffness": stiffness, "damping": damping,
-        "pinned": _bits("pinned", pinned, _FACES),
-    })
+    c = grid_as_c(shape, axes=axes, height=height, spacing=spacing, stretch=stretch, stiffness=stiffness, damping=damping,
+                  families=_bits("families", families, _FAMILIES), pinned=_bits("pinned", pinned, _FACES))
     particles, links = ffi.new("size_t *"), ffi.new("size_t *")
     if status := lib.spring_grid_size(c, particles, links):
         for field in ("spacing", "stretch"):
@@ -110,6 +115,18 @@ def grid(count: Iterable[SupportsIndex], spacing: float, stiffness: float, dampi
                                       ffi.from_buffer("uint8_t[]", result.pinned), as_c(result.links)):
         fail(status)
     return result
+
+
+def grid_as_c(count: Iterable[SupportsIndex], *, axes: int, height: bool = False, **fields: float) -> Any:
+    """Return a spring_grid of C."""
+    shape = tuple(operator.index(number) for number in count)
+    if not 1 <= len(shape) <= 3:
+        invalid("count", shape, reason="not one to three numbers")
+    if not all(0 <= number < 2**32 for number in shape):
+        fail(lib.SPRING_ERANGE, "count", shape)
+    if axes not in (1, 2, 3):
+        invalid("axes", axes, reason="not 1, 2 or 3")
+    return ffi.new("spring_grid *", {"count": [*shape, 1, 1][:3], "axes": 1 if height else axes, "height": height, **fields})
 
 
 def as_c(links: NDArray[np.void]) -> Any:

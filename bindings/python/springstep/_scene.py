@@ -12,7 +12,7 @@ from springstep._colliders import Collider
 from springstep._common import (Guard, MethodName, SpringError, fail, fail_step, finite, invalid, method_number, methods,
                                 names_of, step_count)
 from springstep._force import AnyForce, CForce, PythonForce, called_force
-from springstep._links import Grid, as_c, joined, natural
+from springstep._links import WEIGHTED_LINK, Grid, as_c, joined, natural
 from springstep._native import ffi, lib
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ class SceneOptions(TypedDict, total=False):
     rest: ArrayLike | None
     stiffness: ArrayLike | None
     damping: ArrayLike | None
+    weighted_links: ArrayLike | None
     velocity: ArrayLike | None
     mass: ArrayLike
     pinned: ArrayLike | None
@@ -97,6 +98,8 @@ class Scene(Generic[F]):
     rest, stiffness, damping : array_like, optional
         What `links` does not have, for all links or for each. By default the rest length is the initial length, and
         the damping 0.
+    weighted_links : array_like, optional
+        Springs between weighted points, as an array of WEIGHTED_LINK: from `bend_rod` and similar functions, or attachments.
     velocity : array_like, optional
         [m/s], like position. By default all particles are at rest.
     mass : array_like
@@ -158,8 +161,8 @@ class Scene(Generic[F]):
                  dtype: DTypeLike, **options: Unpack[SceneOptions]) -> None: ...
 
     def __init__(self, position: ArrayLike, links: ArrayLike = (), *misplaced: object, rest: ArrayLike | None = None,
-                 stiffness: ArrayLike | None = None, damping: ArrayLike | None = None, velocity: ArrayLike | None = None,
-                 mass: ArrayLike = 1.0, pinned: ArrayLike | None = None, gravity: ArrayLike | None = None,
+                 stiffness: ArrayLike | None = None, damping: ArrayLike | None = None,
+                 weighted_links: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike = 1.0, pinned: ArrayLike | None = None, gravity: ArrayLike | None = None,
                  drag: float = 0.0, force: AnyForce | None = None, force_data: NDArray[Any] | None = None,
                  force_ignores_velocity: bool = False, methods: Iterable[MethodName] | None = None, editable: bool = False,
                  undo: bool = True, dtype: DTypeLike = np.float64, tension_only: bool = False, held_forces: bool = False,
@@ -188,9 +191,13 @@ class Scene(Generic[F]):
         self._undo = undo
         self._guard = Guard("the scene is being advanced, or was called from its own force")
 
-        given: dict[str, NDArray[Any]] = {"position": positions, "link": link}
+        weighted = np.ascontiguousarray([] if weighted_links is None else weighted_links, WEIGHTED_LINK)
+        if weighted.ndim != 1:
+            raise ValueError(f"weighted_links: its shape is {weighted.shape}, not (weighted_links,)")
+
+        given: dict[str, NDArray[Any]] = {"position": positions, "link": link, "weighted_link": weighted}
         definition = ffi.new(f"{self._prefix}_def *", {
-            "axes": self._axes, "particles": self._particles, "links": self._links, "drag": drag, "max_speed": max_speed,
+            "axes": self._axes, "particles": self._particles, "links": self._links, "weighted_links": len(weighted), "drag": drag, "max_speed": max_speed,
             "colliders": min(natural("colliders", colliders), 2**32 - 1), "particle_radius": particle_radius,
             "gravity": self._vector("gravity", gravity) if gravity is not None else [],
         })
@@ -854,6 +861,36 @@ class Scene(Generic[F]):
                     fail(status, f"link.{field}", array[field][wrong[0]].item(), first + int(wrong[0]))
         if status:
             fail(status, "first, count" if status == lib.SPRING_ERANGE else "links", (first, len(array)))
+
+    def set_weighted_links(self, links: ArrayLike, first: int = 0) -> None:
+        """Change weighted links of an editable scene, all of them or none. Their particles are those of the definition.
+
+        Parameters
+        ----------
+        links : array_like
+            Of WEIGHTED_LINK.
+        first : int
+            Index of the first link.
+        """
+        array = np.ascontiguousarray(links, WEIGHTED_LINK)
+        status = self._ask("set_weighted_links", natural("first", first), array.size,
+                           ffi.cast("spring_weighted_link *", ffi.from_buffer(array)))
+        if status:
+            fail(status, "first, count" if status == lib.SPRING_ERANGE else "weighted_links", (first, array.size))
+
+    def weighted_link(self, index: int) -> NDArray[np.void]:
+        """Return a weighted link as it is now, of WEIGHTED_LINK, without axes.
+
+        Parameters
+        ----------
+        index : int
+            Index of the link.
+        """
+        link = np.zeros((), WEIGHTED_LINK)
+        pointer = ffi.cast("spring_weighted_link *", ffi.from_buffer(link))
+        if status := self._ask("get_weighted_link", natural("weighted_link", index), pointer):
+            fail(status, "weighted_link", index)
+        return link
 
     def tear(self, stretch: ArrayLike) -> NDArray[np.uint32]:
         """Cut the links of an editable scene that are too long, and return their indices. Call it once per frame.

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""Functions that make links: bending stiffness, tethers, and the links of triangle meshes."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple, SupportsIndex
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from springstep._common import fail, invalid
+from springstep._links import LINK, WEIGHTED_LINK, as_c, grid_as_c, joined
+from springstep._native import ffi, lib
+
+
+class Mesh(NamedTuple):
+    """The particles and links of a triangle mesh."""
+
+    position: NDArray[np.float64]  #: [m], (particles, 3)
+    links: NDArray[np.void]  #: of LINK
+    triangles: NDArray[np.uint32]  #: of particles, (triangles, 3)
+    particle_of: NDArray[np.uint32]  #: the particle of each vertex
+
+
+def _positions(position: ArrayLike) -> NDArray[np.float64]:
+    array = np.ascontiguousarray(position, np.float64)
+    array = array[:, np.newaxis] if array.ndim == 1 else array
+    if array.ndim != 2 or not 1 <= array.shape[1] <= 3:
+        raise ValueError(f"position: its shape is {array.shape}, not (particles, axes)")
+    return array
+
+
+def _in_space(field: str, position: ArrayLike) -> NDArray[np.float64]:
+    array = _positions(position)
+    if array.shape[1] != 3:
+        raise ValueError(f"{field}: its shape is {array.shape}, not (particles, 3)")
+    if not np.isfinite(array).all():
+        row = int(np.flatnonzero(~np.isfinite(array).all(1))[0])
+        invalid(field, array[row].tolist(), row)
+    return array
+
+
+def _corners(triangles: ArrayLike) -> NDArray[np.uint32]:
+    array = np.asarray(triangles)
+    if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":
+        raise ValueError(f"triangles: an array of {array.dtype} and shape {array.shape}, not integers, (triangles, 3)")
+    if (outside := np.flatnonzero(((array < 0) | (array >= 2**32)).any(1))).size:
+        fail(lib.SPRING_ERANGE, "triangles", array[outside[0]].tolist(), int(outside[0]))
+    return np.ascontiguousarray(array, np.uint32)
+
+
+def _flags(pinned: ArrayLike | None, particles: int) -> Any:
+    if pinned is None:
+        return ffi.NULL
+    flags = np.ascontiguousarray(pinned, np.bool_)
+    if flags.shape != (particles,):
+        raise ValueError(f"pinned: its shape is {flags.shape}, not {(particles,)}")
+    return ffi.from_buffer("uint8_t[]", flags)
+
+
+def _work(count: int, kind: str = "uint32_t") -> Any:
+    return ffi.new(f"{kind}[]", max(count, 1))
+
+
+def _made(kind: np.dtype[np.void], call: Callable[[Any, Any], int], **arguments: object) -> NDArray[np.void]:
+    """Return what a function of C makes that first counts. It is called with a pointer to links, and the count."""
+    count = ffi.new("size_t *")
+    c_name = "spring_link *" if kind is LINK else "spring_weighted_link *"
+    result = np.empty(0, kind)
+    if (status := call(ffi.cast(c_name, 0), count)) == lib.SPRING_OK:
+        result = np.empty(count[0], kind)
+        status = call(ffi.cast(c_name, ffi.from_buffer(result)), count)
+    if status:
+        for field in ("rigidity", "damping_time", "fraction", "slack"):
+            value: Any = arguments.get(field, 1.0)
+            if not 0 <= value < np.inf or (field == "fraction" and value == 0):
+                invalid(field, value)
+        fail(status, *next(iter(arguments.items())))
+    return result
+
+
+def bend_rod(position: ArrayLike, rigidity: float, *, pinned: ArrayLike | None = None,
+             damping_time: float = 0.0) -> NDArray[np.void]:
+    """Return weighted links that resist bending of a rod, such as a cable, hair or an antenna.
+
+    Two pinned particles next to each other are a clamp.
+
+    Parameters
+    ----------
+    position : array_like
+        [m], (particles, axes), of the straight rod, in order.
+    rigidity : float
+        Bending stiffness EI >= 0 [N m^2].
+    pinned : array_like, optional
+        For each particle, whether it is pinned.
+    damping_time : float
+        Damping divided by stiffness of each link >= 0 [s].
+
+    Returns
+    -------
+    ndarray of WEIGHTED_LINK
+        For `weighted_links` of `Scene`.
+    """
+    at = _positions(position)
+    flags = _flags(pinned, len(at))
+    return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_rod(
+        len(at), at.shape[1], ffi.from_buffer("double[]", at), flags, rigidity, damping_time, out, count),
+        rigidity=rigidity, damping_time=damping_time)
+
+
+def bend_grid(count: Iterable[SupportsIndex], spacing: float, rigidity: float, *, pinned: ArrayLike | None = None,
+              diagonals: bool = True, damping_time: float = 0.0) -> NDArray[np.void]:
+    """Return weighted links that resist bending of a sheet, such as cloth or paper.
+
+    Parameters
+    ----------
+    count, spacing
+        As in `grid`, with two directions that have more than one particle.
+    rigidity : float
+        Bending stiffness D >= 0 [N m].
+    pinned : array_like, optional
+        For each particle, whether it is pinned.
+    diagonals : bool
+        False: along rows and columns only, at half of the cost.
+    damping_time : float
+        Damping divided by stiffness of each link >= 0 [s].
+
+    Returns
+    -------
+    ndarray of WEIGHTED_LINK
+        For `weighted_links` of `Scene`.
+    """
+    sheet = grid_as_c(count, spacing=spacing, axes=3)
+    flags = _flags(pinned, int(np.prod([max(number, 1) for number in sheet.count])))
+    families = lib.SPRING_BEND_ROWS | (lib.SPRING_BEND_DIAGONALS if diagonals else 0)
+    return _made(WEIGHTED_LINK, lambda out, number: lib.spring_bend_grid(
+        sheet, flags, families, rigidity, damping_time, out, number),
+        rigidity=rigidity, damping_time=damping_time, count=tuple(sheet.count))
+
+
+def bend_mesh(position: ArrayLike, triangles: ArrayLike, rigidity: float, *, pinned: ArrayLike | None = None,
+              damping_time: float = 0.0) -> NDArray[np.void]:
+    """Return weighted links that resist bending of a flat triangle mesh, see `from_mesh`.
+
+    Parameters
+    ----------
+    position : array_like
+        [m], (particles, 3), at rest.
+    triangles : array_like
+        Indices of particles, (triangles, 3).
+    rigidity : float
+        Bending stiffness D >= 0 [N m].
+    pinned : array_like, optional
+        For each particle, whether it is pinned.
+    damping_time : float
+        Damping divided by stiffness of each link >= 0 [s].
+
+    Returns
+    -------
+    ndarray of WEIGHTED_LINK
+        For `weighted_links` of `Scene`.
+    """
+    at, corners = _in_space("position", position), _corners(triangles)
+    flags, work = _flags(pinned, len(at)), _work(len(at) + 6 * len(corners) + 1)
+    return _made(WEIGHTED_LINK, lambda out, count: lib.spring_bend_mesh(
+        len(at), ffi.from_buffer("double[]", at), len(corners), ffi.from_buffer("uint32_t[]", corners), flags, rigidity,
+        damping_time, out, count, work), triangles=None, rigidity=rigidity, damping_time=damping_time)
+
+
+def tethers(position: ArrayLike, links: ArrayLike, pinned: ArrayLike, *, fraction: float = 0.05, slack: float = 0.0,
+            weighted_links: ArrayLike | None = None, **columns: ArrayLike | None) -> NDArray[np.void]:
+    """Return tethers: tension-only links to the nearest pinned particle, which limit the stretch of ropes and cloth.
+
+    ``links = np.concatenate([links, tethers(position, links, pinned)])`` adds them to an array of LINK, such as `grid`
+    returns.
+
+    Parameters
+    ----------
+    position, links, pinned, weighted_links
+        As in `Scene`, for two or three axes.
+    fraction : float
+        Stiffness of a tether > 0, relative to the sum of the stiffness of its particle.
+    slack : float
+        Relative excess length >= 0.
+    **columns
+        `rest`, `stiffness` and `damping`, as in `Scene`, if the links do not have them.
+
+    Returns
+    -------
+    ndarray of LINK
+        One tether for each particle that hangs on a pinned one and is not next to it.
+    """
+    at = _positions(position)
+    link = joined(links, at, **columns)
+    weighted = np.ascontiguousarray([] if weighted_links is None else weighted_links, WEIGHTED_LINK)
+    definition = ffi.new("spring_scene_def *", {
+        "axes": at.shape[1], "particles": len(at), "links": len(link), "position": ffi.from_buffer("double[]", at),
+        "pinned": _flags(pinned, len(at)), "link": as_c(link), "weighted_links": len(weighted),
+        "weighted_link": ffi.cast("spring_weighted_link *", ffi.from_buffer(weighted)),
+    })
+    work, distance = _work(2 * len(at)), _work(2 * len(at), "double")
+    return _made(LINK, lambda out, count: lib.spring_links_tethers(definition, fraction, slack, out, count, work, distance),
+                 links=None, fraction=fraction, slack=slack)
+
+
+def from_mesh(position: ArrayLike, triangles: ArrayLike, stiffness: float, damping: float = 0.0, *,
+              weld: float | None = 0.0) -> Mesh:
+    """Return the particles and links of a triangle mesh for drawing, whose vertices may be split at seams.
+
+    Parameters
+    ----------
+    position : array_like
+        [m], (vertices, 3).
+    triangles : array_like
+        Indices of vertices, (triangles, 3).
+    stiffness, damping : float
+        Of every link [N/m], [N s/m].
+    weld : float or None
+        Vertices that are not farther apart become one particle [m]. None: each vertex is a particle.
+
+    Returns
+    -------
+    Mesh
+        A particle is at its first vertex. To draw the mesh, use ``scene.position()[mesh.particle_of]``.
+    """
+    at, corners = _in_space("position", position), _corners(triangles)
+    work, distance = _work(3 * len(at) + 6 * len(corners) + 1), -1.0 if weld is None else weld
+    if not 0 <= distance < np.inf and weld is not None:
+        invalid("weld", weld)
+    particle_of, particles = np.zeros(len(at), np.uint32), ffi.new("size_t *")
+    links = _made(LINK, lambda out, count: lib.spring_links_from_mesh(
+        len(at), ffi.from_buffer("double[]", at), len(corners), ffi.from_buffer("uint32_t[]", corners), distance,
+        ffi.from_buffer("uint32_t[]", particle_of), particles, out, count, work), triangles=None)
+    links["stiffness"], links["damping"] = stiffness, damping
+    places = np.empty((particles[0], 3))
+    places[particle_of[::-1]] = at[::-1]  # the first vertex of a particle comes last
+    return Mesh(places, links, particle_of[corners], particle_of)
