@@ -902,6 +902,13 @@ static void saved_states(void)
         const saved y = save(b.s);
         const bool same = i > 0 && y.size == before.size && memcmp(y.bytes + 16, before.bytes + 16, 80) == 0;
         CHECK(i == 0 || same || spring_scene_load(b.s, before.bytes, before.size) == SPRING_EINVAL, "of another scene");
+        if (m.def.links > 0)
+            m.link[0].flags ^= SPRING_LINK_TENSION_ONLY;
+        if (m.def.links > 0 && spring_scene_check(&m.def, NULL, NULL) == SPRING_OK) {
+            const block flagged = block_of(&m.def);
+            CHECK(spring_scene_load(flagged.s, y.bytes, y.size) == SPRING_EINVAL, "other flags of a link");
+            free(flagged.room);
+        }
         free(before.room);
         free(b.room);
         before = y;

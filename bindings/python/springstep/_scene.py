@@ -224,7 +224,7 @@ class Scene(Generic[F]):
             setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
         # For copies. Positions, velocities, gravity and the force are part of the state.
         self._definition: dict[str, Any] = {
-            "links": link, "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
+            "links": link, "weighted_links": weighted.copy(), "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
             "force_ignores_velocity": force_ignores_velocity, "methods": names, "editable": editable, "undo": undo,
             "dtype": self._dtype, "tension_only": tension_only, "held_forces": held_forces, "max_speed": max_speed,
             "colliders": colliders, "particle_radius": particle_radius,

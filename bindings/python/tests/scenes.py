@@ -45,7 +45,10 @@ def saved_scenes(dtype):
     damped = rope(dtype=dtype, force=swing, undo=False, tension_only=True)
     water = Scene.from_grid(grid([7, 5], 0.2, 300.0, height=True, pinned=["first_x"]), dtype=dtype, methods=["rk4", "leapfrog"])
     water.set_velocity(np.linspace(-1, 1, 35))
-    for scene in (torn, damped, water):
+    hair = Scene.from_grid(grid([9], 0.1, 300.0, pinned=["first_x"]), dtype=dtype, editable=True, weighted_links=springstep.bend_rod(
+        np.arange(9)[:, np.newaxis] * [0.1, 0, 0], 0.02, damping_time=0.01, pinned=np.arange(9) == 0))
+    hair.set_velocity(np.linspace(-1, 1, 27).reshape(9, 3))
+    for scene in (torn, damped, water, hair):
         scene.advance(2e-3, 30)
         yield scene
 
