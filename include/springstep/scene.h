@@ -988,11 +988,11 @@ SPRING_API size_t spring_links_components(size_t particles, size_t links, const 
  *     flags      SPRING_LINK_TETHER
  *
  * The largest sum of the stable step grows at most by the factor 1 + fraction: with fraction 0.05, the stable step of
- * leapfrog shrinks by at most 2.5 %. Append the tethers to the links of the definition. The pinned particles must not
- * move toward each other so far that a tether would have to push: tethers only pull.
+ * leapfrog shrinks by at most 2.5 %. Append the tethers to the links of the definition. When a piece of torn cloth comes
+ * off, cut its tethers: see examples/c/curtain.c.
  *
  * The work is proportional to links times the number of sweeps over them, which is 2 to 10 for sorted ropes and sheets,
- * and less than the number of links on the longest way for others. Call spring_links_renumber() first for an unsorted
+ * and at most two more than the links of the longest way for others. Call spring_links_renumber() first for an unsorted
  * mesh.
  *
  * @param[in]     def       definition of the scene, without the tethers; two or three axes
@@ -1084,7 +1084,7 @@ SPRING_API spring_status spring_links_from_mesh(size_t vertices, const double *p
  * @param[in,out] count         at most particles - 2 links
  * @par Accuracy  Order 2. With 20 segments, the deflection of a cantilever differs from F L^3/(3 EI) by 0.13 %, its first
  *                frequency by 0.21 % and the buckling load of Euler by 0.21 %. With F L^2/EI = 1 ... 10, the tip is
- *                within 0.002 L of the elastica (tests/scene/test_bend.c)
+ *                within 0.003 L of the elastica (tests/scene/test_bend.c)
  */
 SPRING_API spring_status spring_bend_rod(size_t particles, uint32_t axes, const double *position, const uint8_t *pinned,
                                          double rigidity, double damping_time, spring_weighted_link *out,

@@ -28,6 +28,13 @@ SPRING_INLINE bool link_acts(const unbanded_links *l, size_t j, bool damped)
     return l->stiffness[j] > 0 || (damped && l->damping[j] > 0);
 }
 
+/* Compact kernels do not have a copy of the loops for each number of axes. clang warns of such a loop. */
+#if SPRING_COMPACT
+#define UNROLL_AXES
+#else
+#define UNROLL_AXES SPRING_UNROLL
+#endif
+
 /* Quantities have an array for each axis. */
 SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                 uint32_t axes, bool damped)
@@ -36,7 +43,7 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
     for (size_t j = 0; j < l->count; j++) {
         const size_t from = l->a[j], to = l->b[j];
         scalar delta[3] = {0}, scale = 1, square = 0, rate = 0;
-        SPRING_UNROLL
+        UNROLL_AXES
         for (uint32_t a = 0; a < axes; a++) {
             delta[a] = x[a * s->stride + to] - x[a * s->stride + from];
             square += delta[a] * delta[a];
@@ -48,7 +55,7 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
             continue;
         if (!linear)
             scale = link_scale(l, j, square, rate, damped);
-        SPRING_UNROLL
+        UNROLL_AXES
         for (uint32_t a = 0; a < axes; a++) {
             if (!linear)
                 continue;
@@ -56,13 +63,14 @@ SPRING_INLINE void all_unbanded(const scene_links *s, const scalar *x, const sca
             if (damped)
                 delta[a] += l->damping[j] * (v[a * s->stride + to] - v[a * s->stride + from]);
         }
-        SPRING_UNROLL
+        UNROLL_AXES
         for (uint32_t a = 0; a < axes; a++) {
             out->force[a * s->stride + from] += scale * delta[a];
             out->force[a * s->stride + to] -= scale * delta[a];
         }
     }
 }
+#undef UNROLL_AXES
 
 /* Not inlined, since it is called for few links. */
 SPRING_NOINLINE void one_quad_link(const unbanded_links *l, size_t j, const scalar *x, const scalar *v, scalar *force,

@@ -94,7 +94,7 @@ static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_lay
     for (const candidate *c = table; c < table + candidates; c++) {
         if (!makes_a_band(c) || count_longer(table, c) >= room)
             continue;
-        const band_layout band = {.kind = kind,
+        const band_layout band = {.kind = (uint8_t)kind,
                                   .offset = c->offset,
                                   .first = c->first,
                                   .end = c->last + 1,

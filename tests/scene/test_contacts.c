@@ -224,7 +224,7 @@ static void spring_on_plane(void)
         setting w = {.x = {0, 1, 0},
                      .mass = mass,
                      .pin = {0, -10, 0},
-                     .link = {0, 1, 9.5, mass * omega * omega, 0},
+                     .link = {0, 1, 9.5, mass * omega * omega, 0, 0},
                      .colliders = 1,
                      .collider = {floor_below}};
         w.collider[0].restitution = i == 0 ? 1 : 0.8;
