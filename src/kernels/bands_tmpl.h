@@ -393,15 +393,14 @@ SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band
     const scalar *const stiffness = band->stiffness + slot;
     const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
     const int8_t *const occupied = band->occupied + slot;
-    for (size_t j = 0; j < count; j += lanes) {
+    for (size_t j = 0; j < count && stiff; j += lanes) {
         const mask joined = vec_load_mask(occupied + j);
         const real k = vec_load(stiffness + j);
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < 3; a++) {
-            const real pull = stiff && a < axes ? k * second_difference(x + a * stride + t + j, offset) : splat(0);
-            if (a < axes)
-                vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
-        }
+        const scalar *at = x + t + j;
+        scalar *to = force + j;
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < axes; a++, at += stride, to += axis)
+            vec_store(to, select_real(joined, k * second_difference(at, offset), splat(0)));
     }
     for (size_t j = 0; j < count && damped; j += lanes) {
         const mask joined = vec_load_mask(occupied + j);
@@ -410,7 +409,7 @@ SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band
         for (uint32_t a = 0; a < axes; a++) {
             const real pull = c * second_difference(v + a * stride + t + j, offset);
             scalar *const to = force + a * axis + j;
-            vec_store(to, select_real(joined, vec_load(to) + pull, splat(0)));
+            vec_store(to, select_real(joined, stiff ? vec_load(to) + pull : pull, splat(0)));
         }
     }
 }

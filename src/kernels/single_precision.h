@@ -67,6 +67,11 @@
 #define spring_scene_touching           spring_scenef_touching
 #define spring_scene_place_colliders    spring_scenef_place_colliders
 #define spring_scene_balanced           spring_scenef_balanced
+#define spring_scene_describe           spring_scenef_describe
+#define spring_scene_identify           spring_scenef_identify
+#define spring_scene_load               spring_scenef_load
+#define spring_scene_save               spring_scenef_save
+#define spring_scene_set_time           spring_scenef_set_time
 #endif
 
 #endif

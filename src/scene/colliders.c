@@ -180,13 +180,12 @@ static void place_collider(scene_collider *to, const spring_collider *c, double 
     to->reach_slow = (scalar)1.006 * reach * reach;
 }
 
-void spring_scene_place_colliders(spring_scene *s, double t0, double t1)
+void spring_scene_place_colliders(spring_scene *s, double time0, double time1)
 {
     const spring_collider *c = scene_read(s, ARRAY_COLLIDERS);
     scene_collider *placed = scene_memory(s, ARRAY_PLACED);
     for (uint32_t i = 0; i < s->colliders; i++)
-        place_collider(&placed[i], &c[i], t0 - s->colliders_set, t1 - s->colliders_set, s->particle_radius,
-                       s->layout.axes);
+        place_collider(&placed[i], &c[i], time0, time1, s->particle_radius, s->layout.axes);
 }
 
 /* ------------------------------------------------------------------------------------------------- public functions */
@@ -228,7 +227,8 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
         orthonormalise(&set[i], axes_of_shape(&c[i], s->layout.axes), s->layout.axes);
     }
     s->colliders = count;
-    s->colliders_set = spring_scene_time(s);
+    s->colliders_base = 0;
+    s->colliders_from = s->steps;
     for (uint32_t buffer = 0; buffer < 2; buffer++) { /* without colliders no step writes them */
         uint32_t *const touched = scene_memory(s, touched_in(buffer));
         if (touched != NULL)

@@ -478,6 +478,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     fill_particles(s, def);
     fill_links(s, def);
     fill_weighted_links(s, def);
+    s->ends = spring_scene_identify(s, def);
     *result = s;
     return SPRING_OK;
 }

@@ -27,8 +27,9 @@ struct scene_step {
     scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
     scalar h;            /* [s] dt in the precision of the scene */
     double t0, dt, done; /* the step starts at the time t0 + done dt */
-    cached_force cached; /* the forces at the start */
-    bool predicts;       /* see scene_stepper */
+    double colliders_base, colliders_from; /* [s] and its step: see struct spring_scene */
+    cached_force cached;                   /* the forces at the start */
+    bool predicts;                         /* see scene_stepper */
     damping_series damping;
     scene_contacts contacts;
 };
@@ -106,7 +107,8 @@ static inline void prepare_contacts(scene_step *s)
     scene_contacts *const c = &s->contacts;
     if (c->count == 0)
         return;
-    spring_scene_place_colliders(s->scene, time_at(s, 0), time_at(s, 1));
+    const double done = s->done - s->colliders_from;
+    spring_scene_place_colliders(s->scene, s->colliders_base + done * s->dt, s->colliders_base + (done + 1) * s->dt);
     c->h = s->h;
     c->x = x_at(s, s->to);
     c->before = scene_read(s->scene, touched_in(s->from));

@@ -24,17 +24,6 @@ double spring_scene_time(const spring_scene *s)
     return s != NULL ? time_of(s) : (double)NAN;
 }
 
-static bool finite_scene(const spring_scene *s)
-{
-    for (uint32_t a = 0; a < s->layout.axes; a++) {
-        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
-        for (size_t i = 0; i < s->layout.particles; i++)
-            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
-                return false;
-    }
-    return true;
-}
-
 /* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
    finite. Padding lanes become 0: a NaN there would make later steps fail, and no caller can overwrite it. */
 static void invalidate(spring_scene *s)
@@ -107,13 +96,15 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     const spring_status status = check_advance(s, m, dt);
     if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
         return status;
-    if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
+    if (s->lost && !scene_finite(s)) /* the caller has not set it anew */
         return SPRING_ENONFINITE;
     s->lost = false;
     const bool rollback = (s->layout.flags & SPRING_SCENE_NO_UNDO) == 0;
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
+    const double colliders_base = same_run ? s->colliders_base : colliders_time(s);
+    const uint64_t colliders_from = same_run ? s->colliders_from : 0;
     if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
@@ -127,6 +118,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         .h = (scalar)dt,
         .t0 = t0,
         .dt = dt,
+        .colliders_base = colliders_base,
+        .colliders_from = (double)colliders_from,
         .predicts = spring_scene_steppers[m].predicts,
         .contacts = {.count = s->colliders, .collider = scene_read(s, ARRAY_PLACED), .axes = s->layout.axes}};
     choose_damping(&step, &links, &spring_scene_steppers[m]);
@@ -145,6 +138,8 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     s->t0 = t0;
     s->dt = dt;
     s->steps = before + n;
+    s->colliders_base = colliders_base;
+    s->colliders_from = colliders_from;
     return SPRING_OK;
 }
 
@@ -171,11 +166,11 @@ static const scalar *forces_of_state(spring_scene *s)
 
 bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
 {
-    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
+    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !scene_finite(s))
         return false;
     const scalar *all = forces_of_state(s);
     if (s->colliders > 0)
-        spring_scene_place_colliders(s, time_of(s), time_of(s));
+        spring_scene_place_colliders(s, colliders_time(s), colliders_time(s));
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, accel[3] = {0};

@@ -432,6 +432,77 @@ static void print_contacts(spring_method m)
             }
 }
 
+/* The bytes of a saved state, and those of the state 200 steps after it has been loaded into a new scene. Equal bytes are
+   what lets a state travel from one target to another. */
+#define STATE_BITS(type)                                                                                              \
+    static type *type##_stated(void *memory, size_t bytes, const sheet *s)                                            \
+    {                                                                                                                 \
+        const type##_def def = {.axes = s->axes,                                                                      \
+                                .flags = SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE,                                 \
+                                .particles = particles,                                                               \
+                                .links = s->links,                                                                    \
+                                .position = s->position,                                                              \
+                                .mass_all = 0.3,                                                                      \
+                                .pinned = s->pinned,                                                                  \
+                                .link = s->link,                                                                      \
+                                .gravity = {0.3, -9.81, 0.1},                                                         \
+                                .drag = 0.07,                                                                         \
+                                .colliders = s->axes > 1 ? 9 : 0};                                                    \
+        type *scene = NULL;                                                                                           \
+        return type##_init(memory, bytes, &def, &scene) == SPRING_OK ? scene : NULL;                                  \
+    }                                                                                                                 \
+    static uint64_t type##_state_bytes(const type *scene, unsigned char *state, size_t *bytes)                        \
+    {                                                                                                                 \
+        if (type##_save(scene, state, bytes) != SPRING_OK)                                                            \
+            return 0;                                                                                                 \
+        uint64_t hash = no_digest;                                                                                    \
+        for (size_t i = 0; i < *bytes; i++)                                                                           \
+            hash = digest_bits(hash, state[i], 1);                                                                    \
+        return hash;                                                                                                  \
+    }                                                                                                                 \
+    static void type##_state_bits(const sheet *s, uint64_t hash[2])                                                   \
+    {                                                                                                                 \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[2][1 << 17], state[1 << 16];                         \
+        double force[3 * particles];                                                                                  \
+        spring_collider c[9] = {{.shape = SPRING_SPHERE, .at = {0.3, 0.1, 0.05}, .radius = 0.25, .velocity = {0.1}}}; \
+        for (int i = 1; i < 9; i++)                                                                                   \
+            c[i] = (spring_collider){.shape = SPRING_PLANE, .at = {0, -0.1 * i, 0}, .axis = {{0, 1, 0}}};             \
+        for (int i = 0; i < 3 * particles; i++)                                                                       \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                                \
+        size_t bytes = sizeof state;                                                                                  \
+        type *const one = type##_stated(memory[0], sizeof memory[0], s);                                              \
+        type *const other = type##_stated(memory[1], sizeof memory[1], s);                                            \
+        hash[0] = hash[1] = 0;                                                                                        \
+        if (type##_set(one, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                                     \
+            (s->axes > 1 && type##_set_colliders(one, c, 9) != SPRING_OK) ||                                          \
+            type##_advance(one, SPRING_LEAPFROG, 1e-3, 150) != SPRING_OK ||                                           \
+            type##_tear(one, 1.6, NULL, NULL, 0, NULL) != SPRING_OK ||                                                \
+            type##_advance(one, SPRING_LEAPFROG, 1e-3, 20) != SPRING_OK)                                              \
+            return;                                                                                                   \
+        hash[0] = type##_state_bytes(one, state, &bytes);                                                             \
+        if (type##_load(other, state, bytes) != SPRING_OK ||                                                          \
+            type##_advance(other, SPRING_LEAPFROG, 1e-3, 200) != SPRING_OK)                                           \
+            return;                                                                                                   \
+        bytes = sizeof state;                                                                                         \
+        hash[1] = type##_state_bytes(other, state, &bytes);                                                           \
+    }
+
+STATE_BITS(spring_scene)
+STATE_BITS(spring_scenef)
+
+static void print_states(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int jumbled = 0; jumbled < 2; jumbled++) {
+            const sheet s = make_sheet(axes, jumbled, jumbled);
+            uint64_t hash[2][2];
+            spring_scene_state_bits(&s, hash[0]);
+            spring_scenef_state_bits(&s, hash[1]);
+            printf("state-%s %" PRIu32 " %016" PRIx64 " %016" PRIx64 ", float %016" PRIx64 " %016" PRIx64 "\n",
+                   jumbled ? "list" : "rows", axes, hash[0][0], hash[0][1], hash[1][0], hash[1][1]);
+        }
+}
+
 /* Few steps, many that oscillate or do not, and a few periods of many. */
 static void print_accuracy(spring_method m)
 {
@@ -631,5 +702,6 @@ int main(void)
         if (spring_method_describe(spring_method_at(j))->scenes)
             print_bending(spring_method_at(j));
     print_mesh_links();
+    print_states();
     return 0;
 }
