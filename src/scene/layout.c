@@ -78,7 +78,7 @@ static band_kind kind_of(const spring_link *link)
 }
 
 /* Finds the bands of a kind, as many as there is still room for. */
-static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
+SPRING_NOINLINE void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
 {
     const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
     const uint32_t room = most_bands - l->bands;
