@@ -229,7 +229,8 @@ SPRING_INLINE void add_further_links(model *m, bool damped)
     static const uint32_t offsets[] = {1, 2, 5, 8, 31, 33, 64, 100};
     const size_t particles = m->def.particles;
     size_t count = 0;
-    const unsigned bands = (unsigned)(random_bits() % 3), strays = (unsigned)(random_bits() % 12);
+    const unsigned bands = (unsigned)(random_bits() % 3),
+                   strays = random_bits() % 3 ? 0 : (unsigned)(random_bits() % 12);
     for (unsigned b = 0; b < bands; b++) {
         const uint32_t offset = offsets[random_bits() % (sizeof offsets / sizeof offsets[0])];
         for (uint32_t i = 0; i + 2 * (size_t)offset < particles && count < most_weighted - 20; i++)
