@@ -55,7 +55,7 @@ let torn: number;
     cloth.restore(start);
     const state: Uint8Array = cloth.save();
     cloth.load(state);
-    cloth.setTime(3);
+    cloth.setTime(0);
     time = cloth.time + (z === 5 && total !== 0 && cloth.tension(0) === 0 ? 0 : 1);
 }
 // @ts-expect-error: a sphere has a radius
