@@ -19,8 +19,16 @@ for (const name of ["Module", "instantiate"]) {
         return new.target ? new plain(...values) : plain(...values);
     };
 }
-const { bendGrid, bendMesh, bendRod, components, fromMesh, grid, hasSimd, methods: offered } =
-    await import("../scenes.js");
+const {
+    bendGrid,
+    bendMesh,
+    bendRod,
+    components,
+    fromMesh,
+    grid,
+    hasSimd,
+    methods: offered,
+} = await import("../scenes.js");
 const { ready, Scene, soften, TENSION_ONLY, TETHER, tethers } = await import("../scenes.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
@@ -577,7 +585,12 @@ await test("flags of links, bending, tethers, attachments", () => {
         position,
         pinned: [1, 1, 1, 0],
         gravity: [0, 0, -10],
-        weightedLinks: { particles: [3, 0, 1, 2], weights: [-1, 0.5, 0.25, 0.25], stiffness: 400, damping: 2 },
+        weightedLinks: {
+            particles: [3, 0, 1, 2],
+            weights: [-1, 0.5, 0.25, 0.25],
+            stiffness: 400,
+            damping: 2,
+        },
     });
     lamp.advance("leapfrog", 0.01, 1000);
     assert.ok(Math.abs(lamp.get("position", 3)[2] + 10 / 400) < 1e-6);
