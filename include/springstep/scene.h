@@ -70,7 +70,10 @@ extern "C" {
  * link has no direction and its force is 0. If the square of the length underflows (lengths below about 1e-160 m, in
  * single precision 1e-21 m), the force is undefined.
  *
- * With one axis, the link is linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
+ * If rest is 0, the link is linear, and damped in all directions: the force on a is
+ * stiffness (x_b - x_a) + damping (v_b - v_a).
+ *
+ * With one axis, the link is linear, too. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
  * force on b is its opposite. */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
@@ -85,7 +88,7 @@ typedef struct spring_link {
  *
  * They require two or three axes, and are not allowed with RKN8 and SRKN6. spring_scene_set_link() does not change them.
  * @{ */
-/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. */
+/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. Without effect if rest is 0. */
 #define SPRING_LINK_TENSION_ONLY UINT32_C(1)
 /** A tension-only link that acts only while exactly one of its ends is pinned. It keeps a particle from moving away
    from a pinned particle that it hangs on; see spring_links_tethers(). While it does not act, its tension and its
@@ -358,7 +361,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * The bound holds however far links are stretched or compressed, because tension/length <= stiffness. (A compressed
  * scene may buckle with any step.) It follows from three sums over the links of a particle. Each is the largest sum of
- * any free particle. A link counts once instead of twice if its other end is pinned.
+ * any free particle. A link counts once instead of twice if its other end is pinned. A weighted link counts |weight|
+ * of the particle times the sum of |weight| of its free particles instead of twice.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -578,8 +582,8 @@ SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, s
  * Changes weighted links first ... first + count - 1 of an editable scene. If one of the new links is invalid, none is
  * changed.
  *
- * A link of a band whose weights are no longer (w, -2w, w), or whose rest length is no longer 0, leaves its band, and
- * takes about eight times as long.
+ * A link of a band (see docs/details.md) whose weights are no longer (w, -2w, w), or whose rest length is no longer 0,
+ * leaves its band, and takes longer.
  *
  * @param[in] link  [count] the new values. Where a weight is not 0, the particle must be the one of the definition, and
  *                  its weight there not 0

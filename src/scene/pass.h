@@ -190,7 +190,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             },
         .weighted = s->loose > 0 ? l->weighted : 0,
         .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
-        .bounded = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
+        .tension_only = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
     };
 }

@@ -24,16 +24,25 @@ double spring_scene_time(const spring_scene *s)
     return s != NULL ? time_of(s) : (double)NAN;
 }
 
+/* Sets padding lanes to 0 after a failure: a NaN there would make later steps with longer vectors fail, and no caller can
+   overwrite it. */
+static void clear_padding(spring_scene *s, uint32_t buffer)
+{
+    const size_t first = s->layout.particles, count = s->layout.stride - first;
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        memset(scene_axis(s, positions_in(buffer), a) + first, 0, count * sizeof(scalar));
+        memset(scene_axis(s, velocities_in(buffer), a) + first, 0, count * sizeof(scalar));
+    }
+}
+
 /* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
-   finite. Padding lanes become 0: a NaN there would make later steps fail, and no caller can overwrite it. */
+   finite. */
 static void invalidate(spring_scene *s)
 {
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
             x[i] = v[i] = (scalar)NAN;
-        for (size_t i = s->layout.particles; i < s->layout.stride; i++)
-            x[i] = v[i] = 0;
     }
     scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;
@@ -127,6 +136,7 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     bool finite = true;
     const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m].step, before, n, &finite);
     if (!finite) {
+        clear_padding(s, step.to);
         if (!rollback)
             invalidate(s);
         if (s->force_cache != PREDICTED_FORCE) /* the cached forces may be overwritten, or not finite themselves */

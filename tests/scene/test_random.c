@@ -401,6 +401,17 @@ static void do_nothing(spring_scene *s, const model *m)
           "as it is");
 }
 
+/* Of both buffers: a later step may read them with longer vectors than those of the step that wrote them. */
+static void check_padding(spring_scene *s)
+{
+    for (uint32_t buffer = 0; buffer < 2 && scene_has(s, positions_in(buffer)); buffer++)
+        for (uint32_t a = 0; a < s->layout.axes; a++)
+            for (size_t i = s->layout.particles; i < s->layout.stride; i++)
+                CHECK(scalar_finite(scene_axis(s, positions_in(buffer), a)[i]) &&
+                          scalar_finite(scene_axis(s, velocities_in(buffer), a)[i]),
+                      "padding lanes stay finite");
+}
+
 /* Calls that fail. */
 static void fail(const block *b, const model *m)
 {
@@ -436,6 +447,7 @@ static void fail(const block *b, const model *m)
     if ((s->layout.flags & SPRING_SCENE_NO_UNDO) == 0 &&
         spring_scene_advance(s, any_method(&m->def), one_in(2) ? overflows : -overflows, 1 + below(3)) == SPRING_OK)
         memcpy(s, kept.s, b->bytes); /* a scene that does not move cannot overflow */
+    check_padding(s);
     free(kept.room);
 }
 
