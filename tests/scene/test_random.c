@@ -2,7 +2,8 @@
 /*
  * Properties of random scenes with random calls. Every property also visits a table of special layouts.
  *
- *     test_scene_random [VECTORS [SCENES]]    v128, v256, v512 or any; each scene has about six calls of advance()
+ *     test_scene_random [VECTORS [SCENES [states]]]    v128, v256, v512 or any; each scene has about six calls of
+ *                                                      advance(). states: saved states, which take longer
  */
 #include <stdio.h>
 
@@ -1272,10 +1273,12 @@ int main(int argc, char **argv)
 {
     static const test tests[] = {
         {"equal runs", equal_runs},
-        {"saved and loaded scenes go on alike", saved_states},
-        {"scenes that meet go on alike", scenes_that_meet},
         {"forces against a plain loop", forces},
         {"edits", edits},
+    };
+    static const test of_states[] = {
+        {"saved and loaded scenes go on alike", saved_states},
+        {"scenes that meet go on alike", scenes_that_meet},
     };
     static const char *const names[] = {"v128", "v256", "v512"};
     for (int i = 0; i < 3 && argc > 1; i++)
@@ -1285,5 +1288,7 @@ int main(int argc, char **argv)
         }
     if (argc > 2)
         scenes = strtoul(argv[2], NULL, 10);
+    if (argc > 3 && strcmp(argv[3], "states") == 0)
+        return RUN_TESTS("states of random scenes", of_states);
     return RUN_TESTS("random scenes", tests);
 }
