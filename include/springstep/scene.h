@@ -721,8 +721,9 @@ SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
  * The state consists of everything that a run depends on besides the definition: positions, velocities, the time and
  * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
  * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
- * coefficients of links and weighted links. Saving changes nothing. Equal states of the same kind of scene have equal bytes, so saved
- * states can be compared. (Fields of colliders that their shape does not use are saved as they were set.)
+ * coefficients of links and weighted links. Saving changes nothing. Equal states of the same kind of scene have equal
+ * bytes, so saved states can be compared. (Fields of colliders that their shape does not use are saved as they were
+ * set.)
  *
  * @param[out]    out    the state, at any address; NULL: only *bytes is written
  * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may be another one after the next
