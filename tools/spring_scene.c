@@ -34,7 +34,8 @@ static double bend, tethers;
 static cli_words colliders;
 static double particle_radius;                                       /* [m] */
 static double poke[MOST_DISTURBANCES][5], box[MOST_DISTURBANCES][2]; /* t, x, y, force, area; t, mass */
-static const char *frames, *positions;
+static const char *frames, *positions, *save, *load;
+static double start_time; /* [s] of the run: 0, or that of the loaded state */
 static bool hash_alone;
 static preset_settings given;
 
@@ -129,6 +130,14 @@ static const cli_option options[] = {
      .help = "write the positions of each frame to DIR/frame-000000.tsv and so on\n"
              "DIR is created. Older frames with the same numbers are replaced."},
     {"positions", CLI_FILE, .file = &positions, .value = "FILE", .help = "write the positions of all frames to FILE"},
+    {"save", CLI_FILE, .file = &save, .value = "FILE",
+     .help = "save the final state to FILE, for --load\n"
+             "docs/details.md describes the format. If the scene explodes, it is the last state before."},
+    {"load", CLI_INPUT, .file = &load, .value = "FILE",
+     .help = "continue from a state that --save has written\n"
+             "Give the same options of the scene, the same method and the same disturbances. The results are then\n"
+             "those of one long run. H and N are further time and steps. Times of disturbances are those of the\n"
+             "scene, with T < start + H, or later with --save. Colliders are those of the state."},
     {"hash", CLI_FLAG, .flag = &hash_alone,
      .help = "print only a hash of the final state, 16 hexadecimal digits\n"
              "The hash is FNV-1a with 64 bits, over the doubles of all positions and then of all velocities,\n"
@@ -248,8 +257,9 @@ static void check_time(const char *option, double t)
 {
     if (!(t >= 0))
         cli_fail(CLI_USAGE, "--%s: \"%g\" is not a time T of at least 0 s", option, t);
-    if (!(t < length.duration))
-        cli_fail(CLI_USAGE, "--%s: \"%g\" is after the run; T should be below %g s", option, t, length.duration);
+    const double end = start_time + length.duration;
+    if (!(t < end) && save == NULL)
+        cli_fail(CLI_USAGE, "--%s: \"%g\" is after the run; T should be below %g s", option, t, end);
 }
 
 static void check_poke(const preset *r, const double at[5])
@@ -275,10 +285,11 @@ static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 {
     uint64_t random = seed;
     size_t count = 0;
-    for (uint64_t i = 0; (double)i / rain < length.duration; i++) {
+    const double end = start_time + length.duration;
+    for (uint64_t i = 0; (double)i / rain < end; i++) {
         const disturbance drop =
             disturbances_drop(r, s, (double)i / rain, (double)(i + 1) / rain, disturbance_time, &random);
-        if (drop.start < length.duration)
+        if (drop.start < end)
             list[count++] = drop;
     }
     return count;
@@ -286,15 +297,15 @@ static size_t fall(const preset *r, const preset_settings *s, disturbance *list)
 
 static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
 {
-    const double most_drops = 1e5;
-    if (!(rain * length.duration <= most_drops))
+    const double most_drops = 1e5, end = start_time + length.duration;
+    if (!(rain * end <= most_drops))
         cli_fail(CLI_USAGE, "--rain: \"%g\" makes more than %g drops in %g s; it should be at most %g", rain,
-                 most_drops, length.duration, most_drops / length.duration);
+                 most_drops, end, most_drops / end);
     for (uint64_t i = 0; i < pokes; i++)
         check_poke(r, poke[i]);
     for (uint64_t i = 0; i < boxes; i++)
         check_box(box[i]);
-    const size_t drops = (size_t)(rain * length.duration) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
+    const size_t drops = (size_t)(rain * end) + 2; /* + 1 for a drop that has begun, + 1 for rounding */
     disturbance *list = malloc((drops + pokes + 1 + boxes) * sizeof *list);
     if (list == NULL)
         cli_fail(CLI_FAILED, "no memory for %zu drops", drops);
@@ -309,6 +320,73 @@ static disturbances *chosen_disturbances(preset *r, const preset_settings *s)
     disturbances *p = start_disturbances(r, list, count);
     free(list);
     return p;
+}
+
+/* -------------------------------------------------------------------------------------------------- saved states */
+
+typedef struct state {
+    uint8_t *bytes;
+    size_t size;
+} state;
+
+/* A word of the header, which docs/details.md describes. */
+static uint64_t word_of(const state *y, size_t index)
+{
+    uint64_t word = 0;
+    for (size_t i = 0; i < sizeof word; i++)
+        word |= (uint64_t)y->bytes[8 * index + i] << 8 * i;
+    return word;
+}
+
+static double number_of(const state *y, size_t index)
+{
+    const uint64_t word = word_of(y, index);
+    double number;
+    memcpy(&number, &word, sizeof number);
+    return number;
+}
+
+/* The file of --load. Sets start_time. */
+static state read_state(void)
+{
+    enum { LEAST = 26 * 8, T0 = 17, DT, STEPS };
+    state y = {NULL, 0};
+    FILE *const file = fopen(load, "rb");
+    size_t room = 0, got = 0;
+    do {
+        y.size += got;
+        if (y.size == room)
+            y.bytes = realloc(y.bytes, room = 2 * room + 65536);
+        if (y.bytes == NULL)
+            cli_fail(CLI_FAILED, "no memory for --load");
+    } while (file != NULL && (got = fread(y.bytes + y.size, 1, room - y.size, file)) > 0);
+    if (file == NULL || ferror(file) != 0 || fclose(file) != 0)
+        cli_fail(CLI_IO, "--load: cannot read \"%s\": %s", load, strerror(errno));
+    if (y.size >= LEAST)
+        start_time = number_of(&y, T0) + (double)word_of(&y, STEPS) * number_of(&y, DT);
+    if (y.size < LEAST || !(fabs(start_time) <= DBL_MAX))
+        cli_fail(CLI_USAGE, "--load: \"%s\" is not a saved state, or damaged", load);
+    return y;
+}
+
+static void load_state(spring_scene *scene, const state *y)
+{
+    if (spring_scene_load(scene, y->bytes, y->size) != SPRING_OK)
+        cli_fail(CLI_USAGE,
+                 "--load: \"%s\" is damaged, or a state of another scene; all options of the scene, the method and "
+                 "the disturbances should be those of the run that saved it",
+                 load);
+}
+
+static void save_state(const spring_scene *scene, cli_table *file)
+{
+    size_t size = 0;
+    spring_scene_save(scene, NULL, &size);
+    void *const bytes = malloc(size);
+    if (bytes == NULL || spring_scene_save(scene, bytes, &size) != SPRING_OK)
+        cli_fail(CLI_FAILED, "--save: no memory for %zu bytes", size);
+    cli_bytes(file, bytes, size);
+    free(bytes);
 }
 
 /* -------------------------------------------------------------------------------------------------------- frames */
@@ -372,7 +450,7 @@ typedef struct view { /* a scene and its outputs */
     spring_scene *scene;
     void *saved;  /* copy for restoring the scene */
     size_t bytes; /* size of each */
-    cli_table *output, *positions;
+    cli_table *output, *positions, *save;
     double *xyz;    /* [particles*3] */
     double lost_at; /* [s] time of the overflow */
     size_t torn;    /* links */
@@ -427,7 +505,7 @@ static bool advance(view *v, uint64_t n)
             return false;
         }
         n -= some;
-        cli_progress(spring_scene_time(v->scene) / length.duration);
+        cli_progress((spring_scene_time(v->scene) - start_time) / length.duration);
     }
     return true;
 }
@@ -517,6 +595,7 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
     view v = {
         .preset = r, .scene = scene, .bytes = bytes, .output = hash_alone ? cli_open_bare_output() : cli_open_output()};
     v.positions = positions != NULL ? cli_open_file("positions", positions) : NULL;
+    v.save = save != NULL ? cli_open_file("save", save) : NULL;
     if (frames != NULL)
         prepare_frames(frame_count);
     v.saved = malloc(v.bytes);
@@ -534,6 +613,8 @@ static view open_view(const preset *r, spring_scene *scene, size_t bytes, uint64
                 r->def.links - r->tethers, more);
     cli_comment(v.output, "method: %s, dt = %.17g s, stable step %.17g s", spring_method_name((spring_method)method),
                 length.dt, spring_scene_stable_step(scene, (spring_method)method));
+    if (load != NULL)
+        cli_comment(v.output, "start: t = %.17g s", start_time);
     char columns[200];
     snprintf(columns, sizeof columns, "%s%s", program.columns, colliders.count > 0 ? " touching" : "");
     cli_columns(v.output, columns);
@@ -555,6 +636,7 @@ int main(int argc, char **argv)
 {
     given = preset_unchosen((preset_kind)kind);
     cli_parse(&program, argc, argv);
+    state loaded = load != NULL ? read_state() : (state){NULL, 0};
     refuse_what_does_not_count();
     choose_length();
     check_frames();
@@ -574,17 +656,22 @@ int main(int argc, char **argv)
     set_colliders(scene, collider);
     choose_step(scene, p != NULL);
     remark_on_step(scene, p != NULL);
+    if (load != NULL)
+        load_state(scene, &loaded);
 
     const uint64_t frame_count = (uint64_t)(length.duration * fps * (1 + DBL_EPSILON)) + 1;
     view v = open_view(&r, scene, bytes, frame_count);
     const bool survived = run(&v, frame_count);
     if (hash_alone)
         cli_row(v.output, "%016" PRIx64, scene_run_hash(scene, r.def.particles, r.def.axes));
+    if (save != NULL)
+        save_state(scene, v.save);
     cli_finish();
     if (tear > 0)
         cli_warn("%zu of %zu links have torn", v.torn, r.def.links);
     if (!survived)
         cli_warn("the scene explodes: its energy overflows at t = %.17g s", v.lost_at);
+    free(loaded.bytes);
     free(v.xyz);
     free(v.saved);
     free(scene);

@@ -143,7 +143,9 @@ export function lendWeightedLinks(take, links) {
         values[9 * row + 2 + k] = links.weights[i];
     }
     for (let i = 0; i < count; i++)
-        each.forEach(([, value], k) => (values[9 * i + 6 + k] = typeof value === "number" ? value : value[i]));
+        each.forEach(
+            ([, value], k) => (values[9 * i + 6 + k] = typeof value === "number" ? value : value[i]),
+        );
     return [pointer, count];
 }
 
@@ -269,14 +271,16 @@ function refuse(definition, axes) {
             "rkn8 and srkn6 require undamped links, no tensionOnly, no colliders and no forceUsesVelocity",
         );
     if (field === "flags") throw new TypeError("tensionOnly requires 2 or 3 axes");
-    if (["particles", "links", "weighted_links"].includes(field)) throw new RangeError(`too many ${field} for a scene`);
+    if (["particles", "links", "weighted_links"].includes(field))
+        throw new RangeError(`too many ${field} for a scene`);
     const [array, part] = field.split(".");
     if (field === "link.flags") throw new TypeError("flags of links require 2 or 3 axes");
     if (array === "weighted_link") {
         const what = { particle: "indices of different particles", weight: "finite numbers whose sum is 0" };
         const { [part]: values, particles, weights } = definition.weightedLinks;
         const row = (list) => Array.from(list.slice(4 * i, 4 * i + 4)).join();
-        const value = part === "particle" ? row(particles) : part === "weight" ? row(weights) : values?.[i] ?? values;
+        const value =
+            part === "particle" ? row(particles) : part === "weight" ? row(weights) : (values?.[i] ?? values);
         check(false, `weightedLinks[${i}].${part}`, what[part] ?? wanted[part], value, RangeError);
     }
     if (array === "link") {

@@ -84,7 +84,12 @@ function lendTriangles(take, triangles) {
     checkArray("triangles", triangles);
     check(triangles.length % 3 === 0, "triangles.length", "a multiple of 3", triangles.length);
     for (let i = 0; i < triangles.length; i++)
-        check(Number.isInteger(triangles[i]) && triangles[i] >= 0, `triangles[${i}]`, "an index", triangles[i]);
+        check(
+            Number.isInteger(triangles[i]) && triangles[i] >= 0,
+            `triangles[${i}]`,
+            "an index",
+            triangles[i],
+        );
     const corners = Array.from(triangles, (corner) => Math.min(corner, 0xffffffff));
     return lend(take, corners, "uint32", 4);
 }

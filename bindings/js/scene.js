@@ -259,6 +259,36 @@ export class Scene {
         this.positions.set(kept.positions);
     }
 
+    save() {
+        return borrowed((take) => {
+            const size = take(4);
+            this.#checked(this.#call("spring_scene_save", this.#scene, 0, size));
+            const [bytes] = memory.uint32(size, 1);
+            const pointer = take(bytes);
+            this.#call("spring_scene_save", this.#scene, pointer, size);
+            return memory.uint8(pointer, bytes).slice();
+        });
+    }
+
+    load(state) {
+        const isBytes = ArrayBuffer.isView(state) && state.BYTES_PER_ELEMENT === 1;
+        check(isBytes, "state", "a Uint8Array", state, TypeError);
+        borrowed((take) => {
+            const pointer = take(state.length);
+            memory.uint8(pointer, state.length).set(state);
+            const status = this.#call("spring_scene_load", this.#scene, pointer, state.length);
+            const what = "an undamaged state of a scene with this definition";
+            check(status === 0, "state", what, `${state.length} bytes`, RangeError);
+        });
+        this.#frames()[0].fill(0);
+        this.#show(library().scene_moved(this.#pointer));
+    }
+
+    setTime(t) {
+        checkFinite("t", t);
+        this.#call("spring_scene_set_time", this.#scene, t);
+    }
+
     /** The clock of frames, and the state before the last step, which is empty before the first frame. */
     #frames() {
         const before = library().scene_before(this.#pointer);

@@ -363,6 +363,20 @@ export declare class Scene {
     /** Returns to a snapshot of this scene. */
     restore(snapshot: Snapshot): void;
 
+    /**
+     * The state in a portable format, for load() in another page or process, or in C, Python or LuaJIT. The time of frame() that
+     * no step has used is not part of it.
+     */
+    save(): Uint8Array;
+    /**
+     * Loads a state that was saved anywhere, from a scene of the same definition, which then continues bit-identically. It
+     * throws if the state is damaged or does not fit. Values that it cannot check must be equal: drag, maxSpeed, particleRadius
+     * and the force; also masses, pinned particles and link values, unless the scene is editable. Frames start anew.
+     */
+    load(state: Uint8Array): void;
+    /** Sets the time [s]. Colliders stay where they are. */
+    setTime(t: number): void;
+
     pin(first: number, count?: number): void;
     unpin(first: number, count?: number): void;
     /** Sets a pinned particle's velocity so that it reaches `target` after `duration` seconds. null: it stops. */

@@ -192,6 +192,22 @@ holds("a snapshot brings back what was", function()
   same(on(), there, "hash")
 end)
 
+holds("a saved state goes on in another scene", function()
+  for _, name in ipairs {"spring_scene", "spring_scenef"} do
+    local scene, other = cloth(name), cloth(name)
+    local function on(which)
+      spring.must(spring[name .. "_advance"](which, spring.SPRING_LEAPFROG, 1e-3, 20), "advance")
+      return spring.save(which)
+    end
+    local state = on(scene)
+    on(other)
+    spring.load(other, state)
+    assert(spring.save(other) == state and on(scene) == on(other), "the same bytes")
+    refused("load: damaged", spring.load, other, state:sub(1, -2))
+    refused("load: damaged", spring.load, cloth(name == "spring_scene" and "spring_scenef" or "spring_scene"), state)
+  end
+end)
+
 holds("a scene keeps its memory, and nothing else of what it was made from", function()
   local scene, bytes = cloth("spring_scene")
   local before = ffi.string(scene, bytes)

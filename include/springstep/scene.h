@@ -70,7 +70,10 @@ extern "C" {
  * link has no direction and its force is 0. If the square of the length underflows (lengths below about 1e-160 m, in
  * single precision 1e-21 m), the force is undefined.
  *
- * With one axis, the link is linear. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
+ * If rest is 0, the link is linear, and damped in all directions: the force on a is
+ * stiffness (x_b - x_a) + damping (v_b - v_a).
+ *
+ * With one axis, the link is linear, too. The force on a is stiffness ((x_b - x_a) - rest) + damping (v_b - v_a), and the
  * force on b is its opposite. */
 typedef struct spring_link {
     uint32_t a;       /**<         index of a particle */
@@ -85,7 +88,7 @@ typedef struct spring_link {
  *
  * They require two or three axes, and are not allowed with RKN8 and SRKN6. spring_scene_set_link() does not change them.
  * @{ */
-/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. */
+/** The link pulls and never pushes, as all links do with SPRING_SCENE_TENSION_ONLY. Without effect if rest is 0. */
 #define SPRING_LINK_TENSION_ONLY UINT32_C(1)
 /** A tension-only link that acts only while exactly one of its ends is pinned. It keeps a particle from moving away
    from a pinned particle that it hangs on; see spring_links_tethers(). While it does not act, its tension and its
@@ -387,7 +390,8 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *
  * The bound holds however far links are stretched or compressed, because tension/length <= stiffness. (A compressed
  * scene may buckle with any step.) It follows from three sums over the links of a particle. Each is the largest sum of
- * any free particle. A link counts once instead of twice if its other end is pinned.
+ * any free particle. A link counts once instead of twice if its other end is pinned. A weighted link counts |weight|
+ * of the particle times the sum of |weight| of its free particles instead of twice.
  *
  *     L [1/s^2]  sum of 2 stiffness/mass
  *     G [1/s]    sum of 2 damping/mass, plus drag/mass
@@ -455,7 +459,8 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
 SPRING_API spring_status spring_links_soften(const spring_scene_def *def, double dt, double fraction,
                                              spring_link *link);
 
-/** Returns the simulated time [s] since spring_scene_init(). NaN for NULL. */
+/** Returns the time of a scene [s]: the simulated time since spring_scene_init(), unless spring_scene_set_time() or
+    spring_scene_load() has changed it. NaN for NULL. */
 SPRING_API double spring_scene_time(const spring_scene *s);
 
 /** The energies of a scene, as spring_scene_energy() returns them. */
@@ -637,8 +642,8 @@ SPRING_API spring_status spring_scene_set_links(spring_scene *s, size_t first, s
  * Changes weighted links first ... first + count - 1 of an editable scene. If one of the new links is invalid, none is
  * changed.
  *
- * A link of a band whose weights are no longer (w, -2w, w), or whose rest length is no longer 0, leaves its band, and
- * takes about eight times as long.
+ * A link of a band (see docs/details.md) whose weights are no longer (w, -2w, w), or whose rest length is no longer 0,
+ * leaves its band, and takes longer.
  *
  * @param[in] link  [count] the new values. Where a weight is not 0, the particle must be the one of the definition, and
  *                  its weight there not 0
@@ -752,6 +757,78 @@ SPRING_API double spring_scene_tension(const spring_scene *s, size_t index);
 
 /** @} */
 
+/** @defgroup scene_save States that travel
+ * @{ */
+
+/** What spring_scene_describe() returns. */
+typedef struct spring_scene_info {
+    size_t particles;      /**< number of particles */
+    size_t links;          /**< number of links */
+    size_t weighted_links; /**< number of weighted links */
+    uint32_t axes;         /**< 1, 2 or 3 */
+    uint32_t flags;        /**< flags of the definition */
+    uint32_t methods;      /**< enabled methods, 1u << SPRING_EULER | ... */
+    uint32_t colliders;    /**< maximum number of colliders */
+} spring_scene_info;
+
+/** Returns the sizes and options of a scene, with the defaults of the definition filled in. All are 0 for NULL. */
+SPRING_API spring_scene_info spring_scene_describe(const spring_scene *s);
+
+/**
+ * Saves the state of a scene in a portable format, for spring_scene_load() in any build of the library, on any
+ * processor and in any language. docs/details.md describes the format.
+ *
+ * The state consists of everything that a run depends on besides the definition: positions, velocities, the time and
+ * the last time step, kept forces (see spring_scene_advance()), held forces, gravity, colliders, the time since they
+ * were set, and the colliders that particles touch. The state of an editable scene also has all masses, pins and
+ * coefficients of links and weighted links. Saving changes nothing. Equal states of the same kind of scene have equal
+ * bytes, so saved states can be compared. (Fields of colliders that their shape does not use are saved as they were
+ * set.)
+ *
+ * @param[out]    out    the state, at any address; NULL: only *bytes is written
+ * @param[in,out] bytes  size of out [bytes]; afterwards the size of the state, which may be another one after the next
+ *                       step. At most 256 bytes more than 1.1 times the numbers above (tests/scene/test_random.c)
+ * @return SPRING_OK; SPRING_EINVAL: the scene or bytes is NULL; SPRING_ENOMEM: out is too small, and only *bytes was
+ *         written; SPRING_ENONFINITE: the state was lost in a failed step, see SPRING_SCENE_NO_UNDO
+ */
+SPRING_API spring_status spring_scene_save(const spring_scene *s, void *out, size_t *bytes);
+
+/**
+ * Loads a state into a scene of the same definition. The run then continues bit-identically.
+ *
+ * The call checks that the state is complete and undamaged, and that precision, axes, flags, methods, the numbers of
+ * particles, links and weighted links, the maximum number of colliders, the ends, order and flags of links, the
+ * particles of weighted links, how many links are damped (unless the scene is editable), and whether there is a
+ * callback are those of this scene. It cannot check the following, which a run also depends on. They must be the same
+ * as in the scene that was saved:
+ *  - drag, max_speed and particle_radius;
+ *  - masses, pinned particles and the coefficients of links, unless the scene is editable;
+ *  - the callback, and the data that it reads.
+ *
+ * Positions, velocities and gravity of the definition need not be the same.
+ *
+ * @param[in] in     a saved state, at any address
+ * @param[in] bytes  its size
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or the state is truncated, damaged, of another scene, or of a later version of
+ *         the format. Nothing is changed then, also with SPRING_SCENE_NO_UNDO
+ */
+SPRING_API spring_status spring_scene_load(spring_scene *s, const void *in, size_t bytes);
+
+/**
+ * Sets the time of a scene. Nothing else changes: colliders keep the time since they were set, so they stay where they
+ * are. If there is a callback, forces are evaluated again.
+ *
+ * Two scenes of the same definition, which have run differently, run bit-identically after spring_scene_set_time(),
+ * spring_scene_set() of positions and velocities and spring_scene_set_colliders() with the same values for both. Set
+ * gravity, masses, pins, links and held forces as well where they differ.
+ *
+ * @param[in] t  time [s]
+ * @return SPRING_OK; SPRING_EINVAL: NULL, or t is not finite
+ */
+SPRING_API spring_status spring_scene_set_time(spring_scene *s, double t);
+
+/** @} */
+
 /** @defgroup scenef The single-precision version
  * @{ */
 
@@ -834,6 +911,10 @@ SPRING_API spring_status spring_scenef_check_colliders(const spring_scenef *s, c
 SPRING_API spring_status spring_scenef_touching(const spring_scenef *s, uint32_t *mask, size_t first, size_t count);
 SPRING_API spring_status spring_scenef_impulses(const spring_scenef *s, spring_impulse *out, uint32_t first,
                                                 uint32_t count);
+SPRING_API spring_scene_info spring_scenef_describe(const spring_scenef *s);
+SPRING_API spring_status spring_scenef_save(const spring_scenef *s, void *out, size_t *bytes);
+SPRING_API spring_status spring_scenef_load(spring_scenef *s, const void *in, size_t bytes);
+SPRING_API spring_status spring_scenef_set_time(spring_scenef *s, double t);
 /** @} */
 
 /** @} */

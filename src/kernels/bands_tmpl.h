@@ -33,7 +33,7 @@ SPRING_INLINE size_t links_together(uint32_t axes)
 /* Replaces `delta`, the vectors from lower to upper ends, by the forces on the lower ends. Slots without a link are set
    to 0 by selection, not by multiplication, because their particles may be infinitely far apart. */
 SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3], const lane_mask *joined,
-                             const real *k, const real *rest, const real *c, bool damped, bool bounded)
+                             const real *k, const real *rest, const real *c, bool damped, bool tension_only)
 {
     const size_t together = links_together(axes);
     real scale[most_together]; /* the squared length, then 1/length, then force/length */
@@ -55,12 +55,12 @@ SPRING_INLINE void to_forces(uint32_t axes, real (*delta)[3], real (*relative)[3
     SPRING_UNROLL
     for (size_t m = 0; m < together; m++) {
         const real inverse = scale[m];
-        const real stretch = 1 - (bounded ? vec_abs(rest[m]) : rest[m]) * inverse;
+        const real stretch = 1 - (tension_only ? vec_abs(rest[m]) : rest[m]) * inverse;
         scale[m] = k[m] * stretch;
         if (damped)
             scale[m] += c[m] * (rate[m] * inverse * inverse);
         acts[m] = joined[m];
-        if (bounded) { /* NaN remains, so that it is detected */
+        if (tension_only) { /* NaN remains, so that it is detected */
             const lane_mask pulls = rest[m] < 0;
             scale[m] = select_real(pulls, vec_not_negative(scale[m]), scale[m]);
             if (damped)
@@ -105,7 +105,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
                                bool shared)
 {
     const size_t stride = s->stride;
-    const bool bounded = axes > 1 && s->bounded;
+    const bool tension_only = axes > 1 && s->tension_only;
     const ptrdiff_t offset = band->offset, slot = t - band->start;
     const int8_t *const occupied = band->occupied + slot;
     const ptrdiff_t stride_c = shared ? 0 : band->coefficient_stride;
@@ -137,7 +137,7 @@ SPRING_INLINE void tile_forces(const scene_links *s, const scene_band *band, con
         if (axes == 1)
             to_linear_forces(delta, relative, joined, k, rest, c, damped);
         else
-            to_forces(axes, delta, relative, joined, k, rest, c, damped, bounded);
+            to_forces(axes, delta, relative, joined, k, rest, c, damped, tension_only);
         SPRING_UNROLL
         for (size_t m = 0; m < together; m++) {
             SPRING_UNROLL
@@ -393,15 +393,14 @@ SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band
     const scalar *const stiffness = band->stiffness + slot;
     const scalar *const damping = damped && root == NULL ? band->damping + slot : root;
     const int8_t *const occupied = band->occupied + slot;
-    for (size_t j = 0; j < count; j += lanes) {
+    for (size_t j = 0; j < count && stiff; j += lanes) {
         const lane_mask joined = vec_load_mask(occupied + j);
         const real k = vec_load(stiffness + j);
-        SPRING_UNROLL
-        for (uint32_t a = 0; a < 3; a++) {
-            const real pull = stiff && a < axes ? k * second_difference(x + a * stride + t + j, offset) : splat(0);
-            if (a < axes)
-                vec_store(force + a * axis + j, select_real(joined, pull, splat(0)));
-        }
+        const scalar *at = x + t + j;
+        scalar *to = force + j;
+        SPRING_ROLLED
+        for (uint32_t a = 0; a < axes; a++, at += stride, to += axis)
+            vec_store(to, select_real(joined, k * second_difference(at, offset), splat(0)));
     }
     for (size_t j = 0; j < count && damped; j += lanes) {
         const lane_mask joined = vec_load_mask(occupied + j);
@@ -410,7 +409,7 @@ SPRING_INLINE void three_point_tile(const scene_links *s, const scene_band *band
         for (uint32_t a = 0; a < axes; a++) {
             const real pull = c * second_difference(v + a * stride + t + j, offset);
             scalar *const to = force + a * axis + j;
-            vec_store(to, select_real(joined, vec_load(to) + pull, splat(0)));
+            vec_store(to, select_real(joined, stiff ? vec_load(to) + pull : pull, splat(0)));
         }
     }
 }
@@ -511,7 +510,7 @@ SPRING_INLINE ptrdiff_t place_before(ptrdiff_t place, ptrdiff_t distance, ptrdif
     return other < 0 ? other + ring : other;
 }
 
-/* Adds 2 middle - low - high to the forces on a tile. Any of them may be NULL. */
+/* Adds 2 middle - low - high to the forces on a tile. NULL: no link of the band acts there */
 SPRING_INLINE void add_triple(scalar *to, size_t stride, size_t count, uint32_t axes, const scalar *low,
                               const scalar *middle, const scalar *high, size_t axis)
 {
@@ -531,7 +530,7 @@ SPRING_INLINE void add_triple(scalar *to, size_t stride, size_t count, uint32_t 
         }
 }
 
-/* Adds the forces of the bands of three-point links on a tile, which follow the other bands. As for_each_tile(). */
+/* Adds the forces of the bands of three-point links on a tile. Their rings are used as in for_each_tile(). */
 SPRING_NOINLINE void add_three_point_bands(const scene_links *s, const scalar *x, const scalar *v, scene_forces *out,
                                            ptrdiff_t t, size_t count)
 {
@@ -549,11 +548,8 @@ SPRING_NOINLINE void add_three_point_bands(const scene_links *s, const scalar *x
             three_point_tile(s, band, x, v, t, count, low, axis);
         if (place == 0)
             inlined_repeat_tile(low, ring, count, axis, s->axes);
-        const scalar *const middle = kept + place_before(place, band->offset, ring), *const high =
-                                                                                         kept +
-                                                                                         place_before(place,
-                                                                                                      2 * band->offset,
-                                                                                                      ring);
+        const scalar *const middle = kept + place_before(place, band->offset, ring);
+        const scalar *const high = kept + place_before(place, 2 * band->offset, ring);
         add_triple(out->force + t, s->stride, count, s->axes, has_low ? low : NULL,
                    reaches(band, band->offset, t) ? middle : NULL, reaches(band, 2 * band->offset, t) ? high : NULL,
                    axis);

@@ -88,7 +88,7 @@ typedef struct scene_links {
     unbanded_links unbanded;
     size_t weighted;                       /* 0: all weighted links are in bands */
     struct stored_weighted *weighted_link; /* [weighted] */
-    bool bounded;                          /* on two or three axes, some links pull and never push */
+    bool tension_only;                     /* on two or three axes, some links pull and never push */
     bool isotropic; /* on two or three axes, a link of rest length 0 is damped: in all directions */
     /* Further arguments of an exponential kick. */
     scalar turning_time;   /* [s] FREEZING_TERMS: the time step; 0: without turning terms */

@@ -97,7 +97,7 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
                               bool damped)
 {
     const unbanded_links own = s->unbanded, *const l = &own; /* a local copy, so that stores cannot alias its fields */
-    const bool bounded = s->bounded, isotropic = damped && s->isotropic;
+    const bool tension_only = s->tension_only, isotropic = damped && s->isotropic;
     const size_t ahead = 32; /* [links] prefetch distance, for scenes larger than the cache */
     const size_t some = quad_size, fours = l->count / some * some;
     for (size_t j = 0; j < fours; j += some) {
@@ -119,7 +119,7 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
                 rates[m] = quad_dot(delta[m], quad_minus(quad_load(v + b), quad_load(v + a)));
         }
         const quad square = quad_of(squares[0], squares[1], squares[2], squares[3]);
-        const quad signed_rest = quad_load(l->rest + j), rest = bounded ? quad_abs(signed_rest) : signed_rest;
+        const quad signed_rest = quad_load(l->rest + j), rest = tension_only ? quad_abs(signed_rest) : signed_rest;
         const quad stretch = quad_minus(quad_all(1), quad_over(rest, quad_sqrt(square)));
         quad scale = quad_times(quad_load(l->stiffness + j), stretch);
         if (damped)
@@ -132,7 +132,7 @@ SPRING_INLINE void quad_links(const scene_links *s, const scalar *x, const scala
                 one_quad_link(l, j + m, x, v, force, stride, damped);
             continue;
         }
-        if (bounded)
+        if (tension_only)
             scale = quad_zero_where(scale, scale, damped ? stretch : scale, signed_rest);
         SPRING_UNROLL
         for (size_t m = 0; m < some; m++) {

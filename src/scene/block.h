@@ -138,14 +138,15 @@ struct spring_scene {
     uint64_t steps;
     uint64_t damped_links, isotropic_links; /* isotropic: on two or three axes, damped and of rest length 0 */
     size_t loose;                           /* weighted links that are in no band now */
+    uint64_t ends;                          /* spring_scene_identify() */
     uint32_t buffer;                        /* 0 or 1: holds the state */
     cached_force force_cache;
     bool lost; /* an advance without rollback failed */
     bool bounds_known;
-    double roots_dt;          /* [s] step for which ARRAY_ROOTS is known; 0: none */
-    uint32_t colliders;       /* at most layout.colliders */
-    double colliders_elapsed; /* [s] since they were set, at step colliders_since; see scene_elapsed() */
-    uint64_t colliders_since;
+    double roots_dt;       /* [s] step for which ARRAY_ROOTS is known; 0: none */
+    uint32_t colliders;    /* at most layout.colliders */
+    double colliders_base; /* [s] since they were set, at step colliders_from of the run: never a difference of times */
+    uint64_t colliders_from;
     scalar particle_radius; /* [m] */
     scalar largest_radius;  /* [m] of a particle */
     scene_bounds bounds;
@@ -165,6 +166,10 @@ SPRING_INTERNAL double spring_scene_balanced(const spring_scene *s, size_t parti
    which dt times the sum of 2 damping/mass over its links (damping/mass to a pin), hG, is at most `most`, and a link
    takes the smaller factor of its ends. Stores 1/(1 + (hG/2)^2) of each particle in ARRAY_SUMS, see damp_bounces(). */
 SPRING_INTERNAL void spring_scene_find_roots(spring_scene *s, double dt, double most);
+
+/* A number that identifies the ends and the order of the links: a saved state has it instead of them. With one axis,
+   also their directions, unless links may be edited. */
+SPRING_INTERNAL uint64_t spring_scene_identify(const spring_scene *s, const spring_scene_def *def);
 
 /* Adds the forces of weighted links that are not in bands, with the arguments of an unbanded_kernel. */
 SPRING_INTERNAL void spring_scene_add_weighted(const scene_links *s, const scalar *x, const scalar *v, scalar *force);
@@ -213,6 +218,12 @@ static inline const scalar *scene_read_axis(const spring_scene *s, scene_array a
 {
     const void *start = (const char *)s + s->layout.offset[a];
     return (const scalar *)start + axis * s->layout.stride + padding;
+}
+
+/* [s] since the colliders were set. */
+static inline double colliders_time(const spring_scene *s)
+{
+    return s->colliders_base + (double)(s->steps - s->colliders_from) * s->dt;
 }
 
 /* The arrays of a buffer. */
@@ -282,17 +293,21 @@ static inline scalar *scene_set_state(spring_scene *s, spring_quantity q, uint32
     return scene_axis(s, state_array(s, q), axis);
 }
 
+static inline bool scene_finite(const spring_scene *s)
+{
+    for (uint32_t a = 0; a < s->layout.axes; a++) {
+        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
+        for (size_t i = 0; i < s->layout.particles; i++)
+            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
+                return false;
+    }
+    return true;
+}
+
 static inline double inverse_mass_at(const spring_scene *s, size_t i)
 {
     const scalar *each = scene_read(s, ARRAY_INVERSE_MASS);
     return each != NULL ? (double)each[i] : 1 / s->mass_all;
-}
-
-/* [s] Time since the colliders were set, after `steps` steps of the present run. It is never a difference of times of
-   the scene, so it does not depend on them. */
-static inline double scene_elapsed(const spring_scene *s, uint64_t steps)
-{
-    return s->colliders_elapsed + (double)(steps - s->colliders_since) * s->dt;
 }
 
 /* What contacts of particle i depend on besides its state. */

@@ -264,8 +264,8 @@ spring_status spring_scene_set_colliders(spring_scene *s, const spring_collider 
         orthonormalise(&set[i], axes_of_shape(&c[i], s->layout.axes), s->layout.axes);
     }
     s->colliders = count;
-    s->colliders_elapsed = 0;
-    s->colliders_since = s->steps;
+    s->colliders_base = 0;
+    s->colliders_from = s->steps;
     scene_clear_impulses(s);
     for (uint32_t buffer = 0; buffer < 2; buffer++) { /* without colliders no step writes them */
         uint32_t *const touched = scene_memory(s, touched_in(buffer));

@@ -78,7 +78,7 @@ static band_kind kind_of(const spring_link *link)
 }
 
 /* Finds the bands of a kind, as many as there is still room for. */
-static void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
+SPRING_NOINLINE void find_bands_of(band_kind kind, const spring_scene_def *def, scene_layout *l)
 {
     const bool editable = (def->flags & SPRING_SCENE_EDITABLE) != 0;
     const uint32_t room = most_bands - l->bands;
@@ -205,7 +205,8 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
     const bool predicts = needs.predicts && velocity_used, kicks = needs.predicts && damped;
     const bool records = l->axes > 1 && l->unbanded >= l->particles && !has_few_links(def);
     const bool collides = l->colliders > 0, flagged = link_flags(def) != 0;
-    const bool loose = l->loose > 0 || (editable && l->weighted > 0);
+    /* Their velocities are read after the forces of bands have been stored. */
+    const bool reads_later = l->weighted > 0 || (l->unbanded > 0 && (l->bands > 0 || !records));
     const size_t number = sizeof(scalar), index = sizeof(uint32_t), quantity = l->quantity;
     const size_t coefficients = l->band_coefficients, unbanded = l->unbanded + padding;
     const array_row rows[ARRAY_COUNT] = {
@@ -215,8 +216,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_V_1] = {number, quantity, rollback},
         [ARRAY_FORCE_0] = {number, quantity, true},
         [ARRAY_FORCE_1] = {number, quantity, predicts},
-        [ARRAY_PREDICTED] = {number, quantity,
-                             predicts && damped && (loose || (l->unbanded > 0 && (l->bands > 0 || !records)))},
+        [ARRAY_PREDICTED] = {number, quantity, predicts && damped && reads_later},
         [ARRAY_STAGES] = {number, needs.stages * quantity, needs.stages > 0},
         [ARRAY_INVERSE_MASS] = {number, l->masses, def->mass != NULL || def->pinned != NULL || editable},
         [ARRAY_FREE_MASS] = {number, l->particles, editable},
@@ -503,6 +503,7 @@ spring_status spring_scene_init(void *memory, size_t bytes, const spring_scene_d
     fill_particles(s, def);
     fill_links(s, def);
     fill_weighted_links(s, def);
+    s->ends = spring_scene_identify(s, def);
     *result = s;
     return SPRING_OK;
 }

@@ -24,13 +24,13 @@ struct scene_step {
     scene_forces forces; /* .force: at the end of the step, or of its stages */
     scene_particles particles;
     uint32_t from, to;
-    bool first, last;      /* of a call */
-    scene_motion whole;    /* over the whole step, from the state at its start to the state at its end */
-    scalar h;              /* [s] dt in the precision of the scene */
-    double t0, dt, done;   /* the step starts at the time t0 + done dt */
-    double elapsed, since; /* colliders were set elapsed + (done - since) dt before */
-    cached_force cached;   /* the forces at the start */
-    bool predicts;         /* see scene_stepper */
+    bool first, last;    /* of a call */
+    scene_motion whole;  /* over the whole step, from the state at its start to the state at its end */
+    scalar h;            /* [s] dt in the precision of the scene */
+    double t0, dt, done; /* the step starts at the time t0 + done dt */
+    double colliders_base, colliders_from; /* [s] and its step: see struct spring_scene */
+    cached_force cached;                   /* the forces at the start */
+    bool predicts;                         /* see scene_stepper */
     damping_series damping;
     scene_contacts contacts;
 };
@@ -104,7 +104,7 @@ static inline double time_at(const scene_step *s, double fraction)
 /* [s] The same since the colliders were set. */
 static inline double elapsed_at(const scene_step *s, double fraction)
 {
-    return s->elapsed + (s->done - s->since + fraction) * s->dt;
+    return s->colliders_base + (s->done - s->colliders_from + fraction) * s->dt;
 }
 
 /* A motion with the contacts that it has if the scene has colliders now. */
@@ -200,7 +200,7 @@ static inline scene_links scene_prepare_links(spring_scene *s, scene_band band[m
             },
         .weighted = s->loose > 0 ? l->weighted : 0,
         .weighted_link = scene_memory(s, ARRAY_WEIGHTED),
-        .bounded = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
+        .tension_only = scene_has(s, ARRAY_FLAGS) || (l->flags & SPRING_SCENE_TENSION_ONLY) != 0,
         .isotropic = s->isotropic_links > 0,
     };
 }

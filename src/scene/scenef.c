@@ -5,6 +5,7 @@
 #include "colliders.c"
 #include "edit.c"
 #include "layout.c"
+#include "save.c"
 #include "soften.c"
 #include "stable_step.c"
 #include "state.c"

@@ -24,27 +24,25 @@ double spring_scene_time(const spring_scene *s)
     return s != NULL ? time_of(s) : (double)NAN;
 }
 
-static bool finite_scene(const spring_scene *s)
+/* Sets padding lanes to 0 after a failure: a NaN there would make later steps with longer vectors fail, and no caller can
+   overwrite it. */
+static void clear_padding(spring_scene *s, uint32_t buffer)
 {
+    const size_t first = s->layout.particles, count = s->layout.stride - first;
     for (uint32_t a = 0; a < s->layout.axes; a++) {
-        const scalar *x = scene_state(s, SPRING_POSITION, a), *v = scene_state(s, SPRING_VELOCITY, a);
-        for (size_t i = 0; i < s->layout.particles; i++)
-            if (!scalar_finite(x[i]) || !scalar_finite(v[i]))
-                return false;
+        memset(scene_axis(s, positions_in(buffer), a) + first, 0, count * sizeof(scalar));
+        memset(scene_axis(s, velocities_in(buffer), a) + first, 0, count * sizeof(scalar));
     }
-    return true;
 }
 
 /* After a failure without rollback, the whole state becomes NaN, so that a caller cannot use numbers that are still
-   finite. Padding lanes become 0: a NaN there would make later steps fail, and no caller can overwrite it. */
+   finite. */
 static void invalidate(spring_scene *s)
 {
     for (uint32_t a = 0; a < s->layout.axes; a++) {
         scalar *x = scene_set_state(s, SPRING_POSITION, a), *v = scene_set_state(s, SPRING_VELOCITY, a);
         for (size_t i = 0; i < s->layout.particles; i++)
             x[i] = v[i] = (scalar)NAN;
-        for (size_t i = s->layout.particles; i < s->layout.stride; i++)
-            x[i] = v[i] = 0;
     }
     scene_clear_touched(s, 0, s->layout.particles);
     s->lost = true;
@@ -133,13 +131,15 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
         scene_clear_impulses(s);
     if (status != SPRING_OK || n == 0 || (scalar)dt == 0)
         return status;
-    if (s->lost && !finite_scene(s)) /* the caller has not set it anew */
+    if (s->lost && !scene_finite(s)) /* the caller has not set it anew */
         return SPRING_ENONFINITE;
     s->lost = false;
     const bool rollback = (s->layout.flags & SPRING_SCENE_NO_UNDO) == 0;
     const bool same_run = s->dt == dt;
     const double t0 = same_run ? s->t0 : time_of(s);
     const uint64_t before = same_run ? s->steps : 0;
+    const double colliders_base = same_run ? s->colliders_base : colliders_time(s);
+    const uint64_t colliders_from = same_run ? s->colliders_from : 0;
     if (!spring_finite(t0 + (double)(before + n) * dt))
         return SPRING_ENONFINITE;
     scene_band band[most_bands];
@@ -152,16 +152,17 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
                        .h = (scalar)dt,
                        .t0 = t0,
                        .dt = dt,
-                       .predicts = spring_scene_steppers[m].predicts,
                        .done = (double)before,
-                       .elapsed = same_run ? s->colliders_elapsed : scene_elapsed(s, s->steps),
-                       .since = same_run ? (double)s->colliders_since : 0};
+                       .colliders_base = colliders_base,
+                       .colliders_from = (double)colliders_from,
+                       .predicts = spring_scene_steppers[m].predicts};
     prepare_collisions(&step);
     choose_damping(&step, &links, &spring_scene_steppers[m]);
     prepare_step(&step, s->buffer, rollback ? 1 - s->buffer : s->buffer);
     bool finite = true;
     const cached_force cached = take_scene_steps(&step, spring_scene_steppers[m].step, before, n, &finite);
     if (!finite) {
+        clear_padding(s, step.to);
         if (!rollback)
             invalidate(s);
         if (s->force_cache != PREDICTED_FORCE) /* the cached forces may be overwritten, or not finite themselves */
@@ -170,15 +171,13 @@ spring_status spring_scene_advance_with(const scene_kernels *kernels, spring_sce
     }
     if (s->colliders > 0)
         spring_scene_end_impulses(s, elapsed_at(&step, 1));
-    if (!same_run) {
-        s->colliders_elapsed = step.elapsed;
-        s->colliders_since = 0;
-    }
     s->force_cache = cached;
     s->buffer = step.to;
     s->t0 = t0;
     s->dt = dt;
     s->steps = before + n;
+    s->colliders_base = colliders_base;
+    s->colliders_from = colliders_from;
     return SPRING_OK;
 }
 
@@ -205,11 +204,11 @@ static const scalar *forces_of_state(spring_scene *s)
 
 bool spring_scene_at_rest(spring_scene *s, double v_tol, double a_tol)
 {
-    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !finite_scene(s))
+    if (s == NULL || !(v_tol >= 0) || !(a_tol >= 0) || !scene_finite(s))
         return false;
     const scalar *all = forces_of_state(s);
     if (s->colliders > 0)
-        spring_scene_place_colliders(s, scene_elapsed(s, s->steps), scene_elapsed(s, s->steps), true);
+        spring_scene_place_colliders(s, colliders_time(s), colliders_time(s), true);
     for (size_t i = 0; i < s->layout.particles; i++) {
         const double inverse = inverse_mass_at(s, i);
         double speed = 0, accel[3] = {0};

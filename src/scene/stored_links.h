@@ -119,7 +119,8 @@ static inline void scene_replace_link(spring_scene *s, size_t index, const sprin
     const spring_link acting = acting_link(s, index, link);
     scene_count_damped(s, (double)old.rest, (double)old.damping, false);
     scene_count_damped(s, acting.rest, acting.damping, true);
-    if ((scalar)acting.stiffness != old.stiffness || (scalar)acting.damping != old.damping)
+    const bool same_kind = ((scalar)acting.rest == 0) == (old.rest == 0); /* the sign of its root */
+    if ((scalar)acting.stiffness != old.stiffness || (scalar)acting.damping != old.damping || !same_kind)
         s->bounds_known = false;
     scene_write_link(s, index, &acting);
     scene_drop_forces(s);

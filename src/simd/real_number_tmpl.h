@@ -34,14 +34,9 @@ SPRING_INLINE real select_real(lane_mask t, real a, real b)
     return t ? a : b;
 }
 
-SPRING_INLINE real vec_max(real a, real b)
-{
-    return b < a ? a : b;
-}
-
 SPRING_INLINE real vec_not_negative(real a)
 {
-    return vec_max(0, a);
+    return a < 0 ? 0 : a;
 }
 
 SPRING_INLINE lane_mask vec_load_mask(const int8_t *p)

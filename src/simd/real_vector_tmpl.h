@@ -50,30 +50,24 @@ SPRING_INLINE real select_real(lane_mask t, real a, real b)
     return (real)((t & (lane_mask)a) | (~t & (lane_mask)b));
 }
 
-/* The larger; b if one is NaN, or if they are equal. */
-SPRING_INLINE real vec_max(real a, real b)
-{
-#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
-    return (real)_mm512_max_ps((__m512)a, (__m512)b);
-#elif SPRING_X86_64 && SPRING_VECTOR == 64
-    return (real)_mm512_max_pd((__m512d)a, (__m512d)b);
-#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
-    return (real)_mm256_max_ps((__m256)a, (__m256)b);
-#elif SPRING_X86_64 && SPRING_VECTOR == 32
-    return (real)_mm256_max_pd((__m256d)a, (__m256d)b);
-#elif SPRING_X86_64 && defined(SPRING_FLOAT)
-    return (real)_mm_max_ps((__m128)a, (__m128)b);
-#elif SPRING_X86_64
-    return (real)_mm_max_pd((__m128d)a, (__m128d)b);
-#else
-    return select_real(b < a, a, b);
-#endif
-}
-
 /* a, but 0 where a < 0. */
 SPRING_INLINE real vec_not_negative(real a)
 {
-    return vec_max(splat(0), a);
+#if SPRING_X86_64 && SPRING_VECTOR == 64 && defined(SPRING_FLOAT)
+    return (real)_mm512_max_ps(_mm512_setzero_ps(), (__m512)a); /* the second operand if they are equal or NaN */
+#elif SPRING_X86_64 && SPRING_VECTOR == 64
+    return (real)_mm512_max_pd(_mm512_setzero_pd(), (__m512d)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32 && defined(SPRING_FLOAT)
+    return (real)_mm256_max_ps(_mm256_setzero_ps(), (__m256)a);
+#elif SPRING_X86_64 && SPRING_VECTOR == 32
+    return (real)_mm256_max_pd(_mm256_setzero_pd(), (__m256d)a);
+#elif SPRING_X86_64 && defined(SPRING_FLOAT)
+    return (real)_mm_max_ps(_mm_setzero_ps(), (__m128)a);
+#elif SPRING_X86_64
+    return (real)_mm_max_pd(_mm_setzero_pd(), (__m128d)a);
+#else
+    return select_real(a < 0, splat(0), a);
+#endif
 }
 
 /* From one byte per lane, -1 or 0. */

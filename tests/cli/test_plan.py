@@ -252,14 +252,22 @@ def test_presets():
             assert len({row['stable_substeps'] for row in three}) == 1
 
 
-SAG_COLUMNS = 'limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s time_per_frame_s'.split()
+SAG_COLUMNS = 'limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s time_per_frame_s precision'.split()
 
 
 def hang(*args):
-    """The rows of --sag by limit, as numbers."""
-    rows = {row.pop('limit'): row for row in plan('--sag', *args)}
-    assert all(list(row) == SAG_COLUMNS[1:] for row in rows.values())
-    return {limit: {name: float(number) for name, number in row.items()} for limit, row in rows.items()}
+    """The rows of --sag in double precision by limit, as numbers. Each is followed by its row in single precision."""
+    rows = plan('--sag', *args)
+    assert all(list(row) == SAG_COLUMNS for row in rows)
+    assert [row.pop('precision') for row in rows] == ['double', 'float'] * (len(rows) // 2)
+    limits = [row.pop('limit') for row in rows]
+    assert limits[::2] == limits[1::2]
+    rows = [{name: float(number) for name, number in row.items()} for row in rows]
+    for double, single in zip(rows[::2], rows[1::2], strict=True):
+        has_the_steps(single)
+        assert all(double[name] == single[name] for name in ('stiffness_N_per_m', 'scene_stretch', 'link_stretch'))
+        assert single['stable_step_s'] == pytest.approx(double['stable_step_s'], rel=1e-6), 'coefficients in float'
+    return dict(zip(limits[::2], rows[::2], strict=True))
 
 
 def has_the_steps(row):
@@ -346,7 +354,8 @@ def test_a_hammock(tmp_path):
     path = mesh_file(tmp_path, 'v 0 1 0', 'v 1 0.99 0', 'v 2 0.99 0', 'v 3 1 0', 'l 1 2 3 4')
     printed = run(PLAN, *f'--sag 0.02 --mesh {path}'.split()).stdout
     assert 'depends on more than the stretch of its links' in printed
-    row, = parse(printed)
+    row, single = parse(printed)
+    assert [row['precision'], single['precision']] == ['double', 'float'] and row['limit'] == single['limit']
     assert row['limit'] == 'link' and float(row['scene_stretch']) > 10 * float(row['link_stretch'])
 
 

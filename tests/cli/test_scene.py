@@ -251,6 +251,42 @@ def test_hash_of_an_explosion_is_that_of_the_last_state_before():
     assert end.returncode == 1 and end.stdout == run(*euler, str(steps / 100)).stdout
 
 
+# --- saved states ---------------------------------------------------------------------------------------------------
+
+LONG = ['--scene cloth --method leapfrog --damping 0.3',
+        '--scene cloth --method leapfrog --dt 1e-3 --fps 50 --tear 1.1 --collider sphere:x=1,y=1,z=-.6,radius=.4,vz=0.1',
+        '--scene jelly --method symplectic-euler --dt 1e-3 --fps 50 --collider plane:z=-.2 --tension-only',
+        '--scene water --method rk4 --rain 10 --dt 5e-4 --fps 50',
+        '--scene rope --method srkn6 --dt 0x1p-10 --fps 64 --poke .2,0,0,2,.1 --push-duration .2']
+
+
+@pytest.mark.parametrize('words', LONG)
+def test_a_run_can_be_continued(words, tmp_path):
+    """The rows and the end are those of one run."""
+    state, whole = tmp_path / 'state', run(SCENE, *words.split(), '--duration', '1')
+    first = run(SCENE, *words.split(), '--duration', '0.5', '--save', state)
+    second = run(SCENE, *words.split(), '--duration', '0.5', '--load', state, '--save', tmp_path / 'end')
+    assert whole.returncode == first.returncode == second.returncode == 0, second.stderr
+    before, after = parse(first.stdout), parse(second.stdout)
+    assert before + after[1:] == parse(whole.stdout)  # where links tear, after[0] has less energy than before[-1]
+    assert before[-1]['t_s'] == after[0]['t_s'] and f'# start: t = {after[0]["t_s"]} s\n' in second.stdout
+    run(SCENE, *words.split(), '--duration', '1', '--save', tmp_path / 'other')
+    assert (tmp_path / 'other').read_bytes() == (tmp_path / 'end').read_bytes() != state.read_bytes()
+
+
+def test_states_of_other_scenes_are_refused(tmp_path):
+    state = tmp_path / 'state'
+    short = '--method leapfrog --duration 0.05'
+    run(SCENE, *f'--scene cloth {short} --save {state}'.split())
+    for words in ('--scene jelly', '--scene cloth --size 12', '--scene cloth --links structural', '--scene cloth --poke 0,1,1,1,1',
+                  '--scene cloth --tear 3', '--scene cloth --method rk4'):
+        is_failure(run(SCENE, *f'{short} {words} --load {state}'.split()), 2, '--load')
+    for bytes_ in (b'', state.read_bytes()[:-1], state.read_bytes()[:300] + b'?' + state.read_bytes()[301:]):
+        (tmp_path / 'wrong').write_bytes(bytes_)
+        is_failure(run(SCENE, *f'--scene cloth {short} --load {tmp_path}/wrong'.split()), 2, '--load')
+    is_failure(run(SCENE, *f'--scene cloth {short} --load {tmp_path}/none'.split()), 3, '--load')
+
+
 # --- frames ---------------------------------------------------------------------------------------------------------
 
 NAMES = [f'frame-{i:06}.tsv' for i in range(11)]

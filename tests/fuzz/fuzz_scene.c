@@ -326,6 +326,19 @@ static bool finite(const state *y)
     return true;
 }
 
+static definition pristine; /* before any edits */
+
+static void keep_pristine(const definition *d)
+{
+    pristine = *d;
+    spring_scene_def *const def = &pristine.def;
+    def->position = def->position != NULL ? pristine.position : NULL;
+    def->velocity = def->velocity != NULL ? pristine.velocity : NULL;
+    def->mass = def->mass != NULL ? pristine.mass : NULL;
+    def->pinned = pristine.pinned;
+    def->link = def->link != NULL ? pristine.link : NULL;
+}
+
 /* Both scenes, and what is known of them. Only the first is queried, and only its calls fail or do nothing. */
 typedef struct life {
     definition *d;
@@ -723,6 +736,22 @@ static void ask(life *l)
     (void)spring_scene_at_rest(l->one.s, v_tol, a_tol);
 }
 
+/* The second scene travels: a new scene of the first definition loads its state. */
+static void travel(life *l)
+{
+    static uint8_t saved[1 << 17];
+    size_t bytes = sizeof saved;
+    const spring_status status = spring_scene_save(l->other.s, saved, &bytes);
+    must(status == (l->broken ? SPRING_ENONFINITE : SPRING_OK), "a state can be saved unless it is lost");
+    if (status != SPRING_OK)
+        return;
+    must(spring_scene_init(l->other.block, l->other.bytes, &pristine.def, &l->other.s) == SPRING_OK, "as before");
+    saved[bytes / 2] ^= 1;
+    must(spring_scene_load(l->other.s, saved, bytes) == SPRING_EINVAL, "damaged");
+    saved[bytes / 2] ^= 1;
+    must(spring_scene_load(l->other.s, saved, bytes) == SPRING_OK, "of the same definition");
+}
+
 /* A few steps of both, on a copy of the old one. A callback may look at the time, which is another. */
 static void goes_on_alike(life *l, const place *p)
 {
@@ -773,11 +802,11 @@ static void live(life *l)
     static const struct {
         void (*other)(life *l);
         size_t change;
-    } choices[18] = {{NULL, 0},      {set_all, 0}, {get, 0},  {NULL, 1}, {NULL, 2},    {ask, 0},
-                     {copy_over, 0}, {remake, 0},  {NULL, 3}, {NULL, 4}, {advance, 0}, {advance, 0},
-                     {advance, 0},   {advance, 0}, {NULL, 5}, {tear, 0}, {NULL, 6},    {NULL, 7}};
+    } choices[19] = {{NULL, 0},   {set_all, 0}, {get, 0},  {NULL, 1},    {NULL, 2},    {ask, 0},     {copy_over, 0},
+                     {remake, 0}, {NULL, 3},    {NULL, 4}, {advance, 0}, {advance, 0}, {advance, 0}, {advance, 0},
+                     {NULL, 5},   {tear, 0},    {NULL, 6}, {NULL, 7},    {travel, 0}};
     for (int call = 0; call < most_calls && next < end; call++) {
-        const uint32_t what = take(), old = 200, choice = what < old ? what % 14 : 14 + what % 4;
+        const uint32_t what = take(), old = 200, choice = what < old ? what % 14 : 14 + what % 5;
         if (choices[choice].other != NULL)
             choices[choice].other(l);
         else
@@ -817,6 +846,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t data_size)
     define(&d);
     if (!check_definition(&d, &bytes))
         return 0;
+    keep_pristine(&d);
     life l = {.d = &d, .one = place_for(bytes, 0xa5), .other = place_for(bytes, 0x3c)};
     l.axes = d.def.axes == 0 ? 3 : d.def.axes;
     must(spring_scene_init(l.one.block, bytes - 1, &d.def, &l.one.s) == SPRING_ENOMEM && l.one.s == NULL, "too small");

@@ -101,8 +101,9 @@ typedef struct sheet {
 } sheet;
 
 /* A sheet of 7 x 5, or a height field. Jumbled, its links and their strengths have no order. */
-static sheet make_sheet(uint32_t axes, bool jumbled, bool damped)
+static sheet *make_sheet(uint32_t axes, bool jumbled, bool damped)
 {
+    static sheet s; /* too large for the stack of WebAssembly */
     const spring_grid grid = {
         .count = {7, 5},
         .axes = axes,
@@ -114,7 +115,8 @@ static sheet make_sheet(uint32_t axes, bool jumbled, bool damped)
         .damping = damped ? 0.02 : 0,
         .pinned = SPRING_GRID_FIRST_X,
     };
-    sheet s = {.axes = axes, .gravity = {0.3, -9.81, 0.1}};
+    memset(&s, 0, sizeof s);
+    s.axes = axes, s.gravity[0] = 0.3, s.gravity[1] = -9.81, s.gravity[2] = 0.1;
     size_t nodes;
     spring_grid_size(&grid, &nodes, &s.links);
     spring_grid_fill(&grid, s.position, s.pinned, s.link);
@@ -127,7 +129,7 @@ static sheet make_sheet(uint32_t axes, bool jumbled, bool damped)
     }
     for (size_t i = 0; i < nodes * axes; i++)
         s.position[i] += (double)(i * 29 % 17) / 331; /* no product: nothing to fuse here */
-    return s;
+    return &s;
 }
 
 #define SCENE_BITS(type)                                                                                               \
@@ -174,13 +176,13 @@ static void print_heavy_damping(void)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (int kind = 0; kind < 3; kind++) {
-            sheet s = make_sheet(axes, kind == 1, true);
+            sheet *const s = make_sheet(axes, kind == 1, true);
             if (kind == 2)
-                s.links = 12;
-            for (size_t i = 0; i < s.links; i++)
-                s.link[i].damping *= 1e4;
+                s->links = 12;
+            for (size_t i = 0; i < s->links; i++)
+                s->link[i].damping *= 1e4;
             static const char *const names[] = {"heavy-rows", "heavy-list", "heavy-few"};
-            print_scene(names[kind], &s, SPRING_LEAPFROG, 1, 1);
+            print_scene(names[kind], s, SPRING_LEAPFROG, 1, 1);
         }
 }
 
@@ -189,24 +191,24 @@ static void print_bending(spring_method m)
 {
     const bool smooth = spring_method_describe(m)->positions_only;
     const spring_grid grid = {.count = {7, 5}, .spacing = 0.1};
-    sheet s = make_sheet(3, false, !smooth);
-    s.bends = 4 * particles;
-    if (spring_bend_grid(&grid, s.pinned, SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS, 0.03, smooth ? 0 : 1e-3, s.bend,
-                         &s.bends) != SPRING_OK)
+    sheet *const s = make_sheet(3, false, !smooth);
+    s->bends = 4 * particles;
+    if (spring_bend_grid(&grid, s->pinned, SPRING_BEND_ROWS | SPRING_BEND_DIAGONALS, 0.03, smooth ? 0 : 1e-3, s->bend,
+                         &s->bends) != SPRING_OK)
         return;
     for (uint32_t i = 0; i < 8; i++)
-        s.bend[s.bends++] = (spring_weighted_link){.particle = {i, i + 9, i + 10, i + 17},
-                                                   .weight = {-1, 0.25, 0.5, 0.25},
-                                                   .rest = i % 3 * 0.1,
-                                                   .stiffness = 3 + i};
-    spring_scene_def def = {.particles = particles, .links = s.links, .position = s.position, .pinned = s.pinned};
-    def.link = s.link, def.weighted_links = s.bends, def.weighted_link = s.bend;
+        s->bend[s->bends++] = (spring_weighted_link){.particle = {i, i + 9, i + 10, i + 17},
+                                                     .weight = {-1, 0.25, 0.5, 0.25},
+                                                     .rest = i % 3 * 0.1,
+                                                     .stiffness = 3 + i};
+    spring_scene_def def = {.particles = particles, .links = s->links, .position = s->position, .pinned = s->pinned};
+    def.link = s->link, def.weighted_links = s->bends, def.weighted_link = s->bend;
     uint32_t work[2 * particles];
     double distance[2 * particles];
     size_t tethers = particles;
-    if (!smooth && spring_links_tethers(&def, 0.05, 0.01, s.link + s.links, &tethers, work, distance) == SPRING_OK)
-        s.links += tethers;
-    print_scene("bending", &s, m, 1, 1);
+    if (!smooth && spring_links_tethers(&def, 0.05, 0.01, s->link + s->links, &tethers, work, distance) == SPRING_OK)
+        s->links += tethers;
+    print_scene("bending", s, m, 1, 1);
 }
 
 static uint64_t digest_weighted(uint64_t hash, const spring_weighted_link *link, size_t links)
@@ -223,10 +225,10 @@ static uint64_t digest_weighted(uint64_t hash, const spring_weighted_link *link,
 static void print_mesh_links(void)
 {
     enum { vertices = 4 * particles, triangles = 2 * particles };
-    double position[3 * vertices];
-    uint32_t triangle[3 * triangles], particle_of[vertices], work[3 * vertices + 6 * triangles + 1];
-    spring_link link[3 * triangles];
-    spring_weighted_link bend[3 * triangles];
+    static double position[3 * vertices];
+    static uint32_t triangle[3 * triangles], particle_of[vertices], work[3 * vertices + 6 * triangles + 1];
+    static spring_link link[3 * triangles];
+    static spring_weighted_link bend[3 * triangles];
     size_t corners = 0, found, links = 3 * triangles, bends = 3 * triangles;
     for (uint32_t i = 0; i < vertices; i++) {
         const uint32_t p = i % particles, x = p % 7, y = p / 7;
@@ -260,11 +262,11 @@ static void print_further_links(spring_method m)
     const bool plain = spring_method_describe(m)->positions_only;
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (int kind = 0; kind < (m == SPRING_LEAPFROG ? 3 : 2); kind++) {
-            sheet s = make_sheet(axes, kind == 1, !plain);
-            for (size_t i = 0; i < s.links; i++) {
-                s.link[i].flags = axes > 1 && !plain && i % 3 == 0 ? 1 + (uint32_t)(i / 3 % 2) : 0;
-                s.link[i].rest = i % 7 == 0 ? 0 : s.link[i].rest;
-                s.link[i].damping *= kind == 2 ? 1e4 : 1;
+            sheet *const s = make_sheet(axes, kind == 1, !plain);
+            for (size_t i = 0; i < s->links; i++) {
+                s->link[i].flags = axes > 1 && !plain && i % 3 == 0 ? 1 + (uint32_t)(i / 3 % 2) : 0;
+                s->link[i].rest = i % 7 == 0 ? 0 : s->link[i].rest;
+                s->link[i].damping *= kind == 2 ? 1e4 : 1;
             }
             for (uint32_t i = 0; i + 2 < particles; i++) {
                 const uint32_t step = i % 7 < 5 || i + 14 >= particles ? 1 : 7;
@@ -278,10 +280,10 @@ static void print_further_links(spring_method m)
                 w.damping = plain ? 0 : kind == 2 ? 90 : 0.03;
                 if (w.weight[3] == 0 ||
                     (w.particle[3] != i && w.particle[3] != i + step && w.particle[3] != i + 2 * step))
-                    s.bend[s.bends++] = w;
+                    s->bend[s->bends++] = w;
             }
             static const char *const names[] = {"bend-rows", "bend-list", "bend-heavy"};
-            print_scene(names[kind], &s, m, 1, 1);
+            print_scene(names[kind], s, m, 1, 1);
         }
 }
 
@@ -289,18 +291,20 @@ static void print_scenes(spring_method m)
 {
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (int jumbled = 0; jumbled < 2; jumbled++) {
-            const sheet s = make_sheet(axes, jumbled, jumbled && !spring_method_describe(m)->positions_only);
-            print_scene(jumbled ? "list" : "rows", &s, m, 1, 1);
+            const sheet *const s = make_sheet(axes, jumbled, jumbled && !spring_method_describe(m)->positions_only);
+            print_scene(jumbled ? "list" : "rows", s, m, 1, 1);
         }
-    const sheet height_field =
+    const sheet *const height_field =
         make_sheet(1, false, false); /* is linear, so its motion is the same, except for rounding */
-    print_scene("denormal", &height_field, m, to_denormal, (double)to_denormalf);
+    print_scene("denormal", height_field, m, to_denormal, (double)to_denormalf);
 }
 
 /* Tension-only links, held forces, links that tear and are reeled in, and a scene that is moved as a whole. */
 #define SLACK_BITS(type)                                                                                          \
-    static uint64_t type##_slack_bits(sheet s, spring_method m)                                                   \
+    static uint64_t type##_slack_bits(const sheet *given, spring_method m)                                        \
     {                                                                                                             \
+        static sheet s;                                                                                           \
+        s = *given;                                                                                               \
         static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                        \
         static const double map[12] = {0.6, -0.8, 0, 1.3, 0.8, 0.6, 0, -0.7, 0, 0, -1, 0.3};                      \
         double force[3 * particles], out[2][3 * particles] = {{0}};                                               \
@@ -345,7 +349,7 @@ static void print_slack_scenes(spring_method m)
     for (uint32_t axes = 2; axes <= 3; axes++)
         for (int jumbled = 0; jumbled < 2; jumbled++)
             for (int damped = 0; damped < 2; damped++) {
-                const sheet s = make_sheet(axes, jumbled, damped);
+                const sheet *const s = make_sheet(axes, jumbled, damped);
                 printf("slack-%s%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", jumbled ? "list" : "rows",
                        damped ? "-damped" : "", axes, spring_method_name(m), spring_scene_slack_bits(s, m),
                        spring_scenef_slack_bits(s, m));
@@ -354,8 +358,10 @@ static void print_slack_scenes(spring_method m)
 
 /* Colliders of all shapes that move and spin, in the way of a sheet, or of few particles. */
 #define CONTACT_BITS(type)                                                                                             \
-    static uint64_t type##_contact_bits(sheet s, spring_method m, size_t used)                                         \
+    static uint64_t type##_contact_bits(const sheet *given, spring_method m, size_t used)                              \
     {                                                                                                                  \
+        static sheet s;                                                                                                \
+        s = *given;                                                                                                    \
         static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[1 << 17];                                             \
         static const spring_collider c[4] = {                                                                          \
             {.shape = SPRING_PLANE, .at = {0, -0.2, 0}, .axis = {{0.6, 0.8, 0}}, .friction = 0.4, .restitution = 0.3}, \
@@ -420,9 +426,9 @@ static void print_contacts(spring_method m)
     for (uint32_t axes = 2; axes <= 3; axes++)
         for (int damped = 0; damped < 3; damped++)
             for (int few = 0; few < (damped ? 1 : 2); few++) {
-                sheet s = make_sheet(axes, false, damped > 0);
-                for (size_t i = 0; i < s.links; i++)
-                    s.link[i].damping *= damped == 2 ? 500 : 1;
+                sheet *const s = make_sheet(axes, false, damped > 0);
+                for (size_t i = 0; i < s->links; i++)
+                    s->link[i].damping *= damped == 2 ? 500 : 1;
                 printf("contacts-%s%s %" PRIu32 " %s %016" PRIx64 ", float %016" PRIx64 "\n", few ? "few" : "rows",
                        damped == 2 ? "-heavy"
                        : damped    ? "-damped"
@@ -430,6 +436,77 @@ static void print_contacts(spring_method m)
                        axes, spring_method_name(m), spring_scene_contact_bits(s, m, few ? 9 : particles),
                        spring_scenef_contact_bits(s, m, few ? 9 : particles));
             }
+}
+
+/* The bytes of a saved state, and those of the state 200 steps after it has been loaded into a new scene. Equal bytes are
+   what lets a state travel from one target to another. */
+#define STATE_BITS(type)                                                                                              \
+    static type *type##_stated(void *memory, size_t bytes, const sheet *s)                                            \
+    {                                                                                                                 \
+        const type##_def def = {.axes = s->axes,                                                                      \
+                                .flags = SPRING_SCENE_FORCES | SPRING_SCENE_EDITABLE,                                 \
+                                .particles = particles,                                                               \
+                                .links = s->links,                                                                    \
+                                .position = s->position,                                                              \
+                                .mass_all = 0.3,                                                                      \
+                                .pinned = s->pinned,                                                                  \
+                                .link = s->link,                                                                      \
+                                .gravity = {0.3, -9.81, 0.1},                                                         \
+                                .drag = 0.07,                                                                         \
+                                .colliders = s->axes > 1 ? 9 : 0};                                                    \
+        type *scene = NULL;                                                                                           \
+        return type##_init(memory, bytes, &def, &scene) == SPRING_OK ? scene : NULL;                                  \
+    }                                                                                                                 \
+    static uint64_t type##_state_bytes(const type *scene, unsigned char *state, size_t *bytes)                        \
+    {                                                                                                                 \
+        if (type##_save(scene, state, bytes) != SPRING_OK)                                                            \
+            return 0;                                                                                                 \
+        uint64_t hash = no_digest;                                                                                    \
+        for (size_t i = 0; i < *bytes; i++)                                                                           \
+            hash = digest_bits(hash, state[i], 1);                                                                    \
+        return hash;                                                                                                  \
+    }                                                                                                                 \
+    static void type##_state_bits(const sheet *s, uint64_t hash[2])                                                   \
+    {                                                                                                                 \
+        static _Alignas(SPRING_SCENE_ALIGN) unsigned char memory[2][1 << 17], state[1 << 16];                         \
+        double force[3 * particles];                                                                                  \
+        spring_collider c[9] = {{.shape = SPRING_SPHERE, .at = {0.3, 0.1, 0.05}, .radius = 0.25, .velocity = {0.1}}}; \
+        for (int i = 1; i < 9; i++)                                                                                   \
+            c[i] = (spring_collider){.shape = SPRING_PLANE, .at = {0, -0.1 * i, 0}, .axis = {{0, 1, 0}}};             \
+        for (int i = 0; i < 3 * particles; i++)                                                                       \
+            force[i] = (double)(i * 31 % 23 - 11) / 7;                                                                \
+        size_t bytes = sizeof state;                                                                                  \
+        type *const one = type##_stated(memory[0], sizeof memory[0], s);                                              \
+        type *const other = type##_stated(memory[1], sizeof memory[1], s);                                            \
+        hash[0] = hash[1] = 0;                                                                                        \
+        if (type##_set(one, SPRING_FORCE, force, 0, 0, particles) != SPRING_OK ||                                     \
+            (s->axes > 1 && type##_set_colliders(one, c, 9) != SPRING_OK) ||                                          \
+            type##_advance(one, SPRING_LEAPFROG, 1e-3, 150) != SPRING_OK ||                                           \
+            type##_tear(one, 1.6, NULL, NULL, 0, NULL) != SPRING_OK ||                                                \
+            type##_advance(one, SPRING_LEAPFROG, 1e-3, 20) != SPRING_OK)                                              \
+            return;                                                                                                   \
+        hash[0] = type##_state_bytes(one, state, &bytes);                                                             \
+        if (type##_load(other, state, bytes) != SPRING_OK ||                                                          \
+            type##_advance(other, SPRING_LEAPFROG, 1e-3, 200) != SPRING_OK)                                           \
+            return;                                                                                                   \
+        bytes = sizeof state;                                                                                         \
+        hash[1] = type##_state_bytes(other, state, &bytes);                                                           \
+    }
+
+STATE_BITS(spring_scene)
+STATE_BITS(spring_scenef)
+
+static void print_states(void)
+{
+    for (uint32_t axes = 1; axes <= 3; axes++)
+        for (int jumbled = 0; jumbled < 2; jumbled++) {
+            const sheet *const s = make_sheet(axes, jumbled, jumbled);
+            uint64_t hash[2][2];
+            spring_scene_state_bits(s, hash[0]);
+            spring_scenef_state_bits(s, hash[1]);
+            printf("state-%s %" PRIu32 " %016" PRIx64 " %016" PRIx64 ", float %016" PRIx64 " %016" PRIx64 "\n",
+                   jumbled ? "list" : "rows", axes, hash[0][0], hash[0][1], hash[1][0], hash[1][1]);
+        }
 }
 
 /* Few steps, many that oscillate or do not, and a few periods of many. */
@@ -631,5 +708,6 @@ int main(void)
         if (spring_method_describe(spring_method_at(j))->scenes)
             print_bending(spring_method_at(j));
     print_mesh_links();
+    print_states();
     return 0;
 }

@@ -328,6 +328,43 @@ static void floor_and_wall(void)
         }
 }
 
+/* A wall keeps the time since it was set: steps of other lengths, other times and a saved state change nothing in its
+   motion. It is set long after the start, and its place does not have the rounding errors of times. */
+static void time_of_a_wall(void)
+{
+    static const double x[] = {1.5, 0, 0};
+    spring_scene_def def = {.particles = 1, .position = x, .colliders = 1};
+    use_all_methods(&def);
+    const spring_collider c = {
+        .shape = SPRING_PLANE, .at = {1, 0, 0}, .axis = {{1, 0, 0}}, .velocity = {1, 0, 0}, .friction = 1};
+    for (int m = 0; m < method_count; m++) {
+        const spring_method method = with_contacts[m];
+        spring_scene *s = scene_of(&def), *other = scene_of(&def);
+        CHECK(spring_scene_set_time(s, 1e6) == SPRING_OK && spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "valid");
+        double dt = 1.0 / 64, elapsed = 0;
+        for (int call = 0; call < 20; call++, dt *= 0.9) {
+            uint8_t saved[1024];
+            size_t bytes = sizeof saved;
+            if (call % 5 == 4)
+                CHECK(spring_scene_set_time(s, -3e5 * call) == SPRING_OK, "finite");
+            CHECK(spring_scene_advance(s, method, dt, 7) == SPRING_OK &&
+                      spring_scene_save(s, saved, &bytes) == SPRING_OK &&
+                      spring_scene_load(other, saved, bytes) == SPRING_OK,
+                  "finite");
+            elapsed += 7 * dt;
+            spring_scene *const before = s;
+            s = other;
+            other = before;
+            double at[3];
+            spring_scene_get(s, SPRING_POSITION, at, 0, 0, 1);
+            CHECK_CLOSE(at[0], fmax(1.5, 1 + elapsed), 50 * EPS * (1 + elapsed),
+                        "pushed by the wall; a rounding per step and call");
+        }
+        free(s);
+        free(other);
+    }
+}
+
 /* A particle that a collider was set around comes out at its surface, and gains no velocity, neither at rest nor when it
    moves inwards. Pinned particles stay. */
 static void inside_at_first(void)
@@ -423,6 +460,7 @@ static const test tests[] = {
     {"rests", rests},
     {"rests in a groove", rests_in_a_groove},
     {"floor and wall", floor_and_wall},
+    {"time of a wall", time_of_a_wall},
     {"inside at first", inside_at_first},
     {"heavy damping", heavy_damping},
     {"pressed by damping", pressed_by_damping},

@@ -119,10 +119,12 @@ static void check_iterate(const model *m, spring_method method)
 static void against_definitions(void)
 {
     static model m;
-    static const uint32_t grids[][3] = {{4, 1, 1}, {4, 3, 1}, {3, 2, 2}};
+    static const uint32_t grids[][3] = {{4, 1, 1}, {4, 3, 1}, {3, 2, 2}, {23, 1, 1}};
     for (uint32_t axes = 1; axes <= 3; axes++)
         for (unsigned features = 0; features < EDITABLE; features++) {
-            build(&m, grids[features % 3], axes, features);
+            build(&m, grids[features % 4 == 1 && features % 3 > 0 ? 3 : features % 3], axes, features);
+            if (features % 4 == 1)
+                add_further_links(&m, (features & DAMPED) != 0);
             m.def.force = features % 5 < 3 ? push_all : NULL;
             m.def.user = &m;
             if (features % 5 == 2)

@@ -2,10 +2,12 @@
 /*
  * Properties of random scenes with random calls. Every property also visits a table of special layouts.
  *
- *     test_scene_random [VECTORS [SCENES]]    v128, v256, v512 or any; each scene has about six calls of advance()
+ *     test_scene_random [VECTORS [SCENES [states]]]    v128, v256, v512 or any; each scene has about six calls of
+ *                                                      advance(). states: saved states, which take longer
  */
 #include <stdio.h>
 
+#include "state_check.h"
 #include "test_scene.h"
 
 enum { rounds = 6, most_moves = 4, line = SPRING_SCENE_ALIGN, alignment = 8 };
@@ -400,6 +402,17 @@ static void do_nothing(spring_scene *s, const model *m)
           "as it is");
 }
 
+/* Of both buffers: a later step may read them with longer vectors than those of the step that wrote them. */
+static void check_padding(spring_scene *s)
+{
+    for (uint32_t buffer = 0; buffer < 2 && scene_has(s, positions_in(buffer)); buffer++)
+        for (uint32_t a = 0; a < s->layout.axes; a++)
+            for (size_t i = s->layout.particles; i < s->layout.stride; i++)
+                CHECK(scalar_finite(scene_axis(s, positions_in(buffer), a)[i]) &&
+                          scalar_finite(scene_axis(s, velocities_in(buffer), a)[i]),
+                      "padding lanes stay finite");
+}
+
 /* Calls that fail. */
 static void fail(const block *b, const model *m)
 {
@@ -435,6 +448,7 @@ static void fail(const block *b, const model *m)
     if ((s->layout.flags & SPRING_SCENE_NO_UNDO) == 0 &&
         spring_scene_advance(s, any_method(&m->def), one_in(2) ? overflows : -overflows, 1 + below(3)) == SPRING_OK)
         memcpy(s, kept.s, b->bytes); /* a scene that does not move cannot overflow */
+    check_padding(s);
     free(kept.room);
 }
 
@@ -701,6 +715,285 @@ static void equal_runs(void)
     CHECK(contacts > scenes / 10, "contacts took place");
 }
 
+/* ----------------------------------------------------------------------------------------------------- saved states */
+
+typedef struct saved {
+    uint8_t *room, *bytes;
+    size_t size;
+} saved;
+
+/* What a state may need, besides its header: docs/details.md lists it. */
+static double content_of(const spring_scene *s)
+{
+    const scene_layout *const l = &s->layout;
+    const double quantity = (double)(l->axes * l->particles * sizeof(scalar));
+    const bool editable = (l->flags & SPRING_SCENE_EDITABLE) != 0, holds = (l->flags & SPRING_SCENE_FORCES) != 0;
+    return quantity * (2 + (s->force_cache != NO_FORCE) + holds) + s->colliders * (double)sizeof(spring_collider) +
+           editable * ((double)l->particles * (sizeof(scalar) + 1) +
+                       (3.0 * (double)l->links + 8.0 * (double)l->weighted) * sizeof(scalar));
+}
+
+/* The state at an odd address, in memory that ends behind it. */
+static saved save(const spring_scene *s)
+{
+    saved y = {.size = 0};
+    CHECK(spring_scene_save(s, NULL, &y.size) == SPRING_OK, "the size");
+    CHECK((double)y.size <= 1.1 * content_of(s) + 256, "a small header and little padding");
+    y.room = malloc(y.size + 1);
+    y.bytes = y.room + 1;
+    memset(y.room, 0x5a, y.size + 1);
+    size_t size = below(y.size);
+    CHECK(spring_scene_save(s, y.bytes, &size) == SPRING_ENOMEM && size == y.size && y.bytes[below(size)] == 0x5a,
+          "too small: nothing is written but the size");
+    size = y.size + below(2);
+    CHECK(spring_scene_save(s, y.bytes, &size) == SPRING_OK && size == y.size, "as large as announced");
+    return y;
+}
+
+/* Damaged, truncated and extended states change nothing. */
+static void check_damage(const block *b, const saved *y)
+{
+    const block kept = copy_of(b);
+    uint8_t *const longer = calloc(1, y->size + 8), *const bytes = memcpy(longer, y->bytes, y->size);
+    for (int i = 0; i < 3; i++) {
+        const size_t at = below(y->size);
+        const uint8_t bit = (uint8_t)(1 << below(8));
+        bytes[at] ^= bit;
+        CHECK(spring_scene_load(b->s, bytes, y->size) == SPRING_EINVAL, "a bit is wrong");
+        bytes[at] ^= bit;
+        CHECK(spring_scene_load(b->s, bytes, below(y->size)) == SPRING_EINVAL, "the end is missing");
+    }
+    CHECK(spring_scene_load(b->s, longer, y->size + 1 + below(8)) == SPRING_EINVAL, "something follows");
+    CHECK(memcmp(kept.s, b->s, b->bytes) == 0, "nothing has changed");
+    free(longer);
+    free(kept.room);
+}
+
+static void load_word(spring_scene *s, const saved *y, size_t i, uint64_t word, spring_status want)
+{
+    const uint64_t kept = state_word(y->bytes, i);
+    set_state_word(y->bytes, i, word);
+    sign_state(y->bytes, y->size / 8);
+    CHECK(spring_scene_load(s, y->bytes, y->size) == want, "a state with another word");
+    set_state_word(y->bytes, i, kept);
+    sign_state(y->bytes, y->size / 8);
+}
+
+/* States with a valid check value that no scene of this kind saves: of other definitions and versions, with numbers that
+   are not finite, negative masses and coefficients, colliders and touching that are not there. */
+static void check_other_words(const block *b, const saved *y)
+{
+    enum {
+        first_free = 13,
+        kept_force = 13,
+        colliders = 15,
+        touching,
+        t0,
+        dt,
+        steps,
+        base,
+        from,
+        gravity,
+        header = 25
+    };
+    const block kept = copy_of(b);
+    const scene_layout *const l = &b->s->layout;
+    const size_t number = sizeof(scalar), quantity = (l->axes * l->particles * number + 7) / 8;
+    const uint64_t nothing = UINT64_C(0x7ff8000000000000) | UINT64_C(0x7fc00000); /* NaN, also as two floats */
+    for (size_t i = 0; i < first_free; i++)
+        load_word(b->s, y, i, state_word(y->bytes, i) + 1, SPRING_EINVAL);
+    load_word(b->s, y, 2, 12 - number, SPRING_EINVAL); /* the other precision */
+    load_word(b->s, y, kept_force, PREDICTED_FORCE + 1, SPRING_EINVAL);
+    load_word(b->s, y, colliders, l->colliders + 1, SPRING_EINVAL);
+    load_word(b->s, y, touching, state_word(y->bytes, touching) + 1, SPRING_EINVAL);
+    for (size_t i = t0; i <= gravity; i += i == dt || i == base ? 2 : 1)
+        load_word(b->s, y, i, nothing, SPRING_EINVAL);
+    load_word(b->s, y, from, state_word(y->bytes, steps) + 1, SPRING_EINVAL);
+    load_word(b->s, y, header + below(2 * quantity), nothing, SPRING_EINVAL);
+    if ((l->flags & SPRING_SCENE_EDITABLE) != 0) {
+        const bool keeps = state_word(y->bytes, kept_force) > 0, holds = (l->flags & SPRING_SCENE_FORCES) != 0;
+        const size_t quantities = 2u + keeps + holds;
+        const size_t masses = header + quantities * quantity, pins = masses + (l->particles * number + 7) / 8;
+        const size_t rests = pins + (l->particles + 63) / 64, each = (l->links * number + 7) / 8;
+        const size_t at = below((l->particles * number + 7) / 8);
+        const uint64_t negative = UINT64_C(0xbf800000bf800000); /* also as two floats */
+        load_word(b->s, y, masses + at, negative, SPRING_EINVAL);
+        load_word(b->s, y, pins, UINT64_MAX, SPRING_OK); /* all pinned, or the first 64 */
+        memcpy(b->s, kept.s, b->bytes);
+        if (each > 0 && l->axes > 1)
+            load_word(b->s, y, rests + below(each), negative, SPRING_EINVAL);
+        if (each > 0)
+            load_word(b->s, y, rests + each + below(each), negative, SPRING_EINVAL);
+    }
+    CHECK(memcmp(kept.s, b->s, b->bytes) == 0, "nothing has changed");
+    free(kept.room);
+}
+
+/* Replaces a scene by another one of the same definition, with a life of its own, which loads its state. */
+static void travel(block *b, const model *m)
+{
+    const saved y = save(b->s);
+    block other = block_of(&m->def);
+    if (m->def.colliders > 0)
+        set_colliders((spring_scene *[]){other.s, other.s}, m);
+    spring_scene_set_gravity(other.s, (double[]){0.3, 0.2, 0.1});
+    spring_scene_set(other.s, SPRING_FORCE, m->velocity, 0, 0, m->def.velocity != NULL ? m->def.particles : 0);
+    spring_scene_set_mass(other.s, 0, 1, (double[]){2.2});
+    spring_scene_set_pinned(other.s, 0, 1, (uint8_t[]){one_in(2)});
+    spring_scene_tear(other.s, 1, NULL, NULL, 0, NULL);
+    for (size_t i = 0; i < m->def.links; i++) {
+        spring_link link = m->link[i];
+        link.damping += 0.01;
+        spring_scene_set_link(other.s, i, &link);
+    }
+    for (size_t i = 0; i < m->def.weighted_links; i++) {
+        spring_weighted_link link = m->weighted[i];
+        link.stiffness += 0.1;
+        spring_scene_set_weighted_links(other.s, i, 1, &link);
+    }
+    const double dt = one_in(8) ? 1e3 : random_log(0.003, 0.1); /* now and then it is lost */
+    spring_scene_advance(other.s, any_method(&m->def), dt, below(4));
+    check_damage(&other, &y);
+    check_other_words(&other, &y);
+    CHECK(spring_scene_load(other.s, y.bytes, y.size) == SPRING_OK, "a state of the same definition");
+    const saved again = save(other.s);
+    CHECK(again.size == y.size && memcmp(again.bytes, y.bytes, y.size) == 0, "all of it has been loaded");
+    CHECK(difference(b->s, other.s, m) == NULL && step_difference(b->s, other.s) == NULL, "the same scene");
+    free(y.room);
+    free(again.room);
+    free(b->room);
+    *b = other;
+}
+
+static const char *run_and_travel(const model *m, push *p)
+{
+    block one = block_of(&m->def), other = block_of(&m->def);
+    if (m->def.colliders > 0)
+        set_colliders((spring_scene *[]){one.s, other.s}, m);
+    spring_method method = any_method(&m->def);
+    double dt = random_log(0.003, 0.1);
+    const char *differs = NULL;
+    for (int round = 0; round < rounds && differs == NULL; round++) {
+        const double t = random_uniform(-1e3, 1e3);
+        const bool last = round == rounds - 1;
+        if (one_in(2))
+            change((spring_scene *[]){one.s, other.s}, m, p);
+        if (one_in(5)) {
+            CHECK(spring_scene_set_time(one.s, t) == SPRING_OK && spring_scene_set_time(other.s, t) == SPRING_OK,
+                  "any time");
+            if (m->def.force != NULL) /* forces are evaluated again anyway */
+                spring_scene_set_force(other.s, m->def.force, p);
+        }
+        if (m->def.colliders > 0 && one_in(8))
+            CHECK(spring_scene_set_colliders(one.s, NULL, 0) == SPRING_OK &&
+                      spring_scene_set_colliders(other.s, NULL, 0) == SPRING_OK,
+                  "none");
+        if (one_in(2))
+            travel(&other, m);
+        differs = advance_both(&one, &other, m, method, one_in(8) ? -dt : dt,
+                               last && m->def.particles < 100 ? 200 : 1 + below(4));
+        if (one_in(5))
+            method = any_method(&m->def);
+        if (one_in(5))
+            dt = random_log(0.003, 0.1);
+    }
+    free(one.room);
+    free(other.room);
+    return differs;
+}
+
+static void saved_states(void)
+{
+    static model m;
+    push p;
+    contacts = 0;
+    saved before = {NULL, NULL, 0};
+    for (size_t i = 0; i < scenes; i++) {
+        build_any(&m, &p, i, false);
+        check_none(i, run_and_travel(&m, &p));
+        const block b = block_of(&m.def);
+        const saved y = save(b.s);
+        const bool same = i > 0 && y.size == before.size && memcmp(y.bytes + 16, before.bytes + 16, 80) == 0;
+        CHECK(i == 0 || same || spring_scene_load(b.s, before.bytes, before.size) == SPRING_EINVAL, "of another scene");
+        if (m.def.links > 0)
+            m.link[0].flags ^= SPRING_LINK_TENSION_ONLY;
+        if (m.def.links > 0 && spring_scene_check(&m.def, NULL, NULL) == SPRING_OK) {
+            const block flagged = block_of(&m.def);
+            CHECK(spring_scene_load(flagged.s, y.bytes, y.size) == SPRING_EINVAL, "other flags of a link");
+            free(flagged.room);
+        }
+        free(before.room);
+        free(b.room);
+        before = y;
+    }
+    free(before.room);
+    CHECK(contacts > scenes / 10, "contacts took place");
+}
+
+/* Two scenes have run differently, and get the same time, state and everything that differs. */
+static const char *run_and_meet(model *m, push *p)
+{
+    static double zeros[3 * most];
+    const size_t n = m->def.particles;
+    block one = block_of(&m->def), other = block_of(&m->def);
+    spring_scene *const both[] = {one.s, other.s};
+    for (int j = 0; j < 2; j++)
+        for (size_t calls = below(5); calls-- > 0;) {
+            if (m->def.colliders > 0)
+                set_colliders((spring_scene *[]){both[j], both[j]}, m);
+            change((spring_scene *[]){both[j], both[j]}, m, p);
+            spring_scene_advance(both[j], any_method(&m->def), one_in(20) ? 1e5 : random_log(0.003, 0.1), below(9));
+        }
+    const spring_collider c = any_collider(m->def.axes); /* with equal numbers also where none is read */
+    const double t = random_uniform(-1e3, 1e3);
+    for (size_t i = 0; i < n; i++) {
+        m->mass[i] = mass_in(&m->def, i);
+        m->pinned[i] = pinned_in(&m->def, i);
+        m->mass[i] = m->mass[i] > 0 ? m->mass[i] : 1;
+    }
+    for (int j = 0; j < 2; j++) {
+        spring_scene *const s = both[j];
+        CHECK(spring_scene_set_time(s, t) == SPRING_OK, "finite");
+        CHECK(m->def.colliders == 0 || spring_scene_set_colliders(s, &c, 1) == SPRING_OK, "a valid collider");
+        spring_scene_set_gravity(s, m->def.gravity);
+        spring_scene_set_force(s, m->def.force, p);
+        spring_scene_set(s, SPRING_FORCE, zeros, 0, 0, n);
+        if ((m->def.flags & SPRING_SCENE_EDITABLE) != 0)
+            CHECK(spring_scene_set_mass(s, 0, n, m->mass) == SPRING_OK &&
+                      spring_scene_set_pinned(s, 0, n, m->pinned) == SPRING_OK &&
+                      spring_scene_set_links(s, 0, m->def.links, m->link) == SPRING_OK &&
+                      spring_scene_set_weighted_links(s, 0, m->def.weighted_links, m->weighted) == SPRING_OK,
+                  "those of the definition");
+        CHECK(spring_scene_set(s, SPRING_POSITION, m->position, 0, 0, n) == SPRING_OK &&
+                  spring_scene_set(s, SPRING_VELOCITY, m->velocity, 0, 0, n) == SPRING_OK,
+              "finite");
+    }
+    CHECK(spring_scene_time(one.s) == t && spring_scene_set_time(one.s, NAN) == SPRING_EINVAL &&
+              spring_scene_set_time(one.s, -INFINITY) == SPRING_EINVAL,
+          "finite times only");
+    const char *differs = NULL;
+    const double dt = random_log(0.003, 0.1);
+    for (int round = 0; round < 5 && differs == NULL; round++)
+        differs = advance_both(&one, &other, m, any_method(&m->def), dt, n < 100 ? 200 : 20);
+    const saved y = save(one.s), z = save(other.s);
+    CHECK(differs != NULL || (y.size == z.size && memcmp(y.bytes, z.bytes, y.size) == 0), "equal states");
+    free(y.room);
+    free(z.room);
+    free(one.room);
+    free(other.room);
+    return differs;
+}
+
+static void scenes_that_meet(void)
+{
+    static model m;
+    push p;
+    for (size_t i = 0; i < scenes; i++) {
+        build_any(&m, &p, i, false);
+        check_none(i, run_and_meet(&m, &p));
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------------------- forces */
 
 static void forces(void)
@@ -754,7 +1047,7 @@ static void transform_state(const double matrix[12], const model *m, state *y)
 static spring_link any_coefficients(const model *m, size_t i)
 {
     spring_link link = m->link[i];
-    link.rest = random_uniform(0, 1);
+    link.rest = one_in(4) ? 0 : random_uniform(0, 1);
     link.stiffness = one_in(3) ? 0 : random_log(3, 60);
     link.damping = one_in(2) ? 0 : random_uniform(0, 0.6);
     if (one_in(3))
@@ -983,6 +1276,10 @@ int main(int argc, char **argv)
         {"forces against a plain loop", forces},
         {"edits", edits},
     };
+    static const test of_states[] = {
+        {"saved and loaded scenes go on alike", saved_states},
+        {"scenes that meet go on alike", scenes_that_meet},
+    };
     static const char *const names[] = {"v128", "v256", "v512"};
     for (int i = 0; i < 3 && argc > 1; i++)
         if (strcmp(argv[1], names[i]) == 0 && (given = kernels_of(i)) == NULL) {
@@ -991,5 +1288,7 @@ int main(int argc, char **argv)
         }
     if (argc > 2)
         scenes = strtoul(argv[2], NULL, 10);
+    if (argc > 3 && strcmp(argv[3], "states") == 0)
+        return RUN_TESTS("states of random scenes", of_states);
     return RUN_TESTS("random scenes", tests);
 }

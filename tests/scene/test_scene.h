@@ -188,18 +188,22 @@ SPRING_INLINE void build(model *m, const uint32_t count[3], uint32_t axes, unsig
     use_all_methods(&m->def);
 }
 
-/* Weights that add up to 0: (w, -2w, w) at lower, lower + offset and lower + 2 offset, or with offset 0 any. */
+/* Weights that add up to 0: (w, -2w, w) at lower, lower + offset and lower + 2 offset, now and then one more or with a
+   rest length; with offset 0 any. */
 SPRING_INLINE spring_weighted_link random_weighted(size_t particles, uint32_t offset, uint32_t lower)
 {
     spring_weighted_link w = {.stiffness = random_bits() % 8 ? random_log(3, 60) : 0};
     if (offset > 0) {
         const double weight = random_bits() % 2 ? 0.5 : random_uniform(-1, 1);
         const uint32_t unused = (uint32_t)(random_bits() % 4), down = random_bits() % 2;
+        const uint32_t last = lower + 2 * offset, beyond = last + 1 < particles && random_bits() % 32 == 0;
         for (uint32_t i = 0, k = 0; i < 4; i++) {
-            w.particle[i] = i == unused ? UINT32_MAX : lower + (down ? 2 - k : k) * offset;
+            const uint32_t place = down ? 2 - k : k;
+            w.particle[i] = i == unused ? UINT32_MAX : lower + place * offset + (place == 2 ? beyond : 0);
             w.weight[i] = i == unused ? 0 : k == 1 ? -2 * weight : weight;
             k += i != unused;
         }
+        w.rest = random_bits() % 32 == 0 ? 0.2 : 0;
         return w;
     }
     const uint32_t points = 2 + (uint32_t)(random_bits() % 3);
@@ -225,7 +229,8 @@ SPRING_INLINE void add_further_links(model *m, bool damped)
     static const uint32_t offsets[] = {1, 2, 5, 8, 31, 33, 64, 100};
     const size_t particles = m->def.particles;
     size_t count = 0;
-    const unsigned bands = (unsigned)(random_bits() % 3), strays = (unsigned)(random_bits() % 12);
+    const unsigned bands = (unsigned)(random_bits() % 3),
+                   strays = random_bits() % 3 ? 0 : (unsigned)(random_bits() % 12);
     for (unsigned b = 0; b < bands; b++) {
         const uint32_t offset = offsets[random_bits() % (sizeof offsets / sizeof offsets[0])];
         for (uint32_t i = 0; i + 2 * (size_t)offset < particles && count < most_weighted - 20; i++)

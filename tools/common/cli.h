@@ -136,6 +136,9 @@ void cli_comment(cli_table *table, const char *format, ...) CLI_PRINTF(2); /* on
 void cli_columns(cli_table *table, const char *names);                     /* separated by spaces */
 void cli_row(cli_table *table, const char *format, ...) CLI_PRINTF(2);     /* one line, "\n" is added */
 
+/** Writes bytes instead of rows, without a stamp. */
+void cli_bytes(cli_table *table, const void *bytes, size_t count);
+
 /** Close the table that was opened last and rename its file now. */
 void cli_close(cli_table *table);
 

@@ -292,6 +292,12 @@ void cli_row(cli_table *table, const char *format, ...)
     va_end(arguments);
 }
 
+void cli_bytes(cli_table *table, const void *bytes, size_t count)
+{
+    if (fwrite(bytes, 1, count, table->stream) != count)
+        fail_to_write(table);
+}
+
 void cli_columns(cli_table *table, const char *names)
 {
     char *line = strdup(names);

@@ -38,21 +38,30 @@ uint64_t plan_scene_frames(const plan_scene *s);
     heavy link damping" in scene.h. *reach: dt G. */
 unsigned plan_damping_evaluations(const preset *scene, double dt, double *reach);
 
-/** The running time [s] of `steps` steps from the start of a scene, without setup: the shortest of two to ten runs. */
-double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps);
+/* The precision of a scene. */
+typedef enum plan_precision { PLAN_DOUBLE, PLAN_FLOAT, plan_precisions } plan_precision;
+
+/** The running time [s] of `steps` steps from the start of a scene, without setup: the shortest of two to ten runs. In
+    single precision, `m` is leapfrog. */
+double plan_time(const preset *scene, plan_precision precision, spring_method m, double dt, uint64_t steps);
 
 static const double plan_frame = 1.0 / 60; /* [s] */
 
 /* The quantity whose stretch is limited: the whole scene, or its most stretched link. */
 typedef enum plan_limit { PLAN_SCENE, PLAN_LINK, plan_limits } plan_limit;
 
-/* The stiffness of a scene, and its steps by leapfrog. */
-typedef struct plan_sag {
-    double stiffness;   /* [N/m] of every link; NaN: the height does not only depend on the stretch of links */
-    double stretch[2];  /* by plan_limit: of the scene, and of its most stretched link */
+/* The steps of a scene by leapfrog. */
+typedef struct plan_steps {
     double stable_step; /* [s] */
     double substeps;    /* steps per frame, each at most half the stable step */
     double time;        /* [s] running time of a frame */
+} plan_steps;
+
+/* The stiffness of a scene, and its steps. */
+typedef struct plan_sag {
+    double stiffness;  /* [N/m] of every link; NaN: the height does not only depend on the stretch of links */
+    double stretch[2]; /* by plan_limit: of the scene, and of its most stretched link, in double precision */
+    plan_steps steps[plan_precisions];
 } plan_sag;
 
 /** Finds the least stiffness with which a settled scene is stretched by at most `sag`, and the least stiffness with

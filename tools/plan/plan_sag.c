@@ -255,18 +255,29 @@ static double search(const hanging *h, double sag, double first, double stretch_
     refuse_sag(sag, last_stiffness, "comes to rest in more than one shape");
 }
 
+static double stable_step(const preset *scene, plan_precision precision)
+{
+    if (precision == PLAN_DOUBLE)
+        return start_stable_step(scene, SPRING_LEAPFROG);
+    spring_scenef *settled = start_single(scene);
+    const double step = spring_scenef_stable_step(settled, SPRING_LEAPFROG);
+    free(settled);
+    return step;
+}
+
 /* Computes the steps for a stiffness. */
 static void add_steps(preset *scene, double damping, plan_sag *plan)
 {
     set_links(scene, plan->stiffness, damping);
-    size_t bytes;
-    spring_scene *settled = start_scene(scene, SPRING_LEAPFROG, &bytes);
-    plan->stable_step = spring_scene_stable_step(settled, SPRING_LEAPFROG);
-    free(settled);
-    plan->substeps = ceil(plan_frame / (fraction * plan->stable_step));
-    const double work = plan->substeps * (double)(scene->def.particles + scene->def.links);
-    const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * plan->substeps;
-    plan->time = plan_time(scene, SPRING_LEAPFROG, plan_frame / plan->substeps, (uint64_t)steps) / frames;
+    for (int p = 0; p < plan_precisions; p++) {
+        plan_steps *s = &plan->steps[p];
+        s->stable_step = stable_step(scene, (plan_precision)p);
+        s->substeps = ceil(plan_frame / (fraction * s->stable_step));
+        const double work = s->substeps * (double)(scene->def.particles + scene->def.links);
+        const double frames = fmax(fmin(floor(most_measured / work), 60), 1), steps = frames * s->substeps;
+        s->time =
+            plan_time(scene, (plan_precision)p, SPRING_LEAPFROG, plan_frame / s->substeps, (uint64_t)steps) / frames;
+    }
 }
 
 void plan_stiffness(preset *scene, double sag, double damping, plan_sag row[plan_limits])

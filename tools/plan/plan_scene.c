@@ -176,19 +176,24 @@ uint64_t plan_scene_frames(const plan_scene *s)
 
 /* ------------------------------------------------------------------------------------------------------- the search */
 
-double plan_time(const preset *scene, spring_method m, double dt, uint64_t steps)
+double plan_time(const preset *scene, plan_precision precision, spring_method m, double dt, uint64_t steps)
 {
     const double long_enough = 1e7; /* [ns] */
     double best = INFINITY, all = 0;
     for (int i = 0; i < 2 || (i < 10 && all < long_enough); i++) {
         size_t bytes;
-        spring_scene *running = start_scene(scene, m, &bytes);
+        spring_scene *running = precision == PLAN_DOUBLE ? start_scene(scene, m, &bytes) : NULL;
+        spring_scenef *single = precision == PLAN_FLOAT ? start_single(scene) : NULL;
         const double before = timing_busy();
-        spring_scene_advance(running, m, dt, steps);
+        if (single != NULL)
+            spring_scenef_advance(single, m, dt, steps);
+        else
+            spring_scene_advance(running, m, dt, steps);
         const double spent = timing_busy() - before;
         best = fmin(best, spent);
         all += spent;
         free(running);
+        free(single);
     }
     return best * 1e-9;
 }
@@ -228,7 +233,7 @@ plan_row plan_scene_row(plan_scene *s, spring_method m, double error, double wor
     row.measured = now;
     row.uncertainty = s->uncertainty;
     if (timed)
-        row.time = plan_time(s->preset, m, s->frame / (double)enough, enough * s->frames);
+        row.time = plan_time(s->preset, PLAN_DOUBLE, m, s->frame / (double)enough, enough * s->frames);
     return row;
 }
 

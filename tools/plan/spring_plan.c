@@ -97,8 +97,10 @@ static const cli_program program = {
                "With --sag: limit (scene or link, whose stretch is S or at most 0.1 % of S less), stiffness_N_per_m,\n"
                "scene_stretch and link_stretch (the stretch of the scene and of its most stretched link, at rest),\n"
                "stable_step_s (of leapfrog), steps_per_frame (the fewest steps for 1/60 s that are at most half of\n"
-               "the stable step), dt_s, and time_per_frame_s (on this machine). A scene whose height depends on more\n"
-               "than the stretch of its links, such as a hammock, has only the row for link.",
+               "the stable step), dt_s, time_per_frame_s (on this machine) and precision (double or float). The rows\n"
+               "of float have the stiffness and the stretch of double, and steps and a time of their own. A scene\n"
+               "whose height depends on more than the stretch of its links, such as a hammock, has only the rows for\n"
+               "link.",
     .shown = {"dt_s", "measured_error"},
     .examples = {"--error 0.01 --duration 10 --hertz 2 --damping-ratio 0.1", "--error 0.05 --duration 1 --scene chain",
                  "--sag 0.02 --scene rope -o stiffness.tsv"},
@@ -468,9 +470,11 @@ static void write_spring(void)
 static void write_sag(cli_table *table, preset *scene)
 {
     static const char *const what[] = {[PLAN_SCENE] = "scene", [PLAN_LINK] = "link"};
+    static const char *const precision[] = {[PLAN_DOUBLE] = "double", [PLAN_FLOAT] = "float"};
     plan_sag row[plan_limits];
     plan_stiffness(scene, sag, or_else(damping, 0), row);
-    for (int i = 0; i < plan_limits; i++)
+    for (int i = 0; i < plan_limits; i++) {
+        const plan_steps *const both = row[i].steps;
         if (isnan(row[i].stiffness))
             cli_comment(
                 table, "plan: no row for the scene, because its height depends on more than the stretch of its links.");
@@ -478,15 +482,19 @@ static void write_sag(cli_table *table, preset *scene)
             cli_comment(
                 table,
                 "plan: for a %s that is stretched by at most %g, use a stiffness of %.4g N/m and leapfrog with %.0f "
-                "step%s per frame, %.3g s on this machine.",
-                what[i], sag, row[i].stiffness, row[i].substeps, row[i].substeps == 1 ? "" : "s", row[i].time);
+                "step%s per frame, %.3g s on this machine, or %.3g s in single precision.",
+                what[i], sag, row[i].stiffness, both->substeps, both->substeps == 1 ? "" : "s", both->time,
+                both[PLAN_FLOAT].time);
+    }
     cli_columns(table, "limit stiffness_N_per_m scene_stretch link_stretch stable_step_s steps_per_frame dt_s "
-                       "time_per_frame_s");
+                       "time_per_frame_s precision");
     for (int i = 0; i < plan_limits; i++)
-        if (!isnan(row[i].stiffness))
-            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g", what[i], row[i].stiffness,
-                    row[i].stretch[PLAN_SCENE], row[i].stretch[PLAN_LINK], row[i].stable_step, row[i].substeps,
-                    plan_frame / row[i].substeps, row[i].time);
+        for (int p = 0; p < plan_precisions && !isnan(row[i].stiffness); p++) {
+            const plan_steps *const s = &row[i].steps[p];
+            cli_row(table, "%s\t%.17g\t%.17g\t%.17g\t%.17g\t%.0f\t%.17g\t%.4g\t%s", what[i], row[i].stiffness,
+                    row[i].stretch[PLAN_SCENE], row[i].stretch[PLAN_LINK], s->stable_step, s->substeps,
+                    plan_frame / s->substeps, s->time, precision[p]);
+        }
 }
 
 static void write_scene(void)

@@ -3,6 +3,7 @@
 #include "start.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/cli.h"
 
@@ -58,6 +59,36 @@ spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes)
                  field, index);
     if (preset_start(r, def.methods, 0, &scene, bytes) != SPRING_OK)
         cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, *bytes);
+    return scene;
+}
+
+spring_scenef *start_single(const preset *r)
+{
+    const spring_scene_def *const d = &r->def;
+    spring_scenef_def def = {
+        .axes = d->axes,
+        .flags = d->flags,
+        .methods = 1u << SPRING_LEAPFROG,
+        .particles = d->particles,
+        .links = d->links,
+        .position = d->position,
+        .velocity = d->velocity,
+        .mass = d->mass,
+        .mass_all = d->mass_all,
+        .pinned = d->pinned,
+        .link = d->link,
+        .drag = d->drag,
+        .weighted_links = d->weighted_links,
+        .weighted_link = d->weighted_link,
+    };
+    memcpy(def.gravity, d->gravity, sizeof def.gravity);
+    size_t bytes;
+    spring_scenef *scene = NULL;
+    if (spring_scenef_bytes(&def, &bytes) != SPRING_OK)
+        cli_fail(CLI_FAILED, "this scene is not representable in single precision");
+    void *memory = malloc(bytes);
+    if (memory == NULL || spring_scenef_init(memory, bytes, &def, &scene) != SPRING_OK)
+        cli_fail(CLI_FAILED, "no memory for a scene of %zu particles, %zu bytes", def.particles, bytes);
     return scene;
 }
 

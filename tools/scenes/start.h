@@ -18,6 +18,9 @@ spring_scene *start_definition(const spring_scene_def *def, size_t *bytes);
 /** As preset_start(), for one method and for leapfrog, whose stable step is the scale for all methods. */
 spring_scene *start_scene(const preset *r, spring_method m, size_t *bytes);
 
+/** As start_scene() in single precision, for leapfrog and a scene without a callback. */
+spring_scenef *start_single(const preset *r);
+
 /** The stable step of a scene at its start. */
 double start_stable_step(const preset *r, spring_method m);
 

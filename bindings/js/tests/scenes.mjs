@@ -3,7 +3,9 @@
 //     node scenes.mjs SPRING-SCENE
 import assert from "node:assert/strict";
 import { execFile, spawnSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { hashOf, preset, Pushes, readPresets, takeSteps } from "../../../tools/scenes/presets.mjs";
 import { chance, logarithmic, uniform } from "./random.mjs";
 import { done, note, refused, test } from "./tap.mjs";
@@ -17,8 +19,16 @@ for (const name of ["Module", "instantiate"]) {
         return new.target ? new plain(...values) : plain(...values);
     };
 }
-const { bendGrid, bendMesh, bendRod, components, fromMesh, grid, hasSimd, methods: offered } =
-    await import("../scenes.js");
+const {
+    bendGrid,
+    bendMesh,
+    bendRod,
+    components,
+    fromMesh,
+    grid,
+    hasSimd,
+    methods: offered,
+} = await import("../scenes.js");
 const { ready, Scene, soften, TENSION_ONLY, TETHER, tethers } = await import("../scenes.js");
 const methods = ["euler", "symplectic-euler", "leapfrog", "rk4", "rkn8", "srkn6"];
 
@@ -204,6 +214,126 @@ for (const [settings, method] of [...usual, ...further]) {
     });
 }
 note(`${compared} scenes and methods`);
+
+/** Random edits, tears, contacts and forces of a rope. */
+function eventful() {
+    const push = (t, x, [fx]) => fx.forEach((_, i) => (fx[i] += Math.sin(7 * t) - 0.1 * x[0][i]));
+    const options = {
+        editable: chance(0.5),
+        heldForces: chance(0.5),
+        tensionOnly: chance(0.3),
+        noUndo: chance(0.3),
+        colliders: chance(0.5) ? 2 : 0,
+        force: chance(0.3) ? push : null,
+        forceUsesVelocity: chance(0.5),
+    };
+    const floor = { shape: "plane", at: [0, -0.3], velocity: [0, 0.1], friction: 0.4 };
+    const live = (scene) => {
+        scene.advance("leapfrog", 1e-3, 30);
+        if (options.editable) scene.tear(1.05);
+        if (options.editable) scene.pin(3);
+        if (options.heldForces) scene.set("force", [0.1, 0.2], 2);
+        if (options.colliders) scene.setColliders([floor]);
+        scene.setGravity([0, -3]);
+        scene.advance("leapfrog", 1.5e-3, 40);
+    };
+    return [rope(options), rope(options), live];
+}
+
+await test("a saved state goes on alike in another scene of the same definition", () => {
+    for (let run = 0; run < 60; run++) {
+        const [scene, other, live] = eventful();
+        live(scene);
+        const state = scene.save();
+        assert.ok(state instanceof Uint8Array);
+        if (chance(0.5)) live(other);
+        other.frame("leapfrog", 1e-3, 0.0155);
+        other.load(state);
+        assert.deepEqual(other.save(), state);
+        assert.equal(other.time, scene.time);
+        assert.deepEqual(other.positions, scene.positions);
+        for (const each of [scene, other]) {
+            each.advance("leapfrog", 1.5e-3, 100);
+            assert.equal(each.frame("leapfrog", 1e-3, 0.0105), 10, "frames start anew");
+        }
+        assert.deepEqual(other.save(), scene.save());
+        scene.free();
+        other.free();
+    }
+});
+
+await test("states that are damaged or of other scenes are refused, and change nothing", () => {
+    const scene = rope();
+    scene.advance("leapfrog", 1e-3, 10);
+    const state = scene.save();
+    const damaged = state.slice();
+    damaged[210] ^= 4;
+    const what =
+        /RangeError: state must be an undamaged state of a scene with this definition, got "?\d+ bytes/;
+    for (const wrong of [
+        damaged,
+        state.slice(1),
+        state.slice(0, -8),
+        new Uint8Array(0),
+        rope({ editable: true }).save(),
+    ])
+        assert.throws(
+            () => scene.load(wrong),
+            (error) => what.test(String(error)),
+        );
+    assert.throws(() => rope({ colliders: 1 }).load(state), RangeError);
+    for (const wrong of [null, "text", [...state], new Float64Array(4)])
+        assert.throws(() => scene.load(wrong), TypeError);
+    assert.deepEqual(scene.save(), state);
+    scene.free();
+});
+
+await test("two scenes that have run differently run alike after setTime() and set()", () => {
+    const [a, b] = [rope(), rope()];
+    b.advance("leapfrog", 2e-3, 33);
+    for (const each of [a, b]) {
+        each.setTime(3);
+        each.set("position", new Float64Array(10).fill(0.3));
+        each.set("velocity", new Float64Array(10));
+        each.advance("leapfrog", 1e-3, 1000);
+    }
+    assert.equal(a.time, 4);
+    assert.deepEqual(a.save(), b.save());
+    refused(() => a.setTime(NaN), "RangeError: t must be a finite number, got NaN");
+    a.free();
+    b.free();
+});
+
+for (const name of ["rope", "cloth", "jelly", "water"])
+    await test(`states travel from spring-scene and to it: ${name}`, async () => {
+        const made = preset(grid, { scene: name });
+        const n = steps[name];
+        const pushes = new Pushes(made);
+        const { start, settings } = made;
+        const push = [0.29, 0.4 * settings.length, start.at(-2) * 0.3, 2, settings.length ** 2 / 20];
+        pushes.add({ start: push[0], x: push[1], y: push[2], peak: push[3], area: push[4] });
+        const folder = mkdtempSync(join(tmpdir(), "springstep-"));
+        const run = (...words) =>
+            native([
+                ...`--scene ${name} --method leapfrog --steps-per-frame ${n} --hash --poke ${push}`.split(
+                    " ",
+                ),
+                ...words,
+            ]);
+        const [first, second] = ["first", "second"].map((file) => join(folder, file));
+        const scene = new Scene({ ...made.definition, methods: ["leapfrog"], force: pushes.force });
+        await run("--duration", "0.3", "--save", first);
+        scene.load(readFileSync(first));
+        for (let frame = 0; frame < 30; frame++) takeSteps(scene, "leapfrog", 1 / (60 * n), n);
+        await run("--duration", "0.8", "--save", second);
+        assert.deepEqual(scene.save(), new Uint8Array(readFileSync(second)), "every byte");
+        writeFileSync(first, scene.save());
+        const hash = await run("--load", first, "--duration", "0.2");
+        for (let frame = 0; frame < 12; frame++) takeSteps(scene, "leapfrog", 1 / (60 * n), n);
+        assert.equal(hash, hashOf(scene));
+        scene.free();
+        rmSync(folder, { recursive: true });
+    });
 
 await test("methods have an order and a number of force evaluations", () => {
     assert.deepEqual(
@@ -455,7 +585,12 @@ await test("flags of links, bending, tethers, attachments", () => {
         position,
         pinned: [1, 1, 1, 0],
         gravity: [0, 0, -10],
-        weightedLinks: { particles: [3, 0, 1, 2], weights: [-1, 0.5, 0.25, 0.25], stiffness: 400, damping: 2 },
+        weightedLinks: {
+            particles: [3, 0, 1, 2],
+            weights: [-1, 0.5, 0.25, 0.25],
+            stiffness: 400,
+            damping: 2,
+        },
     });
     lamp.advance("leapfrog", 0.01, 1000);
     assert.ok(Math.abs(lamp.get("position", 3)[2] + 10 / 400) < 1e-6);

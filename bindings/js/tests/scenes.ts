@@ -53,6 +53,9 @@ let torn: number;
     const z = cloth.positions[2];
     const { total } = cloth.energy;
     cloth.restore(start);
+    const state: Uint8Array = cloth.save();
+    cloth.load(state);
+    cloth.setTime(0);
     time = cloth.time + (z === 5 && total !== 0 && cloth.tension(0) === 0 ? 0 : 1);
 }
 // @ts-expect-error: a sphere has a radius

@@ -46,6 +46,7 @@ class PythonForce:
 
     def __init__(self, function: Force, scene: Any) -> None:
         self.function, self.shape = function, (scene.axes, len(scene))
+        self.given = function, None
         self.unseen = scene._unseen_velocity
         self.memory = scene._memory.view(scene.dtype)
         self.constant = self.memory.view()
@@ -101,10 +102,10 @@ class CForce:
 
     error: BaseException | None = None
 
-    def __init__(self, address: int, user: int, dtype: np.dtype[Any], kept: object) -> None:
+    def __init__(self, address: int, user: int, dtype: np.dtype[Any], given: tuple[Any, NDArray[Any] | None]) -> None:
         self.pointer = ffi.cast("spring_scene_force_fn *" if dtype == np.float64 else "spring_scenef_force_fn *", address)
         self.user = ffi.cast("void *", user)
-        self._kept = kept
+        self.given = given
 
 
 def _ctypes_name(kind: Any) -> str:

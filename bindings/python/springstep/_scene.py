@@ -146,7 +146,7 @@ class Scene(Generic[F]):
     """
 
     __slots__ = ("_dtype", "_prefix", "_particles", "_axes", "_links", "_called", "_unseen_velocity", "_pinned", "_undo",
-                 "_guard", "_memory", "_lent", "_pointer", "__weakref__")
+                 "_definition", "_guard", "_memory", "_lent", "_pointer", "__weakref__")
 
     @overload
     def __init__(self: Scene[np.float64], position: ArrayLike, links: ArrayLike = ..., *misplaced: NoReturn,
@@ -222,6 +222,13 @@ class Scene(Generic[F]):
         lent = {field: ffi.from_buffer(array) for field, array in given.items()}
         for field, buffer in lent.items():
             setattr(definition, field, ffi.cast(ffi.typeof(getattr(definition, field)), buffer))
+        # For copies. Positions, velocities, gravity and the force are part of the state.
+        self._definition: dict[str, Any] = {
+            "links": link, "weighted_links": weighted.copy(), "mass": np.array(mass), "pinned": self._pinned.copy(), "drag": drag,
+            "force_ignores_velocity": force_ignores_velocity, "methods": names, "editable": editable, "undo": undo,
+            "dtype": self._dtype, "tension_only": tension_only, "held_forces": held_forces, "max_speed": max_speed,
+            "colliders": colliders, "particle_radius": particle_radius,
+        }
         if force is not None:  # for what depends on whether there is one
             definition.force = lib.springstep_force if self._dtype == np.float64 else lib.springstep_forcef
 
@@ -660,8 +667,63 @@ class Scene(Generic[F]):
             raise ValueError("snapshot: of another scene")
         self._guard.short(self._load, snapshot)
 
-    def __reduce__(self) -> NoReturn:
-        raise TypeError("a scene is not copied: see snapshot()")
+    def save(self) -> bytes:
+        """Return the state in a portable format: for `load`, on any processor and in any language.
+
+        The format is described in the page "Memory layout and special cases" of the guide.
+        """
+        def save() -> bytes:
+            size = ffi.new("size_t *")
+            self._c("save")(self._pointer, ffi.NULL, size)
+            state = ffi.new("char[]", size[0])
+            if status := self._c("save")(self._pointer, state, size):
+                fail(status)
+            return bytes(ffi.buffer(state, size[0]))
+
+        return self._guard.short(save)
+
+    def load(self, state: bytes | bytearray | memoryview) -> None:
+        """Load a state that `save` returned, or that was saved in C, LuaJIT, JavaScript or by spring-scene.
+
+        The run then continues bit-identically, if the scene of the state had the same definition. Positions, velocities and
+        gravity of the definition need not be the same. Masses, pinned particles and coefficients of links, unless the scene
+        is editable, drag, max_speed, particle_radius and the force must be the same, and cannot be checked.
+
+        Parameters
+        ----------
+        state : bytes-like
+            The state.
+
+        Raises
+        ------
+        InvalidError
+            If the state is damaged, or not that of such a scene. The scene is unchanged.
+        """
+        def load() -> int:
+            buffer = ffi.from_buffer(state)
+            status: int = self._c("load")(self._pointer, buffer, len(buffer))
+            if not status and self._definition["editable"]:
+                self._pinned[:] = _pins_in(state, self._definition["held_forces"])
+            return status
+
+        if self._guard.short(load):
+            invalid("state", f"{len(state)} bytes", reason="damaged, or not the state of a scene with this definition")
+
+    def set_time(self, t: float) -> None:
+        """Set the time. Colliders stay where they are, and nothing else changes.
+
+        Parameters
+        ----------
+        t : float
+            [s]
+        """
+        if self._ask("set_time", t):
+            invalid("t", t)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A copy has a state and memory of its own, and the same force."""
+        force = (None, None) if self._called is None else self._called.given
+        return _copied, (type(self), (self._particles, self._axes), self._definition, force, self.save())
 
     # --- changes
 
@@ -936,3 +998,21 @@ class Scene(Generic[F]):
 
     def __repr__(self) -> str:
         return f"<Scene of {self._particles} particles and {self._links} links on {self._axes} axes, {self._dtype}>"
+
+
+def _pins_in(state: bytes | bytearray | memoryview, held: bool) -> NDArray[np.bool_]:
+    """Return which particles are pinned in the state of an editable scene."""
+    header = np.frombuffer(state, "<u8", 25)
+    number, axes, particles, kept = (int(header[word]) for word in (2, 3, 7, 13))
+    before = [axes * particles * number] * (2 + (kept > 0) + held) + [particles * number]  # sections
+    start = header.nbytes + sum(-(-size // 8) * 8 for size in before)
+    bits = np.frombuffer(state, np.uint8, -(-particles // 8), start)
+    return np.unpackbits(bits, count=particles, bitorder="little").astype(np.bool_)
+
+
+def _copied(cls: type[Scene[Any]], shape: tuple[int, int], definition: dict[str, Any], force: tuple[Any, Any],
+            state: bytes) -> Scene[Any]:
+    """Return a copy of a scene."""
+    scene = cls(np.zeros(shape), force=force[0], force_data=force[1], **definition)
+    scene.load(state)
+    return scene

@@ -29,6 +29,30 @@ def hung(stiffness=400.0, size=4, name="rope"):
     return Scene.from_grid(g, mass=0.1, gravity=[0, -9.81, 0], drag=0.05, max_speed=10)
 
 
+def swing(t, position, velocity, force):
+    force[0] += 0.3 * np.sin(9 * t) - 0.1 * velocity[0]
+
+
+def saved_scenes(dtype):
+    """Scenes after an eventful life: edits, tears, contacts, held forces, a force, one axis."""
+    torn = cloth(9, dtype=dtype, editable=True, held_forces=True, colliders=2, mass=np.linspace(0.01, 0.02, 81))
+    torn.set_colliders([springstep.sphere([1, 1, -0.3], 0.4, velocity=[0, 0, 0.2])])
+    torn.set_held_force(np.full((81, 3), 0.01))
+    torn.advance(1e-3, 200)
+    torn.tear(1.02)
+    torn.set_pinned([True, False], 40)
+    torn.set_mass([0.5], 3)
+    damped = rope(dtype=dtype, force=swing, undo=False, tension_only=True)
+    water = Scene.from_grid(grid([7, 5], 0.2, 300.0, height=True, pinned=["first_x"]), dtype=dtype, methods=["rk4", "leapfrog"])
+    water.set_velocity(np.linspace(-1, 1, 35))
+    hair = Scene.from_grid(grid([9], 0.1, 300.0, pinned=["first_x"]), dtype=dtype, editable=True, weighted_links=springstep.bend_rod(
+        np.arange(9)[:, np.newaxis] * [0.1, 0, 0], 0.02, damping_time=0.01, pinned=np.arange(9) == 0))
+    hair.set_velocity(np.linspace(-1, 1, 27).reshape(9, 3))
+    for scene in (torn, damped, water, hair):
+        scene.advance(2e-3, 30)
+        yield scene
+
+
 def lowest(scene):
     return scene.position()[:, 1].min()
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import springstep
-from scenes import rope
+from scenes import FLOATS, rope, saved_scenes
+from springstep import lib
 
 PAGE = Path(__file__).parents[3] / "docs/python.md"
 IN_C = {"numba": "numba", "ctypes": "ctypes", "cffi": "cffi", "SciPy": "scipy"}  # and the package that it needs
@@ -53,6 +54,47 @@ def test_forces_in_c(heading, tmp_path, monkeypatch):
     other = springstep.Scene.from_grid(cloth, mass=0.01, force=wind)
     other.advance(1 / 960, 480)
     assert (scene.position() == other.position()).all() and scene.time == other.time
+
+
+def ends_hash(mixed, scene, directed):
+    h = 0
+    for i in range(scene.links):
+        a, b = scene.link(i)[:2]
+        low, high = (a, b) if directed or a < b else (b, a)
+        h = mixed(h, low + (high << 32))
+    return h
+
+
+@FLOATS
+def test_states_are_as_the_page_says(dtype):
+    """The program of the page, which knows no more than the page, reads what `save` has written."""
+    names = {}
+    text = (PAGE.parent / "details.md").read_text()
+    exec(re.search(r"^```python\n((?:.*\n)*?)```", text, re.M)[1], names)
+    read_state = names["read_state"]
+    for scene in saved_scenes(dtype):
+        state = scene.save()
+        read, n = read_state(state), len(scene)
+        for name, values in (("position", scene.position()), ("velocity", scene.velocity())):
+            assert (np.reshape(read[name], (scene.axes, n)).T == values).all()
+        assert read["time"] == scene.time
+        assert "weighted" in read or int.from_bytes(state[80:88], "little") == ends_hash(names["mixed"], scene, scene.axes == 1)
+        if "weighted" in read:
+            link = scene.weighted_link(3)
+            assert np.allclose(read["weighted"][24:31], [*link["weight"], link["rest"], link["stiffness"], link["damping"]])
+        if "held force" in read:  # and editable, with colliders
+            assert (np.reshape(read["held force"], (3, n)).T == scene.held_force()).all()
+            links = [scene.link(i) for i in range(scene.links)]
+            assert list(zip(read["rest"], read["stiffness"])) == [link[2:4] for link in links] and "damping" not in read
+            assert 0 in read["stiffness"] and 1 / read["inverse mass"][3] == pytest.approx(0.5, rel=1e-7)
+            assert [i for i in range(n) if read["pinned"][i]] == [0, 8, 40]
+            shape, *numbers = read["colliders"]
+            assert shape == lib.SPRING_SPHERE and numbers[:3] == [1, 1, -0.3] and numbers[18] == 0.4 and numbers[21] == 0.2
+            touched = iter(read["touched"])
+            assert [next(touched) if bit else 0 for bit in read["touching"]] == scene.touching().tolist() != [0] * n
+        for wrong in (state[:-8], state[:300] + bytes([state[300] ^ 1]) + state[301:]):
+            with pytest.raises(ValueError, match="truncated|damaged"):
+                read_state(wrong)
 
 
 EXAMPLES = PAGE.parents[1] / "bindings/python/examples"

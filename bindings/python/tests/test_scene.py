@@ -2,16 +2,18 @@
 """Particles joined by springs."""
 import copy
 import math
+import multiprocessing
 import pickle
 import subprocess
 import threading
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
 
 import springstep
-from scenes import FLOATS, OF_SCENES, cloth, fnv, rope
-from springstep import Scene, ffi, grid, lib
+from scenes import FLOATS, OF_SCENES, cloth, fnv, rope, saved_scenes, swing
+from springstep import InvalidError, Scene, ffi, grid, lib
 from springstep._common import Guard
 
 
@@ -24,6 +26,21 @@ def test_bits_are_those_of_spring_scene(method):
     command = ["spring-scene", "--scene", "cloth", "--method", method, "--dt", "0x1p-11", "--duration", str(steps / 2048)]
     assert subprocess.run([*command, "--hash"], capture_output=True, text=True, check=True).stdout.strip() == fnv(scene)
     assert scene.time == steps / 2048
+
+
+def test_states_travel_from_spring_scene_and_to_it(tmp_path):
+    state, other = tmp_path / "state", tmp_path / "other"
+    command = ["spring-scene", "--scene", "cloth", "--method", "leapfrog", "--dt", "0x1p-11", "--duration"]
+    subprocess.run([*command, "0.0625", "--save", state], capture_output=True, check=True)
+    scene = cloth(force_ignores_velocity=True, methods=["leapfrog"])
+    scene.load(state.read_bytes())
+    scene.advance(2**-11, 128)
+    subprocess.run([*command, "0.125", "--save", other], capture_output=True, check=True)
+    assert scene.save() == other.read_bytes() and scene.time == 0.125
+    state.write_bytes(scene.save())
+    scene.advance(2**-11, 128)
+    end = subprocess.run([*command, "0.0625", "--load", state, "--hash"], capture_output=True, text=True, check=True)
+    assert end.stdout.strip() == fnv(scene)
 
 
 def test_bits_in_float_are_those_of_c():
@@ -65,8 +82,69 @@ def test_a_snapshot_brings_back_what_was(dtype):
     assert (scene.position() == after[1]).all()
     with pytest.raises(ValueError, match="snapshot"):
         cloth(dtype=dtype, editable=True).restore(before)
-    with pytest.raises(TypeError, match="not copied"):
-        copy.copy(scene)
+
+
+def advanced(scene):
+    scene.advance(2e-3, 40)
+    return scene.position().tobytes() + scene.velocity().tobytes(), scene.save(), scene.time
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+@FLOATS
+def test_a_copy_goes_on_alike(copied, dtype):
+    for scene in saved_scenes(dtype):
+        state, twin = scene.save(), copied(scene)
+        assert twin.save() == state == scene.save() and type(twin) is Scene and twin.dtype == dtype
+        want = advanced(scene)
+        assert advanced(twin) == want
+        scene.load(memoryview(state))  # at any time, also again
+        assert advanced(scene) == want
+
+
+def test_a_copy_knows_its_pins():
+    torn = next(saved_scenes(np.float64))
+    twin = copy.copy(torn)
+    twin.drive(40, [0, 0, 0], 1.0)
+    with pytest.raises(InvalidError, match="not pinned"):
+        twin.drive(41, [0, 0, 0], 1.0)
+    torn.set_pinned([True] * 81)
+    copy.copy(torn).drive(41, [0, 0, 0], 1.0)
+
+
+def test_scenes_go_on_in_other_processes():
+    scenes = list(saved_scenes(np.float64))
+    with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:
+        assert list(pool.map(advanced, scenes)) == [advanced(scene) for scene in scenes]
+
+
+def test_states_that_do_not_fit_are_refused():
+    scene = cloth(5)
+    scene.advance(1e-3, 10)
+    state = scene.save()
+    for other in (cloth(5, dtype=np.float32), cloth(6), cloth(5, editable=True), cloth(5, held_forces=True), cloth(5, force=swing),
+                  cloth(5, colliders=1), cloth(5, methods=["rk4"])):
+        before = other.save()
+        with pytest.raises(InvalidError, match="^state = .*not the state of a scene with this definition"):
+            other.load(state)
+        assert other.save() == before
+    for wrong in (b"", state[:-1], state + b"\0", state[:200] + bytes([state[200] ^ 1]) + state[201:]):
+        with pytest.raises(InvalidError):
+            scene.load(wrong)
+    with pytest.raises(TypeError):
+        scene.load("text")
+
+
+def test_scenes_that_meet_go_on_alike():
+    one, other = rope(), rope()
+    other.advance(3e-3, 77)
+    one.set_time(5.0)
+    other.set_time(5.0)
+    for scene in (one, other):
+        scene.set_position(np.arange(18.0).reshape(6, 3))
+        scene.set_velocity(np.zeros((6, 3)))
+    assert one.time == other.time == 5 and advanced(one) == advanced(other)
+    with pytest.raises(InvalidError, match="^t = nan"):
+        one.set_time(np.nan)
 
 
 def test_state_goes_in_and_out():

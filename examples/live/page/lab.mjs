@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A lab is the simulation of one pane: a preset scene, its disturbances, and its states for drawing.
-import { grid, methods, Scene } from "springstep/scenes";
+import { bendGrid, grid, methods, Scene, tethers } from "springstep/scenes";
 import { hashOf, preset, Pushes, takeSteps } from "../../../tools/scenes/presets.mjs";
 import { curtain, Sphere } from "./curtain.mjs";
 import { Hand } from "./grip.mjs";
@@ -26,23 +26,35 @@ function takes(definition, method) {
     }
 }
 
+/** Adds bending stiffness and tethers to the definition of a sheet, as spring-scene --bend and --tethers do. */
+function strengthen({ definition, count, settings }) {
+    const { bend, tethers: fraction, length } = settings;
+    const { pinned } = definition;
+    const spacing = length / (count[0] - 1);
+    if (bend) definition.weightedLinks = bendGrid({ count, spacing }, bend, { pinned });
+    if (fraction) definition.links = tethers(definition, fraction);
+}
+
 export class Lab {
-    /** A run is {scene, size, damping, drag, mass, endMass, stiffness}; all except the scene are optional. */
+    /** A run is {scene, size, damping, drag, mass, endMass, stiffness, bend, tethers}; all except the scene are
+        optional. */
     constructor(run) {
         if (methodTable.size === 0) listMethods();
         const asked = { ...run, size: run.size || undefined };
         this.preset = run.scene === "curtain" ? curtain(grid, asked) : preset(grid, asked);
         const { definition, count, settings } = this.preset;
+        const links = definition.links.ends.length / 2; // without tethers, which come last
+        strengthen(this.preset);
         this.taken = new Set([...methodTable.keys()].filter((name) => takes(definition, name)));
         // Water is not edited, and links that cannot be edited take less memory.
         const editable = run.scene !== "water";
         this.scene = new Scene({ ...definition, editable, methods: [...this.taken] });
-        const { particles, links } = this.scene;
+        const { particles } = this.scene;
         Object.assign(this, { particles, links, count, length: settings.length });
         this.massRatio = settings.endMass === undefined ? 1 : settings.endMass / settings.mass;
         this.ends = definition.links.ends;
         this.pinned = definition.pinned;
-        this.cut = new Uint8Array(links);
+        this.cut = new Uint8Array(this.scene.links);
         this.pushes = new Pushes(this.preset);
         this.hand = new Hand(this);
         this.ball = null;
@@ -196,18 +208,25 @@ export class Lab {
         if (this.sphere) this.sphere.held = false;
     }
 
-    /** Cuts the links that are longer than `most` times their rest length. */
+    /** Cuts the links that are longer than `most` times their rest length (one number, or one for each link), bending
+        across them, and the tethers of a piece that comes off. */
     tear(most) {
-        for (const link of this.scene.tear(most)) this.cut[link] = 1;
+        const torn = this.scene.tear(most);
+        for (const link of torn) this.cut[link] = 1;
+        if (torn.length === 0) return;
+        const { component } = this.scene.components();
+        for (let i = this.links; i < this.scene.links; i++)
+            if (!this.cut[i] && component[this.ends[2 * i]] !== component[this.ends[2 * i + 1]]) {
+                this.scene.cut(i);
+                this.cut[i] = 1;
+            }
     }
 
     /** Cuts all links of a particle. */
     snip(particle) {
-        for (let i = 0; i < this.links; i++)
-            if (!this.cut[i] && (this.ends[2 * i] === particle || this.ends[2 * i + 1] === particle)) {
-                this.scene.cut(i);
-                this.cut[i] = 1;
-            }
+        const most = new Float64Array(this.scene.links).fill(Infinity);
+        this.ends.forEach((end, i) => end === particle && (most[i >> 1] = 0));
+        this.tear(most);
     }
 
     wind(speed) {

@@ -52,7 +52,7 @@ function changeMidway(kind, how) {
 }
 
 function run() {
-    const each = { scene: state.scene };
+    const each = { scene: state.scene, ...presets[state.scene].more };
     if (state.size) each.size = state.size;
     if (state.damping) each.damping = state.damping;
     if (state.scene === "rope" && state.heavy) Object.assign(each, heavyEnd);
@@ -206,6 +206,7 @@ window.springstepLab = {
     difference: () => physics.ask("difference"),
     sphere: () => physics.ask("sphere"),
     tornLinks: () => physics.ask("tornLinks"),
+    cutTethers: () => physics.ask("cutTethers"),
     command: () => actions.command(),
 };
 

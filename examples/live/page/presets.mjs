@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The scenes of the page: their settings, their texts, and the commands with bit-identical results.
 
-/** steps: per frame of 1/60 s, each half the stable step of leapfrog, as in spring-scene; speed: of the playback; own:
-    not a scene of spring-scene. */
+/** steps: per frame of 1/60 s, each half the stable step of leapfrog, as in spring-scene; speed: of the playback; more:
+    bending stiffness [N m] and tethers, as options of spring-scene; own: not a scene of spring-scene. */
 export const presets = {
     water: { steps: 13, speed: 1 / 8, sizes: [17, 25, 33, 49] },
-    cloth: { steps: 19, speed: 1, sizes: [13, 25, 33] },
+    cloth: { steps: 19, speed: 1, sizes: [13, 25, 33], more: { bend: 1e-3, tethers: 0.05 } },
     rope: { steps: 7, speed: 1, sizes: [10, 20, 40] },
     jelly: { steps: 9, speed: 1, sizes: [5, 8, 10] },
     curtain: { steps: 15, speed: 1, sizes: [19, 25, 33], own: true },

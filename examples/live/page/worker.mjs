@@ -144,7 +144,8 @@ const questions = {
     position: (particle) => Array.from(panes[0].lab.positions(steps).slice(3 * particle, 3 * particle + 3)),
     difference: () => (reference ? panes[0].lab.distance(reference.lab) : NaN),
     sphere: () => panes[0].lab.sphere?.place ?? null,
-    tornLinks: () => panes[0].lab.cut.reduce((sum, each) => sum + each, 0),
+    tornLinks: () => panes[0].lab.cut.subarray(0, panes[0].lab.links).reduce((sum, each) => sum + each, 0),
+    cutTethers: () => panes[0].lab.cut.subarray(panes[0].lab.links).reduce((sum, each) => sum + each, 0),
 };
 
 const orders = {
