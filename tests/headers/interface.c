@@ -131,7 +131,6 @@ AT(spring_scene_energies, kinetic, 0, 0);
 AT(spring_scene_energies, elastic, 8, 8);
 AT(spring_scene_energies, gravity, 16, 16);
 
-SIZE(spring_scenef_def, 192, 136);
 SIZE(spring_scene_info, 40, 28);
 AT(spring_scene_info, particles, 0, 0);
 AT(spring_scene_info, links, 8, 4);
@@ -141,7 +140,7 @@ AT(spring_scene_info, flags, 28, 16);
 AT(spring_scene_info, methods, 32, 20);
 AT(spring_scene_info, colliders, 36, 24);
 
-SIZE(spring_scenef_def, 168, 120);
+SIZE(spring_scenef_def, 192, 136);
 AT(spring_scenef_def, axes, 0, 0);
 AT(spring_scenef_def, flags, 4, 4);
 AT(spring_scenef_def, methods, 8, 8);
