@@ -221,6 +221,26 @@ typedef bool near_kernel(const collider_bounds *, const scene_particles *, const
                          const scalar *radius, size_t radius_stride, size_t first, size_t count,
                          uint32_t nearby[contact_chunk]);
 
+/* Particles first ... first + count - 1 of a motion of leapfrog, to be computed by rest_kernel. */
+typedef struct resting_chunk {
+    const contact_setting *setting;
+    const collider_bounds *bounds;
+    const scene_particles *particles;
+    const scene_motion *way;
+    const kept_motion *kept;
+    const scalar *radius, *friction; /* of particles; see near_kernel. friction NULL: 1 */
+    size_t radius_stride, first, count;
+    uint32_t
+        candidate[contact_chunk];    /* bits of the colliders that may be touched; 0 also for particles to leave out */
+    uint32_t stops[contact_chunk];   /* bits of the colliders that the last kick of the previous step stops at */
+    uint32_t done[contact_chunk];    /* written: 1 if the motion is complete */
+    uint32_t touched[contact_chunk]; /* written: bits of the collider that it touches */
+    scalar change[3][contact_chunk]; /* written: [m/s] by the contact, at the position at the start */
+} resting_chunk;
+
+/* Completes the motion of particles that rest or slide on their only candidate: writes x, v and predicted. */
+typedef void rest_kernel(resting_chunk *);
+
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
 typedef struct common_kernels {
     unbanded_kernel *unbanded_forces; /* the forces of unbanded links, added to those of bands if the scene has any */
@@ -248,6 +268,7 @@ typedef struct common_kernels {
     stretch_kernel *stretched;            /* see above */
     keep_kernel *keep_motion;             /* see above */
     near_kernel *find_near;
+    rest_kernel *move_resting;
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain

@@ -17,7 +17,7 @@
 #include "leapfrog_particles_tmpl.h"
 
 #if SPRING_VECTOR < 64
-#include "contact_near_tmpl.h"
+#include "contact_rest_tmpl.h"
 #include "particles_tmpl.h"
 #include "stretch_tmpl.h"
 #include "unbanded_tmpl.h"
@@ -43,6 +43,7 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .stretched = any_stretched,
     .keep_motion = copy_motion,
     .find_near = find_near_colliders,
+    .move_resting = advance_resting,
 };
 #endif
 

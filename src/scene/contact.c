@@ -549,7 +549,6 @@ SPRING_INLINE vector3 surface_velocity(const contact_body *b, const body_pose *p
 
 /* --------------------------------------------------------------------------------------------------------- impulses */
 
-/* Adds the impulse of a change of a particle's velocity by collider i, at x. */
 SPRING_INLINE void record(const contact_setting *s, const contact_particle *p, unsigned i, vector3 x, vector3 change)
 {
     if (!s->records)

@@ -198,6 +198,68 @@ static bool stop_in_contact(const scene_contacts *t, const scene_particles *p, c
     return !q->c.wrong && finite_vector(v) && !too_fast_vector(m, v);
 }
 
+static const uint32_t no_stops[contact_chunk];
+
+/* Advances the particles of a chunk that rest or slide on one collider with SIMD vectors. */
+static void move_resting_particles(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                                   const uint32_t *nearby, const uint32_t *before, resting_chunk *r)
+{
+    const scene_particles *const p = r->particles;
+    const uint32_t *const bits = scene_read(s, ARRAY_BITS);
+    uint32_t any_candidate = 0;
+    for (size_t k = 0; k < r->count; k++) {
+        const size_t i = r->first + k;
+        uint32_t may = nearby[k] | before[k];
+        if ((may & (may - 1)) != 0 || p->inverse_mass[i * p->mass_stride] == 0)
+            may = 0;
+        if (bits != NULL)
+            for (unsigned c = 0; c < t->setting.count; c++)
+                may &= (t->setting.body[c].bits & bits[i]) != 0 ? UINT32_MAX : ~(UINT32_C(1) << c);
+        r->candidate[k] = may;
+        any_candidate |= may;
+        r->stops[k] = before[k];
+    }
+    memset(r->done, 0, sizeof r->done);
+    memset(r->touched, 0, sizeof r->touched);
+    if (any_candidate != 0)
+        kernels->move_resting(r);
+}
+
+/* Adds the impulses of the particles that move_resting_particles() has advanced, and stores what they touch. */
+static void end_rest(const spring_scene *s, const scene_contacts *t, const resting_chunk *r)
+{
+    const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
+    uint32_t left = 0;
+    for (size_t k = 0; k < r->count; k++)
+        if (r->done[k] != 0) {
+            t->touched[r->first + k] = r->touched[k];
+            left |= r->touched[k] | r->stops[k];
+        }
+    for (unsigned c = 0; left >> c != 0; c++) {
+        vector3 linear = {0, 0, 0}, angular = {0, 0, 0};
+        for (size_t k = 0; k < r->count && (left >> c & 1) != 0; k++) {
+            if (r->done[k] == 0 || ((r->touched[k] | r->stops[k]) >> c & 1) == 0)
+                continue;
+            const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
+            const vector3 x = load_vector(&r->kept->x0[0][k], contact_chunk, r->particles->axes);
+            const vector3 arm = {x.x - t->setting.origin[c][0], x.y - t->setting.origin[c][1],
+                                 x.z - t->setting.origin[c][2]};
+            const vector3 j = {-mass * (double)r->change[0][k], -mass * (double)r->change[1][k],
+                               -mass * (double)r->change[2][k]};
+            linear = vector_plus(linear, 1, j);
+            angular.x += arm.y * j.z - arm.z * j.y;
+            angular.y += arm.z * j.x - arm.x * j.z;
+            angular.z += arm.x * j.y - arm.y * j.x;
+        }
+        spring_impulse *const sum = &t->setting.impulse[c];
+        const double more[6] = {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z};
+        for (int a = 0; a < 3; a++) {
+            sum->linear[a] += more[a];
+            sum->angular[a] += more[3 + a];
+        }
+    }
+}
+
 /* Advances a chunk of particles. */
 static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
                                   particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
@@ -222,6 +284,22 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
     if (!some)
         return true;
     bool all_fine = true;
+    resting_chunk rest;
+    rest.setting = &t->setting;
+    rest.bounds = t->bounds;
+    rest.particles = p;
+    rest.way = m;
+    rest.kept = &kept;
+    rest.radius = t->radius;
+    rest.friction = scene_read(s, ARRAY_FRICTION);
+    rest.radius_stride = t->radius_stride;
+    rest.first = from;
+    rest.count = count;
+    const bool rests = m->contacts == KICK_DRIFT_CONTACTS && fine && m->drift > 0;
+    if (rests)
+        move_resting_particles(s, t, kernels, nearby, m->ends_previous ? before : no_stops, &rest);
+    if (rests)
+        end_rest(s, t, &rest);
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
         const uint32_t stop = kicks ? t->touched[i] : m->ends_previous ? before[k] : 0;
@@ -230,6 +308,8 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
+        if (rests && rest.done[k] != 0)
+            continue;
         contact_state q;
         prepare_state(s, p, m, &kept, i, k, &q);
         q.c.nearby = !kicks && fine && stop == 0 ? nearby[k] : UINT32_MAX; /* its path is another one after a stop */

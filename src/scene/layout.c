@@ -248,7 +248,7 @@ static void list_arrays(const spring_scene_def *def, const scene_layout *l, arra
         [ARRAY_IMPULSES] = {sizeof(spring_impulse), 2 * (size_t)l->colliders, collides},
         [ARRAY_ORIGINS] = {sizeof(double[3]), l->colliders, collides},
         [ARRAY_RADIUS] = {number, l->particles + padding, collides && def->radius != NULL},
-        [ARRAY_FRICTION] = {number, l->particles, collides && def->friction != NULL},
+        [ARRAY_FRICTION] = {number, l->particles + padding, collides && def->friction != NULL},
         [ARRAY_BITS] = {index, l->particles, collides && def->mask != NULL},
         [ARRAY_TOUCHED_0] = {sizeof(uint32_t), l->particles + padding, collides},
         [ARRAY_TOUCHED_1] = {sizeof(uint32_t), l->particles + padding, collides && rollback},

@@ -114,20 +114,19 @@ SPRING_INLINE real vec_load_lanes(const scalar *p)
 /* 32 bits in each lane. */
 typedef lane_mask lane_bits;
 
+typedef uint32_t packed_bits __attribute__((vector_size(sizeof(uint32_t) * SPRING_VECTOR / sizeof(scalar))));
+
 SPRING_INLINE lane_bits load_bits(const uint32_t *p)
 {
-    scalar_bits each[sizeof(lane_bits) / sizeof(scalar)];
-    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++)
-        each[i] = (scalar_bits)p[i];
-    lane_bits b;
-    memcpy(&b, each, sizeof b);
-    return b;
+    packed_bits b;
+    memcpy(&b, p, sizeof b);
+    return __builtin_convertvector(b, lane_bits);
 }
 
 SPRING_INLINE void store_bits(uint32_t *p, lane_bits b)
 {
-    for (size_t i = 0; i < sizeof b / sizeof(scalar); i++)
-        p[i] = (uint32_t)b[i];
+    const packed_bits packed = __builtin_convertvector(b, packed_bits);
+    memcpy(p, &packed, sizeof packed);
 }
 
 /* `bits` in the lanes of a mask, 0 in other lanes. */

@@ -1,0 +1,528 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Particles that rest or slide on one collider during a step of leapfrog: the frequent case of scene/contact.c, on SIMD
+ * vectors, in the precision of the scene. contact.c has the formulas and the symbols.
+ *
+ * Method    Particles whose path may touch one collider only are taken together. Where the contact begins at the start of
+ *           the step, the last kick of the previous step, the impact (step 3), pressing from the start (step 4) and
+ *           friction are computed here. All other particles are left to contact.c: contacts that begin within the step,
+ *           particles inside a collider, friction that turns, corners, custom bodies, and surfaces that move in the frame
+ *           of their body. The choice depends on the particle only, so results do not depend on the vector width.
+ */
+#ifndef SPRINGSTEP_CONTACT_REST_TMPL_H
+#define SPRINGSTEP_CONTACT_REST_TMPL_H
+
+#include "contact_near_tmpl.h"
+#include "leapfrog_particles_tmpl.h"
+
+/* The nearest point of a surface. */
+typedef struct near_lanes {
+    real gap;
+    real3 normal;
+    real along; /* of a capsule */
+} near_lanes;
+
+/* Particles on one collider. */
+typedef struct resting_lanes {
+    const contact_body *b;
+    real3 x0, v0, w, d; /* as in contact_particle; v0 after impacts */
+    real radius, friction, slop;
+    real3 change; /* [m/s] by the contact */
+    lane_mask touching, failed;
+} resting_lanes;
+
+SPRING_INLINE real3 splat_vector(vector3 v)
+{
+    return (real3){splat((scalar)v.x), splat((scalar)v.y), splat((scalar)v.z)};
+}
+
+SPRING_INLINE real3 zero_lanes(void)
+{
+    return (real3){splat(0), splat(0), splat(0)};
+}
+
+SPRING_INLINE real length_lanes(real3 a)
+{
+    return vec_sqrt(dot3(a, a));
+}
+
+SPRING_INLINE real3 tangential_lanes(real3 u, real3 n)
+{
+    return plus_scaled3(u, -dot3(u, n), n);
+}
+
+SPRING_INLINE real sum_of_sizes(real3 a)
+{
+    return vec_abs(a.x) + vec_abs(a.y) + vec_abs(a.z);
+}
+
+/* Whether the axes of the frame are those of the scene. */
+SPRING_INLINE bool has_plain_frame(const contact_body *b)
+{
+    return !b->turns && (b->shape == SPRING_SPHERE || b->shape == SPRING_CAPSULE);
+}
+
+SPRING_INLINE real3 direction_in_lanes(const contact_body *b, const body_pose *p, real3 a)
+{
+    if (has_plain_frame(b))
+        return a;
+    return (real3){dot3(a, splat_vector(p->axis[0])), dot3(a, splat_vector(p->axis[1])),
+                   dot3(a, splat_vector(p->axis[2]))};
+}
+
+SPRING_INLINE real3 direction_out_lanes(const contact_body *b, const body_pose *p, real3 y)
+{
+    if (has_plain_frame(b))
+        return y;
+    return plus_scaled3(plus_scaled3(times3(y.x, splat_vector(p->axis[0])), y.y, splat_vector(p->axis[1])), y.z,
+                        splat_vector(p->axis[2]));
+}
+
+SPRING_INLINE real3 place_in_lanes(const contact_body *b, const body_pose *p, real3 x)
+{
+    return direction_in_lanes(b, p, minus3(x, splat_vector(p->at)));
+}
+
+SPRING_INLINE void round_lanes(near_lanes *out, real3 from_core, real radius)
+{
+    const real square = dot3(from_core, from_core), distance = vec_sqrt(square);
+    const real3 up = {splat(0), splat(1), splat(0)};
+    out->normal = select3(square > 0, times3(1 / distance, from_core), up);
+    out->gap = distance - radius;
+}
+
+SPRING_INLINE void capsule_lanes(near_lanes *out, real3 y, vector3 segment, real radius)
+{
+    const double square = segment.x * segment.x + segment.y * segment.y + segment.z * segment.z;
+    const real3 axis = splat_vector(segment);
+    const real along = square > 0 ? dot3(y, axis) / splat((scalar)square) : splat(0);
+    out->along = vec_min(vec_not_negative(along), splat(1));
+    round_lanes(out, plus_scaled3(y, -out->along, axis), radius);
+}
+
+SPRING_INLINE void box_lanes(near_lanes *out, const contact_body *b, real3 y, real radius)
+{
+    const real half[3] = {splat((scalar)b->half[0]), splat((scalar)b->half[1]), splat((scalar)b->half[2])};
+    const real3 gap = {vec_abs(y.x) - half[0], vec_abs(y.y) - half[1], vec_abs(y.z) - half[2]};
+    const lane_mask z_first = (gap.z > gap.x) & (gap.z > gap.y), y_first = not_mask(z_first) & (gap.y > gap.x);
+    const lane_mask x_over = gap.x > 0, y_over = gap.y > 0, z_over = gap.z > 0;
+    const real zero = splat(0), one = splat(1);
+    const real3 side = {select_real(y.x < 0, -one, one), select_real(y.y < 0, -one, one),
+                        select_real(y.z < 0, -one, one)};
+    out->normal = (real3){select_real(z_first | y_first, zero, side.x), select_real(y_first, side.y, zero),
+                          select_real(z_first, side.z, zero)};
+    out->gap = select_real(z_first, gap.z, select_real(y_first, gap.y, gap.x)) - radius;
+    const lane_mask edge = (x_over & y_over) | (y_over & z_over) | (z_over & x_over);
+    if (!any(edge))
+        return;
+    near_lanes corner;
+    round_lanes(&corner,
+                (real3){select_real(x_over, side.x * gap.x, zero), select_real(y_over, side.y * gap.y, zero),
+                        select_real(z_over, side.z * gap.z, zero)},
+                radius);
+    out->normal = select3(edge, corner.normal, out->normal);
+    out->gap = select_real(edge, corner.gap, out->gap);
+}
+
+/* The nearest point of the surface from *y in the frame, at the start or the end of the step. */
+SPRING_NOINLINE void nearest_lanes(const contact_body *b, bool at_end, const real3 *y, const real *particle_radius,
+                                   near_lanes *out)
+{
+    const real radius = (scalar)b->radius + *particle_radius;
+    out->along = splat(0);
+    if (b->shape == SPRING_PLANE) {
+        out->normal = (real3){splat(1), splat(0), splat(0)};
+        out->gap = y->x - radius;
+    } else if (b->shape == SPRING_CAPSULE)
+        capsule_lanes(out, *y, at_end ? b->end.segment : b->start.segment, radius);
+    else if (b->shape == SPRING_BOX)
+        box_lanes(out, b, *y, radius);
+    else
+        round_lanes(out, *y, radius);
+}
+
+/* [m/s] Velocity of a point of the body at x. */
+SPRING_INLINE real3 body_velocity(const contact_body *b, const body_pose *p, real along, real3 x)
+{
+    const real3 v = splat_vector(p->velocity);
+    if (b->shape == SPRING_CAPSULE)
+        return plus_scaled3(v, along, splat_vector(p->stretching));
+    return b->turns ? plus3(v, cross3(splat_vector(p->spin), minus3(x, splat_vector(p->at)))) : v;
+}
+
+/* The last kick: removes the component of v into the body. */
+SPRING_NOINLINE void stop_lanes(const contact_body *b, const body_pose *p, const real3 *x, const real *radius,
+                                const real *friction, lane_mask where, real3 *v)
+{
+    near_lanes at;
+    if (b->shape == SPRING_CAPSULE) { /* not in its frame, which begins anew in each step */
+        capsule_lanes(&at, minus3(*x, splat_vector(p->at)), p->along, (scalar)b->radius + *radius);
+    } else {
+        const real3 y = place_in_lanes(b, p, *x);
+        nearest_lanes(b, false, &y, radius, &at);
+        at.normal = direction_out_lanes(b, p, at.normal);
+    }
+    const real3 velocity = body_velocity(b, p, at.along, *x), u = minus3(*v, velocity);
+    const real rate = dot3(u, at.normal);
+    const real3 along = plus_scaled3(u, -rate, at.normal);
+    const real limit = (scalar)b->friction * *friction * vec_abs(rate), square = dot3(along, along);
+    const lane_mask sticks = square <= limit * limit;
+    const real3 slides = minus3(plus_scaled3(*v, -rate, at.normal),
+                                times3(limit / vec_sqrt(select_real(sticks, splat(1), square)), along));
+    *v = select3(where & (rate < 0), select3(sticks, velocity, slides), *v);
+}
+
+/* Steps 1 and 2: lanes in which the contact begins at the start of the step are touching. */
+SPRING_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, real3 *normal, real *gap)
+{
+    const contact_body *const b = q->b;
+    const scalar epsilon = 8 * SCALAR_EPSILON;
+    q->slop = epsilon * (sum_of_sizes(q->x0) + ((scalar)b->size + q->radius));
+    *start = place_in_lanes(b, &b->start, q->x0);
+    const real3 way = minus3(place_in_lanes(b, &b->end, plus3(q->x0, q->d)), *start);
+    nearest_lanes(b, false, start, &q->radius, at);
+    real rate = dot3(at->normal, way);
+    if (b->shape == SPRING_CAPSULE && b->turns)
+        rate -= at->along * dot3(at->normal, minus3(splat_vector(b->end.segment), splat_vector(b->start.segment)));
+    const lane_mask later = at->gap >= q->slop;
+    const real ahead = select_real(later, at->gap, splat(0));
+    q->touching = not_mask(ahead + rate >= 0);
+    q->failed = (at->gap < -q->slop) | (q->touching & later);
+    *gap = select_real(vec_abs(at->gap) > q->slop / 2, at->gap, splat(0));
+    *normal = direction_out_lanes(b, &b->start, at->normal);
+}
+
+static const scalar least_cosine_lanes = (scalar)0.1;
+
+SPRING_INLINE real cosine_lanes(real3 n, real3 n_end)
+{
+    const real cosine = dot3(n, n_end);
+    return select_real(cosine > least_cosine_lanes, cosine, splat(least_cosine_lanes));
+}
+
+/* The nearest point from *x at the end of the step, with its normal in the scene. Returns x in the frame. */
+SPRING_NOINLINE void nearest_at_end(const resting_lanes *q, const real3 *x, real3 *y, near_lanes *out)
+{
+    *y = place_in_lanes(q->b, &q->b->end, *x);
+    nearest_lanes(q->b, true, y, &q->radius, out);
+    out->normal = direction_out_lanes(q->b, &q->b->end, out->normal);
+}
+
+/* Sliding over a step. */
+typedef struct slide_lanes {
+    real3 u0, A;           /* [m/s] at the start, and its change by other forces */
+    real speed;            /* |u0| */
+    lane_mask still, rubs; /* u0 is 0; lanes that matter */
+    real3 mean, kick;      /* as in contact.c */
+    lane_mask sticks;
+} slide_lanes;
+
+/* u' = A - F u/|u| from u0 for a unit of time: slide_from() of contact.c, which explains the cases. */
+SPRING_NOINLINE void slide_by(slide_lanes *s, const real *friction, int most_parts)
+{
+    const scalar parallel = 4096 * SCALAR_EPSILON; /* sine of an angle */
+    const real3 zero = zero_lanes(), A = s->A;
+    const real F = *friction, square = s->speed * s->speed, push = dot3(A, A);
+    const lane_mask holds = s->still & (push <= F * F), slides = s->rubs & not_mask(holds);
+    s->mean = s->kick = zero;
+    s->sticks = holds;
+    if (!any(slides))
+        return;
+    const real3 across = cross3(s->u0, A);
+    const lane_mask turns = (square < 64 * F * F) & (dot3(across, across) > parallel * parallel * square * push);
+    const real part = select_real(turns, splat(1 / (scalar)most_parts), splat(1)), f = F * part;
+    const real3 a = times3(part, A);
+    const int parts = any(slides & turns) ? most_parts : 1;
+    real3 u = s->u0, sum = zero, direction = zero;
+    lane_mask sticks = not_mask(turns) & turns;
+    for (int i = 0; i < parts; i++) {
+        const lane_mask now = i == 0 ? not_mask(turns) | turns : turns;
+        const real speed = i == 0 ? s->speed : length_lanes(u);
+        const lane_mask moves = speed > 0;
+        const real3 along = select3(moves, times3(1 / speed, u), zero);
+        const real deceleration = f - dot3(a, along);
+        const lane_mask on = moves & not_mask(deceleration > speed);
+        const real3 free = plus3(u, a), once = plus_scaled3(free, -f / 2, along);
+        real3 next = plus_scaled3(once, -f / 2, along), pull = along; /* on a line */
+        if (parts > 1) {
+            const real3 end = plus_scaled3(free, -f, along);
+            const real3 heun = plus_scaled3(once, -f / 2 / length_lanes(end), end);
+            const real length = length_lanes(free);
+            const real3 slow = select3(length > f, times3(1 - f / length, free), zero);
+            next = select3(turns, select3(speed > 4 * f, heun, slow), next);
+            const real size = length_lanes(next);
+            pull = select3(turns & (size > 0), times3(1 / size, next), pull);
+        }
+        real3 way = plus3(u, next);
+        lane_mask stuck = not_mask(dot3(next, next) > 0);
+        if (any(slides & not_mask(on))) { /* lanes that stop, or start from rest */
+            const real stop = select_real(moves, speed / deceleration, splat(0)), rest = 1 - stop, limit = f * rest;
+            const real3 at_stop =
+                select3(moves, tangential_lanes(plus_scaled3(u, stop, plus_scaled3(a, -f, along)), along), zero);
+            const real3 pushed = plus_scaled3(at_stop, rest, a);
+            const real length = length_lanes(pushed);
+            const lane_mask ends = length <= limit;
+            const real3 toward = times3(1 / length, pushed), last = plus_scaled3(pushed, -limit, toward);
+            const real settles = select_real(f > 0, vec_min(rest, length_lanes(at_stop) / f), splat(0));
+            const real3 further = select3(ends, times3(settles, at_stop), times3(rest, plus3(at_stop, last)));
+            way = select3(on, way, plus3(times3(stop, plus3(u, at_stop)), further));
+            next = select3(on, next, select3(ends, zero, last));
+            pull = select3(on, pull, toward);
+            stuck = (on & stuck) | (not_mask(on) & ends);
+        }
+        u = select3(now, next, u);
+        direction = select3(now, pull, direction);
+        sum = plus3(sum, select3(now, way, zero));
+        sticks = (now & stuck) | (not_mask(now) & sticks);
+    }
+    s->sticks |= sticks;
+    s->mean = select3(holds, zero, times3(part * (scalar)0.5, sum));
+    const real3 kick = plus_scaled3(plus_scaled3(u, splat((scalar)-0.5), A), (scalar)0.5 * F, direction);
+    s->kick = select3(s->sticks, zero, kick);
+}
+
+/* Step 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do */
+SPRING_NOINLINE void find_lambda_lanes(const resting_lanes *q, const real3 *x, const real3 *n, scalar h, int most,
+                                       lane_mask where, real *lambda, lane_mask *clear, lane_mask *failed)
+{
+    *clear = (lane_mask){0};
+    for (int i = 0; i < most; i++) {
+        near_lanes there;
+        const real3 at = plus_scaled3(*x, *lambda * h, *n);
+        real3 y;
+        nearest_at_end(q, &at, &y, &there);
+        const real cosine = dot3(*n, there.normal);
+        *clear |= vec_abs(there.gap) < q->slop / 4;
+        if (!any(where & not_mask(*clear)))
+            return;
+        *failed |= not_mask(*clear) & not_mask(cosine > least_cosine_lanes);
+        *lambda = select_real(*clear, *lambda, vec_not_negative(*lambda - there.gap / (h * cosine)));
+    }
+}
+
+/* Step 3, in some lanes. */
+SPRING_NOINLINE void hit_lanes(resting_lanes *q, const real3 *u, const real3 *n, const real *rate, lane_mask impact,
+                               scalar h)
+{
+    const real normal = -(1 + (scalar)q->b->restitution) * *rate;
+    const real limit = (scalar)q->b->friction * q->friction * vec_abs(normal);
+    const real3 along = tangential_lanes(*u, *n), none = zero_lanes();
+    const real square = dot3(along, along);
+    const lane_mask slides = square > limit * limit;
+    const real share = select_real(slides, limit / vec_sqrt(select_real(slides, square, splat(1))), splat(1));
+    const real3 change = select3(impact, minus3(times3(normal, *n), times3(share, along)), none);
+    q->change = plus3(q->change, change);
+    q->v0 = plus3(q->v0, change);
+    q->w = plus3(q->w, change);
+    q->d = plus_scaled3(q->d, splat(h), change);
+}
+
+/* Steps 3 and 4 from the start of the step, in the lanes that touch. */
+SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 n, real gap, scalar h)
+{
+    const contact_body *const b = q->b;
+    const bool flat = b->shape == SPRING_PLANE && !b->turns;
+    const real3 velocity = body_velocity(b, &b->start, at->along, q->x0);
+    real3 u = minus3(q->v0, velocity);
+    const real rate = dot3(u, n);
+    const lane_mask impact = q->touching & (rate * h < -q->slop);
+    if (any(impact)) {
+        hit_lanes(q, &u, &n, &rate, impact, h);
+        u = minus3(q->v0, velocity);
+    }
+    const real3 x1 = plus3(q->x0, q->d);
+    real3 end;
+    near_lanes there;
+    nearest_at_end(q, &x1, &end, &there);
+    const real inward = gap + dot3(at->normal, minus3(end, y0));
+    const lane_mask presses = q->touching & not_mask((inward >= 0) & (there.gap >= 0));
+    if (!any(presses))
+        return;
+    real toward = splat(1);
+    real3 way = minus3(end, y0);
+    if (!has_plain_frame(b)) {
+        toward = cosine_lanes(n, direction_out_lanes(b, &b->end, at->normal));
+        way = direction_out_lanes(b, &b->end, way);
+    }
+    const real inverse = splat(1 / h);
+    const real3 along = tangential_lanes(way, n), mean = times3(inverse, along), none = zero_lanes();
+    slide_lanes slide;
+    slide.u0 = tangential_lanes(u, n);
+    slide.A = times3(splat(2), minus3(mean, slide.u0));
+    slide.mean = slide.kick = mean;
+    slide.rubs = presses;
+    slide.sticks = not_mask(presses) & presses;
+    slide.speed = length_lanes(slide.u0);
+    slide.still = slide.speed == 0;
+    real lambda = vec_not_negative(-inward) / (h * toward);
+    real3 x = x1, shift = none;
+    lane_mask clear = not_mask((lane_mask){0}), failed = {0};
+    const bool rubs = b->friction > 0 && any(presses & (q->friction > 0));
+    for (int pass = 0; pass < 2 && rubs; pass++) {
+        if (b->turns && pass > 0) {
+            const real3 y = place_in_lanes(b, &b->end, x);
+            lambda = vec_not_negative(-(gap + dot3(at->normal, minus3(y, y0)))) / (h * toward);
+        }
+        if (!flat)
+            find_lambda_lanes(q, &x, &n, h, 1, presses, &lambda, &clear, &failed);
+        const real friction = 2 * ((scalar)b->friction * q->friction) * lambda;
+        slide_by(&slide, &friction, pass == 0 ? 2 : 4);
+        shift = minus3(times3(splat(h), slide.mean), along);
+        x = plus3(x1, shift);
+        const lane_mask still = slide.sticks & (dot3(slide.mean, slide.mean) == 0);
+        if (b->shape != SPRING_CAPSULE && !any(presses & not_mask(still)))
+            break;
+    }
+    const lane_mask carried = slide.sticks & (slide.speed * h <= q->slop);
+    const lane_mask free = presses & not_mask(carried);
+    real3 d = none, change = none;
+    if (any(free)) {
+        if (!flat)
+            find_lambda_lanes(q, &x, &n, h, 3, free, &lambda, &clear, &failed);
+        d = plus_scaled3(plus3(q->d, shift), lambda * h, n);
+        change = plus_scaled3(minus3(slide.kick, mean), lambda, n);
+        if (any(free & not_mask(clear))) { /* otherwise step 5 follows */
+            const real3 x_end = plus3(q->x0, d);
+            nearest_at_end(q, &x_end, &end, &there);
+            failed |= not_mask(there.gap >= -q->slop);
+        }
+        failed &= not_mask(carried);
+    }
+    if (any(presses & carried)) {
+        failed |= carried & (at->gap < -q->slop / 2);
+        real3 place = y0, rides = none;
+        if (b->shape == SPRING_CAPSULE)
+            place =
+                plus_scaled3(place, at->along, minus3(splat_vector(b->end.segment), splat_vector(b->start.segment)));
+        if (b->moves)
+            rides = minus3(plus3(splat_vector(b->end.at), direction_out_lanes(b, &b->end, place)), q->x0);
+        d = select3(carried, rides, d);
+        change = select3(carried, minus3(times3(inverse, rides), q->w), change);
+    }
+    q->failed |= presses & failed;
+    q->d = select3(presses, d, q->d);
+    q->w = select3(presses, plus3(q->w, change), q->w);
+    q->change = select3(presses, plus3(q->change, change), q->change);
+}
+
+/* Bits of colliders whose boxes meet the paths of some lanes. */
+SPRING_INLINE uint32_t boxes_on_paths(const collider_bounds *c, real3 from, real3 to, lane_mask where)
+{
+    const real3 end = select3(where, to, from);
+    const real low[3] = {vec_min(from.x, end.x), vec_min(from.y, end.y), vec_min(from.z, end.z)};
+    const real minus_high[3] = {vec_min(-from.x, -end.x), vec_min(-from.y, -end.y), vec_min(-from.z, -end.z)};
+    return boxes_that_meet(c, low, minus_high);
+}
+
+SPRING_INLINE void store_place(scalar *quantity, size_t stride, uint32_t axes, lane_mask where, real3 value)
+{
+    vec_store(quantity, select_real(where, value.x, vec_load(quantity)));
+    vec_store(quantity + stride, select_real(where, value.y, vec_load(quantity + stride)));
+    if (axes > 2)
+        vec_store(quantity + 2 * stride, select_real(where, value.z, vec_load(quantity + 2 * stride)));
+}
+
+/* The particles of a vector that may touch collider c only. Returns the lanes whose motion is complete. */
+SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where, lane_mask stopped)
+{
+    const contact_body *const b = &r->setting->body[c];
+    const scene_particles *const p = r->particles;
+    const scene_motion *const m = r->way;
+    const size_t i = r->first + k;
+    const scalar h = m->drift;
+    const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
+    const real drag = p->drag * inverse_mass;
+    const bool dragged = p->drag != 0;
+    implicit_factors damping = {splat(1), splat(0)};
+    if (dragged)
+        damping = implicit_factors_of(m->kick * drag);
+    real free[3], start[3], x0[3], w[3];
+    for (uint32_t a = 0; a < 3; a++) {
+        free[a] = start[a] = x0[a] = splat(0);
+        if (a >= p->axes)
+            continue;
+        const real force = vec_load(r->kept->force[a] + k) + vec_load(p->held + (a * p->stride + i) * p->held_stride);
+        free[a] = inverse_mass * force + vec_load(p->gravity + a * padding);
+        start[a] = vec_load(r->kept->v0[a] + k);
+        x0[a] = vec_load(r->kept->x0[a] + k);
+        if (!m->ends_previous)
+            continue;
+        start[a] += m->kick * free[a];
+        start[a] = dragged ? implicit_velocity(start[a], &damping) : start[a];
+    }
+    resting_lanes q;
+    q.b = b;
+    q.x0 = (real3){x0[0], x0[1], x0[2]};
+    q.radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
+    q.friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
+    const real3 kicked = {start[0], start[1], start[2]};
+    q.v0 = kicked;
+    if (any(stopped))
+        stop_lanes(b, &b->start, &q.x0, &q.radius, &q.friction, stopped, &q.v0);
+    const real fastest = splat(m->max_speed);
+    lane_mask fine = (vec_abs(q.v0.x) <= fastest) & (vec_abs(q.v0.y) <= fastest) & (vec_abs(q.v0.z) <= fastest);
+    q.change = minus3(q.v0, kicked);
+    const real v0[3] = {q.v0.x, q.v0.y, q.v0.z};
+    for (uint32_t a = 0; a < 3; a++) {
+        const real accel = dragged ? free[a] - drag * v0[a] : free[a];
+        w[a] = v0[a] + m->kick * accel;
+    }
+    q.w = (real3){w[0], w[1], w[2]};
+    q.d = times3(splat(h), q.w);
+    near_lanes at;
+    real3 y0, n;
+    real gap;
+    meet_lanes(&q, &at, &y0, &n, &gap);
+    q.touching &= where;
+    if (any(q.touching))
+        press_lanes(&q, &at, y0, n, gap, h);
+    const lane_mask changed = where & (q.touching | stopped);
+    fine &= where & not_mask(q.failed);
+    const real3 x = plus3(q.x0, q.d), last = q.w;
+    fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
+    const uint32_t others =
+        r->bounds->count > 1 ? boxes_on_paths(r->bounds, q.x0, x, fine & changed) & ~(UINT32_C(1) << c) : 0;
+    for (unsigned o = 0; others >> o != 0; o++)
+        if ((others >> o & 1) != 0)
+            fine &= not_mask(changed & may_touch(&r->bounds->each[o], q.x0, x, q.radius));
+    const lane_mask done = fine & changed;
+    if (!any(done))
+        return fine;
+    if (m->predicted != NULL) {
+        const real w_end[3] = {last.x, last.y, last.z};
+        real end[3];
+        for (uint32_t a = 0; a < 3; a++) {
+            end[a] = w_end[a] + m->kick * free[a];
+            end[a] = dragged ? implicit_velocity(end[a], &damping) : end[a];
+        }
+        real3 predicted = {end[0], end[1], end[2]};
+        stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
+        store_place(m->predicted + i, p->stride, p->axes, done, predicted);
+    }
+    store_place(m->x + i, p->stride, p->axes, done, x);
+    store_place(m->v + i, p->stride, p->axes, done, last);
+    store_bits(r->touched + k, load_bits(r->touched + k) | bits_where(done & q.touching, UINT32_C(1) << c));
+    store_place(r->change[0] + k, contact_chunk, 3, done, q.change);
+    return fine;
+}
+
+static void advance_resting(resting_chunk *r)
+{
+    for (size_t k = 0; k < r->count; k += lanes) {
+        const size_t some = r->count - k < lanes ? r->count - k : lanes;
+        uint32_t left = 0;
+        for (size_t j = 0; j < some; j++)
+            left |= r->candidate[k + j];
+        const lane_bits candidate = load_bits(r->candidate + k), stops = load_bits(r->stops + k);
+        for (unsigned c = 0; left >> c != 0; c++) {
+            const contact_body *const b = &r->setting->body[c];
+            if ((left >> c & 1) == 0 || b->slips || b->shape == SPRING_CUSTOM)
+                continue;
+            const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
+            const lane_mask fine = rest_on_collider(r, k, c, here, here & has_bits(stops, UINT32_C(1) << c));
+            store_bits(r->done + k, load_bits(r->done + k) | bits_where(fine, 1));
+        }
+    }
+}
+
+#endif
