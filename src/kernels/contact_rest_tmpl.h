@@ -83,6 +83,34 @@ SPRING_INLINE real3 place_in_lanes(const contact_body *b, const body_pose *p, re
     return direction_in_lanes(b, p, minus3(x, splat_vector(p->at)));
 }
 
+SPRING_INLINE vector3 vector_between(vector3 a, vector3 b)
+{
+    return (vector3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+/* The displacement from x0 to x0 + d in the frame. Differences of positions would have their rounding errors. */
+SPRING_INLINE real3 way_in_lanes(const contact_body *b, real3 x0, real3 d)
+{
+    real3 way = direction_in_lanes(b, &b->end, minus3(d, splat_vector(vector_between(b->end.at, b->start.at))));
+    if (!b->turns)
+        return way;
+    const real3 arm = minus3(x0, splat_vector(b->start.at));
+    real *const each[3] = {&way.x, &way.y, &way.z};
+    for (int i = 0; i < 3; i++)
+        *each[i] += dot3(arm, splat_vector(vector_between(b->end.axis[i], b->start.axis[i])));
+    return way;
+}
+
+/* The displacement of a point of the body, at y in its frame. */
+SPRING_INLINE real3 way_of_body(const contact_body *b, real3 y)
+{
+    real3 way = splat_vector(vector_between(b->end.at, b->start.at));
+    const real each[3] = {y.x, y.y, y.z};
+    for (int i = 0; i < 3 && b->turns; i++)
+        way = plus_scaled3(way, each[i], splat_vector(vector_between(b->end.axis[i], b->start.axis[i])));
+    return way;
+}
+
 SPRING_INLINE void round_lanes(near_lanes *out, real3 from_core, real radius)
 {
     const real square = dot3(from_core, from_core), distance = vec_sqrt(square);
@@ -179,11 +207,11 @@ SPRING_INLINE void meet_lanes(resting_lanes *q, near_lanes *at, real3 *start, re
     const scalar epsilon = 8 * SCALAR_EPSILON;
     q->slop = epsilon * (sum_of_sizes(q->x0) + ((scalar)b->size + q->radius));
     *start = place_in_lanes(b, &b->start, q->x0);
-    const real3 way = minus3(place_in_lanes(b, &b->end, plus3(q->x0, q->d)), *start);
+    const real3 way = way_in_lanes(b, q->x0, q->d);
     nearest_lanes(b, false, start, &q->radius, at);
     real rate = dot3(at->normal, way);
     if (b->shape == SPRING_CAPSULE && b->turns)
-        rate -= at->along * dot3(at->normal, minus3(splat_vector(b->end.segment), splat_vector(b->start.segment)));
+        rate -= at->along * dot3(at->normal, splat_vector(vector_between(b->end.segment, b->start.segment)));
     const lane_mask later = at->gap >= q->slop;
     const real ahead = select_real(later, at->gap, splat(0));
     q->touching = not_mask(ahead + rate >= 0);
@@ -334,12 +362,12 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     real3 end;
     near_lanes there;
     nearest_at_end(q, &x1, &end, &there);
-    const real inward = gap + dot3(at->normal, minus3(end, y0));
+    real3 way = way_in_lanes(b, q->x0, q->d);
+    const real inward = gap + dot3(at->normal, way);
     const lane_mask presses = q->touching & not_mask((inward >= 0) & (there.gap >= 0));
     if (!any(presses))
         return;
     real toward = splat(1);
-    real3 way = minus3(end, y0);
     if (!has_plain_frame(b)) {
         toward = cosine_lanes(n, direction_out_lanes(b, &b->end, at->normal));
         way = direction_out_lanes(b, &b->end, way);
@@ -360,8 +388,8 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     const bool rubs = b->friction > 0 && any(presses & (q->friction > 0));
     for (int pass = 0; pass < 2 && rubs; pass++) {
         if (b->turns && pass > 0) {
-            const real3 y = place_in_lanes(b, &b->end, x);
-            lambda = vec_not_negative(-(gap + dot3(at->normal, minus3(y, y0)))) / (h * toward);
+            const real3 turned = way_in_lanes(b, q->x0, plus3(q->d, shift));
+            lambda = vec_not_negative(-(gap + dot3(at->normal, turned))) / (h * toward);
         }
         if (!flat)
             find_lambda_lanes(q, &x, &n, h, 1, presses, &lambda, &clear, &failed);
@@ -390,12 +418,11 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     }
     if (any(presses & carried)) {
         failed |= carried & (at->gap < -q->slop / 2);
-        real3 place = y0, rides = none;
-        if (b->shape == SPRING_CAPSULE)
-            place =
-                plus_scaled3(place, at->along, minus3(splat_vector(b->end.segment), splat_vector(b->start.segment)));
-        if (b->moves)
-            rides = minus3(plus3(splat_vector(b->end.at), direction_out_lanes(b, &b->end, place)), q->x0);
+        real3 rides = b->moves ? way_of_body(b, y0) : none;
+        if (b->shape == SPRING_CAPSULE && b->turns) {
+            const real3 longer = splat_vector(vector_between(b->end.segment, b->start.segment));
+            rides = plus_scaled3(rides, at->along, direction_out_lanes(b, &b->end, longer));
+        }
         d = select3(carried, rides, d);
         change = select3(carried, minus3(times3(inverse, rides), q->w), change);
     }
@@ -423,7 +450,7 @@ SPRING_INLINE void store_place(scalar *quantity, size_t stride, uint32_t axes, l
 }
 
 /* The particles of a vector that may touch collider c only. Returns the lanes whose motion is complete. */
-SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where, lane_mask stopped)
+SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
@@ -433,6 +460,7 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
     const real drag = p->drag * inverse_mass;
     const bool dragged = p->drag != 0;
+    const lane_mask stopped = has_bits(load_bits(r->stopped + k), 1) & where;
     implicit_factors damping = {splat(1), splat(0)};
     if (dragged)
         damping = implicit_factors_of(m->kick * drag);
@@ -449,19 +477,17 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
             continue;
         start[a] += m->kick * free[a];
         start[a] = dragged ? implicit_velocity(start[a], &damping) : start[a];
+        start[a] = select_real(stopped, vec_load(r->stopped_v[a] + k), start[a]);
     }
     resting_lanes q;
     q.b = b;
     q.x0 = (real3){x0[0], x0[1], x0[2]};
     q.radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
     q.friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
-    const real3 kicked = {start[0], start[1], start[2]};
-    q.v0 = kicked;
-    if (any(stopped))
-        stop_lanes(b, &b->start, &q.x0, &q.radius, &q.friction, stopped, &q.v0);
+    q.v0 = (real3){start[0], start[1], start[2]};
+    q.change = zero_lanes();
     const real fastest = splat(m->max_speed);
     lane_mask fine = (vec_abs(q.v0.x) <= fastest) & (vec_abs(q.v0.y) <= fastest) & (vec_abs(q.v0.z) <= fastest);
-    q.change = minus3(q.v0, kicked);
     const real v0[3] = {q.v0.x, q.v0.y, q.v0.z};
     for (uint32_t a = 0; a < 3; a++) {
         const real accel = dragged ? free[a] - drag * v0[a] : free[a];
@@ -506,20 +532,74 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     return fine;
 }
 
+/* The bits of all candidates of a vector. */
+SPRING_INLINE uint32_t candidates_of(const resting_chunk *r, size_t k, size_t some)
+{
+    uint32_t all = 0;
+    for (size_t j = 0; j < some; j++)
+        all |= r->candidate[k + j];
+    return all;
+}
+
+/* Whether these kernels have the contacts with a body. */
+SPRING_INLINE bool can_rest_on(const contact_body *b)
+{
+    return !b->slips && b->shape != SPRING_CUSTOM;
+}
+
+static void stop_touching(resting_chunk *r)
+{
+    const scene_particles *const p = r->particles;
+    const scene_motion *const m = r->way;
+    for (size_t k = 0; k < r->count; k += lanes) {
+        const size_t i = r->first + k, some = r->count - k < lanes ? r->count - k : lanes;
+        const uint32_t left = candidates_of(r, k, some);
+        if (left == 0)
+            continue;
+        const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride), drag = p->drag * inverse_mass;
+        const implicit_factors damping = implicit_factors_of(m->kick * drag);
+        real kicked[3], x[3];
+        for (uint32_t a = 0; a < 3; a++) {
+            kicked[a] = x[a] = splat(0);
+            if (a >= p->axes)
+                continue;
+            const real held = vec_load(p->held + (a * p->stride + i) * p->held_stride);
+            const real free =
+                inverse_mass * (vec_load(r->kept->force[a] + k) + held) + vec_load(p->gravity + a * padding);
+            kicked[a] = vec_load(r->kept->v0[a] + k) + m->kick * free;
+            kicked[a] = p->drag != 0 ? implicit_velocity(kicked[a], &damping) : kicked[a];
+            x[a] = vec_load(r->place + a * r->place_stride + k);
+        }
+        const real3 before = {kicked[0], kicked[1], kicked[2]}, at = {x[0], x[1], x[2]};
+        const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
+        const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
+        const lane_bits candidate = load_bits(r->candidate + k);
+        for (unsigned c = 0; left >> c != 0; c++) {
+            const contact_body *const b = &r->setting->body[c];
+            if ((left >> c & 1) == 0 || !can_rest_on(b))
+                continue;
+            const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
+            real3 v = before;
+            stop_lanes(b, r->at_end ? &b->end : &b->start, &at, &radius, &friction, here, &v);
+            store_place(r->stopped_v[0] + k, contact_chunk, 3, here, v);
+            store_place(r->change[0] + k, contact_chunk, 3, here, minus3(v, before));
+            store_bits(r->stopped + k, load_bits(r->stopped + k) | bits_where(here, 1));
+        }
+    }
+}
+
 static void advance_resting(resting_chunk *r)
 {
     for (size_t k = 0; k < r->count; k += lanes) {
         const size_t some = r->count - k < lanes ? r->count - k : lanes;
-        uint32_t left = 0;
-        for (size_t j = 0; j < some; j++)
-            left |= r->candidate[k + j];
-        const lane_bits candidate = load_bits(r->candidate + k), stops = load_bits(r->stops + k);
+        const uint32_t left = candidates_of(r, k, some);
+        const lane_bits candidate = load_bits(r->candidate + k);
         for (unsigned c = 0; left >> c != 0; c++) {
             const contact_body *const b = &r->setting->body[c];
-            if ((left >> c & 1) == 0 || b->slips || b->shape == SPRING_CUSTOM)
+            if ((left >> c & 1) == 0 || !can_rest_on(b))
                 continue;
             const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
-            const lane_mask fine = rest_on_collider(r, k, c, here, here & has_bits(stops, UINT32_C(1) << c));
+            const lane_mask fine = rest_on_collider(r, k, c, here);
             store_bits(r->done + k, load_bits(r->done + k) | bits_where(fine, 1));
         }
     }

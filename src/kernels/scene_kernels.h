@@ -230,15 +230,19 @@ typedef struct resting_chunk {
     const kept_motion *kept;
     const scalar *radius, *friction; /* of particles; see near_kernel. friction NULL: 1 */
     size_t radius_stride, first, count;
-    uint32_t
-        candidate[contact_chunk];    /* bits of the colliders that may be touched; 0 also for particles to leave out */
-    uint32_t stops[contact_chunk];   /* bits of the colliders that the last kick of the previous step stops at */
-    uint32_t done[contact_chunk];    /* written: 1 if the motion is complete */
-    uint32_t touched[contact_chunk]; /* written: bits of the collider that it touches */
-    scalar change[3][contact_chunk]; /* written: [m/s] by the contact, at the position at the start */
+    const scalar *place; /* [m] of the stop, by particle of the chunk; axes are place_stride apart */
+    size_t place_stride;
+    bool at_end;                        /* the stop is at the end of the step */
+    uint32_t candidate[contact_chunk];  /* the bit of the only collider that may be touched; 0: to be left out */
+    uint32_t stopped[contact_chunk];    /* 1: the implicit kick that ends a step has given stopped_v */
+    uint32_t done[contact_chunk];       /* 1: the motion is complete */
+    uint32_t touched[contact_chunk];    /* the bit of the collider that it touches */
+    scalar stopped_v[3][contact_chunk]; /* [m/s] */
+    scalar change[3][contact_chunk];    /* [m/s] by the contact, of the last of these kernels */
 } resting_chunk;
 
-/* Completes the motion of particles that rest or slide on their only candidate: writes x, v and predicted. */
+/* For particles with one candidate. stop_resting writes stopped, stopped_v and change. move_resting completes motions of
+   particles that rest or slide: it writes x, v, predicted, done, touched and change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */
@@ -268,7 +272,7 @@ typedef struct common_kernels {
     stretch_kernel *stretched;            /* see above */
     keep_kernel *keep_motion;             /* see above */
     near_kernel *find_near;
-    rest_kernel *move_resting;
+    rest_kernel *stop_resting, *move_resting;
 } common_kernels;
 
 /* All kernels of a vector width. Only those listed here are compiled for vectors of 64 bytes as well, because they gain

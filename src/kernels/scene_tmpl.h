@@ -43,6 +43,7 @@ SPRING_TABLE const common_kernels SPRING_COMMON_TABLE = {
     .stretched = any_stretched,
     .keep_motion = copy_motion,
     .find_near = find_near_colliders,
+    .stop_resting = stop_touching,
     .move_resting = advance_resting,
 };
 #endif

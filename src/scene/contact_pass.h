@@ -26,6 +26,8 @@ typedef struct contact_state {
     scalar x0[3], v0[3], free[3]; /* free: the acceleration without drag */
     scalar drag;                  /* [1/s] */
     scalar leading, correction;   /* of an implicit kick */
+    bool stopped;                 /* the kick that ends a step has been computed: its result is stopped_v */
+    scalar stopped_v[3];
     contact_particle c;
 } contact_state;
 
@@ -81,6 +83,17 @@ static inline vector3 kicked_implicitly_by(const contact_state *p, scalar kick, 
     return vector_from(u);
 }
 
+/* The velocity after the kick that ends a step, at x. */
+static inline vector3 stopped_velocity(const scene_contacts *t, const scene_motion *m, contact_state *q,
+                                       uint32_t touched, bool at_end, vector3 x)
+{
+    if (q->stopped)
+        return vector_from(q->stopped_v);
+    vector3 v = kicked_implicitly_by(q, m->kick, q->v0);
+    spring_contact_stop(&t->setting, &q->c, touched, at_end, x, &v);
+    return v;
+}
+
 static inline bool finite_vector(vector3 v)
 {
     return spring_finite(v.x) && spring_finite(v.y) && spring_finite(v.z);
@@ -114,8 +127,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     bool fine = true;
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
-            v0 = kicked_implicitly_by(q, m->kick, q->v0);
-            spring_contact_stop(&t->setting, &q->c, before, false, q->c.x0, &v0);
+            v0 = stopped_velocity(t, m, q, before, false, q->c.x0);
             round_vector(q->v0, v0); /* as after a call */
             v0 = vector_from(q->v0);
             fine = !too_fast_vector(m, v0);
@@ -192,60 +204,49 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
 static bool stop_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
                             contact_state *q)
 {
-    vector3 v = kicked_implicitly_by(q, m->kick, q->v0);
-    spring_contact_stop(&t->setting, &q->c, t->touched[i], true, load_vector(t->x + i, p->stride, p->axes), &v);
+    const vector3 x = load_vector(t->x + i, p->stride, p->axes);
+    const vector3 v = stopped_velocity(t, m, q, t->touched[i], true, x);
     store_vector(m->v + i, p->stride, p->axes, v);
     return !q->c.wrong && finite_vector(v) && !too_fast_vector(m, v);
 }
 
-static const uint32_t no_stops[contact_chunk];
-
-/* Advances the particles of a chunk that rest or slide on one collider with SIMD vectors. */
-static void move_resting_particles(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
-                                   const uint32_t *nearby, const uint32_t *before, resting_chunk *r)
+/* Sets the candidates of a chunk: the colliders of particles that have only one in `bits` and `further`. */
+static void choose_candidates(const spring_scene *s, const scene_contacts *t, const uint32_t *bits,
+                              const uint32_t *further, resting_chunk *r)
 {
     const scene_particles *const p = r->particles;
-    const uint32_t *const bits = scene_read(s, ARRAY_BITS);
-    uint32_t any_candidate = 0;
+    const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (size_t k = 0; k < r->count; k++) {
         const size_t i = r->first + k;
-        uint32_t may = nearby[k] | before[k];
-        if ((may & (may - 1)) != 0 || p->inverse_mass[i * p->mass_stride] == 0)
-            may = 0;
-        if (bits != NULL)
-            for (unsigned c = 0; c < t->setting.count; c++)
-                may &= (t->setting.body[c].bits & bits[i]) != 0 ? UINT32_MAX : ~(UINT32_C(1) << c);
-        r->candidate[k] = may;
-        any_candidate |= may;
-        r->stops[k] = before[k];
+        uint32_t each = bits[k] | further[k];
+        if ((each & (each - 1)) != 0 || p->inverse_mass[i * p->mass_stride] == 0)
+            each = 0;
+        for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
+            each &= (t->setting.body[c].bits & masks[i]) != 0 ? UINT32_MAX : ~(UINT32_C(1) << c);
+        r->candidate[k] = each;
     }
-    memset(r->done, 0, sizeof r->done);
-    memset(r->touched, 0, sizeof r->touched);
-    if (any_candidate != 0)
-        kernels->move_resting(r);
 }
 
-/* Adds the impulses of the particles that move_resting_particles() has advanced, and stores what they touch. */
-static void end_rest(const spring_scene *s, const scene_contacts *t, const resting_chunk *r)
+/* Adds the impulses of changes of velocity at x, where `which` is not 0. */
+static void add_impulses(const spring_scene *s, const scene_contacts *t, const resting_chunk *r, const uint32_t *which,
+                         const scalar *x, size_t stride)
 {
     const scalar *const inverse_mass = scene_read(s, ARRAY_INVERSE_MASS);
     uint32_t left = 0;
     for (size_t k = 0; k < r->count; k++)
-        if (r->done[k] != 0) {
-            t->touched[r->first + k] = r->touched[k];
-            left |= r->touched[k] | r->stops[k];
-        }
+        left |= which[k] != 0 ? r->candidate[k] : 0;
     for (unsigned c = 0; left >> c != 0; c++) {
+        if ((left >> c & 1) == 0)
+            continue;
+        const double *const origin = t->setting.origin[c];
         vector3 linear = {0, 0, 0}, angular = {0, 0, 0};
-        for (size_t k = 0; k < r->count && (left >> c & 1) != 0; k++) {
-            if (r->done[k] == 0 || ((r->touched[k] | r->stops[k]) >> c & 1) == 0)
+        for (size_t k = 0; k < r->count; k++) {
+            if (which[k] == 0 || r->candidate[k] >> c != 1)
                 continue;
             const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
-            const vector3 x = load_vector(&r->kept->x0[0][k], contact_chunk, r->particles->axes);
-            const vector3 arm = {x.x - t->setting.origin[c][0], x.y - t->setting.origin[c][1],
-                                 x.z - t->setting.origin[c][2]};
-            const vector3 j = {-mass * (double)r->change[0][k], -mass * (double)r->change[1][k],
-                               -mass * (double)r->change[2][k]};
+            const vector3 at = load_vector(x + k, stride, r->particles->axes);
+            const vector3 arm = {at.x - origin[0], at.y - origin[1], at.z - origin[2]};
+            const vector3 j = vector_times(-mass, load_vector(&r->change[0][k], contact_chunk, 3));
             linear = vector_plus(linear, 1, j);
             angular.x += arm.y * j.z - arm.z * j.y;
             angular.y += arm.z * j.x - arm.x * j.z;
@@ -260,6 +261,27 @@ static void end_rest(const spring_scene *s, const scene_contacts *t, const resti
     }
 }
 
+/* The kick that ends a step, of particles that touch one collider, with SIMD vectors. It has the same results in the
+   step that follows in the same call as at the end of a call. */
+static void stop_at_colliders(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                              const uint32_t *touched, resting_chunk *r)
+{
+    choose_candidates(s, t, touched, touched, r);
+    kernels->stop_resting(r);
+    add_impulses(s, t, r, r->stopped, r->place, r->place_stride);
+}
+
+/* Advances the particles of a chunk that rest or slide on one collider with SIMD vectors. */
+static void move_on_colliders(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                              const uint32_t *nearby, const uint32_t *before, resting_chunk *r)
+{
+    memset(r->touched, 0, sizeof r->touched);
+    choose_candidates(s, t, nearby, before, r);
+    kernels->move_resting(r);
+    add_impulses(s, t, r, r->touched, r->kept->x0[0], contact_chunk);
+    memcpy(t->touched + r->first, r->touched, r->count * sizeof *r->touched);
+}
+
 /* Advances a chunk of particles. */
 static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
                                   particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
@@ -268,10 +290,11 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
     kept_motion kept;
     uint32_t nearby[contact_chunk], before[contact_chunk];
     const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
-    memcpy(before, t->before + from, count * sizeof *before);
     uint32_t stops = 0; /* at colliders, in a kick */
-    for (size_t k = 0; k < count; k++)
-        stops |= kicks ? t->touched[from + k] : m->ends_previous ? before[k] : 0;
+    for (size_t k = 0; k < count; k++) {
+        before[k] = kicks ? t->touched[from + k] : m->ends_previous ? t->before[from + k] : 0;
+        stops |= before[k];
+    }
     if (kicks && stops == 0)
         return kernel(p, m, from, from + count);
     kernels->keep_motion(p, m, from, count, &kept);
@@ -283,37 +306,44 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
     }
     if (!some)
         return true;
+    resting_chunk r;
+    r.setting = &t->setting;
+    r.bounds = t->bounds;
+    r.particles = p;
+    r.way = m;
+    r.kept = &kept;
+    r.radius = t->radius;
+    r.friction = scene_read(s, ARRAY_FRICTION);
+    r.radius_stride = t->radius_stride;
+    r.first = from;
+    r.count = count;
+    r.place = kicks ? t->x + from : kept.x0[0];
+    r.place_stride = kicks ? p->stride : contact_chunk;
+    r.at_end = kicks;
+    memset(r.stopped, 0, sizeof r.stopped);
+    memset(r.done, 0, sizeof r.done);
+    if (stops != 0 && m->kick > 0)
+        stop_at_colliders(s, t, kernels, before, &r);
+    if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine)
+        move_on_colliders(s, t, kernels, nearby, before, &r);
     bool all_fine = true;
-    resting_chunk rest;
-    rest.setting = &t->setting;
-    rest.bounds = t->bounds;
-    rest.particles = p;
-    rest.way = m;
-    rest.kept = &kept;
-    rest.radius = t->radius;
-    rest.friction = scene_read(s, ARRAY_FRICTION);
-    rest.radius_stride = t->radius_stride;
-    rest.first = from;
-    rest.count = count;
-    const bool rests = m->contacts == KICK_DRIFT_CONTACTS && fine && m->drift > 0;
-    if (rests)
-        move_resting_particles(s, t, kernels, nearby, m->ends_previous ? before : no_stops, &rest);
-    if (rests)
-        end_rest(s, t, &rest);
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
-        const uint32_t stop = kicks ? t->touched[i] : m->ends_previous ? before[k] : 0;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
-        if (pinned || (fine && stop == 0 && (kicks || nearby[k] == 0))) {
+        if (r.done[k] != 0)
+            continue;
+        if (pinned || (fine && before[k] == 0 && (kicks || nearby[k] == 0))) {
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
-        if (rests && rest.done[k] != 0)
-            continue;
         contact_state q;
         prepare_state(s, p, m, &kept, i, k, &q);
-        q.c.nearby = !kicks && fine && stop == 0 ? nearby[k] : UINT32_MAX; /* its path is another one after a stop */
-        all_fine = (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, stop)) && all_fine;
+        q.stopped = r.stopped[k] != 0;
+        for (int a = 0; a < 3 && q.stopped; a++)
+            q.stopped_v[a] = r.stopped_v[a][k];
+        q.c.nearby = !kicks && fine && before[k] == 0 ? nearby[k] : UINT32_MAX; /* after a stop its path differs */
+        all_fine =
+            (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, before[k])) && all_fine;
     }
     return all_fine;
 }
