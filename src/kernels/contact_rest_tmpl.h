@@ -460,7 +460,6 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
     const real drag = p->drag * inverse_mass;
     const bool dragged = p->drag != 0;
-    const lane_mask stopped = has_bits(load_bits(r->stopped + k), 1) & where;
     implicit_factors damping = {splat(1), splat(0)};
     if (dragged)
         damping = implicit_factors_of(m->kick * drag);
@@ -477,7 +476,6 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
             continue;
         start[a] += m->kick * free[a];
         start[a] = dragged ? implicit_velocity(start[a], &damping) : start[a];
-        start[a] = select_real(stopped, vec_load(r->stopped_v[a] + k), start[a]);
     }
     resting_lanes q;
     q.b = b;
@@ -502,7 +500,7 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     q.touching &= where;
     if (any(q.touching))
         press_lanes(&q, &at, y0, n, gap, h);
-    const lane_mask changed = where & (q.touching | stopped);
+    const lane_mask changed = where & q.touching;
     fine &= where & not_mask(q.failed);
     const real3 x = plus3(q.x0, q.d), last = q.w;
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
@@ -568,7 +566,7 @@ static void stop_touching(resting_chunk *r)
                 inverse_mass * (vec_load(r->kept->force[a] + k) + held) + vec_load(p->gravity + a * padding);
             kicked[a] = vec_load(r->kept->v0[a] + k) + m->kick * free;
             kicked[a] = p->drag != 0 ? implicit_velocity(kicked[a], &damping) : kicked[a];
-            x[a] = vec_load(r->place + a * r->place_stride + k);
+            x[a] = vec_load(r->place + a * p->stride + k);
         }
         const real3 before = {kicked[0], kicked[1], kicked[2]}, at = {x[0], x[1], x[2]};
         const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
@@ -581,9 +579,9 @@ static void stop_touching(resting_chunk *r)
             const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
             real3 v = before;
             stop_lanes(b, r->at_end ? &b->end : &b->start, &at, &radius, &friction, here, &v);
-            store_place(r->stopped_v[0] + k, contact_chunk, 3, here, v);
+            store_place(m->v + i, p->stride, p->axes, here, v);
             store_place(r->change[0] + k, contact_chunk, 3, here, minus3(v, before));
-            store_bits(r->stopped + k, load_bits(r->stopped + k) | bits_where(here, 1));
+            store_bits(r->done + k, load_bits(r->done + k) | bits_where(here, 1));
         }
     }
 }

@@ -230,19 +230,16 @@ typedef struct resting_chunk {
     const kept_motion *kept;
     const scalar *radius, *friction; /* of particles; see near_kernel. friction NULL: 1 */
     size_t radius_stride, first, count;
-    const scalar *place; /* [m] of the stop, by particle of the chunk; axes are place_stride apart */
-    size_t place_stride;
-    bool at_end;                        /* the stop is at the end of the step */
-    uint32_t candidate[contact_chunk];  /* the bit of the only collider that may be touched; 0: to be left out */
-    uint32_t stopped[contact_chunk];    /* 1: the implicit kick that ends a step has given stopped_v */
-    uint32_t done[contact_chunk];       /* 1: the motion is complete */
-    uint32_t touched[contact_chunk];    /* the bit of the collider that it touches */
-    scalar stopped_v[3][contact_chunk]; /* [m/s] */
-    scalar change[3][contact_chunk];    /* [m/s] by the contact, of the last of these kernels */
+    const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
+    bool at_end;         /* the stop is at the end of the step */
+    uint32_t candidate[contact_chunk]; /* the bit of the only collider that may be touched; 0: to be left out */
+    uint32_t done[contact_chunk];      /* 1: the motion is complete */
+    uint32_t touched[contact_chunk];   /* the bit of the collider that it touches */
+    scalar change[3][contact_chunk];   /* [m/s] by the contact, of the last of these kernels */
 } resting_chunk;
 
-/* For particles with one candidate. stop_resting writes stopped, stopped_v and change. move_resting completes motions of
-   particles that rest or slide: it writes x, v, predicted, done, touched and change. */
+/* For particles with one candidate. stop_resting completes a kick: it writes v, done and change. move_resting completes
+   motions of particles that rest or slide: it writes x, v, predicted, done, touched and change. */
 typedef void rest_kernel(resting_chunk *);
 
 /* The kernels for vectors of 16 or 32 bytes. a(u): the acceleration by force, gravity and the drag at velocity u */

@@ -26,8 +26,6 @@ typedef struct contact_state {
     scalar x0[3], v0[3], free[3]; /* free: the acceleration without drag */
     scalar drag;                  /* [1/s] */
     scalar leading, correction;   /* of an implicit kick */
-    bool stopped;                 /* the kick that ends a step has been computed: its result is stopped_v */
-    scalar stopped_v[3];
     contact_particle c;
 } contact_state;
 
@@ -83,17 +81,6 @@ static inline vector3 kicked_implicitly_by(const contact_state *p, scalar kick, 
     return vector_from(u);
 }
 
-/* The velocity after the kick that ends a step, at x. */
-static inline vector3 stopped_velocity(const scene_contacts *t, const scene_motion *m, contact_state *q,
-                                       uint32_t touched, bool at_end, vector3 x)
-{
-    if (q->stopped)
-        return vector_from(q->stopped_v);
-    vector3 v = kicked_implicitly_by(q, m->kick, q->v0);
-    spring_contact_stop(&t->setting, &q->c, touched, at_end, x, &v);
-    return v;
-}
-
 static inline bool finite_vector(vector3 v)
 {
     return spring_finite(v.x) && spring_finite(v.y) && spring_finite(v.z);
@@ -117,7 +104,7 @@ static inline bool wrong_state(const scene_particles *p, const scene_motion *m, 
 /* Advances a particle with contacts, and writes its results if they differ from the free motion. Returns false if they
    are not finite or too fast. */
 static bool advance_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
-                               contact_state *q, uint32_t before)
+                               contact_state *q)
 {
     const double drift = (double)m->drift, h = t->setting.h;
     scalar accel[3];
@@ -127,7 +114,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     bool fine = true;
     if (m->contacts == KICK_DRIFT_CONTACTS) {
         if (m->ends_previous) {
-            v0 = stopped_velocity(t, m, q, before, false, q->c.x0);
+            v0 = kicked_implicitly_by(q, m->kick, q->v0);
             round_vector(q->v0, v0); /* as after a call */
             v0 = vector_from(q->v0);
             fine = !too_fast_vector(m, v0);
@@ -155,7 +142,7 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
         return false;
     spring_contact_drift(&t->setting, &q->c);
     t->touched[i] = q->c.touched;
-    if (q->c.touched == 0 && !(m->ends_previous && before != 0))
+    if (q->c.touched == 0)
         return fine && !q->c.wrong && !wrong_state(p, m, i);
     const vector3 x = vector_plus(q->c.x0, 1, q->c.d);
     vector3 v = q->c.w;
@@ -165,8 +152,6 @@ static bool advance_in_contact(const scene_contacts *t, const scene_particles *p
     }
     store_vector(m->x + i, stride, axes, x);
     store_vector(m->v + i, stride, axes, v);
-    for (uint32_t a = 0; a < axes && q->c.touched == 0; a++) /* the free motion, with its rounding errors */
-        m->x[a * stride + i] = q->x0[a] + m->drift * q->v0[a];
     if (m->predicted != NULL) {
         contact_setting queries = t->setting;
         queries.records = false;
@@ -198,16 +183,6 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
         c->x0[a] = kept->x0[a][k];
     }
     c->c.x0 = vector_from(c->x0);
-}
-
-/* The last kick of a particle that touches colliders. */
-static bool stop_in_contact(const scene_contacts *t, const scene_particles *p, const scene_motion *m, size_t i,
-                            contact_state *q)
-{
-    const vector3 x = load_vector(t->x + i, p->stride, p->axes);
-    const vector3 v = stopped_velocity(t, m, q, t->touched[i], true, x);
-    store_vector(m->v + i, p->stride, p->axes, v);
-    return !q->c.wrong && finite_vector(v) && !too_fast_vector(m, v);
 }
 
 /* Sets the candidates of a chunk: the colliders of particles that have only one in `bits` and `further`. */
@@ -261,91 +236,122 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
     }
 }
 
-/* The kick that ends a step, of particles that touch one collider, with SIMD vectors. It has the same results in the
-   step that follows in the same call as at the end of a call. */
-static void stop_at_colliders(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
-                              const uint32_t *touched, resting_chunk *r)
+/* A chunk of particles, in rest_kernel. */
+static void begin_rest(const spring_scene *s, const scene_contacts *t, const scene_particles *p, const scene_motion *m,
+                       const kept_motion *kept, size_t from, size_t count, resting_chunk *r)
 {
-    choose_candidates(s, t, touched, touched, r);
-    kernels->stop_resting(r);
-    add_impulses(s, t, r, r->stopped, r->place, r->place_stride);
+    r->setting = &t->setting;
+    r->bounds = t->bounds;
+    r->particles = p;
+    r->way = m;
+    r->kept = kept;
+    r->radius = t->radius;
+    r->friction = scene_read(s, ARRAY_FRICTION);
+    r->radius_stride = t->radius_stride;
+    r->first = from;
+    r->count = count;
+    memset(r->done, 0, sizeof r->done);
 }
 
-/* Advances the particles of a chunk that rest or slide on one collider with SIMD vectors. */
-static void move_on_colliders(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
-                              const uint32_t *nearby, const uint32_t *before, resting_chunk *r)
-{
-    memset(r->touched, 0, sizeof r->touched);
-    choose_candidates(s, t, nearby, before, r);
-    kernels->move_resting(r);
-    add_impulses(s, t, r, r->touched, r->kept->x0[0], contact_chunk);
-    memcpy(t->touched + r->first, r->touched, r->count * sizeof *r->touched);
-}
-
-/* Advances a chunk of particles. */
-static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
-                                  particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
-                                  size_t count)
+/* The kick that ends a step, of a chunk of particles, some of which touch colliders at x. */
+SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                                particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
+                                size_t count, const uint32_t *touched, const scalar *x, bool at_end)
 {
     kept_motion kept;
-    uint32_t nearby[contact_chunk], before[contact_chunk];
-    const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
-    uint32_t stops = 0; /* at colliders, in a kick */
-    for (size_t k = 0; k < count; k++) {
-        before[k] = kicks ? t->touched[from + k] : m->ends_previous ? t->before[from + k] : 0;
-        stops |= before[k];
-    }
-    if (kicks && stops == 0)
-        return kernel(p, m, from, from + count);
+    resting_chunk r;
     kernels->keep_motion(p, m, from, count, &kept);
     const bool fine = kernel(p, m, from, from + count);
-    bool some = stops != 0 || !fine;
-    if (!kicks) {
-        memset(t->touched + from, 0, count * sizeof *t->touched);
-        some = kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, nearby) || some;
+    begin_rest(s, t, p, m, &kept, from, count, &r);
+    if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
+        r.place = x + from;
+        r.at_end = at_end;
+        choose_candidates(s, t, touched, touched, &r);
+        kernels->stop_resting(&r);
+        add_impulses(s, t, &r, r.done, r.place, p->stride);
     }
-    if (!some)
+    bool all_fine = true;
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = from + k;
+        if (touched[k] == 0 || p->inverse_mass[i * p->mass_stride] == 0) {
+            all_fine = all_fine && (fine || !wrong_state(p, m, i));
+            continue;
+        }
+        contact_state q;
+        if (r.done[k] == 0) {
+            prepare_state(s, p, m, &kept, i, k, &q);
+            vector3 v = kicked_implicitly_by(&q, m->kick, q.v0);
+            spring_contact_stop(&t->setting, &q.c, touched[k], at_end, load_vector(x + i, p->stride, p->axes), &v);
+            store_vector(m->v + i, p->stride, p->axes, v);
+            all_fine = all_fine && !q.c.wrong;
+        }
+        const vector3 v = load_vector(m->v + i, p->stride, p->axes);
+        all_fine = all_fine && finite_vector(v) && !too_fast_vector(m, v);
+    }
+    return all_fine;
+}
+
+/* A motion of a chunk of particles that starts without a stop. */
+SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                                particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
+                                size_t count)
+{
+    kept_motion kept;
+    uint32_t nearby[contact_chunk];
+    kernels->keep_motion(p, m, from, count, &kept);
+    const bool fine = kernel(p, m, from, from + count);
+    memset(t->touched + from, 0, count * sizeof *t->touched);
+    if (!kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, nearby) && fine)
         return true;
     resting_chunk r;
-    r.setting = &t->setting;
-    r.bounds = t->bounds;
-    r.particles = p;
-    r.way = m;
-    r.kept = &kept;
-    r.radius = t->radius;
-    r.friction = scene_read(s, ARRAY_FRICTION);
-    r.radius_stride = t->radius_stride;
-    r.first = from;
-    r.count = count;
-    r.place = kicks ? t->x + from : kept.x0[0];
-    r.place_stride = kicks ? p->stride : contact_chunk;
-    r.at_end = kicks;
-    memset(r.stopped, 0, sizeof r.stopped);
-    memset(r.done, 0, sizeof r.done);
-    if (stops != 0 && m->kick > 0)
-        stop_at_colliders(s, t, kernels, before, &r);
-    if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine)
-        move_on_colliders(s, t, kernels, nearby, before, &r);
+    begin_rest(s, t, p, m, &kept, from, count, &r);
+    if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
+        memset(r.touched, 0, sizeof r.touched);
+        choose_candidates(s, t, nearby, nearby, &r);
+        kernels->move_resting(&r);
+        add_impulses(s, t, &r, r.touched, kept.x0[0], contact_chunk);
+        memcpy(t->touched + from, r.touched, count * sizeof *r.touched);
+    }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (r.done[k] != 0)
             continue;
-        if (pinned || (fine && before[k] == 0 && (kicks || nearby[k] == 0))) {
+        if (pinned || (fine && nearby[k] == 0)) {
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
         contact_state q;
         prepare_state(s, p, m, &kept, i, k, &q);
-        q.stopped = r.stopped[k] != 0;
-        for (int a = 0; a < 3 && q.stopped; a++)
-            q.stopped_v[a] = r.stopped_v[a][k];
-        q.c.nearby = !kicks && fine && before[k] == 0 ? nearby[k] : UINT32_MAX; /* after a stop its path differs */
-        all_fine =
-            (kicks ? stop_in_contact(t, p, m, i, &q) : advance_in_contact(t, p, m, i, &q, before[k])) && all_fine;
+        q.c.nearby = fine ? nearby[k] : UINT32_MAX;
+        all_fine = advance_in_contact(t, p, m, i, &q) && all_fine;
     }
     return all_fine;
+}
+
+/* Advances a chunk of particles. The kick that ends the previous step is a motion of its own if it stops at colliders,
+   so that it has the same results as at the end of a call. */
+static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t, const common_kernels *kernels,
+                                  particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
+                                  size_t count)
+{
+    const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
+    uint32_t touched[contact_chunk], any_touched = 0;
+    for (size_t k = 0; k < count && (kicks || m->ends_previous); k++) {
+        touched[k] = kicks ? t->touched[from + k] : t->before[from + k];
+        any_touched |= touched[k];
+    }
+    if (kicks)
+        return any_touched == 0 ? kernel(p, m, from, from + count)
+                                : stop_chunk(s, t, kernels, kernel, p, m, from, count, touched, t->x, true);
+    if (any_touched == 0)
+        return move_chunk(s, t, kernels, kernel, p, m, from, count);
+    scene_motion step = *m;
+    const bool fine = stop_chunk(s, t, kernels, kernels->implicit_kick, p, m, from, count, touched, m->x0, false);
+    step.v0 = m->v;
+    step.ends_previous = false;
+    return move_chunk(s, t, kernels, kernel, p, &step, from, count) && fine;
 }
 
 #endif
