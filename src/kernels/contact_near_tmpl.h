@@ -69,7 +69,8 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
                 bounds[side][a] = each[side][i] < bounds[side][a] ? each[side][i] : bounds[side][a];
         }
         extent += -bounds[1][a] - bounds[0][a];
-        size += (scalar)fabs((double)bounds[0][a]) + (scalar)fabs((double)bounds[1][a]);
+        const double below = fabs((double)bounds[0][a]), above = fabs((double)bounds[1][a]);
+        size += 2 * (scalar)(below > above ? below : above);
     }
     const scalar margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
     uint32_t meet = 0;
@@ -86,6 +87,25 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
             meet |= each[i] << (k + i);
     }
     return meet;
+}
+
+/* The same for the path of each particle and collider k. All operations are monotonic, so no particle meets a box that
+   boxes_that_meet() excludes, whatever other paths it is given with. */
+SPRING_INLINE lane_mask meets_box(const collider_bounds *c, unsigned k, real3 from, real3 to)
+{
+    const real low[3] = {vec_min(from.x, to.x), vec_min(from.y, to.y), vec_min(from.z, to.z)};
+    const real minus_high[3] = {vec_min(-from.x, -to.x), vec_min(-from.y, -to.y), vec_min(-from.z, -to.z)};
+    real extent = splat(0), size = splat(0);
+    for (int a = 0; a < 3; a++) {
+        const real below = vec_abs(low[a]), above = vec_abs(minus_high[a]);
+        extent += -minus_high[a] - low[a];
+        size += 2 * select_real(below > above, below, above);
+    }
+    const real margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
+    lane_mask apart = not_mask(size >= 0) & (size >= 0);
+    for (int a = 0; a < 3; a++)
+        apart |= (c->low[a][k] > margin - minus_high[a]) | (c->high[a][k] < low[a] - margin);
+    return not_mask(apart);
 }
 
 SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)

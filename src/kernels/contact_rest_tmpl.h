@@ -240,7 +240,7 @@ SPRING_NOINLINE void nearest_at_end(const resting_lanes *q, const real3 *x, real
 typedef struct slide_lanes {
     real3 u0, A;           /* [m/s] at the start, and its change by other forces */
     real speed;            /* |u0| */
-    lane_mask still, rubs; /* u0 is 0; lanes that matter */
+    lane_mask still, open; /* u0 is 0; lanes to compute */
     real3 mean, kick;      /* as in contact.c */
     lane_mask sticks;
 } slide_lanes;
@@ -251,9 +251,11 @@ SPRING_NOINLINE void slide_by(slide_lanes *s, const real *friction, int most_par
     const scalar parallel = 4096 * SCALAR_EPSILON; /* sine of an angle */
     const real3 zero = zero_lanes(), A = s->A;
     const real F = *friction, square = s->speed * s->speed, push = dot3(A, A);
-    const lane_mask holds = s->still & (push <= F * F), slides = s->rubs & not_mask(holds);
-    s->mean = s->kick = zero;
-    s->sticks = holds;
+    const lane_mask holds = s->still & (push <= F * F), slides = s->open & not_mask(holds);
+    const lane_mask held = s->open & holds;
+    s->mean = select3(held, zero, s->mean);
+    s->kick = select3(held, zero, s->kick);
+    s->sticks = held | (not_mask(s->open) & s->sticks);
     if (!any(slides))
         return;
     const real3 across = cross3(s->u0, A);
@@ -303,10 +305,10 @@ SPRING_NOINLINE void slide_by(slide_lanes *s, const real *friction, int most_par
         sum = plus3(sum, select3(now, way, zero));
         sticks = (now & stuck) | (not_mask(now) & sticks);
     }
-    s->sticks |= sticks;
-    s->mean = select3(holds, zero, times3(part * (scalar)0.5, sum));
+    s->sticks |= slides & sticks;
+    s->mean = select3(slides, times3(part * (scalar)0.5, sum), s->mean);
     const real3 kick = plus_scaled3(plus_scaled3(u, splat((scalar)-0.5), A), (scalar)0.5 * F, direction);
-    s->kick = select3(s->sticks, zero, kick);
+    s->kick = select3(slides, select3(sticks, zero, kick), s->kick);
 }
 
 /* Step 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do */
@@ -334,15 +336,15 @@ SPRING_NOINLINE void hit_lanes(resting_lanes *q, const real3 *u, const real3 *n,
 {
     const real normal = -(1 + (scalar)q->b->restitution) * *rate;
     const real limit = (scalar)q->b->friction * q->friction * vec_abs(normal);
-    const real3 along = tangential_lanes(*u, *n), none = zero_lanes();
+    const real3 along = tangential_lanes(*u, *n);
     const real square = dot3(along, along);
     const lane_mask slides = square > limit * limit;
     const real share = select_real(slides, limit / vec_sqrt(select_real(slides, square, splat(1))), splat(1));
-    const real3 change = select3(impact, minus3(times3(normal, *n), times3(share, along)), none);
-    q->change = plus3(q->change, change);
-    q->v0 = plus3(q->v0, change);
-    q->w = plus3(q->w, change);
-    q->d = plus_scaled3(q->d, splat(h), change);
+    const real3 change = minus3(times3(normal, *n), times3(share, along));
+    q->change = select3(impact, change, q->change);
+    q->v0 = select3(impact, plus3(q->v0, change), q->v0);
+    q->w = select3(impact, plus3(q->w, change), q->w);
+    q->d = select3(impact, plus_scaled3(q->d, splat(h), change), q->d);
 }
 
 /* Steps 3 and 4 from the start of the step, in the lanes that touch. */
@@ -378,33 +380,37 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     slide.u0 = tangential_lanes(u, n);
     slide.A = times3(splat(2), minus3(mean, slide.u0));
     slide.mean = slide.kick = mean;
-    slide.rubs = presses;
     slide.sticks = not_mask(presses) & presses;
     slide.speed = length_lanes(slide.u0);
     slide.still = slide.speed == 0;
     real lambda = vec_not_negative(-inward) / (h * toward);
-    real3 x = x1, shift = none;
-    lane_mask clear = not_mask((lane_mask){0}), failed = {0};
-    const bool rubs = b->friction > 0 && any(presses & (q->friction > 0));
-    for (int pass = 0; pass < 2 && rubs; pass++) {
+    real3 shift = none;
+    lane_mask clear = not_mask(presses) | presses, failed = {0},
+              open = presses & ((scalar)b->friction * q->friction > 0);
+    for (int pass = 0; pass < 2 && any(open); pass++) {
+        const real3 x = plus3(x1, shift);
+        lane_mask there_clear = clear;
+        real pushes = lambda;
         if (b->turns && pass > 0) {
             const real3 turned = way_in_lanes(b, q->x0, plus3(q->d, shift));
-            lambda = vec_not_negative(-(gap + dot3(at->normal, turned))) / (h * toward);
+            pushes = vec_not_negative(-(gap + dot3(at->normal, turned))) / (h * toward);
         }
         if (!flat)
-            find_lambda_lanes(q, &x, &n, h, 1, presses, &lambda, &clear, &failed);
-        const real friction = 2 * ((scalar)b->friction * q->friction) * lambda;
+            find_lambda_lanes(q, &x, &n, h, 1, open, &pushes, &there_clear, &failed);
+        const real friction = 2 * ((scalar)b->friction * q->friction) * pushes;
+        slide.open = open;
         slide_by(&slide, &friction, pass == 0 ? 2 : 4);
-        shift = minus3(times3(splat(h), slide.mean), along);
-        x = plus3(x1, shift);
-        const lane_mask still = slide.sticks & (dot3(slide.mean, slide.mean) == 0);
-        if (b->shape != SPRING_CAPSULE && !any(presses & not_mask(still)))
-            break;
+        lambda = select_real(open, pushes, lambda);
+        clear = (open & there_clear) | (not_mask(open) & clear);
+        shift = select3(open, minus3(times3(splat(h), slide.mean), along), shift);
+        if (b->shape != SPRING_CAPSULE)
+            open &= not_mask(slide.sticks & (dot3(slide.mean, slide.mean) == 0));
     }
-    const lane_mask carried = slide.sticks & (slide.speed * h <= q->slop);
-    const lane_mask free = presses & not_mask(carried);
+    const lane_mask carried = slide.sticks & (slide.speed * h <= q->slop), free = presses & not_mask(carried);
+    failed &= free;
     real3 d = none, change = none;
     if (any(free)) {
+        const real3 x = plus3(x1, shift);
         if (!flat)
             find_lambda_lanes(q, &x, &n, h, 3, free, &lambda, &clear, &failed);
         d = plus_scaled3(plus3(q->d, shift), lambda * h, n);
@@ -412,9 +418,9 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
         if (any(free & not_mask(clear))) { /* otherwise step 5 follows */
             const real3 x_end = plus3(q->x0, d);
             nearest_at_end(q, &x_end, &end, &there);
-            failed |= not_mask(there.gap >= -q->slop);
+            failed |= not_mask(clear) & not_mask(there.gap >= -q->slop);
         }
-        failed &= not_mask(carried);
+        failed &= free;
     }
     if (any(presses & carried)) {
         failed |= carried & (at->gap < -q->slop / 2);
@@ -506,9 +512,10 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
     const uint32_t others =
         r->bounds->count > 1 ? boxes_on_paths(r->bounds, q.x0, x, fine & changed) & ~(UINT32_C(1) << c) : 0;
-    for (unsigned o = 0; others >> o != 0; o++)
+    for (unsigned o = 0; o < r->bounds->count && others != 0; o++)
         if ((others >> o & 1) != 0)
-            fine &= not_mask(changed & may_touch(&r->bounds->each[o], q.x0, x, q.radius));
+            fine &= not_mask(changed & meets_box(r->bounds, o, q.x0, x) &
+                             may_touch(&r->bounds->each[o], q.x0, x, q.radius));
     const lane_mask done = fine & changed;
     if (!any(done))
         return fine;
@@ -572,7 +579,7 @@ static void stop_touching(resting_chunk *r)
         const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
         const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
         const lane_bits candidate = load_bits(r->candidate + k);
-        for (unsigned c = 0; left >> c != 0; c++) {
+        for (unsigned c = 0; c < r->setting->count; c++) {
             const contact_body *const b = &r->setting->body[c];
             if ((left >> c & 1) == 0 || !can_rest_on(b))
                 continue;
@@ -592,7 +599,7 @@ static void advance_resting(resting_chunk *r)
         const size_t some = r->count - k < lanes ? r->count - k : lanes;
         const uint32_t left = candidates_of(r, k, some);
         const lane_bits candidate = load_bits(r->candidate + k);
-        for (unsigned c = 0; left >> c != 0; c++) {
+        for (unsigned c = 0; c < r->setting->count; c++) {
             const contact_body *const b = &r->setting->body[c];
             if ((left >> c & 1) == 0 || !can_rest_on(b))
                 continue;

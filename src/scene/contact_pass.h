@@ -210,13 +210,13 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
     uint32_t left = 0;
     for (size_t k = 0; k < r->count; k++)
         left |= which[k] != 0 ? r->candidate[k] : 0;
-    for (unsigned c = 0; left >> c != 0; c++) {
+    for (unsigned c = 0; c < t->setting.count; c++) {
         if ((left >> c & 1) == 0)
             continue;
         const double *const origin = t->setting.origin[c];
         vector3 linear = {0, 0, 0}, angular = {0, 0, 0};
         for (size_t k = 0; k < r->count; k++) {
-            if (which[k] == 0 || r->candidate[k] >> c != 1)
+            if (which[k] == 0 || r->candidate[k] != UINT32_C(1) << c)
                 continue;
             const double mass = inverse_mass != NULL ? 1 / (double)inverse_mass[r->first + k] : s->mass_all;
             const vector3 at = load_vector(x + k, stride, r->particles->axes);
