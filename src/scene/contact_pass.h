@@ -261,7 +261,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     kept_motion kept;
     resting_chunk r;
     kernels->keep_motion(p, m, from, count, &kept);
-    const bool fine = kernel(p, m, from, from + count);
+    kernel(p, m, from, from + count); /* whether it fails does not matter: stops may remove what is too fast */
     begin_rest(s, t, p, m, &kept, from, count, &r);
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
@@ -273,12 +273,9 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
         const size_t i = from + k;
-        if (touched[k] == 0 || p->inverse_mass[i * p->mass_stride] == 0) {
-            all_fine = all_fine && (fine || !wrong_state(p, m, i));
-            continue;
-        }
-        contact_state q;
-        if (r.done[k] == 0) {
+        const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
+        if (touched[k] != 0 && !pinned && r.done[k] == 0) {
+            contact_state q;
             prepare_state(s, p, m, &kept, i, k, &q);
             vector3 v = kicked_implicitly_by(&q, m->kick, q.v0);
             spring_contact_stop(&t->setting, &q.c, touched[k], at_end, load_vector(x + i, p->stride, p->axes), &v);
@@ -286,7 +283,7 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
             all_fine = all_fine && !q.c.wrong;
         }
         const vector3 v = load_vector(m->v + i, p->stride, p->axes);
-        all_fine = all_fine && finite_vector(v) && !too_fast_vector(m, v);
+        all_fine = all_fine && finite_vector(v) && (pinned || !too_fast_vector(m, v));
     }
     return all_fine;
 }
