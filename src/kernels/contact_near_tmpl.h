@@ -12,6 +12,7 @@
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H
 
 #include "../simd/real3_tmpl.h"
+#include "leapfrog_particles_tmpl.h"
 #include "scene_kernels.h"
 
 static void copy_motion(const scene_particles *p, const scene_motion *m, size_t first, size_t count, kept_motion *k)
@@ -124,8 +125,9 @@ static bool find_near_colliders(const collider_bounds *c, const scene_particles 
     for (uint32_t a = 0; a < p->axes; a++)
         for (size_t i = 0; i < count; i += lanes) {
             const real from = vec_load(kept->x0[a] + i), to = vec_load(x + a * p->stride + first + i);
-            low[a] = vec_min(vec_min(from, to), low[a]);
-            minus_high[a] = vec_min(vec_min(-from, -to), minus_high[a]);
+            const lane_mask some = first_lanes(count - i < lanes ? count - i : lanes); /* without padding lanes */
+            low[a] = vec_min(select_real(some, vec_min(from, to), low[a]), low[a]);
+            minus_high[a] = vec_min(select_real(some, vec_min(-from, -to), minus_high[a]), minus_high[a]);
         }
     const uint32_t meet = boxes_that_meet(c, low, minus_high);
     unsigned index[most_colliders], left = 0;

@@ -13,7 +13,6 @@
 #define SPRINGSTEP_CONTACT_REST_TMPL_H
 
 #include "contact_near_tmpl.h"
-#include "leapfrog_particles_tmpl.h"
 
 /* The nearest point of a surface. */
 typedef struct near_lanes {
