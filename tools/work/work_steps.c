@@ -21,6 +21,7 @@ typedef struct steps_motion {
     const char *name;
     uint32_t count[3], families, flags;
     double stiffness, drag_rate; /* [N/m], [1/s] drag/mass */
+    double ratio;                /* damping ratio of a link between two particles */
     double lean;                 /* how far the scene is released from hanging or standing straight; 1: level */
     double duration;             /* [s] */
 } steps_motion;
@@ -28,18 +29,21 @@ typedef struct steps_motion {
 static const double particle_mass = 0.03; /* [kg] */
 
 static const steps_motion motions[] = {
-    {"cloth", {10, 10, 1}, SHEARED, 0, 100, 0.1, 1, 60},
-    {"soft body", {4, 4, 4}, SHEARED, 0, 20, 0.1, 1, 60},
-    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0.1, 1, 60},
-    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0.1, 1, 60},
-    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0.1, 1, 60},
-    {"small motion of a rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0.1, 60},
-    {"small motion of a cloth", {10, 10, 1}, SHEARED, 0, 100, 0, 0.1, 60},
-    {"small motion of a rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0.1, 2000},
-    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 1, 60},
-    {"rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 1, 2000},
-    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0, 1, 60},
-    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0, 1, 60},
+    {"cloth", {10, 10, 1}, SHEARED, 0, 100, 0.1, 0, 1, 60},
+    {"soft body", {4, 4, 4}, SHEARED, 0, 20, 0.1, 0, 1, 60},
+    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0.1, 0, 1, 60},
+    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0.1, 0, 1, 60},
+    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0.1, 0, 1, 60},
+    {"rope with damped links", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0.02, 1, 60},
+    {"tension-only rope with damped links", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0, 0.02, 1, 60},
+    {"cloth with damped links", {10, 10, 1}, SHEARED, 0, 100, 0, 0.02, 1, 60},
+    {"small motion of a rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 60},
+    {"small motion of a cloth", {10, 10, 1}, SHEARED, 0, 100, 0, 0, 0.1, 60},
+    {"small motion of a rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 0.1, 2000},
+    {"rope", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 60},
+    {"rope, long", {20, 1, 1}, STRUCTURAL, 0, 100, 0, 0, 1, 2000},
+    {"tension-only rope", {20, 1, 1}, STRUCTURAL, SPRING_SCENE_TENSION_ONLY, 2000, 0, 0, 1, 60},
+    {"tension-only net", {10, 10, 1}, SHEARED, SPRING_SCENE_TENSION_ONLY, 100, 0, 0, 1, 60},
 };
 
 const char steps_columns[] = "problem motion drag_per_mass duration_s fraction energy_gain";
@@ -59,6 +63,7 @@ static double gain_of(const steps_motion *m, double fraction)
     const spring_grid g = {.count = {m->count[0], m->count[1], m->count[2]},
                            .spacing = 0.1,
                            .stiffness = m->stiffness,
+                           .damping = m->ratio * sqrt(2 * m->stiffness * particle_mass),
                            .families = m->families,
                            .pinned = SPRING_GRID_FIRST_X};
     size_t particles, links, bytes;
