@@ -405,8 +405,6 @@ static cli_table *open_further(const char *option, const char *path, const char 
 static void work_apart(cli_table *table)
 {
     if (only_problem > (int)work_problem_count) {
-        if (table_file != NULL)
-            cli_fail(CLI_USAGE, "--table: is not for %s", problem_names[only_problem]);
         cli_columns(table, steps_columns);
         steps_write(table, quick);
         return;
@@ -427,11 +425,13 @@ int main(int argc, char **argv)
     problem_names[work_problem_count] = "cape"; /* these have other columns */
     problem_names[work_problem_count + 1] = "steps";
     cli_parse(&program, argc, argv);
+    if (only_problem >= (int)work_problem_count && forces_file != NULL)
+        cli_fail(CLI_USAGE, "--forces: is not for %s", problem_names[only_problem]);
+    if (only_problem > (int)work_problem_count && table_file != NULL)
+        cli_fail(CLI_USAGE, "--table: is not for %s", problem_names[only_problem]);
     cli_table *table = cli_open_output();
     timing_stamp(table);
     if (only_problem >= (int)work_problem_count) {
-        if (forces_file != NULL)
-            cli_fail(CLI_USAGE, "--forces: is not for %s", problem_names[only_problem]);
         work_apart(table);
         cli_finish();
         return 0;
