@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # A cape of 20 by 30 particles on a figure that runs and turns: processor time for 1/60 s versus the stretch of its
-# columns (99th percentile over a minute), with more and more steps from right to left. Lines: 6 and 3 %. Leapfrog has links
+# columns (99th percentile over a minute), with more and more steps from right to left. Vertical lines: the stretches of the table. Leapfrog has links
 # as stiff as its step allows, XPBD has rigid links. XPBD* is a program for regular
 # sheets only.
 call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "leapfrog" "560 + key_height(9)"
