@@ -130,7 +130,7 @@ void cape_xpbd_get(const cape_xpbd *s, double (*position)[3], double (*velocity)
 
 #define INLINE static inline __attribute__((always_inline))
 #if defined(__clang__)
-#define INDEPENDENT _Pragma("clang loop vectorize(enable) interleave(disable)")
+#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
 #define INDEPENDENT _Pragma("GCC ivdep")
 #endif
@@ -171,12 +171,12 @@ INLINE void solve_links(cape_xpbd *s, const colour_part *c)
     }
 }
 
+/* Without INDEPENDENT: with vectors that gather and scatter, it takes 1.4 times as long. */
 INLINE void solve_listed(cape_xpbd *s, const listed *c)
 {
     enum { NEXT = MARGIN + PADDED + MARGIN }; /* from one axis to the next */
     float *restrict x = s->x[0][0];
-    INDEPENDENT for (int i = 0; i < PART; i++)
-    {
+    for (int i = 0; i < PART; i++) {
         const int a = c->a[i], b = c->b[i];
         const float dx = x[b] - x[a], dy = x[b + NEXT] - x[a + NEXT], dz = x[b + 2 * NEXT] - x[a + 2 * NEXT];
         const float l = 1 - c->rest[i] / sqrtf(dx * dx + dy * dy + dz * dz + smallest), la = c->share_a[i] * l,
@@ -315,8 +315,9 @@ INLINE void substeps(cape_xpbd *s, const cape_motion *m, uint64_t steps)
 
 /* The instruction sets of the kernels of the library. */
 #if defined(__x86_64__)
-__attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,fma,prefer-vector-width=512"))) static void with_avx512(
-    cape_xpbd *s, const cape_motion *m, uint64_t steps)
+__attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,fma"))) static void with_avx512(cape_xpbd *s,
+                                                                                          const cape_motion *m,
+                                                                                          uint64_t steps)
 {
     substeps(s, m, steps);
 }
