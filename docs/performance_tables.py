@@ -107,11 +107,16 @@ def cape():
         fraction = row['fraction'] if row['solver'] == 'leapfrog' else ''
         rows.append((SOLVERS[row['solver']], row['precision'], TETHERS[row['tethers']], fraction,
                      *(f"{two_digits(time['time_us'])} µs" for time in times)))
+    ours = [row for row in equal if row['solver'] == 'leapfrog'][:2] # of cape.c, at both stretches
+    ratios = [(SOLVERS[row['solver']] + {'none': '', 'all': ', tethers'}[row['tethers']], f"{100 * float(row['stretch']):g} %",
+               two_digits(float(own['time_us']) / float(row['time_us'])))
+              for row in equal if row['solver'] != 'leapfrog' for own in ours if own['stretch'] == row['stretch']]
     (whole,) = [row for row in runs if row['effort'] == 'fraction' and row['fraction'] == '0.9']
     parts = {row['tethers']: row for row in runs if row['effort'] == 'no-figure'}
     steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('without tethers, too', parts['none'])]
     return '\n\n'.join([
         table(('solver', 'precision', 'tethers', 'fraction of the stable step', 'stretch 6 % (`spring-work`)', 'stretch 3 %'), ['---'] * 6, *rows),
+        table(('compared with', 'stretch', 'time of the first row, relative'), ['---'] * 3, *ratios),
         table((f"{whole['steps_per_frame']} steps per 1/60 s", 'time (`spring-work`)'), ['---'] * 2,
               *((title, f"{two_digits(row['time_us'])} µs") for title, row in steps)),
         f"Measured on one core of an {comments['processor']}.".replace('(R)', ''),
