@@ -617,7 +617,9 @@ static void add_features(uint32_t side)
     }
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
         s.feature = features[i].feature;
-        if (side <= 128 || s.feature.damping > 0) /* the feature with a second pass over the links */
+        const bool small_only = s.feature.tethers || s.feature.bend || s.feature.capsules > 0;
+        if (side <= (small_only ? 35 : 128) ||
+            s.feature.damping > 0) /* the feature with a second pass over the links */
             add(features[i].name, &s);
     }
 }
