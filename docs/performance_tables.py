@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The tables of performance in README.md and docs/games.md, from measurements in docs/data.
+"""The tables of performance in README.md, docs/games.md and docs/performance.md, from measurements in docs/data.
 
 usage: performance_tables.py --measure BUILD   measure with the programs of a build folder, and fill the tables
        performance_tables.py --check           fail if the tables are not those of the data
@@ -18,9 +18,12 @@ COMMANDS = {  # the longer ones first, so that the processor runs at its full cl
     'engines': ['spring-engines'],
     'stiff': ['spring-work', '--problem', 'stiff-cloth'],
     'particles': ['spring-scene-map', '--time'],
+    'cape': ['spring-work', '--problem', 'cape'],
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
 }
-OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces'}}
+OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces'}, 'cape': {'--table': 'cape-equal'}}
+SOLVERS = {'leapfrog': 'leapfrog', 'xpbd-mesh': 'XPBD', 'xpbd-sheet': 'XPBD for sheets only'}
+TETHERS = {'none': 'none', 'all': 'all particles', 'rows': 'every seventh row'}
 
 
 def file(name):
@@ -73,7 +76,7 @@ def performance():
               (f'Chipmunk2D {versions["chipmunk"]}, damped springs (built by `tools/bench/optimised`)', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
     ratios.append(('XPBD of `spring-work`, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
-    processors = {read(name)[0]['processor'] for name in COMMANDS}
+    processors = {read(name)[0]['processor'] for name in COMMANDS if name != 'cape'}
     if len(processors) != 1:
         raise SystemExit(f'the data are of several processors: {processors}')
     (processor,) = processors
@@ -91,7 +94,36 @@ def particles():
                  *((PARTICLES[row['scene']], row['substeps'], two_digits(row['particles_per_ms'])) for row in rows))
 
 
-PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles}
+def cape():
+    """Return the tables of docs/performance.md."""
+    comments, runs = read('cape')
+    equal = read('cape-equal')[1]
+    rows = []
+    for row in equal:
+        if row['stretch'] != '0.06':
+            continue
+        same = {name: row[name] for name in ('solver', 'precision', 'tethers', 'fraction')}
+        times = [row, row_where(equal, stretch='0.03', **same)]
+        fraction = row['fraction'] if row['solver'] == 'leapfrog' else ''
+        rows.append((SOLVERS[row['solver']], row['precision'], TETHERS[row['tethers']], fraction,
+                     *(f"{two_digits(time['time_us'])} µs" for time in times)))
+    ours = [row for row in equal if row['solver'] == 'leapfrog'][:2] # of cape.c, at both stretches
+    ratios = [(SOLVERS[row['solver']] + {'none': '', 'all': ', tethers'}[row['tethers']], f"{100 * float(row['stretch']):g} %",
+               two_digits(float(own['time_us']) / float(row['time_us'])))
+              for row in equal if row['solver'] != 'leapfrog' for own in ours if own['stretch'] == row['stretch']]
+    (whole,) = [row for row in runs if row['effort'] == 'fraction' and row['fraction'] == '0.9']
+    parts = {row['tethers']: row for row in runs if row['effort'] == 'no-figure'}
+    steps = [('with figure and tethers', whole), ('without the figure', parts['rows']), ('without tethers, too', parts['none'])]
+    return '\n\n'.join([
+        table(('solver', 'precision', 'tethers', 'fraction of the stable step', 'stretch 6 % (`spring-work`)', 'stretch 3 %'), ['---'] * 6, *rows),
+        table(('compared with', 'stretch', 'time of the first row, relative'), ['---'] * 3, *ratios),
+        table((f"{whole['steps_per_frame']} steps per 1/60 s", 'time (`spring-work`)'), ['---'] * 2,
+              *((title, f"{two_digits(row['time_us'])} µs") for title, row in steps)),
+        f"Measured on one core of an {comments['processor']}.".replace('(R)', ''),
+    ])
+
+
+PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles, DOCS / 'performance.md': cape}
 
 
 def main():

@@ -407,12 +407,11 @@ SPRING_API spring_status spring_scene_advance(spring_scene *s, spring_method m, 
  *     symplectic Euler  4/(p + sqrt(p^2 + 4 L)),   p = (G without drag) - drag/(largest mass)
  *
  * The bound is for small motion. Links that rotate, oscillate with a large amplitude, or become taut and slack can gain
- * energy by resonance with the step, even at half of the bound. In practice:
- *  - With drag/mass of at least 0.1/s, use half of the bound for ropes, and up to 0.9 of it for soft bodies and for
- *    sheets with shear springs.
- *  - Without damping, use half of the bound for smooth motion, and an eighth for ropes, tension-only links and violent
- *    motion. Large motion then still gains energy, but slowly. Check spring_scene_energy() in long runs.
- * tests/scene/test_limits.c measures a minute of such motion. Use an even smaller step if a link rotates faster than it
+ * energy by resonance with the step, even at half of the bound. Use these fractions of the bound for leapfrog:
+ *  - up to 0.9 if all links have a damping ratio of at least 0.02, or for soft bodies and sheets with shear springs with
+ *    drag/mass of at least 0.1/s; up to 0.5 for ropes with such drag;
+ *  - without damping, 0.5 for smooth motion, 0.25 for violent motion and long runs, and 0.1 for tension-only links.
+ * `spring-work --problem steps` measures what longer steps cost. Use a smaller step if a link rotates faster than it
  * would oscillate. The forces of the callback are not considered.
  *
  * At rest without link damping, the stability limit is larger than the bound: 1.2 to 1.3 times for a height field with
@@ -451,7 +450,8 @@ SPRING_API double spring_scene_stable_step(spring_scene *s, spring_method m);
  *
  * @param[in]  def       definition of the scene
  * @param[in]  dt        time step > 0 [s]
- * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1; see spring_scene_stable_step()
+ * @param[in]  fraction  fraction of the stable step that dt may be, 0 < fraction <= 1: 0.9 for cloth and soft bodies with
+ *                       drag, otherwise as at spring_scene_stable_step()
  * @param[out] link      [links] the softened links; may be def->link
  * @return SPRING_OK; SPRING_EINVAL; SPRING_ERANGE: weighted links leave nothing to the links of a particle; otherwise
  *         as spring_scene_check(). Nothing is written after an error

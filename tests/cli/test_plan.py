@@ -380,6 +380,27 @@ def test_what_does_not_hang(options, status, words):
     is_failure(run(PLAN, *options.split(), stdout=None), status, *words)
 
 
+@pytest.mark.parametrize('options, fraction, words', [
+    ('--error 0.1 --duration 1 --scene cloth', 0.9, 'a sheet or a block with drag'),
+    ('--error 0.1 --duration 1 --scene rope', 0.5, 'a rope with drag'),
+    ('--error 0.1 --duration 1 --scene rope --drag 0', 0.5, 'smooth motion without damping'),
+    ('--error 0.3 --duration 61 --scene chain --size 3 --damping 0', 0.25, 'a long run without damping'),
+    ('--error 0.1 --duration 1 --scene rope --drag 0 --damping 3', 0.9, 'damped links'),
+    ('--sag 0.1 --scene jelly --size 4', 0.9, 'a sheet or a block with drag'),
+])
+def test_the_rule_for_steps(options, fraction, words):
+    """As many steps as the fraction allows, in both precisions."""
+    printed = run(PLAN, *options.split()).stdout
+    rule = r'# steps: for (.*), leapfrog may take (\S+) of the stable step: (\S+) s, (\d+) per frame \(float: (\S+) s, (\d+)\)\.'
+    found = re.findall(rule, printed)
+    assert found
+    for what, allowed, step, steps, single, single_steps in found:
+        assert what.startswith(words) and float(allowed) == fraction and step == single
+        assert int(steps) == int(single_steps) == math.ceil(1 / 60 / float(step) - 1e-3)
+    if '--sag' in options:
+        assert float(found[0][2]) == pytest.approx(fraction * float(parse(printed)[0]['stable_step_s']), rel=1e-3)
+
+
 def test_a_part_that_falls(tmp_path):
     path = mesh_file(tmp_path, 'v 0 1 0', 'v 1 0 0', 'v 5 0 0', 'v 5 -1.5 0', 'l 1 2', 'l 3 4')
     is_failure(run(PLAN, '--sag', '0.02', '--mesh', str(path), stdout=None), 2, '--sag: the vertex at "5 ', 'to no pin')

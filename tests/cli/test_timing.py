@@ -4,7 +4,7 @@ import functools
 import math
 
 import pytest
-from tools import BENCH, METHODS, SCENE_STEPPERS, WORK, parse, table
+from tools import BENCH, METHODS, SCENE_STEPPERS, WORK, is_failure, parse, run, table
 
 OURS = {*METHODS, *SCENE_STEPPERS}
 
@@ -65,6 +65,41 @@ def test_levels_of_the_table(work):
             assert row[time] == least and row[solver] in names
         ratio = float(row['peer_time_s']) / float(row['time_s'])
         assert math.isnan(ratio) == (row['ratio'] == 'nan') and not abs(float(row['ratio']) - ratio) > 2e-3 * ratio
+
+
+def test_the_cape(tmp_path):
+    """More steps stretch less, nothing is inside the figure at last, and all settings have a time at equal stretch."""
+    path = tmp_path / 'equal.tsv'
+    rows = table(WORK, '--problem', 'cape', '--quick', '--table', path)
+    runs = [row for row in rows if row['effort'] == 'steps']
+    assert {row['solver'] for row in runs} == {'leapfrog', 'xpbd-mesh', 'xpbd-sheet'}
+    for few, many in zip(runs[::2], runs[1::2], strict=True):
+        assert few['solver'] == many['solver'] and int(few['steps_per_frame']) < int(many['steps_per_frame'])
+        assert 0 < float(many['column_stretch']) < float(few['column_stretch']) < 1
+    for row in rows:
+        assert float(row['column_stretch']) < float(row['link_stretch'])
+        assert row['effort'] == 'no-figure' or float(row['depth_m']) < 0.01, 'half the radius of a thin capsule is 0.03 m'
+        assert float(row['time_us']) > 0 and float(row['kinetic_J']) > 1
+        assert float(row['jitter_mps']) < 0.05, 'at rest after ten seconds'
+    equal = parse(path.read_text())
+    assert len(equal) == len(runs) and {row['stretch'] for row in equal} == {'0.06', '0.03'}
+
+
+def test_the_rules_for_steps():
+    """The rules of scene.h keep the energy, and some longer steps do not."""
+    rows = table(WORK, '--problem', 'steps', '--quick')
+    for row in rows:
+        damped, rope = 'damped' in row['motion'], 'rope' in row['motion']
+        small, tension, dragged = 'small' in row['motion'], 'tension' in row['motion'], float(row['drag_per_mass']) > 0
+        rule = 0.9 if damped or (dragged and not rope) else 0.5 if dragged or small else 0.1 if tension else 0.25
+        assert float(row['fraction']) > rule or float(row['energy_gain']) < 0.1, row
+    assert any(float(row['energy_gain']) > 1e3 for row in rows if row['fraction'] == '0.9')
+
+
+@pytest.mark.parametrize('args, option', [('cape --forces f', '--forces'), ('steps --table f', '--table')])
+def test_tables_of_other_problems(tmp_path, args, option):
+    done = run(WORK, '--quick', '--problem', *args.split(), cwd=tmp_path)
+    is_failure(done, 2, option)
 
 
 # --- spring-bench ---------------------------------------------------------------------------------------------------

@@ -28,6 +28,8 @@ typedef struct scene_arrays {
     double *position, *mass; /* different masses, for scenes with this feature */
     uint8_t *pinned;
     spring_link *link;
+    size_t tethers, bends; /* after the links; both only for scenes with these features */
+    spring_weighted_link *bend;
 } scene_arrays;
 
 static const double scene_mass = 0.1, scene_gravity[3] = {0.3, -9.81, -0.5}; /* [kg], [m/s^2] */
@@ -39,7 +41,10 @@ typedef struct scene_feature {
     double drag, damping;
     spring_scene_force_fn *force;
     bool masses;
-    bool copied; /* the scene is a copy whose arrays are not aligned to a cache line */
+    bool tethers, bend; /* of all particles; rows and columns resist bending */
+    uint32_t capsules;  /* number of colliders */
+    double far;         /* [m] distance of the capsules from the sheet; 0: they press against it */
+    bool copied;        /* the scene is a copy whose arrays are not aligned to a cache line */
 } scene_feature;
 
 /* The comparison of a row. */
@@ -158,11 +163,14 @@ static void scene_fill(scene_arrays *all, scene_shape shape, uint32_t side, scen
     free(all->mass);
     free(all->pinned);
     free(all->link);
+    free(all->bend);
+    all->bend = NULL;
+    all->tethers = all->bends = 0;
     size_of(&grid, &all->particles, &all->links);
     all->position = scene_allocate(all->particles * 3 * sizeof *all->position);
     all->mass = scene_allocate(all->particles * sizeof *all->mass);
     all->pinned = scene_allocate(all->particles);
-    all->link = scene_allocate(all->links * sizeof *all->link);
+    all->link = scene_allocate((all->links + all->particles) * sizeof *all->link);
     spring_grid_fill(&grid, all->position, all->pinned, all->link);
     for (size_t i = 0; i < all->particles; i++)
         all->mass[i] = scene_mass * (1 + 0.1 * (double)(i % 7));
@@ -193,7 +201,13 @@ static spring_scene_def definition(const scene_feature *f, scene_shape shape)
         .link = all.link,
         .drag = f->drag,
         .force = f->force,
+        .colliders = f->capsules,
+        .particle_radius = f->capsules > 0 ? 0.01 : 0,
     };
+    if (f->tethers)
+        def.links += all.tethers;
+    if (f->bend)
+        def.weighted_links = all.bends, def.weighted_link = all.bend;
     memcpy(def.gravity, scene_gravity, sizeof def.gravity);
     return def;
 }
@@ -251,6 +265,19 @@ static double stable_step(const built *b, spring_method m)
     return b->single ? spring_scenef_stable_step(b->scenef, m) : spring_scene_stable_step(b->scene, m);
 }
 
+/* Capsules along the x axis, evenly spaced along y, below the sheet. */
+static void set_capsules(built *b, const scene_feature *f, uint32_t side)
+{
+    const double radius = 0.1, length = 0.1 * side; /* [m] */
+    spring_collider c[32] = {{0}};
+    for (uint32_t i = 0; i < f->capsules; i++) {
+        const double y = (i + 1) * length / (f->capsules + 1), z = -radius - f->far;
+        c[i] = (spring_collider){.shape = SPRING_CAPSULE, .radius = radius, .friction = 0.3};
+        c[i].at[1] = c[i].to[1] = y, c[i].at[2] = c[i].to[2] = z, c[i].to[0] = length;
+    }
+    check(spring_scene_set_colliders(b->scene, c, f->capsules));
+}
+
 static void build(built *b, const scene_feature *f, scene_shape shape, bool is_single)
 {
     const spring_scene_def def = definition(f, shape);
@@ -266,6 +293,8 @@ static void build(built *b, const scene_feature *f, scene_shape shape, bool is_s
         b->scene = b->single ? NULL : copy;
         b->scenef = b->single ? copy : NULL;
     }
+    if (f->capsules > 0)
+        set_capsules(b, f, (uint32_t)sqrt((double)all.particles));
     b->stable_step = stable_step(b, f->method);
     dt = 0.5 * stable_step(b, SPRING_LEAPFROG);
 }
@@ -337,6 +366,25 @@ static void build_other(const scene_subject *s)
         all.link[i].damping = s->feature.damping;
 }
 
+static void add_extras(const scene_subject *s)
+{
+    const spring_grid grid = grid_of(s->shape, s->side, 0);
+    if (s->feature.tethers) {
+        uint32_t *work = scene_allocate(2 * all.particles * sizeof *work);
+        double *distance = scene_allocate(2 * all.particles * sizeof *distance);
+        const spring_scene_def def = definition(&(scene_feature){.method = SPRING_LEAPFROG}, s->shape);
+        all.tethers = all.particles;
+        check(spring_links_tethers(&def, 0.05, 0, all.link + all.links, &all.tethers, work, distance));
+        free(work);
+        free(distance);
+    }
+    if (s->feature.bend) {
+        all.bends = 2 * all.particles;
+        all.bend = scene_allocate(all.bends * sizeof *all.bend);
+        check(spring_bend_grid(&grid, all.pinned, SPRING_BEND_ROWS, 1e-3, 0, all.bend, &all.bends));
+    }
+}
+
 static void prepare(const bench_row *row)
 {
     static const scene_subject *filled;
@@ -345,6 +393,7 @@ static void prepare(const bench_row *row)
         return;
     filled = s;
     scene_fill(&all, s->shape, s->side, s->order, s->feature.damping);
+    add_extras(s);
     build(&ours, &s->feature, s->shape, s->single);
     if (s->against == LEAPFROG || s->against == IN_DOUBLE)
         build_other(s);
@@ -448,7 +497,8 @@ static const double most_excess = 25; /* [ns] overhead per step of one step per 
 static bool is_looped(const scene_subject *s)
 {
     return s->shape != WATER && !s->single && s->against != DEFINITION && s->feature.method == SPRING_LEAPFROG &&
-           s->feature.force == NULL && s->feature.flags == 0;
+           s->feature.force == NULL && s->feature.flags == 0 && s->feature.capsules == 0 && !s->feature.tethers &&
+           !s->feature.bend;
 }
 
 static void add(const char *name, const scene_subject *s)
@@ -553,6 +603,11 @@ static void add_features(uint32_t side)
         {"_callback_still", {.method = SPRING_LEAPFROG, .force = blow, .flags = SPRING_SCENE_FORCE_IGNORES_VELOCITY}},
         {"_editable", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_EDITABLE}},
         {"_no_undo", {.method = SPRING_LEAPFROG, .flags = SPRING_SCENE_NO_UNDO}},
+        {"_tethers", {.method = SPRING_LEAPFROG, .tethers = true}},
+        {"_bending", {.method = SPRING_LEAPFROG, .bend = true}},
+        {"_5_colliders_near", {.method = SPRING_LEAPFROG, .capsules = 5}},
+        {"_5_colliders_far", {.method = SPRING_LEAPFROG, .capsules = 5, .far = 100}},
+        {"_32_colliders_far", {.method = SPRING_LEAPFROG, .capsules = 32, .far = 100}},
     };
     scene_subject s = {.shape = SHEET, .side = side, .steps = 16, .against = LEAPFROG};
     for (int i = 0; i < SPRING_METHOD_COUNT; i++) {
@@ -562,7 +617,9 @@ static void add_features(uint32_t side)
     }
     for (size_t i = 0; i < sizeof features / sizeof features[0]; i++) {
         s.feature = features[i].feature;
-        if (side <= 128 || s.feature.damping > 0) /* the feature with a second pass over the links */
+        const bool small_only = s.feature.tethers || s.feature.bend || s.feature.capsules > 0;
+        if (side <= (small_only ? 35 : 128) ||
+            s.feature.damping > 0) /* the feature with a second pass over the links */
             add(features[i].name, &s);
     }
 }
