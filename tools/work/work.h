@@ -18,6 +18,7 @@
 #include "harness/reference.h"
 #include "harness/scenes.h"
 #include "work_equation.h"
+#include "work_implicit.h"
 #include "work_xpbd.h"
 
 typedef enum work_kind {
@@ -83,7 +84,8 @@ typedef struct work {
     size_t bytes, counting_bytes;
     uint64_t calls; /* number of callbacks in `counting` */
     double *gathered;
-    work_xpbd *xpbd; /* NULL: not applicable */
+    work_xpbd *xpbd;         /* NULL: not applicable */
+    work_implicit *implicit; /* likewise */
 } work;
 
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED on failure */
@@ -110,7 +112,8 @@ typedef enum work_side {
     WORK_STAGES,  /* RK4 in the arithmetic of the original study, on its problem */
     WORK_EXTERNAL,
     WORK_SOFTENED, /* leapfrog with links softened until the step is stable, which changes the scene */
-    WORK_XPBD      /* the method of game engines, not a solver of differential equations */
+    WORK_XPBD,     /* the method of game engines, not a solver of differential equations */
+    WORK_IMPLICIT  /* implicit methods of cloth simulation */
 } work_side;
 
 typedef struct work_result {
@@ -130,13 +133,14 @@ struct work_solver {
     /* for an external solver, one of these */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
-    int order;           /* with fixed steps */
-    bool positions_only; /* forces may not depend on velocities */
+    uint64_t (*implicit)(work_implicit *s, uint64_t n); /* for WORK_IMPLICIT */
+    int order;                                          /* with fixed steps */
+    bool positions_only;                                /* forces may not depend on velocities */
 };
 
 extern const size_t work_solver_count;
 
-/* All solvers: methods by name, rk4-stages, leapfrog-softened, xpbd, and external solvers (odeint only if found). */
+/* All solvers: methods by name, rk4-stages, leapfrog-softened, xpbd, bdf2-cg, projective, and external solvers (odeint only if found). */
 const work_solver *work_solver_at(size_t i);
 
 /* The solver of a method. */

@@ -344,6 +344,7 @@ static void open_scene(work *w)
     choose_equation(w);
     make_scenes(w);
     w->xpbd = work_xpbd_applies(&w->scene) ? work_xpbd_make(&w->scene) : NULL;
+    w->implicit = w->xpbd != NULL && w->data == &w->equation ? work_implicit_make(&w->scene, &w->equation) : NULL;
     w->size = 2 * w->scene.moving;
     w->duration = c->duration;
     w->omega = c->omega;
@@ -396,6 +397,8 @@ void work_close(work *w)
     free(w->gathered);
     if (w->xpbd != NULL)
         work_xpbd_free(w->xpbd);
+    if (w->implicit != NULL)
+        work_implicit_free(w->implicit);
 }
 
 double work_error(const work *w, const double *y)
