@@ -8,11 +8,11 @@
  *             by one step of Newton's iteration from v: (M + b D + b^2 K) (v1 - v) = M (V - v + b a(X + b v, v)).
  *             K leaves out the negative part of the stiffness across compressed links, so the matrix is positive
  *             definite. Conjugate gradients, preconditioned with the diagonal blocks of particles and started from the
- *             previous step, end when the residual is small. Pinned particles are filtered from the vectors.
+ *             previous step, end when the residual is small, relative to h. Pinned particles are filtered from the vectors.
  *             Sources: Baraff, Witkin, Large steps in cloth simulation (1998); Choi, Ko, Stable but responsive cloth
  *             (2002).
  * projective  Projective dynamics: implicit Euler by alternating between directions of links (local) and positions
- *             (global), ten times per step. The matrix M/h^2 + drag/h + sum of stiffness times Laplacian is constant,
+ *             (global), once per step, from x + h v. The matrix M/h^2 + drag/h + sum of stiffness times Laplacian is constant,
  *             and is factorised once. Not for damped links.
  *             Source: Bouaziz, Martin, Liu, Kavan, Pauly, Projective dynamics (2014).
  */
