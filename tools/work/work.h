@@ -14,6 +14,7 @@
 
 #include <springstep/scene.h>
 
+#include "common/cli.h"
 #include "harness/ode.h"
 #include "harness/reference.h"
 #include "harness/scenes.h"
@@ -98,6 +99,15 @@ double work_error(const work *w, const double *y);
    final state; NaN if a callback adds forces. */
 double work_energy_error(const work *w, const double *y);
 
+/* The energy of a scene [J]. */
+double work_energy(const work *w, const double *y);
+
+/* The distance of two states of a scene in (x, v/omega) [m]. */
+double work_distance(const work *w, const double *a, const double *b);
+
+/* The stretches of all links of a scene in space, length/rest - 1. */
+void work_stretches(const work *w, const double *y, double *stretch);
+
 /* The largest stretch of a link, length/rest - 1; NaN on one axis. */
 double work_stretch(const work *w, const double *y);
 
@@ -150,6 +160,12 @@ bool work_applies(const work *w, const work_solver *s);
 
 /* Runs a solver `runs` times from the start; y is the final state. */
 work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs, double *y);
+
+/* The state of a scene. */
+void work_get(const work *w, const spring_scene *scene, double *y);
+
+/* Writes the rows of long runs of a scene in space; see work_long.c. */
+void work_long(cli_table *table, work *w, bool quick);
 
 /* Force evaluations of `steps` steps of a scene, counted by a callback in a copy of it. */
 uint64_t work_count(work *w, spring_method m, uint64_t steps);

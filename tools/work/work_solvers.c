@@ -110,6 +110,12 @@ static void gather(const work *w, const spring_scene *scene, spring_quantity wha
         y[i] = w->gathered[p->coordinate[i]];
 }
 
+void work_get(const work *w, const spring_scene *scene, double *y)
+{
+    gather(w, scene, SPRING_POSITION, y);
+    gather(w, scene, SPRING_VELOCITY, y + w->scene.moving);
+}
+
 /* Each run copies the initial scene `fresh` to `moved`. */
 static work_result run_scene_of(const work *w, spring_scene *moved, const spring_scene *fresh, size_t bytes,
                                 spring_method m, uint64_t steps, uint64_t runs, double *y)
@@ -123,8 +129,7 @@ static work_result run_scene_of(const work *w, spring_scene *moved, const spring
         if (status != SPRING_OK)
             r.failure = spring_status_string(status);
     }
-    gather(w, moved, SPRING_POSITION, y);
-    gather(w, moved, SPRING_VELOCITY, y + w->scene.moving);
+    work_get(w, moved, y);
     return r;
 }
 
