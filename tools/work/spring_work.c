@@ -36,7 +36,7 @@ static const cli_option options[] = {
     {"forces", CLI_FILE, .file = &forces_file, .value = "FILE",
      .help = "also write the time of one force evaluation for each problem"},
     {"long", CLI_FILE, .file = &long_file, .value = "FILE",
-     .help = "also write errors and observables of long runs of stiff-cloth and stiff-rope"},
+     .help = "also write errors and observables of long runs of stiff scenes"},
     {.name = NULL},
 };
 
