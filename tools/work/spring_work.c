@@ -84,13 +84,13 @@ static const cli_program program = {
         "With --long: runs of stiff-cloth and stiff-rope over 10 s (2 s with --quick) with each number of steps per\n"
         "frame of 1/60 s, or with the tolerance 1e-2. frame_s is the time per frame. error_500ms, error_1s and\n"
         "error_2s are errors after these times. In row reference they are the differences between runs of GSL's\n"
-        "rk8pd with 8000 and 16000 steps per second (4000 and 8000 with --quick), from which all errors are\n"
+        "rk8pd with 8000 and 16000 steps per second (2000 and 4000 with --quick), from which all errors are\n"
         "measured. The motion is chaotic, so positions are not predictable after 2 s. The other columns are means\n"
         "over the second half: sag_m is the depth of the lowest particle, stretch of the longest link, stretch_99\n"
         "the 99th percentile. energy_change is the change of energy in the whole run, relative to the mean potential\n"
         "energy that gravity released. Runs that change it by more than 100 times that have no row, and neither have "
         "runs of\n"
-        "adaptive solvers that take more than 10 s per second. Explicit external solvers are left out.",
+        "adaptive solvers that take more than 10 s (2 s) per second. Explicit external solvers are left out.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
