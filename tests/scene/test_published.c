@@ -307,7 +307,7 @@ static void rod_with_end_mass(void)
     double error[2];
     for (uint32_t fine = 0; fine < 2; fine++) {
         enum { MOST = 40 };
-        const uint32_t n = MOST / 2 << fine;
+        const uint32_t n = (uint32_t)MOST / 2 << fine;
         const double m = rod / n, k = stiffness * n, M = end + m / 2, of[] = {n, M / m}, of_rod[] = {0, end / rod};
         const double angle = root(rod_end, of, 1e-6, pi / 2 / n), theory = sqrt(k / m) * 2 * sin(angle / 2);
         const double whole = root(continuous_rod, of_rod, 0, pi / 2) * sqrt(stiffness / rod);
