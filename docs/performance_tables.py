@@ -112,7 +112,7 @@ def long_runs():
         lines.append((title, f'{n:.0f}' if n else 'adaptive', f'{two_digits(frame_s * 1e6)} µs', *(f'{error:.2g}' for error in errors),
                       f'{sag:.2f} m', f'{100 * stretch:.2g} %', f'{100 * energy:+.0f} %'.replace('-', '−').replace('−0', '0')))
     return '\n\n'.join([
-        table(('', 'steps per frame', 'time per frame', 'error after 0.5 s', 'after 1 s', 'sag', 'stretch', 'change of energy'),
+        table(('', 'steps per frame', 'time per frame (`spring-work`)', 'error after 0.5 s', 'after 1 s', 'sag', 'stretch', 'change of energy'),
               ['---'] * 8, *lines),
         f'Measured on one core of an {comments["processor"]}.'.replace('(R)', ''),
     ])
