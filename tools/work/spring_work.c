@@ -90,7 +90,7 @@ static const cli_program program = {
         "other columns are means over the second half: sag_m is the depth of the lowest particle, stretch of the\n"
         "longest link, stretch_99 the 99th percentile. energy_change is the change of energy in the whole run,\n"
         "relative to the mean potential energy that gravity released. Runs that change it by more than 100 times\n"
-        "that have no row, and neither have runs of CVODE that take more than 10 s per second.",
+        "that have no row, and neither have runs of CVODE that take more than 2 s per second.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
