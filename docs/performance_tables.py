@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The tables of performance in README.md, docs/games.md and docs/performance.md, from measurements in docs/data.
+"""The tables of performance in README.md and on pages of docs, from measurements in docs/data.
 
 usage: performance_tables.py --measure BUILD   measure with the programs of a build folder, and fill the tables
        performance_tables.py --check           fail if the tables are not those of the data
 """
 
+import math
 import pathlib
 import re
 import subprocess
@@ -21,7 +22,7 @@ COMMANDS = {  # the longer ones first, so that the processor runs at its full cl
     'cape': ['spring-work', '--problem', 'cape'],
     **{f'plan-{scene}': ['spring-plan', '--sag', '0.02', '--scene', scene] for scene in SCENES},
 }
-OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces'}, 'cape': {'--table': 'cape-equal'}}
+OTHER_FILES = {'stiff': {'--table': 'stiff-table', '--forces': 'stiff-forces', '--long': 'stiff-long'}, 'cape': {'--table': 'cape-equal'}}
 SOLVERS = {'leapfrog': 'leapfrog', 'xpbd-mesh': 'XPBD', 'xpbd-sheet': 'XPBD for sheets only'}
 TETHERS = {'none': 'none', 'all': 'all particles', 'rows': 'every seventh row'}
 
@@ -76,7 +77,8 @@ def performance():
               (f'Chipmunk2D {versions["chipmunk"]}, damped springs (built by `tools/bench/optimised`)', 'chipmunk')]
     ratios = [(title, two_digits(row_where(engines, engine=name, links=smallest)['speedup'])) for title, name in others]
     ratios.append(('XPBD of `spring-work`, with SIMD, one iteration per step', two_digits(xpbd['ratio'])))
-    processors = {read(name)[0]['processor'] for name in COMMANDS if name != 'cape'}
+    used = ['engines', 'stiff-forces', *(f'plan-{scene}' for scene in SCENES)]
+    processors = {read(name)[0]['processor'] for name in used}
     if len(processors) != 1:
         raise SystemExit(f'the data are of several processors: {processors}')
     (processor,) = processors
@@ -123,7 +125,33 @@ def cape():
     ])
 
 
-PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles, DOCS / 'performance.md': cape}
+LONG = {'leapfrog': 'leapfrog', 'xpbd': 'XPBD', 'bdf2-cg': 'BDF2-CG', 'projective': 'projective dynamics',
+        'cvode-bdf2': 'CVODE BDF, order 2'}
+
+
+def long_runs():
+    """Return the table of docs/stiffness.md."""
+    comments, rows = read('stiff-long')
+    runs = {solver: sorted((row for row in rows if row['solver'] == solver), key=lambda row: float(row['frame_s']))
+            for solver in [*LONG, 'rkn8']}
+    frame = float(runs['leapfrog'][0]['frame_s'])
+    chosen = [(title, min(runs[solver], key=lambda row: abs(math.log(float(row['frame_s']) / frame)))) for solver, title in LONG.items()]
+    chosen.append(('RKN8, an accurate run', runs['rkn8'][-1]))
+    steps = ['steps_per_frame', 'frame_s', 'error_500ms', 'error_1s', 'sag_m', 'stretch_99', 'energy_change']
+    lines = []
+    for title, row in chosen:
+        n, frame_s, *errors, sag, stretch, energy = (float(row[name]) for name in steps)
+        lines.append((title, f'{n:.0f}' if n else 'adaptive', f'{two_digits(frame_s * 1e6)} µs', *(f'{error:.2g}' for error in errors),
+                      f'{sag:.2f} m', f'{100 * stretch:.2g} %', f'{100 * energy:+.0f} %'.replace('-', '−').replace('−0', '0')))
+    return '\n\n'.join([
+        table(('', 'steps per frame', 'time per frame (`spring-work`)', 'error after 0.5 s', 'after 1 s', 'sag', 'stretch', 'change of energy'),
+              ['---'] * 8, *lines),
+        f'Measured on one core of an {comments["processor"]}.'.replace('(R)', ''),
+    ])
+
+
+PAGES = {DOCS.parent / 'README.md': performance, DOCS / 'games.md': particles, DOCS / 'performance.md': cape,
+         DOCS / 'stiffness.md': long_runs}
 
 
 def main():

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 # {{ method }}: error at the end versus computing time per frame of 1/60 s. Leapfrog's curve begins with the fewest
-# stable steps. With fewer steps, leapfrog requires softened links (dotted). XPBD has one iteration per substep. CVODE's
-# BDF chooses its own steps.
-call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "symplectic-euler leapfrog rk4 srkn6 rkn8" "460 + key_height(methods + 3)"
+# stable steps. With fewer steps, leapfrog requires softened links (dotted). XPBD has one iteration per substep. BDF2-CG is
+# BDF of order 2 with conjugate gradients{{ ' and starts with one step per frame. Projective dynamics has one iteration per step' if method != 'Damped cloth' else ', from one step per frame' }}. CVODE's
+# BDF, of order 2 or of up to 5, chooses its own steps.
+call system("dirname '".ARG0."'")."/style.gp" ARG1 ARG2 "symplectic-euler leapfrog rk4 srkn6 rkn8" "460 + key_height(methods + 6)"
 problem = ARG3
 work = ARG4
 call plots."externals.gp"
@@ -20,7 +21,7 @@ microseconds(solver) = is(solver) ? column("time_s")/frames*1e6 : NaN
 set yrange [1e-13:3]
 set xlabel "time per frame / µs".note_on_sundials
 set ylabel "error / size of the motion" offset 1.5,0
-entries = methods + 3
+entries = methods + 6
 call plots."key.gp" entries
 set output ARG1
 plot for [m = 1:methods] work using (microseconds(names[m])):"error" with linespoints linetype types[m] linewidth 2 \
@@ -28,4 +29,8 @@ plot for [m = 1:methods] work using (microseconds(names[m])):"error" with linesp
      work using (microseconds("leapfrog-softened")):"error" with linespoints linetype linetype_of("leapfrog") dashtype (3,3) \
          linewidth 1.5 pointtype 4 title "softened leapfrog", \
      work using (microseconds("xpbd")):"error" with linespoints linetype exact linewidth 2 pointtype 6 title "XPBD", \
+     work using (microseconds("bdf2-cg")):"error" with linespoints linetype gsl linewidth 2 pointtype 8 title "BDF2-CG", \
+     work using (microseconds("projective")):"error" with linespoints linetype odeint linewidth 2 pointtype 12 \
+         title "projective", \
+     work using (microseconds("cvode-bdf2")):"error" with linespoints linetype sundials pointtype 3 title "CVODE BDF2", \
      work using (microseconds("cvode-bdf")):"error" with linespoints linetype sundials pointtype 2 title "CVODE BDF"

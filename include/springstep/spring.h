@@ -62,7 +62,8 @@ typedef enum spring_method {
                         long runs, except with forces perpendicular to the velocity, see spring_scene_advance() */
     SPRING_RK4,      /**< order 4; small error in short runs; an undamped spring slowly loses energy */
     SPRING_EXACT,    /**< the exact solution, with rounding error only; one spring and batches only */
-    SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error; common in game engines; leapfrog costs the same */
+    SPRING_SYMPLECTIC_EULER, /**< order 1, bounded energy error of smooth motion; common in game engines; leapfrog
+                                  costs the same */
     SPRING_RKN8,             /**< order 8; scenes without damped links; many significant digits of smooth motion */
     SPRING_SRKN6 /**< order 6, bounded energy error of smooth motion; scenes without damped links; long runs, 3 to 6
                     significant digits */

@@ -167,7 +167,6 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
         bounds->low[a][k] = (scalar)(b->low[a] - margin);
         bounds->high[a][k] = (scalar)(b->high[a] + margin);
     }
-    bounds->turning = bounded(fmax((double)bounds->turning, b->turning));
 }
 
 void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool all)
@@ -176,12 +175,15 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
     bounds->count = s->colliders;
-    bounds->turning = all ? 0 : bounds->turning;
-    for (uint32_t i = 0; i < s->colliders; i++)
+    double turning = 0;
+    for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
             spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
+        turning = fmax(turning, body[i].turning);
+    }
+    bounds->turning = bounded(turning); /* of this step: particles that are near do not depend on earlier steps */
     for (uint32_t i = s->colliders; all && i < most_colliders; i++) /* fill the last vector: they touch nothing */
         for (int a = 0; a < 3; a++) {
             bounds->low[a][i] = SCALAR_MAX;

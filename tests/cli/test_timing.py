@@ -7,6 +7,7 @@ import pytest
 from tools import BENCH, METHODS, SCENE_STEPPERS, WORK, is_failure, parse, run, table
 
 OURS = {*METHODS, *SCENE_STEPPERS}
+NO_PEERS = {'leapfrog-softened', 'xpbd', 'bdf2-cg', 'projective'}
 
 # --- spring-work ----------------------------------------------------------------------------------------------------
 
@@ -60,7 +61,7 @@ def test_levels_of_the_table(work):
     assert [(row['problem'], row['error']) for row in levels] == [(problem, f'1e-{n}') for n in range(1, 13)]
     for row in levels:
         for solver, time, among in (('solver', 'time_s', lambda name: name in OURS - {'exact'}),
-                                    ('peer', 'peer_time_s', lambda name: name not in OURS | {'leapfrog-softened', 'xpbd'})):
+                                    ('peer', 'peer_time_s', lambda name: name not in OURS | NO_PEERS)):
             least, names = cheapest(rows, float(row['error']), among)
             assert row[time] == least and row[solver] in names
         ratio = float(row['peer_time_s']) / float(row['time_s'])
@@ -150,9 +151,18 @@ def test_bench_calls_measures_nothing():
     assert bench('--calls 1 --count 1000') == []
 
 
-def test_softened_and_xpbd_start_with_a_step_a_frame():
-    rows = table(WORK, '--quick', '--problem', 'stiff-rope')
-    for solver in 'leapfrog-softened', 'xpbd':
+def test_stiff_rope(tmp_path):
+    """Solvers without stability limit start with a step per frame. Accurate solvers agree on long runs, and conserve energy."""
+    path = tmp_path / 'long.tsv'
+    rows = table(WORK, '--quick', '--problem', 'stiff-rope', '--long', path)
+    for solver in NO_PEERS:
         first, *more = [row for row in rows if row['solver'] == solver]
         assert first['steps'] == '15' and float(first['stretch']) > 0 and float(first['energy_error']) > 0
         assert float(more[-1]['error']) < float(first['error'])
+    reference, *rows = parse(path.read_text())
+    assert reference['solver'] == 'reference' and float(reference['error_500ms']) < 1e-6
+    assert {row['solver'] for row in rows} >= {*SCENE_STEPPERS, *NO_PEERS} - {'euler'}
+    best = [row for row in rows if row['solver'] in ('rkn8', 'srkn6') and row['steps_per_frame'] == '32']
+    assert len(best) == 2 and all(abs(float(row['energy_change'])) < 1e-4 and float(row['error_1s']) < 1e-5 for row in best)
+    assert all(abs(float(best[0][name]) - float(best[1][name])) < 1e-3 for name in ('sag_m', 'stretch_99'))
+    assert all(float(row['frame_s']) > 0 and float(row['stretch_99']) <= float(row['stretch']) for row in rows)

@@ -53,6 +53,9 @@ const char *ode_gsl_rk8pd(ode *o, double *y, double duration, double tolerance);
 const char *ode_cvode_adams(ode *o, double *y, double duration, double tolerance);
 const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance);
 
+/* BDF of order 2 at most, and GMRES with 30 Krylov vectors instead of CVODE's default of 5. */
+const char *ode_cvode_bdf2(ode *o, double *y, double duration, double tolerance);
+
 /* ARKODE's ARKStep with the classical Runge-Kutta table and fixed step h. */
 const char *ode_arkstep_rk4(ode *o, double *y, double h, uint64_t n);
 

@@ -100,7 +100,7 @@ static void close_session(session *s)
 /* For larger systems, CVODE's manual recommends sparse or iterative solvers: a dense matrix costs size^3 operations. */
 static const size_t dense_at_most = 100;
 
-static const char *set_up_cvode(session *s, ode *o, double duration, int method, double tolerance)
+static const char *set_up_cvode(session *s, ode *o, double duration, int method, int order, double tolerance)
 {
     s->memory = CVodeCreate(method, s->context);
     if (s->memory == NULL || CVodeInit(s->memory, derivative, 0, s->y) != CV_SUCCESS)
@@ -110,12 +110,14 @@ static const char *set_up_cvode(session *s, ode *o, double duration, int method,
         CVodeSetUserData(s->memory, o) != CV_SUCCESS || CVodeSetMaxNumSteps(s->memory, -1) != CV_SUCCESS ||
         CVodeSetStopTime(s->memory, duration) != CV_SUCCESS)
         return "CVODE: refuses its settings";
+    if (order > 0 && CVodeSetMaxOrd(s->memory, order) != CV_SUCCESS)
+        return "CVODE: refuses its order";
     if (method == CV_ADAMS) {
         s->nonlinear = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
         if (s->nonlinear == NULL || CVodeSetNonlinearSolver(s->memory, s->nonlinear) != CV_SUCCESS)
             return "CVODE: no fixed-point solver";
     } else if (o->size > dense_at_most) {
-        s->linear = SUNLinSol_SPGMR(s->y, SUN_PREC_NONE, 0, s->context);
+        s->linear = SUNLinSol_SPGMR(s->y, SUN_PREC_NONE, order > 0 ? 30 : 0, s->context);
         if (s->linear == NULL || CVodeSetLinearSolver(s->memory, s->linear, NULL) != CV_SUCCESS)
             return "CVODE: no iterative solver";
     } else {
@@ -127,12 +129,12 @@ static const char *set_up_cvode(session *s, ode *o, double duration, int method,
     return NULL;
 }
 
-static const char *cvode(ode *o, double *y, double duration, int method, double tolerance)
+static const char *cvode(ode *o, double *y, double duration, int method, int order, double tolerance)
 {
     session s;
     const char *message = open_session(&s, o, y, tolerance);
     if (message == NULL)
-        message = set_up_cvode(&s, o, duration, method, tolerance);
+        message = set_up_cvode(&s, o, duration, method, order, tolerance);
     double reached = 0;
     long steps = 0;
     ode_start_clock(o);
@@ -149,12 +151,17 @@ static const char *cvode(ode *o, double *y, double duration, int method, double 
 
 const char *ode_cvode_adams(ode *o, double *y, double duration, double tolerance)
 {
-    return cvode(o, y, duration, CV_ADAMS, tolerance);
+    return cvode(o, y, duration, CV_ADAMS, 0, tolerance);
 }
 
 const char *ode_cvode_bdf(ode *o, double *y, double duration, double tolerance)
 {
-    return cvode(o, y, duration, CV_BDF, tolerance);
+    return cvode(o, y, duration, CV_BDF, 0, tolerance);
+}
+
+const char *ode_cvode_bdf2(ode *o, double *y, double duration, double tolerance)
+{
+    return cvode(o, y, duration, CV_BDF, 2, tolerance);
 }
 
 static ARKodeButcherTable classical_table(void)

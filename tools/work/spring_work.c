@@ -27,7 +27,7 @@ enum { MOST_PROBLEMS = 32, MOST_ROWS = 4096 }; /* rows of one problem */
 static const char *problem_names[MOST_PROBLEMS + 1]; /* ended by NULL */
 static int only_problem = -1;
 static bool quick;
-static const char *table_file, *forces_file;
+static const char *table_file, *forces_file, *long_file;
 
 static const cli_option options[] = {
     {"problem", CLI_CHOICE, .choice = &only_problem, .choices = problem_names, .value = "NAME",
@@ -37,6 +37,8 @@ static const cli_option options[] = {
      .help = "also write the cheapest stepper and external solver for each error"},
     {"forces", CLI_FILE, .file = &forces_file, .value = "FILE",
      .help = "also write the time of one force evaluation for each problem"},
+    {"long", CLI_FILE, .file = &long_file, .value = "FILE",
+     .help = "also write errors and observables of long runs of stiff scenes"},
     {.name = NULL},
 };
 
@@ -51,8 +53,12 @@ static const cli_program program = {
         "damping/mass/60 Hz = 100.\n\n"
         "Solvers: rk4-stages evaluates the four stages one by one. exact is one formula for any duration and\n"
         "evaluates no forces. leapfrog-softened lowers the stiffness until the step is 0.95 of the stable\n"
-        "step. xpbd takes substeps of one iteration over all links, as game engines do. leapfrog-softened and\n"
-        "xpbd run only scenes of distance springs. gsl-rk4 uses step doubling, which is counted.\n"
+        "step. xpbd takes substeps of one iteration over all links, as game engines do. bdf2-cg is backward\n"
+        "differentiation of order 2 with one linearisation per step and preconditioned conjugate gradients.\n"
+        "projective is projective dynamics with a prefactored matrix and one iteration per step, for undamped\n"
+        "links. leapfrog-softened, xpbd, bdf2-cg and projective run only scenes of distance springs in space.\n"
+        "cvode-bdf2 is CVODE's BDF of order 2 at most, with 30 Krylov vectors. gsl-rk4 uses step doubling, "
+        "which is counted.\n"
         "odeint-rkf78, odeint-bulirsch-stoer and odeint-sb3a-m4 are available if Boost was found at build\n"
         "time, arkode-sprk6 with SUNDIALS 6.6 or later. odeint-sb3a-m4 and arkode-sprk6 are symplectic, for\n"
         "problems without drag and damping. A run that explodes, or whose error is more than three times\n"
@@ -66,35 +72,46 @@ static const cli_program program = {
         "of several fractions of the stable step.",
     .columns = "problem solver steps force_evaluations time_s error error_x effort tolerance energy_error uncertainty "
                "stretch",
-    .meaning = "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
-               "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative\n"
-               "to the size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps\n"
-               "or tolerances), seed (the number of steps of the original study), equal (the smallest number of\n"
-               "steps from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the\n"
-               "last number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
-               "fixed steps. energy_error is relative to the initial energy, or for a scene to the final kinetic\n"
-               "energy (nan if a callback adds forces). uncertainty is the uncertainty of the exact final state of a\n"
-               "scene. An error of up to five times this value is an upper bound, and is not resolved. stretch is\n"
-               "the largest length/rest length of a link, minus 1.\n\n"
-               "With --table: for each error, the cheapest measured row whose error, and the error of the next finer\n"
-               "row if there is one, is not larger. solver, dt_s, time_s and steps are from the steppers. peer and\n"
-               "peer_time_s are from GSL, SUNDIALS and odeint. ratio is peer_time_s/time_s. exact_time_s is the time\n"
-               "of the exact solution. nan means none.\n\n"
-               "With --forces: time_ns is the time of one force evaluation. springstep is a step of leapfrog, or of\n"
-               "symplectic Euler if links are damped, divided by its evaluations. others is the function that GSL,\n"
-               "SUNDIALS and odeint call. xpbd is one substep. links is the number of links (1 for a spring). ratio\n"
-               "is time_ns divided by time_ns of springstep.\n\n"
-               "The columns of cape: tethers is none, all, or rows (every seventh row, from the hem). fraction is\n"
-               "dt divided by the stable step. damping_ratio is that of a link between two particles. effort is\n"
-               "what is varied; no-figure has no figure. steps_per_frame are steps per 1/60 s, and time_us is the "
-               "processor time per 1/60 s.\n"
-               "column_stretch is the 99th percentile over all frames and columns of length/rest length, minus 1,\n"
-               "and link_stretch that of the most stretched link along rows or columns. depth_m is the largest\n"
-               "depth of a particle in the figure at the end of a frame, and kinetic_J the mean kinetic energy,\n"
-               "both while the figure moves. jitter_mps is the root mean square of speeds in the last second. With\n"
-               "--table: the time at a column stretch of 6 and 3 %, from a power law through the runs.\n\n"
-               "The column of steps: energy_gain is the largest gain of energy, relative to the largest kinetic\n"
-               "energy of the first two seconds.",
+    .meaning =
+        "force_evaluations is known by definition for one spring with the library, and counted otherwise.\n"
+        "time_s is the shortest of up to five loops, without setup. error is |(x, v/omega) - exact| relative\n"
+        "to the size of the motion. error_x is |x - exact x| [m] (nan for scenes). effort is sweep (of steps\n"
+        "or tolerances), seed (the number of steps of the original study), equal (the smallest number of\n"
+        "steps from which on the error in x never exceeds the error of Euler with 10^7 steps) or crossing (the\n"
+        "last number of evaluations for which leapfrog is ahead of RK4, and the next one). tolerance is 0 for\n"
+        "fixed steps. energy_error is relative to the initial energy, or for a scene to the final kinetic\n"
+        "energy (nan if a callback adds forces). uncertainty is the uncertainty of the exact final state of a\n"
+        "scene. An error of up to five times this value is an upper bound, and is not resolved. stretch is\n"
+        "the largest length/rest length of a link, minus 1.\n\n"
+        "With --table: for each error, the cheapest measured row whose error, and the error of the next finer\n"
+        "row if there is one, is not larger. solver, dt_s, time_s and steps are from the steppers. peer and\n"
+        "peer_time_s are from GSL, SUNDIALS and odeint. ratio is peer_time_s/time_s. exact_time_s is the time\n"
+        "of the exact solution. nan means none.\n\n"
+        "With --forces: time_ns is the time of one force evaluation. springstep is a step of leapfrog, or of\n"
+        "symplectic Euler if links are damped, divided by its evaluations. others is the function that GSL,\n"
+        "SUNDIALS and odeint call. xpbd is one substep. links is the number of links (1 for a spring). ratio\n"
+        "is time_ns divided by time_ns of springstep.\n\n"
+        "With --long: runs of stiff-cloth and stiff-rope over 10 s, with 1, 2, 4 ... 64 steps per frame of 1/60 s, "
+        "and\n"
+        "of CVODE's BDF with the tolerance 1e-2. (With --quick: 2 s, 1 and 32 steps, without CVODE.) frame_s is the\n"
+        "time per frame. error_500ms, error_1s and error_2s are errors after these times. In row reference they are\n"
+        "the differences between runs of GSL's rk8pd with 8000 and 16000 steps per second (2000 and 4000), from\n"
+        "which all errors are measured. The motion is chaotic, so positions are not predictable after 2 s. The\n"
+        "other columns are means over the second half: sag_m is the depth of the lowest particle, stretch of the\n"
+        "longest link, stretch_99 the 99th percentile. energy_change is the change of energy in the whole run,\n"
+        "relative to the mean potential energy that gravity released. Runs that change it by more than 100 times\n"
+        "that have no row, and neither have runs of CVODE that take more than 2 s per second.\n\n"
+        "The columns of cape: tethers is none, all, or rows (every seventh row, from the hem). fraction is\n"
+        "dt divided by the stable step. damping_ratio is that of a link between two particles. effort is\n"
+        "what is varied; no-figure has no figure. steps_per_frame are steps per 1/60 s, and time_us is the "
+        "processor time per 1/60 s.\n"
+        "column_stretch is the 99th percentile over all frames and columns of length/rest length, minus 1,\n"
+        "and link_stretch that of the most stretched link along rows or columns. depth_m is the largest\n"
+        "depth of a particle in the figure at the end of a frame, and kinetic_J the mean kinetic energy,\n"
+        "both while the figure moves. jitter_mps is the root mean square of speeds in the last second. With\n"
+        "--table: the time at a column stretch of 6 and 3 %, from a power law through the runs.\n\n"
+        "The column of steps: energy_gain is the largest gain of energy, relative to the largest kinetic\n"
+        "energy of the first two seconds.",
     .shown = {"time_s", "error"},
     .examples = {"--quick --problem ideal-1", "--quick --problem damped -o work.tsv",
                  "--quick --problem elastic-pendulum --table cheapest.tsv"},
@@ -194,7 +211,7 @@ static void sweep_steps(cli_table *table, work *w, const work_solver *s)
     const bool study = w->problem->kind == WORK_STUDY; /* the report needs its finest step */
     const double finest = quick && !study ? fmax(w->finest, w->duration / 2e6) : w->finest;
     const double most = rint(w->duration / finest), factor = quick ? 4 : sqrt(sqrt(2)); /* infinite for a scene */
-    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED;             /* from one step per frame */
+    const bool any_step = s->side == WORK_XPBD || s->side == WORK_SOFTENED || s->side == WORK_IMPLICIT;
     double n = ceil(any_step ? fmin(w->duration / w->coarsest, 60 * w->duration) : w->duration / w->coarsest),
            spent = 0;
     for (; n < most * 0.999 && goes_on(w, s, spent); n = ceil(n * factor))
@@ -346,7 +363,8 @@ static void write_forces(cli_table *table, work *w)
 
 /* ---------------------------------------------------------------------------------------------------- the work */
 
-static void work_on(cli_table *table, cli_table *levels, cli_table *forces, const work_problem *problem)
+static void work_on(cli_table *table, cli_table *levels, cli_table *forces, cli_table *further,
+                    const work_problem *problem)
 {
     work w;
     work_open(&w, problem);
@@ -366,6 +384,8 @@ static void work_on(cli_table *table, cli_table *levels, cli_table *forces, cons
         write_levels(levels, &w);
     if (forces != NULL)
         write_forces(forces, &w);
+    if (further != NULL && problem->own != NULL && strncmp(problem->name, "stiff-", 6) == 0)
+        work_long(further, &w, quick);
     if (problem->kind == WORK_STUDY)
         equal_error(table, &w);
     if (problem->periods > 0)
@@ -441,10 +461,14 @@ int main(int argc, char **argv)
     cli_table *levels =
         open_further("table", table_file, "problem error solver dt_s time_s peer peer_time_s ratio steps exact_time_s");
     cli_table *forces = open_further("forces", forces_file, "problem evaluation links time_ns link_ns ratio");
+    cli_table *further =
+        open_further("long", long_file,
+                     "problem solver steps_per_frame tolerance duration_s frame_s error_500ms error_1s "
+                     "error_2s sag_m stretch stretch_99 energy_change");
     for (size_t i = 0; i < work_problem_count; i++) {
         const bool chosen = only_problem < 0 || i == (size_t)only_problem;
         if (chosen)
-            work_on(table, levels, forces, &work_problems[i]);
+            work_on(table, levels, forces, further, &work_problems[i]);
         cli_progress((double)(i + 1) / (double)work_problem_count);
     }
     cli_finish();

@@ -14,10 +14,12 @@
 
 #include <springstep/scene.h>
 
+#include "common/cli.h"
 #include "harness/ode.h"
 #include "harness/reference.h"
 #include "harness/scenes.h"
 #include "work_equation.h"
+#include "work_implicit.h"
 #include "work_xpbd.h"
 
 typedef enum work_kind {
@@ -83,7 +85,8 @@ typedef struct work {
     size_t bytes, counting_bytes;
     uint64_t calls; /* number of callbacks in `counting` */
     double *gathered;
-    work_xpbd *xpbd; /* NULL: not applicable */
+    work_xpbd *xpbd;         /* NULL: not applicable */
+    work_implicit *implicit; /* likewise */
 } work;
 
 void work_open(work *w, const work_problem *problem); /* exits with CLI_FAILED on failure */
@@ -95,6 +98,15 @@ double work_error(const work *w, const double *y);
 /* |energy - exact energy|, relative to the initial energy of a spring, or to the kinetic energy of a scene in its exact
    final state; NaN if a callback adds forces. */
 double work_energy_error(const work *w, const double *y);
+
+/* The energy of a scene [J]. */
+double work_energy(const work *w, const double *y);
+
+/* The distance of two states of a scene in (x, v/omega) [m]. */
+double work_distance(const work *w, const double *a, const double *b);
+
+/* The stretches of all links of a scene in space, length/rest - 1. */
+void work_stretches(const work *w, const double *y, double *stretch);
 
 /* The largest stretch of a link, length/rest - 1; NaN on one axis. */
 double work_stretch(const work *w, const double *y);
@@ -110,7 +122,8 @@ typedef enum work_side {
     WORK_STAGES,  /* RK4 in the arithmetic of the original study, on its problem */
     WORK_EXTERNAL,
     WORK_SOFTENED, /* leapfrog with links softened until the step is stable, which changes the scene */
-    WORK_XPBD      /* the method of game engines, not a solver of differential equations */
+    WORK_XPBD,     /* the method of game engines, not a solver of differential equations */
+    WORK_IMPLICIT  /* implicit methods of cloth simulation */
 } work_side;
 
 typedef struct work_result {
@@ -130,13 +143,14 @@ struct work_solver {
     /* for an external solver, one of these */
     const char *(*fixed)(ode *o, double *y, double h, uint64_t n);
     const char *(*adaptive)(ode *o, double *y, double duration, double tolerance);
-    int order;           /* with fixed steps */
-    bool positions_only; /* forces may not depend on velocities */
+    uint64_t (*implicit)(work_implicit *s, uint64_t n); /* for WORK_IMPLICIT */
+    int order;                                          /* with fixed steps */
+    bool positions_only;                                /* forces may not depend on velocities */
 };
 
 extern const size_t work_solver_count;
 
-/* All solvers: methods by name, rk4-stages, leapfrog-softened, xpbd, and external solvers (odeint only if found). */
+/* All solvers: methods by name, rk4-stages, leapfrog-softened, xpbd, bdf2-cg, projective, and external solvers (odeint only if found). */
 const work_solver *work_solver_at(size_t i);
 
 /* The solver of a method. */
@@ -146,6 +160,12 @@ bool work_applies(const work *w, const work_solver *s);
 
 /* Runs a solver `runs` times from the start; y is the final state. */
 work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs, double *y);
+
+/* The state of a scene. */
+void work_get(const work *w, const spring_scene *scene, double *y);
+
+/* Writes the rows of long runs of a scene in space; see work_long.c. */
+void work_long(cli_table *table, work *w, bool quick);
 
 /* Force evaluations of `steps` steps of a scene, counted by a callback in a copy of it. */
 uint64_t work_count(work *w, spring_method m, uint64_t steps);

@@ -204,7 +204,7 @@ __attribute__((target("avx2,fma"))) static void with_avx2(const work_equation *e
 }
 #endif
 
-static void dispatch(const work_equation *e)
+void work_equation_accelerations(const work_equation *e)
 {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
@@ -231,7 +231,7 @@ void work_equation_derivative(double t, const double *y, double *dy, const void 
             memcpy(e->x[d] + r->first, at, r->count * sizeof *at);
             memcpy(e->v[d] + r->first, at + half, r->count * sizeof *at);
         }
-    dispatch(e);
+    work_equation_accelerations(e);
     for (size_t d = 0; d < e->axes; d++)
         for (const work_segment *r = e->run; r < e->run + e->runs; r++)
             memcpy(dy + half + d * e->moving + r->moving, e->a[d] + r->first, r->count * sizeof *dy);

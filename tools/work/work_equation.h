@@ -45,4 +45,7 @@ void work_equation_clear(work_equation *e);
 /** dy/dt as in ode.h; data is a work_equation. */
 void work_equation_derivative(double t, const double *y, double *dy, const void *data);
 
+/** Computes e->a of all particles, pinned ones included, from e->x and e->v. */
+void work_equation_accelerations(const work_equation *e);
+
 #endif

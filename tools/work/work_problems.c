@@ -278,7 +278,7 @@ uint64_t work_count(work *w, spring_method m, uint64_t steps)
     return w->calls;
 }
 
-static double distance(const work *w, const double *a, const double *b)
+double work_distance(const work *w, const double *a, const double *b)
 {
     return scene_distance(&(scene_case){.omega = w->omega}, &w->scene, a, b, 0);
 }
@@ -295,7 +295,7 @@ static double refer(const work *w, uint64_t n, double *y)
         const char *message = ode_gsl_rk8pd_fixed(&o, y, w->duration / (double)n, n / PARTS);
         if (message != NULL)
             cli_fail(CLI_FAILED, "%s: no reference: %s", w->problem->name, message);
-        largest = fmax(largest, distance(w, y, w->start));
+        largest = fmax(largest, work_distance(w, y, w->start));
     }
     return largest;
 }
@@ -305,7 +305,7 @@ static void find_exact_end(work *w, const scene_case *c)
     double *coarse = scene_room(w->size, sizeof *coarse), unknown;
     refer(w, w->problem->reference_steps / 2, coarse);
     w->motion = refer(w, w->problem->reference_steps, w->exact) / 2;
-    unknown = distance(w, w->exact, coarse);
+    unknown = work_distance(w, w->exact, coarse);
     if (c->known > 0)
         unknown = fmax(unknown, scene_distance(c, &w->scene, w->exact, c->digits, c->known));
     w->uncertainty = unknown / w->motion;
@@ -344,6 +344,7 @@ static void open_scene(work *w)
     choose_equation(w);
     make_scenes(w);
     w->xpbd = work_xpbd_applies(&w->scene) ? work_xpbd_make(&w->scene) : NULL;
+    w->implicit = w->xpbd != NULL && w->data == &w->equation ? work_implicit_make(&w->scene, &w->equation) : NULL;
     w->size = 2 * w->scene.moving;
     w->duration = c->duration;
     w->omega = c->omega;
@@ -396,6 +397,8 @@ void work_close(work *w)
     free(w->gathered);
     if (w->xpbd != NULL)
         work_xpbd_free(w->xpbd);
+    if (w->implicit != NULL)
+        work_implicit_free(w->implicit);
 }
 
 double work_error(const work *w, const double *y)
@@ -403,7 +406,7 @@ double work_error(const work *w, const double *y)
     const double resolved = 5; /* uncertainties; larger errors are accurate to a quarter */
     if (w->problem->kind != WORK_SCENE)
         return reference_distance(&w->reference, (spring_state){y[0], y[1]}) / w->motion;
-    const double error = distance(w, y, w->exact) / w->motion;
+    const double error = work_distance(w, y, w->exact) / w->motion;
     return error > (resolved - 1) * w->uncertainty || isnan(error) ? error : resolved * w->uncertainty;
 }
 
@@ -434,7 +437,7 @@ static double kinetic_energy(const work *w, const double *y)
 }
 
 /* Omits the energy of pinned particles, which is constant. */
-static double scene_energy(const work *w, const double *y)
+double work_energy(const work *w, const double *y)
 {
     const scene_problem *p = &w->scene;
     const size_t axes = p->def.axes;
@@ -449,15 +452,25 @@ static double scene_energy(const work *w, const double *y)
     return sum;
 }
 
-double work_stretch(const work *w, const double *y)
+void work_stretches(const work *w, const double *y, double *stretch)
 {
     const scene_problem *p = &w->scene;
-    double most = NAN;
-    if (w->problem->kind != WORK_SCENE || p->def.axes == 1)
-        return NAN;
     spread(w, p->position, y, w->gathered);
     for (const spring_link *l = p->link; l < p->link + p->def.links; l++)
-        most = fmax(most, length_of(p, w->gathered, l) / l->rest - 1);
+        *stretch++ = length_of(p, w->gathered, l) / l->rest - 1;
+}
+
+double work_stretch(const work *w, const double *y)
+{
+    const size_t links = w->scene.def.links;
+    double most = NAN;
+    if (w->problem->kind != WORK_SCENE || w->scene.def.axes == 1)
+        return NAN;
+    double *stretch = scene_room(links, sizeof *stretch);
+    work_stretches(w, y, stretch);
+    for (size_t i = 0; i < links; i++)
+        most = fmax(most, stretch[i]);
+    free(stretch);
     return most;
 }
 
@@ -467,6 +480,6 @@ double work_energy_error(const work *w, const double *y)
     if (w->problem->kind == WORK_SCENE)
         return w->scene.def.force != NULL
                    ? NAN
-                   : fabs(scene_energy(w, y) - scene_energy(w, w->exact)) / kinetic_energy(w, w->exact);
+                   : fabs(work_energy(w, y) - work_energy(w, w->exact)) / kinetic_energy(w, w->exact);
     return fabs(energy(p, y) - energy(p, w->exact)) / energy(p, w->start);
 }

@@ -12,6 +12,12 @@ static const work_solver stages = {.name = "rk4-stages", .side = WORK_STAGES, .a
 static const work_solver softened = {.name = "leapfrog-softened", .side = WORK_SOFTENED, .method = SPRING_LEAPFROG};
 static const work_solver xpbd = {.name = "xpbd", .side = WORK_XPBD, .a_step = 1};
 
+static const work_solver implicit[] = {
+    {.name = "bdf2-cg", .side = WORK_IMPLICIT, .implicit = work_bdf2_advance, .order = 2},
+    {.name = "projective", .side = WORK_IMPLICIT, .implicit = work_projective_advance, .order = 1},
+};
+enum { IMPLICITS = sizeof implicit / sizeof implicit[0] };
+
 static const work_solver external[] = {
     {.name = "gsl-rk4", .side = WORK_EXTERNAL, .fixed = ode_gsl_rk4, .order = 4},
     {.name = "gsl-rk4-adaptive", .side = WORK_EXTERNAL, .adaptive = ode_gsl_rk4_adaptive},
@@ -24,6 +30,7 @@ static const work_solver external[] = {
     {.name = "arkode-sprk6", .side = WORK_EXTERNAL, .fixed = ode_sprkstep_6, .positions_only = true, .order = 6},
 #endif
     {.name = "cvode-adams", .side = WORK_EXTERNAL, .adaptive = ode_cvode_adams},
+    {.name = "cvode-bdf2", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf2},
     {.name = "cvode-bdf", .side = WORK_EXTERNAL, .adaptive = ode_cvode_bdf},
 #ifdef SPRING_ODEINT
     {.name = "odeint-rkf78", .side = WORK_EXTERNAL, .fixed = ode_odeint_rkf78, .order = 8},
@@ -32,7 +39,7 @@ static const work_solver external[] = {
 #endif
 };
 
-const size_t work_solver_count = SPRING_METHOD_COUNT + 3 + sizeof external / sizeof external[0];
+const size_t work_solver_count = SPRING_METHOD_COUNT + 3 + IMPLICITS + sizeof external / sizeof external[0];
 
 const work_solver *work_solver_of(spring_method m)
 {
@@ -50,7 +57,9 @@ const work_solver *work_solver_at(size_t i)
     if (i < SPRING_METHOD_COUNT)
         return work_solver_of(spring_method_at((int)i));
     const size_t other = i - SPRING_METHOD_COUNT;
-    return other == 0 ? &stages : other == 1 ? &softened : other == 2 ? &xpbd : &external[other - 3];
+    if (other < 3)
+        return other == 0 ? &stages : other == 1 ? &softened : &xpbd;
+    return other - 3 < IMPLICITS ? &implicit[other - 3] : &external[other - 3 - IMPLICITS];
 }
 
 bool work_applies(const work *w, const work_solver *s)
@@ -60,6 +69,8 @@ bool work_applies(const work *w, const work_solver *s)
         return study;
     if (s->side == WORK_EXTERNAL)
         return !study && !(s->positions_only && w->uses_velocity);
+    if (s->side == WORK_IMPLICIT)
+        return w->implicit != NULL && !(s->implicit == work_projective_advance && w->damped);
     if (s->side == WORK_XPBD || s->side == WORK_SOFTENED)
         return w->xpbd != NULL;
     return scene ? (w->scene.def.methods >> s->method & 1) != 0 : spring_method_describe(s->method)->springs;
@@ -99,6 +110,12 @@ static void gather(const work *w, const spring_scene *scene, spring_quantity wha
         y[i] = w->gathered[p->coordinate[i]];
 }
 
+void work_get(const work *w, const spring_scene *scene, double *y)
+{
+    gather(w, scene, SPRING_POSITION, y);
+    gather(w, scene, SPRING_VELOCITY, y + w->scene.moving);
+}
+
 /* Each run copies the initial scene `fresh` to `moved`. */
 static work_result run_scene_of(const work *w, spring_scene *moved, const spring_scene *fresh, size_t bytes,
                                 spring_method m, uint64_t steps, uint64_t runs, double *y)
@@ -112,8 +129,7 @@ static work_result run_scene_of(const work *w, spring_scene *moved, const spring
         if (status != SPRING_OK)
             r.failure = spring_status_string(status);
     }
-    gather(w, moved, SPRING_POSITION, y);
-    gather(w, moved, SPRING_VELOCITY, y + w->scene.moving);
+    work_get(w, moved, y);
     return r;
 }
 
@@ -155,6 +171,20 @@ static work_result run_xpbd(const work *w, const work_solver *s, uint64_t steps,
     return r;
 }
 
+static work_result run_implicit(const work *w, const work_solver *s, uint64_t steps, uint64_t runs, double *y)
+{
+    work_result r = {.steps = steps};
+    for (uint64_t i = 0; i < runs; i++) {
+        work_implicit_start(w->implicit, &w->scene, w->duration / (double)steps,
+                            s->implicit == work_projective_advance);
+        const double begin = w->clock();
+        r.evaluations = s->implicit(w->implicit, steps);
+        r.spent += 1e-9 * (w->clock() - begin);
+    }
+    work_implicit_get(w->implicit, &w->scene, y);
+    return r;
+}
+
 static work_result run_external(const work *w, const work_solver *s, work_effort e, uint64_t runs, double *y)
 {
     ode o = {.size = w->size, .derivative = w->derivative, .data = w->data, .scale = w->scale, .clock = w->clock};
@@ -178,5 +208,7 @@ work_result work_run(work *w, const work_solver *s, work_effort e, uint64_t runs
         return run_softened(w, s, e.steps, runs, y);
     if (s->side == WORK_XPBD)
         return run_xpbd(w, s, e.steps, runs, y);
+    if (s->side == WORK_IMPLICIT)
+        return run_implicit(w, s, e.steps, runs, y);
     return w->problem->kind == WORK_SCENE ? run_scene(w, s, e.steps, runs, y) : run_spring(w, s, e.steps, runs, y);
 }
