@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Contacts of one particle with the colliders of a scene. They are computed in double for both precisions of scenes, and
-   one particle at a time, so results and impulses do not depend on the vector width. contact.c has the formulas. */
+/* Contacts of one particle with the colliders of a scene, in double for both precisions of scenes. contact.c has the
+   formulas. Particles that rest or slide on one collider are computed by kernels/contact_rest_tmpl.h instead. */
 #ifndef SPRINGSTEP_CONTACT_H
 #define SPRINGSTEP_CONTACT_H
 

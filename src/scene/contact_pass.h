@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Motions of particles with contacts. All particles of a chunk are advanced without colliders first, by the kernels for
-   SIMD vectors. The few particles that may be in contact are then advanced again, in the order of their indices, with
-   contact.c. */
+/* Motions of particles with contacts. All particles of a chunk are advanced without colliders first. Those that may be in
+   contact are then advanced again: particles that rest or slide on one collider by the kernels for SIMD vectors, the
+   others by contact.c, in the order of their indices. */
 #ifndef SPRINGSTEP_CONTACT_PASS_H
 #define SPRINGSTEP_CONTACT_PASS_H
 
