@@ -6,7 +6,8 @@
  * Method    Particles whose path may touch one collider only are taken together. Where the contact begins at the start of
  *           the step, the last kick of the previous step, the impact (step 3), pressing from the start (step 4) and
  *           friction are computed here. All other particles are left to contact.c: contacts that begin within the step,
- *           particles inside a collider, corners, custom bodies, and surfaces that move in the frame of their body. The choice depends on the particle only, so results do not depend on the vector width.
+ *           particles inside a collider, corners, custom bodies, and surfaces that move in the frame of their body. The
+ *           choice depends on the particle only, so results do not depend on the vector width.
  */
 #ifndef SPRINGSTEP_CONTACT_REST_TMPL_H
 #define SPRINGSTEP_CONTACT_REST_TMPL_H

@@ -944,7 +944,50 @@ static void contacts_of_a_custom_body(void)
     free(s);
 }
 
+/* A wall that starts to move hits the particle that rests on it: (1 + e) V. */
+static void hit_from_rest(void)
+{
+    const double x[3] = {0.3, 0.1, -0.2}, none[3] = {0}, e = 0.5, speed = 2;
+    spring_scene *s = particle_at(x, none, none, 1);
+    spring_collider c = unit_box;
+    c.restitution = e;
+    c.velocity[1] = speed;
+    double now[3], v[3];
+    set(s, &c, 1);
+    run(s, SPRING_LEAPFROG, 0.01, 3);
+    get(s, now, v);
+    CHECK_CLOSE(v[1], (1 + e) * speed, 8 * EPS * speed, "the velocity after an impact");
+    CHECK_CLOSE(now[1], x[1] + 0.03 * v[1], 8 * EPS, "from the start of the step");
+    free(s);
+}
+
+/* A mass on a damped spring that stands on the floor sinks by m g/k. If velocities that are predicted for the damping
+   entered the floor, the damping would push it up by about c g dt/2k, here 1 mm. */
+static void damped_spring_on_floor(void)
+{
+    const double x[6] = {0, 0.1, 0, 0, 0.6, 0}, k = 100, c = 2, m = 0.7, g = 9.81, dt = 0.01;
+    const spring_link link = {.a = 0, .b = 1, .rest = 0.5, .stiffness = k, .damping = c};
+    const spring_scene_def def = {.particles = 2,
+                                  .links = 1,
+                                  .position = x,
+                                  .link = &link,
+                                  .mass_all = m,
+                                  .gravity = {0, -g, 0},
+                                  .colliders = 1,
+                                  .methods = 1u << SPRING_LEAPFROG};
+    spring_scene *s = scene_of(&def);
+    double now[6];
+    set(s, &unit_box, 1);
+    run(s, SPRING_LEAPFROG, dt, 2500); /* exp(-c t/2m) = 3e-16 */
+    spring_scene_get(s, SPRING_POSITION, now, 0, 0, 2);
+    CHECK_CLOSE(now[4] - now[1], 0.5 - m * g / k, in_double ? 1e-12 : 1e-5, "Hooke's law, to rounding");
+    CHECK_CLOSE(now[1], 0.1, 16 * EPS, "the lower end stands on the floor");
+    free(s);
+}
+
 static const test tests[] = {
+    {"a hit from rest", hit_from_rest},
+    {"a damped spring on the floor", damped_spring_on_floor},
     {"no tunnelling", no_tunnelling},
     {"momentum balance", momentum_balance},
     {"impulses", impulse_rules},
