@@ -985,7 +985,41 @@ static void damped_spring_on_floor(void)
     free(s);
 }
 
+/* A state does not have the functions of custom bodies: those of the scene stay, and must be in the same places. */
+static void saved_bodies(void)
+{
+    const double x[3] = {0.7, 1, -0.9}, none[3] = {0}, g[3] = {0, -gravity, 0};
+    spring_scene *s = particle_at(x, none, g, 2), *other = particle_at(none, none, none, 2);
+    spring_collider c[2] = {unit_box, {.shape = SPRING_CUSTOM, .gap = valley, .thickness = 0.1, .friction = 0.1}};
+    c[0].at[1] = -5;
+    c[0].acceleration[1] = 0.3;
+    c[0].spin_acceleration[2] = 0.2;
+    c[0].mask = c[1].mask = 6;
+    c[1].surface[0] = 0.1;
+    set(s, c, 2);
+    run(s, SPRING_LEAPFROG, 1. / 480, 100);
+    size_t bytes = 0;
+    spring_scene_save(s, NULL, &bytes);
+    uint8_t *const saved = malloc(bytes);
+    CHECK(spring_scene_save(s, saved, &bytes) == SPRING_OK, "a state");
+    CHECK(spring_scene_load(other, saved, bytes) == SPRING_EINVAL, "no custom body at index 1");
+    const spring_collider wrong[2] = {c[1], c[0]};
+    set(other, wrong, 2);
+    CHECK(spring_scene_load(other, saved, bytes) == SPRING_EINVAL, "a custom body in another place");
+    const spring_collider right[2] = {{.shape = SPRING_SPHERE, .radius = 1},
+                                      {.shape = SPRING_CUSTOM, .gap = valley, .thickness = 3}};
+    set(other, right, 2);
+    CHECK(spring_scene_load(other, saved, bytes) == SPRING_OK, "all but the function is in the state");
+    run(s, SPRING_LEAPFROG, 1. / 480, 500);
+    run(other, SPRING_LEAPFROG, 1. / 480, 500);
+    CHECK(same_bits(s, other, 1, 3), "they go on alike");
+    free(saved);
+    free(s);
+    free(other);
+}
+
 static const test tests[] = {
+    {"saved bodies", saved_bodies},
     {"a hit from rest", hit_from_rest},
     {"a damped spring on the floor", damped_spring_on_floor},
     {"no tunnelling", no_tunnelling},
