@@ -208,6 +208,9 @@ const fields = [
     ["spin", 3, [0, 0, 0]],
     ["friction", 1, 0],
     ["restitution", 1, 0],
+    ["acceleration", 3, [0, 0, 0]],
+    ["spinAcceleration", 3, [0, 0, 0]],
+    ["surface", 3, [0, 0, 0]],
 ];
 const shapes = ["plane", "sphere", "capsule", "box"];
 // Fields that only some shapes have, and those that these shapes require.
@@ -215,7 +218,8 @@ const own = { plane: ["normal"], sphere: ["radius"], capsule: ["radius", "to", "
 own.box = ["radius", "half", "axes"];
 const special = new Set(Object.values(own).flat());
 const required = { plane: [], sphere: ["radius"], capsule: ["to", "radius"], box: ["half"] };
-const colliderBytes = 8 * 31;
+const colliderNumbers = 39;
+const colliderBytes = 8 * 44; // shape, numbers, mask, two pointers, and two numbers of custom bodies
 
 /** Colliders in the layout of spring_collider. */
 export function lendColliders(take, colliders) {
@@ -223,7 +227,7 @@ export function lendColliders(take, colliders) {
     colliders.forEach((collider, i) => {
         const name = `colliders[${i}]`;
         check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
-        checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
+        checkKnown(collider, ["shape", "normal", "mask", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
         for (const field of special)
@@ -256,8 +260,13 @@ export function lendColliders(take, colliders) {
             const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
             check(value >= 0 && value <= most, `${name}.${field}`, what, value);
         }
-        memory.uint32(pointer + colliderBytes * i, 1)[0] = shape;
-        memory.float64(pointer + colliderBytes * i + 8, 30).set(numbers);
+        const { mask = 0 } = collider;
+        check(mask >>> 0 === mask, `${name}.mask`, "an integer from 0 to 2^32 - 1", mask);
+        const at = pointer + colliderBytes * i;
+        memory.uint32(at, colliderBytes / 4).fill(0);
+        memory.uint32(at, 1)[0] = shape;
+        memory.float64(at + 8, colliderNumbers).set(numbers);
+        memory.uint32(at + 8 + 8 * colliderNumbers, 1)[0] = mask;
     });
     return pointer;
 }

@@ -435,6 +435,18 @@ export class Scene {
         });
     }
 
+    impulse(collider) {
+        check(Number.isInteger(collider) && collider >= 0, "collider", "an index", collider, RangeError);
+        return borrowed((take) => {
+            const pointer = take(48);
+            const status = this.#call("spring_scene_impulses", this.#scene, pointer, collider, 1);
+            if (status === disabled) throw new TypeError("the scene is defined without colliders");
+            if (status !== 0) throw new RangeError(`collider: ${collider}, but the scene has fewer colliders now`);
+            const [linear, angular] = [pointer, pointer + 24].map((at) => memory.float64(at, 3).slice());
+            return { linear, angular };
+        });
+    }
+
     // --- how this calls the library ---------------------------------------------------------------------------------
 
     #call(name, ...values) {

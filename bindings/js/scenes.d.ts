@@ -100,12 +100,28 @@ export interface Body {
     at?: ArrayLike<number>;
     /** [m/s] */
     velocity?: ArrayLike<number>;
-    /** [rad/s] of its surface: enters friction only. With two axes spin[2] */
+    /** [rad/s] turns planes and boxes about `at`; of spheres and capsules the surface. With two axes spin[2] */
     spin?: ArrayLike<number>;
     /** Coulomb coefficient >= 0 */
     friction?: number;
     /** 0 to 1 */
     restitution?: number;
+    /** [m/s^2] of `at` and `to` */
+    acceleration?: ArrayLike<number>;
+    /** [rad/s^2] */
+    spinAcceleration?: ArrayLike<number>;
+    /** [m/s] further velocity of the surface, as of a conveyor belt */
+    surface?: ArrayLike<number>;
+    /** Only particles that have one of these bits collide; default 0: all. Particles have all bits. */
+    mask?: number;
+}
+
+/** What particles gave to a collider. */
+export interface Impulse {
+    /** [N s] */
+    linear: Float64Array;
+    /** [N m s] about `at` at the end of the call */
+    angular: Float64Array;
 }
 
 /** A convex body. Particles stay outside it. */
@@ -401,4 +417,6 @@ export declare class Scene {
     setColliders(colliders: readonly Collider[]): void;
     /** For each particle the colliders that it touched in the last step: bit i stands for collider i. */
     touching(first?: number, count?: number): Uint32Array;
+    /** What particles gave to a collider in the last call that advanced the scene. frame() may make several. */
+    impulse(collider: number): Impulse;
 }

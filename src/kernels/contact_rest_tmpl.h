@@ -374,7 +374,7 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
         way = direction_out_lanes(b, &b->end, way);
     }
     const real inverse = splat(1 / h);
-    const real3 along = tangential_lanes(way, n), mean = times3(inverse, along), none = zero_lanes();
+    const real3 along = tangential_lanes(way, n), mean = times3(inverse, along), zero = zero_lanes();
     slide_lanes slide;
     slide.u0 = tangential_lanes(u, n);
     slide.A = times3(splat(2), minus3(mean, slide.u0));
@@ -383,7 +383,7 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     slide.speed = length_lanes(slide.u0);
     slide.still = slide.speed == 0;
     real lambda = vec_not_negative(-inward) / (h * toward);
-    real3 shift = none;
+    real3 shift = zero;
     lane_mask clear = not_mask(presses) | presses, failed = {0},
               open = presses & ((scalar)b->friction * q->friction > 0);
     for (int pass = 0; pass < 2 && any(open); pass++) {
@@ -407,7 +407,7 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     }
     const lane_mask carried = slide.sticks & (slide.speed * h <= q->slop), free = presses & not_mask(carried);
     failed &= free;
-    real3 d = none, change = none;
+    real3 d = zero, change = zero;
     if (any(free)) {
         const real3 x = plus3(x1, shift);
         if (!flat)
@@ -423,7 +423,7 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     }
     if (any(presses & carried)) {
         failed |= carried & (at->gap < -q->slop / 2);
-        real3 rides = b->moves ? way_of_body(b, y0) : none;
+        real3 rides = b->moves ? way_of_body(b, y0) : zero;
         if (b->shape == SPRING_CAPSULE && b->turns) {
             const real3 longer = splat_vector(vector_between(b->end.segment, b->start.segment));
             rides = plus_scaled3(rides, at->along, direction_out_lanes(b, &b->end, longer));

@@ -25,8 +25,9 @@ _Static_assert(sizeof(spring_link) == 40 && offsetof(spring_link, rest) == 8 && 
 _Static_assert(sizeof(spring_weighted_link) == 72 && offsetof(spring_weighted_link, weight) == 16 &&
                    offsetof(spring_weighted_link, rest) == 48,
                "spring_weighted_link");
-_Static_assert(sizeof(spring_collider) == 8 * 31 && offsetof(spring_collider, axis) == 8 * 7 &&
-                   offsetof(spring_collider, velocity) == 8 * 20 && offsetof(spring_collider, restitution) == 8 * 30,
+_Static_assert(sizeof(spring_collider) == 8 * 44 && offsetof(spring_collider, axis) == 8 * 7 &&
+                   offsetof(spring_collider, velocity) == 8 * 20 && offsetof(spring_collider, restitution) == 8 * 30 &&
+                   offsetof(spring_collider, surface) == 8 * 37 && offsetof(spring_collider, mask) == 8 * 40,
                "spring_collider");
 
 /* A scene and what is shown of it. */

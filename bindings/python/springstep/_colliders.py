@@ -29,9 +29,13 @@ class Collider:
     radius: float = 0.0  #: [m] of a sphere or capsule; also rounds a box
     velocity: ArrayLike = (0, 0, 0)  #: [m/s] of `at`
     velocity_to: ArrayLike = (0, 0, 0)  #: [m/s] of `to`
-    spin: ArrayLike = (0, 0, 0)  #: [rad/s] of the surface: enters friction only, does not turn the body
+    spin: ArrayLike = (0, 0, 0)  #: [rad/s] turns planes and boxes about `at`; of spheres and capsules the surface
     friction: float = 0.0  #: Coulomb coefficient >= 0
     restitution: float = 0.0  #: 0 to 1: normal speed after an impact divided by that before
+    acceleration: ArrayLike = (0, 0, 0)  #: [m/s^2] of `at` and `to`
+    spin_acceleration: ArrayLike = (0, 0, 0)  #: [rad/s^2]
+    surface: ArrayLike = (0, 0, 0)  #: [m/s] further velocity of the surface, as of a conveyor belt
+    mask: int = 0  #: only particles that have a bit of this collide; 0: all. Particles have all bits
 
     def _fill(self, c: Any, axes: int, place: int) -> None:
         """Copy all fields to a structure of C, for a scene with so many axes."""
@@ -44,14 +48,19 @@ class Collider:
             return [*map(float, values), 0.0][:3]
 
         c.shape = _SHAPES[self.shape]
-        for field in ("at", "to", "half", "velocity", "velocity_to"):
+        for field in ("at", "to", "half", "velocity", "velocity_to", "acceleration", "surface"):
             setattr(c, field, vector(field, getattr(self, field)))
-        if np.ndim(self.spin) == 0:
-            if axes == 3:
-                invalid("colliders.spin", self.spin, place, reason="not three numbers")
-            c.spin[2] = self.spin
-        else:
-            c.spin = vector("spin", self.spin)
+        for field in ("spin", "spin_acceleration"):
+            value = getattr(self, field)
+            if np.ndim(value) == 0:
+                if axes == 3:
+                    invalid(f"colliders.{field}", value, place, reason="not three numbers")
+                getattr(c, field)[2] = value
+            else:
+                setattr(c, field, vector(field, value))
+        if not 0 <= self.mask < 2**32:
+            invalid("colliders.mask", self.mask, place, reason="not from 0 to 2**32 - 1")
+        c.mask = self.mask
         rows: Any = self.axis
         for row, axis in enumerate(rows[:3]):
             c.axis[row] = vector("axis", axis)

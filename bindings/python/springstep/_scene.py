@@ -784,6 +784,28 @@ class Scene(Generic[F]):
             fail(status, "first, count", (first, len(mask)))
         return mask
 
+    def impulses(self, count: int, first: int = 0) -> NDArray[np.float64]:
+        """Return what particles gave to colliders in the last call of `advance`.
+
+        Parameters
+        ----------
+        count : int
+            Number of colliders.
+        first : int
+            Index of the first collider.
+
+        Returns
+        -------
+        ndarray
+            [count, 2, 3]: of each collider the linear impulse [N s] and the angular impulse [N m s] about `at` at the end
+            of the call.
+        """
+        sums = np.empty((natural("count", count), 2, 3))
+        pointer = ffi.cast("spring_impulse *", ffi.from_buffer(sums))
+        if status := self._ask("impulses", pointer, natural("first", first), count):
+            fail(status, "first, count", (first, count))
+        return sums
+
     def set_force(self, force: AnyForce | None, data: NDArray[Any] | None = None) -> None:
         """Change the force. Also call this function after changing anything that the force depends on.
 
