@@ -441,7 +441,8 @@ export class Scene {
             const pointer = take(48);
             const status = this.#call("spring_scene_impulses", this.#scene, pointer, collider, 1);
             if (status === disabled) throw new TypeError("the scene is defined without colliders");
-            if (status !== 0) throw new RangeError(`collider: ${collider}, but the scene has fewer colliders now`);
+            if (status !== 0)
+                throw new RangeError(`collider: ${collider}, but the scene has fewer colliders now`);
             const [linear, angular] = [pointer, pointer + 24].map((at) => memory.float64(at, 3).slice());
             return { linear, angular };
         });

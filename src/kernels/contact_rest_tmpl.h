@@ -577,12 +577,12 @@ static void stop_touching(resting_chunk *r)
         const real3 before = {kicked[0], kicked[1], kicked[2]}, at = {x[0], x[1], x[2]};
         const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
         const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
-        const lane_bits candidate = load_bits(r->candidate + k);
+        const lane_bits may_be = load_bits(r->candidate + k);
         for (unsigned c = 0; c < r->setting->count; c++) {
             const contact_body *const b = &r->setting->body[c];
             if ((left >> c & 1) == 0 || !can_rest_on(b))
                 continue;
-            const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
+            const lane_mask here = has_bits(may_be, UINT32_C(1) << c) & first_lanes(some);
             real3 v = before;
             stop_lanes(b, r->at_end ? &b->end : &b->start, &at, &radius, &friction, here, &v);
             store_place(m->v + i, p->stride, p->axes, here, v);
@@ -597,12 +597,12 @@ static void advance_resting(resting_chunk *r)
     for (size_t k = 0; k < r->count; k += lanes) {
         const size_t some = r->count - k < lanes ? r->count - k : lanes;
         const uint32_t left = candidates_of(r, k, some);
-        const lane_bits candidate = load_bits(r->candidate + k);
+        const lane_bits may_be = load_bits(r->candidate + k);
         for (unsigned c = 0; c < r->setting->count; c++) {
             const contact_body *const b = &r->setting->body[c];
             if ((left >> c & 1) == 0 || !can_rest_on(b))
                 continue;
-            const lane_mask here = has_bits(candidate, UINT32_C(1) << c) & first_lanes(some);
+            const lane_mask here = has_bits(may_be, UINT32_C(1) << c) & first_lanes(some);
             const lane_mask fine = rest_on_collider(r, k, c, here);
             store_bits(r->done + k, load_bits(r->done + k) | bits_where(fine, 1));
         }
