@@ -21,7 +21,7 @@ set lmargin at screen 0.19
 set output ARG1
 set multiplot
 set bmargin at screen 0.46
-set yrange [0.01:10]
+set yrange [0.01:9]
 set ylabel "stretch, 99th percentile" offset 1,0
 plot for [m = 1:methods] long using (microseconds(names[m])):"stretch_99" with linespoints linetype types[m] linewidth 2 \
          title labels[m], \
@@ -31,7 +31,7 @@ unset key
 unset logscale y
 set format x "10^{%T}"
 set tmargin at screen 0.42
-set bmargin at screen 0.1
+set bmargin at screen 0.13
 set yrange [-1.1:0.6]
 set ylabel "change of energy" offset 1,0
 set xlabel "time per frame / µs"
