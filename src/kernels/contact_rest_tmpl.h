@@ -55,6 +55,12 @@ SPRING_INLINE real sum_of_sizes(real3 a)
     return vec_abs(a.x) + vec_abs(a.y) + vec_abs(a.z);
 }
 
+/* Whether a contact with the body ends on its tangent plane. */
+SPRING_INLINE bool is_fixed_plane(const contact_body *b)
+{
+    return b->shape == SPRING_PLANE && !b->turns;
+}
+
 /* Whether the axes of the frame are those of the scene. */
 SPRING_INLINE bool has_plain_frame(const contact_body *b)
 {
@@ -227,34 +233,34 @@ SPRING_INLINE real cosine_lanes(real3 n, real3 n_end)
     return select_real(cosine > least_cosine_lanes, cosine, splat(least_cosine_lanes));
 }
 
-/* The nearest point from *x at the end of the step, with its normal in the scene. Returns x in the frame. */
-SPRING_NOINLINE void nearest_at_end(const resting_lanes *q, const real3 *x, real3 *y, near_lanes *out)
+/* The nearest point of the surface from *x at the end of the step, with its normal in the scene. */
+SPRING_NOINLINE void nearest_at_end(const resting_lanes *q, const real3 *x, near_lanes *out)
 {
-    *y = place_in_lanes(q->b, &q->b->end, *x);
-    nearest_lanes(q->b, true, y, &q->radius, out);
+    const real3 y = place_in_lanes(q->b, &q->b->end, *x);
+    nearest_lanes(q->b, true, &y, &q->radius, out);
     out->normal = direction_out_lanes(q->b, &q->b->end, out->normal);
 }
 
 /* Sliding over a step. */
 typedef struct slide_lanes {
-    real3 u0, A;           /* [m/s] at the start, and its change by other forces */
-    real speed;            /* |u0| */
-    lane_mask still, open; /* u0 is 0; lanes to compute */
-    real3 mean, kick;      /* as in contact.c */
+    real3 u0, A;            /* [m/s] at the start, and its change by other forces */
+    real speed;             /* |u0| */
+    lane_mask still, where; /* u0 is 0; lanes to compute */
+    real3 mean, kick;       /* as in contact.c */
     lane_mask sticks;
 } slide_lanes;
 
 /* u' = A - F u/|u| from u0 for a unit of time: slide_from() of contact.c, which explains the cases. */
-SPRING_NOINLINE void slide_by(slide_lanes *s, const real *friction, int most_parts)
+SPRING_NOINLINE void find_slide(slide_lanes *s, const real *friction, int most_parts)
 {
     const scalar parallel = 4096 * SCALAR_EPSILON; /* sine of an angle */
     const real3 zero = zero_lanes(), A = s->A;
     const real F = *friction, square = s->speed * s->speed, push = dot3(A, A);
-    const lane_mask holds = s->still & (push <= F * F), slides = s->open & not_mask(holds);
-    const lane_mask held = s->open & holds;
+    const lane_mask holds = s->still & (push <= F * F), slides = s->where & not_mask(holds);
+    const lane_mask held = s->where & holds;
     s->mean = select3(held, zero, s->mean);
     s->kick = select3(held, zero, s->kick);
-    s->sticks = held | (not_mask(s->open) & s->sticks);
+    s->sticks = held | (not_mask(s->where) & s->sticks);
     if (!any(slides))
         return;
     const real3 across = cross3(s->u0, A);
@@ -318,8 +324,7 @@ SPRING_NOINLINE void find_lambda_lanes(const resting_lanes *q, const real3 *x, c
     for (int i = 0; i < most; i++) {
         near_lanes there;
         const real3 at = plus_scaled3(*x, *lambda * h, *n);
-        real3 y;
-        nearest_at_end(q, &at, &y, &there);
+        nearest_at_end(q, &at, &there);
         const real cosine = dot3(*n, there.normal);
         *clear |= vec_abs(there.gap) < q->slop / 4;
         if (!any(where & not_mask(*clear)))
@@ -346,11 +351,57 @@ SPRING_NOINLINE void hit_lanes(resting_lanes *q, const real3 *u, const real3 *n,
     q->d = select3(impact, plus_scaled3(q->d, splat(h), change), q->d);
 }
 
+/* Pressing from the start of the step. Lanes that hold are carried by the body; `free` lanes slide. */
+typedef struct pressing_lanes {
+    real3 x1, along; /* [m] the end without pressing, and the way along the surface */
+    real3 n;         /* normal in the scene, at the start */
+    real3 shift;     /* [m] by friction */
+    real gap, toward, lambda;
+    slide_lanes sliding;
+    lane_mask presses, clear, failed;
+} pressing_lanes;
+
+/* Friction changes where the path ends, and so the impulse: two passes, in the lanes with friction. */
+SPRING_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, scalar h, pressing_lanes *s)
+{
+    const contact_body *const b = q->b;
+    const real mu = (scalar)b->friction * q->friction;
+    lane_mask rubs = s->presses & (mu > 0);
+    for (int pass = 0; pass < 2 && any(rubs); pass++) {
+        const real3 x = plus3(s->x1, s->shift);
+        lane_mask clear = s->clear;
+        real lambda = s->lambda;
+        if (b->turns && pass > 0) {
+            const real3 way = way_in_lanes(b, q->x0, plus3(q->d, s->shift));
+            lambda = vec_not_negative(-(s->gap + dot3(at->normal, way))) / (h * s->toward);
+        }
+        if (!is_fixed_plane(b))
+            find_lambda_lanes(q, &x, &s->n, h, 1, rubs, &lambda, &clear, &s->failed);
+        const real friction = 2 * mu * lambda;
+        s->sliding.where = rubs;
+        find_slide(&s->sliding, &friction, pass == 0 ? 2 : 4);
+        s->lambda = select_real(rubs, lambda, s->lambda);
+        s->clear = (rubs & clear) | (not_mask(rubs) & s->clear);
+        s->shift = select3(rubs, minus3(times3(splat(h), s->sliding.mean), s->along), s->shift);
+        if (b->shape != SPRING_CAPSULE) /* lanes that hold have their result */
+            rubs &= not_mask(s->sliding.sticks & (dot3(s->sliding.mean, s->sliding.mean) == 0));
+    }
+}
+
+/* [m] The displacement of the point of the body that a particle at *y in its frame rests on. */
+SPRING_INLINE real3 ride_of(const contact_body *b, real3 y, real along)
+{
+    const real3 ride = b->moves ? way_of_body(b, y) : zero_lanes();
+    if (b->shape != SPRING_CAPSULE || !b->turns)
+        return ride;
+    const real3 longer = splat_vector(vector_between(b->end.segment, b->start.segment));
+    return plus_scaled3(ride, along, direction_out_lanes(b, &b->end, longer));
+}
+
 /* Steps 3 and 4 from the start of the step, in the lanes that touch. */
 SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0, real3 n, real gap, scalar h)
 {
     const contact_body *const b = q->b;
-    const bool flat = b->shape == SPRING_PLANE && !b->turns;
     const real3 velocity = body_velocity(b, &b->start, at->along, q->x0);
     real3 u = minus3(q->v0, velocity);
     const real rate = dot3(u, n);
@@ -359,82 +410,60 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
         hit_lanes(q, &u, &n, &rate, impact, h);
         u = minus3(q->v0, velocity);
     }
-    const real3 x1 = plus3(q->x0, q->d);
-    real3 end;
+    pressing_lanes s;
     near_lanes there;
-    nearest_at_end(q, &x1, &end, &there);
+    s.x1 = plus3(q->x0, q->d);
+    nearest_at_end(q, &s.x1, &there);
     real3 way = way_in_lanes(b, q->x0, q->d);
-    const real inward = gap + dot3(at->normal, way);
-    const lane_mask presses = q->touching & not_mask((inward >= 0) & (there.gap >= 0));
-    if (!any(presses))
+    const real inward = gap + dot3(at->normal, way), inverse = splat(1 / h);
+    s.presses = q->touching & not_mask((inward >= 0) & (there.gap >= 0));
+    if (!any(s.presses))
         return;
-    real toward = splat(1);
+    s.toward = splat(1);
     if (!has_plain_frame(b)) {
-        toward = cosine_lanes(n, direction_out_lanes(b, &b->end, at->normal));
+        s.toward = cosine_lanes(n, direction_out_lanes(b, &b->end, at->normal));
         way = direction_out_lanes(b, &b->end, way);
     }
-    const real inverse = splat(1 / h);
-    const real3 along = tangential_lanes(way, n), mean = times3(inverse, along), zero = zero_lanes();
-    slide_lanes slide;
-    slide.u0 = tangential_lanes(u, n);
-    slide.A = times3(splat(2), minus3(mean, slide.u0));
-    slide.mean = slide.kick = mean;
-    slide.sticks = not_mask(presses) & presses;
-    slide.speed = length_lanes(slide.u0);
-    slide.still = slide.speed == 0;
-    real lambda = vec_not_negative(-inward) / (h * toward);
-    real3 shift = zero;
-    lane_mask clear = not_mask(presses) | presses, failed = {0},
-              open = presses & ((scalar)b->friction * q->friction > 0);
-    for (int pass = 0; pass < 2 && any(open); pass++) {
-        const real3 x = plus3(x1, shift);
-        lane_mask there_clear = clear;
-        real pushes = lambda;
-        if (b->turns && pass > 0) {
-            const real3 turned = way_in_lanes(b, q->x0, plus3(q->d, shift));
-            pushes = vec_not_negative(-(gap + dot3(at->normal, turned))) / (h * toward);
-        }
-        if (!flat)
-            find_lambda_lanes(q, &x, &n, h, 1, open, &pushes, &there_clear, &failed);
-        const real friction = 2 * ((scalar)b->friction * q->friction) * pushes;
-        slide.open = open;
-        slide_by(&slide, &friction, pass == 0 ? 2 : 4);
-        lambda = select_real(open, pushes, lambda);
-        clear = (open & there_clear) | (not_mask(open) & clear);
-        shift = select3(open, minus3(times3(splat(h), slide.mean), along), shift);
-        if (b->shape != SPRING_CAPSULE)
-            open &= not_mask(slide.sticks & (dot3(slide.mean, slide.mean) == 0));
-    }
-    const lane_mask carried = slide.sticks & (slide.speed * h <= q->slop), free = presses & not_mask(carried);
-    failed &= free;
-    real3 d = zero, change = zero;
+    s.n = n;
+    s.gap = gap;
+    s.along = tangential_lanes(way, n);
+    s.shift = zero_lanes();
+    s.lambda = vec_not_negative(-inward) / (h * s.toward);
+    s.failed = not_mask(s.presses) & s.presses;
+    s.clear = not_mask(s.failed);
+    const real3 mean = times3(inverse, s.along);
+    s.sliding.u0 = tangential_lanes(u, n);
+    s.sliding.A = times3(splat(2), minus3(mean, s.sliding.u0));
+    s.sliding.mean = s.sliding.kick = mean;
+    s.sliding.sticks = s.failed;
+    s.sliding.speed = length_lanes(s.sliding.u0);
+    s.sliding.still = s.sliding.speed == 0;
+    find_friction(q, at, h, &s);
+    const lane_mask carried = s.sliding.sticks & (s.sliding.speed * h <= q->slop), free = s.presses & not_mask(carried);
+    real3 d = zero_lanes(), change = d;
     if (any(free)) {
-        const real3 x = plus3(x1, shift);
-        if (!flat)
-            find_lambda_lanes(q, &x, &n, h, 3, free, &lambda, &clear, &failed);
-        d = plus_scaled3(plus3(q->d, shift), lambda * h, n);
-        change = plus_scaled3(minus3(slide.kick, mean), lambda, n);
-        if (any(free & not_mask(clear))) { /* otherwise step 5 follows */
+        const real3 x = plus3(s.x1, s.shift);
+        if (!is_fixed_plane(b))
+            find_lambda_lanes(q, &x, &n, h, 3, free, &s.lambda, &s.clear, &s.failed);
+        d = plus_scaled3(plus3(q->d, s.shift), s.lambda * h, n);
+        change = plus_scaled3(minus3(s.sliding.kick, mean), s.lambda, n);
+        if (any(free & not_mask(s.clear))) { /* otherwise step 5 follows */
             const real3 x_end = plus3(q->x0, d);
-            nearest_at_end(q, &x_end, &end, &there);
-            failed |= not_mask(clear) & not_mask(there.gap >= -q->slop);
+            nearest_at_end(q, &x_end, &there);
+            s.failed |= not_mask(s.clear) & not_mask(there.gap >= -q->slop);
         }
-        failed &= free;
     }
-    if (any(presses & carried)) {
-        failed |= carried & (at->gap < -q->slop / 2);
-        real3 rides = b->moves ? way_of_body(b, y0) : zero;
-        if (b->shape == SPRING_CAPSULE && b->turns) {
-            const real3 longer = splat_vector(vector_between(b->end.segment, b->start.segment));
-            rides = plus_scaled3(rides, at->along, direction_out_lanes(b, &b->end, longer));
-        }
-        d = select3(carried, rides, d);
-        change = select3(carried, minus3(times3(inverse, rides), q->w), change);
+    s.failed &= free;
+    if (any(s.presses & carried)) {
+        const real3 ride = ride_of(b, y0, at->along);
+        s.failed |= carried & (at->gap < -q->slop / 2);
+        d = select3(carried, ride, d);
+        change = select3(carried, minus3(times3(inverse, ride), q->w), change);
     }
-    q->failed |= presses & failed;
-    q->d = select3(presses, d, q->d);
-    q->w = select3(presses, plus3(q->w, change), q->w);
-    q->change = select3(presses, plus3(q->change, change), q->change);
+    q->failed |= s.presses & s.failed;
+    q->d = select3(s.presses, d, q->d);
+    q->w = select3(s.presses, plus3(q->w, change), q->w);
+    q->change = select3(s.presses, plus3(q->change, change), q->change);
 }
 
 /* Bits of colliders whose boxes meet the paths of some lanes. */
@@ -459,7 +488,7 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->way;
+    const scene_motion *const m = r->kick_drift;
     const size_t i = r->first + k;
     const scalar h = m->drift;
     const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
@@ -531,82 +560,81 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     }
     store_place(m->x + i, p->stride, p->axes, done, x);
     store_place(m->v + i, p->stride, p->axes, done, last);
-    store_bits(r->touched + k, load_bits(r->touched + k) | bits_where(done & q.touching, UINT32_C(1) << c));
+    store_bits(r->touched + i, load_bits(r->touched + i) | bits_where(done & q.touching, UINT32_C(1) << c));
     store_place(r->change[0] + k, contact_chunk, 3, done, q.change);
     return fine;
 }
 
-/* The bits of all candidates of a vector. */
-SPRING_INLINE uint32_t candidates_of(const resting_chunk *r, size_t k, size_t some)
-{
-    uint32_t all = 0;
-    for (size_t j = 0; j < some; j++)
-        all |= r->candidate[k + j];
-    return all;
-}
-
-/* Whether these kernels have the contacts with a body. */
+/* Whether these kernels compute the contacts with a body. */
 SPRING_INLINE bool can_rest_on(const contact_body *b)
 {
     return !b->slips && b->shape != SPRING_CUSTOM;
 }
 
-static void stop_touching(resting_chunk *r)
+/* Collider c, of the lanes of particles k ... whose only candidate it is. Returns the lanes that are complete. */
+typedef lane_mask rest_step(resting_chunk *r, size_t k, unsigned c, lane_mask where);
+
+SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
+{
+    for (size_t k = 0; k < r->count; k += lanes) {
+        const size_t some = r->count - k < lanes ? r->count - k : lanes;
+        const lane_bits each = load_bits(r->candidate + k);
+        uint32_t all = 0;
+        for (size_t j = 0; j < some; j++)
+            all |= r->candidate[k + j];
+        for (unsigned c = 0; c < r->setting->count && all != 0; c++)
+            if ((all >> c & 1) != 0 && can_rest_on(&r->setting->body[c])) {
+                const lane_mask where = are_bits(each, UINT32_C(1) << c) & first_lanes(some);
+                const lane_mask done = step(r, k, c, where);
+                store_bits(r->done + k, load_bits(r->done + k) | bits_where(done, 1));
+            }
+    }
+}
+
+/* The implicit kick without contacts. */
+SPRING_INLINE real3 kicked_lanes(const resting_chunk *r, size_t k)
 {
     const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->way;
-    for (size_t k = 0; k < r->count; k += lanes) {
-        const size_t i = r->first + k, some = r->count - k < lanes ? r->count - k : lanes;
-        const uint32_t left = candidates_of(r, k, some);
-        if (left == 0)
+    const scene_motion *const m = r->kick_drift;
+    const size_t i = r->first + k;
+    const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride), drag = p->drag * inverse_mass;
+    const implicit_factors damping = implicit_factors_of(m->kick * drag);
+    real v[3];
+    for (uint32_t a = 0; a < 3; a++) {
+        v[a] = splat(0);
+        if (a >= p->axes)
             continue;
-        const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride), drag = p->drag * inverse_mass;
-        const implicit_factors damping = implicit_factors_of(m->kick * drag);
-        real kicked[3], x[3];
-        for (uint32_t a = 0; a < 3; a++) {
-            kicked[a] = x[a] = splat(0);
-            if (a >= p->axes)
-                continue;
-            const real held = vec_load(p->held + (a * p->stride + i) * p->held_stride);
-            const real free =
-                inverse_mass * (vec_load(r->kept->force[a] + k) + held) + vec_load(p->gravity + a * padding);
-            kicked[a] = vec_load(r->kept->v0[a] + k) + m->kick * free;
-            kicked[a] = p->drag != 0 ? implicit_velocity(kicked[a], &damping) : kicked[a];
-            x[a] = vec_load(r->place + a * p->stride + k);
-        }
-        const real3 before = {kicked[0], kicked[1], kicked[2]}, at = {x[0], x[1], x[2]};
-        const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
-        const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
-        const lane_bits may_be = load_bits(r->candidate + k);
-        for (unsigned c = 0; c < r->setting->count; c++) {
-            const contact_body *const b = &r->setting->body[c];
-            if ((left >> c & 1) == 0 || !can_rest_on(b))
-                continue;
-            const lane_mask here = has_bits(may_be, UINT32_C(1) << c) & first_lanes(some);
-            real3 v = before;
-            stop_lanes(b, r->at_end ? &b->end : &b->start, &at, &radius, &friction, here, &v);
-            store_place(m->v + i, p->stride, p->axes, here, v);
-            store_place(r->change[0] + k, contact_chunk, 3, here, minus3(v, before));
-            store_bits(r->done + k, load_bits(r->done + k) | bits_where(here, 1));
-        }
+        const real held = vec_load(p->held + (a * p->stride + i) * p->held_stride);
+        const real free = inverse_mass * (vec_load(r->kept->force[a] + k) + held) + vec_load(p->gravity + a * padding);
+        v[a] = vec_load(r->kept->v0[a] + k) + m->kick * free;
+        v[a] = p->drag != 0 ? implicit_velocity(v[a], &damping) : v[a];
     }
+    return (real3){v[0], v[1], v[2]};
+}
+
+SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where)
+{
+    const contact_body *const b = &r->setting->body[c];
+    const scene_particles *const p = r->particles;
+    const size_t i = r->first + k;
+    const real3 kicked = kicked_lanes(r, k), x = load_place(r->place + k, p->stride, p->axes);
+    const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
+    const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
+    real3 v = kicked;
+    stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, where, &v);
+    store_place(r->kick_drift->v + i, p->stride, p->axes, where, v);
+    store_place(r->change[0] + k, contact_chunk, 3, where, minus3(v, kicked));
+    return where;
+}
+
+static void stop_touching(resting_chunk *r)
+{
+    for_each_candidate(r, stop_on_collider);
 }
 
 static void advance_resting(resting_chunk *r)
 {
-    for (size_t k = 0; k < r->count; k += lanes) {
-        const size_t some = r->count - k < lanes ? r->count - k : lanes;
-        const uint32_t left = candidates_of(r, k, some);
-        const lane_bits may_be = load_bits(r->candidate + k);
-        for (unsigned c = 0; c < r->setting->count; c++) {
-            const contact_body *const b = &r->setting->body[c];
-            if ((left >> c & 1) == 0 || !can_rest_on(b))
-                continue;
-            const lane_mask here = has_bits(may_be, UINT32_C(1) << c) & first_lanes(some);
-            const lane_mask fine = rest_on_collider(r, k, c, here);
-            store_bits(r->done + k, load_bits(r->done + k) | bits_where(fine, 1));
-        }
-    }
+    for_each_candidate(r, rest_on_collider);
 }
 
 #endif

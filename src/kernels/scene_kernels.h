@@ -226,15 +226,15 @@ typedef struct resting_chunk {
     const contact_setting *setting;
     const collider_bounds *bounds;
     const scene_particles *particles;
-    const scene_motion *way;
+    const scene_motion *kick_drift;
     const kept_motion *kept;
     const scalar *radius, *friction; /* of particles; see near_kernel. friction NULL: 1 */
     size_t radius_stride, first, count;
     const scalar *place; /* [m] where stop_resting stops: the position of the first particle on the first axis */
     bool at_end;         /* the stop is at the end of the step */
-    uint32_t candidate[contact_chunk]; /* the bit of the only collider that may be touched; 0: to be left out */
+    uint32_t candidate[contact_chunk]; /* bits of the colliders that may be touched; only one: it is computed */
     uint32_t done[contact_chunk];      /* 1: the motion is complete */
-    uint32_t touched[contact_chunk];   /* the bit of the collider that it touches */
+    uint32_t *touched;                 /* by particle: the bit of the collider that it touches is added */
     scalar change[3][contact_chunk];   /* [m/s] by the contact, of the last of these kernels */
 } resting_chunk;
 

@@ -185,20 +185,18 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     c->c.x0 = vector_from(c->x0);
 }
 
-/* Sets the candidates of a chunk: the colliders of particles that have only one in `bits` and `further`. */
-static void choose_candidates(const spring_scene *s, const scene_contacts *t, const uint32_t *bits,
-                              const uint32_t *further, resting_chunk *r)
+/* Leaves of the candidates of a chunk those that masks allow, and none of a pinned particle. */
+static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
 {
     const scene_particles *const p = r->particles;
     const uint32_t *const masks = scene_read(s, ARRAY_BITS);
     for (size_t k = 0; k < r->count; k++) {
         const size_t i = r->first + k;
-        uint32_t each = bits[k] | further[k];
-        if ((each & (each - 1)) != 0 || p->inverse_mass[i * p->mass_stride] == 0)
-            each = 0;
+        if (p->inverse_mass[i * p->mass_stride] == 0)
+            r->candidate[k] = 0;
         for (unsigned c = 0; c < t->setting.count && masks != NULL; c++)
-            each &= (t->setting.body[c].bits & masks[i]) != 0 ? UINT32_MAX : ~(UINT32_C(1) << c);
-        r->candidate[k] = each;
+            if ((t->setting.body[c].bits & masks[i]) == 0)
+                r->candidate[k] &= ~(UINT32_C(1) << c);
     }
 }
 
@@ -243,7 +241,7 @@ static void begin_rest(const spring_scene *s, const scene_contacts *t, const sce
     r->setting = &t->setting;
     r->bounds = t->bounds;
     r->particles = p;
-    r->way = m;
+    r->kick_drift = m;
     r->kept = kept;
     r->radius = t->radius;
     r->friction = scene_read(s, ARRAY_FRICTION);
@@ -266,7 +264,8 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
         r.at_end = at_end;
-        choose_candidates(s, t, touched, touched, &r);
+        memcpy(r.candidate, touched, count * sizeof *touched);
+        filter_candidates(s, t, &r);
         kernels->stop_resting(&r);
         add_impulses(s, t, &r, r.done, r.place, p->stride);
     }
@@ -294,20 +293,18 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
                                 size_t count)
 {
     kept_motion kept;
-    uint32_t nearby[contact_chunk];
+    resting_chunk r;
     kernels->keep_motion(p, m, from, count, &kept);
     const bool fine = kernel(p, m, from, from + count);
     memset(t->touched + from, 0, count * sizeof *t->touched);
-    if (!kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, nearby) && fine)
+    if (!kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, r.candidate) && fine)
         return true;
-    resting_chunk r;
     begin_rest(s, t, p, m, &kept, from, count, &r);
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
-        memset(r.touched, 0, sizeof r.touched);
-        choose_candidates(s, t, nearby, nearby, &r);
+        r.touched = t->touched;
+        filter_candidates(s, t, &r);
         kernels->move_resting(&r);
-        add_impulses(s, t, &r, r.touched, kept.x0[0], contact_chunk);
-        memcpy(t->touched + from, r.touched, count * sizeof *r.touched);
+        add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk);
     }
     bool all_fine = true;
     for (size_t k = 0; k < count; k++) {
@@ -315,13 +312,13 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (r.done[k] != 0)
             continue;
-        if (pinned || (fine && nearby[k] == 0)) {
+        if (pinned || (fine && r.candidate[k] == 0)) {
             all_fine = all_fine && (fine || !wrong_state(p, m, i));
             continue;
         }
         contact_state q;
         prepare_state(s, p, m, &kept, i, k, &q);
-        q.c.nearby = fine ? nearby[k] : UINT32_MAX;
+        q.c.nearby = fine ? r.candidate[k] : UINT32_MAX;
         all_fine = advance_in_contact(t, p, m, i, &q) && all_fine;
     }
     return all_fine;
@@ -334,11 +331,10 @@ static bool move_chunk_in_contact(const spring_scene *s, const scene_contacts *t
                                   size_t count)
 {
     const bool kicks = m->contacts == IMPLICIT_KICK_CONTACTS;
-    uint32_t touched[contact_chunk], any_touched = 0;
-    for (size_t k = 0; k < count && (kicks || m->ends_previous); k++) {
-        touched[k] = kicks ? t->touched[from + k] : t->before[from + k];
+    const uint32_t *const touched = (kicks ? t->touched : t->before) + from;
+    uint32_t any_touched = 0;
+    for (size_t k = 0; k < count && (kicks || m->ends_previous); k++)
         any_touched |= touched[k];
-    }
     if (kicks)
         return any_touched == 0 ? kernel(p, m, from, from + count)
                                 : stop_chunk(s, t, kernels, kernel, p, m, from, count, touched, t->x, true);

@@ -66,9 +66,9 @@ SPRING_INLINE lane_bits bits_where(lane_mask t, uint32_t bits)
     return t ? bits : 0;
 }
 
-SPRING_INLINE lane_mask has_bits(lane_bits b, uint32_t bits)
+SPRING_INLINE lane_mask are_bits(lane_bits b, uint32_t bits)
 {
-    return (b & bits) != 0;
+    return b == bits;
 }
 
 SPRING_INLINE real vec_sqrt(real a)

@@ -135,10 +135,10 @@ SPRING_INLINE lane_bits bits_where(lane_mask t, uint32_t bits)
     return t & (scalar_bits)bits;
 }
 
-/* Lanes that have one of `bits`. */
-SPRING_INLINE lane_mask has_bits(lane_bits b, uint32_t bits)
+/* Lanes that have exactly these bits. */
+SPRING_INLINE lane_mask are_bits(lane_bits b, uint32_t bits)
 {
-    return (b & (scalar_bits)bits) != 0;
+    return b == (scalar_bits)bits;
 }
 
 SPRING_INLINE real vec_sqrt(real a)
