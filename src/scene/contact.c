@@ -1190,7 +1190,7 @@ void spring_contact_stop(const contact_setting *s, contact_particle *p, uint32_t
 static uint32_t near_path(const contact_setting *s, const contact_particle *p)
 {
     if (s->count == 1)
-        return 1;
+        return (s->body[0].bits & p->bits) != 0;
     const double way = length3(p->d);
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
@@ -1244,8 +1244,6 @@ void spring_contact_drift(const contact_setting *s, contact_particle *p)
 {
     uint32_t nearby = p->nearby == UINT32_MAX ? near_path(s, p) : p->nearby, clear = 0, last = 0;
     p->touched = 0;
-    for (unsigned i = 0; i < s->count; i++)
-        nearby &= (s->body[i].bits & p->bits) != 0 ? UINT32_MAX : ~(UINT32_C(1) << i);
     for (int round = 0; round < contact_rounds; round++) {
         meeting each[2];
         meeting *first = NULL, *next = &each[0]; /* first: of all colliders */

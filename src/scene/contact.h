@@ -67,7 +67,7 @@ typedef struct contact_particle {
     double radius, mass; /* [m], [kg] */
     double friction;     /* factor of the friction of colliders */
     uint32_t bits;       /* its mask */
-    uint32_t nearby;     /* bit i: its path may touch collider i */
+    uint32_t nearby;     /* bit i: its path may touch collider i, and masks allow it; UINT32_MAX: not known */
     uint32_t touched;    /* bit i: it touches collider i */
     bool wrong;          /* a gap is not finite */
 } contact_particle;

@@ -300,9 +300,9 @@ SPRING_NOINLINE bool move_chunk(const spring_scene *s, const scene_contacts *t, 
     if (!kernels->find_near(t->bounds, p, &kept, m->x, t->radius, t->radius_stride, from, count, r.candidate) && fine)
         return true;
     begin_rest(s, t, p, m, &kept, from, count, &r);
+    filter_candidates(s, t, &r);
     if (m->contacts == KICK_DRIFT_CONTACTS && m->kick > 0 && fine) { /* particles that rest or slide on one collider */
         r.touched = t->touched;
-        filter_candidates(s, t, &r);
         kernels->move_resting(&r);
         add_impulses(s, t, &r, t->touched + from, kept.x0[0], contact_chunk);
     }
