@@ -227,7 +227,7 @@ export function lendColliders(take, colliders) {
     colliders.forEach((collider, i) => {
         const name = `colliders[${i}]`;
         check(typeof collider === "object" && collider !== null, name, "an object", collider, TypeError);
-        checkKnown(collider, ["shape", "normal", "mask", ...fields.map(([field]) => field)]);
+        checkKnown(collider, ["shape", "normal", ...fields.map(([field]) => field)]);
         const shape = shapes.indexOf(collider.shape);
         check(shape >= 0, `${name}.shape`, `one of ${shapes.join(", ")}`, collider.shape, TypeError);
         for (const field of special)
@@ -260,13 +260,10 @@ export function lendColliders(take, colliders) {
             const what = most === 1 ? "a number from 0 to 1" : "a finite number >= 0";
             check(value >= 0 && value <= most, `${name}.${field}`, what, value);
         }
-        const { mask = 0 } = collider;
-        check(mask >>> 0 === mask, `${name}.mask`, "an integer from 0 to 2^32 - 1", mask);
         const at = pointer + colliderBytes * i;
         memory.uint32(at, colliderBytes / 4).fill(0);
         memory.uint32(at, 1)[0] = shape;
         memory.float64(at + 8, colliderNumbers).set(numbers);
-        memory.uint32(at + 8 + 8 * colliderNumbers, 1)[0] = mask;
     });
     return pointer;
 }

@@ -112,8 +112,6 @@ export interface Body {
     spinAcceleration?: ArrayLike<number>;
     /** [m/s] further velocity of the surface, as of a conveyor belt */
     surface?: ArrayLike<number>;
-    /** Only particles that have one of these bits collide; default 0: all. Particles have all bits. */
-    mask?: number;
 }
 
 /** What particles gave to a collider. */

@@ -662,6 +662,24 @@ await test("transform, by rows and as a Matrix4 has it; gravity; at rest; base a
     flat.free();
 });
 
+await test("contacts: accelerating bodies, belts and impulses", () => {
+    const scene = new Scene({ position: [2, 0, 0], mass: [0.5], gravity: [0, -10, 0], colliders: 2 });
+    scene.setColliders([{ shape: "sphere", at: [0, 9, 0], radius: 1 }, { shape: "plane" }]);
+    scene.advance("leapfrog", 1 / 128, 64);
+    const { linear, angular } = scene.impulse(1); // m g t, at 2 m from the origin
+    assert.ok(Math.abs(linear[1] + 2.5) < 1e-12 && Math.abs(angular[2] + 5) < 1e-12, `${linear} ${angular}`);
+    assert.deepEqual(Array.from(scene.impulse(0).linear), [0, 0, 0]);
+    refused(() => scene.impulse(2), "RangeError: collider: 2, but the scene has fewer colliders now");
+    refused(() => rope().impulse(0), "TypeError: the scene is defined without colliders");
+    scene.setColliders([{ shape: "plane", surface: [3, 0, 0], friction: 0.5 }]);
+    scene.advance("leapfrog", 1 / 128, 256); // 0.6 s until it moves with the belt
+    assert.ok(Math.abs(scene.get("velocity")[0] - 3) < 1e-12);
+    scene.setColliders([{ shape: "plane", acceleration: [0, 4, 0], spinAcceleration: [0, 1, 0] }]);
+    scene.advance("leapfrog", 1 / 128, 128);
+    assert.ok(Math.abs(scene.get("position")[1] - 2) < 1e-12, "4/2 m in a second");
+    scene.free();
+});
+
 await test("contacts: shapes, motion, friction, which touch", () => {
     const drop = (collider, more = {}) => {
         const scene = new Scene({

@@ -35,7 +35,6 @@ class Collider:
     acceleration: ArrayLike = (0, 0, 0)  #: [m/s^2] of `at` and `to`
     spin_acceleration: ArrayLike = (0, 0, 0)  #: [rad/s^2]
     surface: ArrayLike = (0, 0, 0)  #: [m/s] further velocity of the surface, as of a conveyor belt
-    mask: int = 0  #: only particles that have a bit of this collide; 0: all. Particles have all bits
 
     def _fill(self, c: Any, axes: int, place: int) -> None:
         """Copy all fields to a structure of C, for a scene with so many axes."""
@@ -58,9 +57,6 @@ class Collider:
                 getattr(c, field)[2] = value
             else:
                 setattr(c, field, vector(field, value))
-        if not 0 <= self.mask < 2**32:
-            invalid("colliders.mask", self.mask, place, reason="not from 0 to 2**32 - 1")
-        c.mask = self.mask
         rows: Any = self.axis
         for row, axis in enumerate(rows[:3]):
             c.axis[row] = vector("axis", axis)

@@ -803,6 +803,8 @@ class Scene(Generic[F]):
         sums = np.empty((natural("count", count), 2, 3))
         pointer = ffi.cast("spring_impulse *", ffi.from_buffer(sums))
         if status := self._ask("impulses", pointer, natural("first", first), count):
+            if status == lib.SPRING_EDISABLED:
+                fail(status, "colliders", 0)
             fail(status, "first, count", (first, count))
         return sums
 

@@ -637,13 +637,29 @@ def test_every_field_of_a_collider_reaches_c(axes):
     given = springstep.Collider("capsule", *([10 * field + axis for axis in range(axes)] for field in (1, 2)),
                                 radius=0.3, friction=0.4, restitution=0.5, spin=7.0 if axes == 2 else [5, 6, 7])
     given.half, given.velocity, given.velocity_to = ([10 * field + axis for axis in range(axes)] for field in (3, 4, 5))
+    given.acceleration, given.surface = ([10 * field + axis for axis in range(axes)] for field in (6, 7))
+    given.spin_acceleration = 8.0 if axes == 2 else [8, 9, 10]
     given.axis = [[100 * row + column for column in range(axes)] for row in range(3)]
     given._fill(c, axes, 0)
-    for field in ("at", "to", "half", "velocity", "velocity_to"):
+    for field in ("at", "to", "half", "velocity", "velocity_to", "acceleration", "surface"):
         assert list(getattr(c, field)) == [*getattr(given, field), 0][:3]
     assert [list(row) for row in c.axis] == [[*row, 0][:3] for row in given.axis]
     assert list(c.spin) == ([0, 0, 7] if axes == 2 else [5, 6, 7]) and c.shape == lib.SPRING_CAPSULE
+    assert list(c.spin_acceleration) == ([0, 0, 8] if axes == 2 else [8, 9, 10])
     assert (c.radius, c.friction, c.restitution) == (0.3, 0.4, 0.5)
+
+
+def test_impulses_are_those_of_the_weight():
+    scene = springstep.Scene([[2.0, 0.0, 0.0]], mass=[0.5], gravity=[0, 0, -10], colliders=2)
+    scene.set_colliders([springstep.sphere([0, 0, 9], 1), springstep.plane([0, 0, 0], [0, 0, 1])])
+    scene.advance(1 / 128, 64)
+    far, floor = scene.impulses(2)
+    assert not far.any() and floor == pytest.approx(np.array([[0, 0, -2.5], [0, 5, 0]])), "m g t, at 2 m from the origin"
+    assert (scene.impulses(1, first=1)[0] == floor).all()
+    with pytest.raises(springstep.RangeError, match=r"first, count = \(0, 3\)"):
+        scene.impulses(3)
+    with pytest.raises(springstep.UnsupportedError, match="colliders = 0"):
+        springstep.Scene([[0.0, 0.0, 0.0]]).impulses(1)
 
 
 def test_colliders_are_part_of_snapshots():
