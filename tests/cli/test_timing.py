@@ -97,7 +97,7 @@ def test_the_rules_for_steps():
     assert any(float(row['energy_gain']) > 1e3 for row in rows if row['fraction'] == '0.9')
 
 
-@pytest.mark.parametrize('args, option', [('cape --forces f', '--forces'), ('steps --table f', '--table')])
+@pytest.mark.parametrize('args, option', [('cape --forces f', '--forces'), ('cape --long f', '--long'), ('steps --table f', '--table')])
 def test_tables_of_other_problems(tmp_path, args, option):
     done = run(WORK, '--quick', '--problem', *args.split(), cwd=tmp_path)
     is_failure(done, 2, option)

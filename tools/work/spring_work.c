@@ -447,6 +447,8 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv);
     if (only_problem >= (int)work_problem_count && forces_file != NULL)
         cli_fail(CLI_USAGE, "--forces: is not for %s", problem_names[only_problem]);
+    if (only_problem >= (int)work_problem_count && long_file != NULL)
+        cli_fail(CLI_USAGE, "--long: is not for %s", problem_names[only_problem]);
     if (only_problem > (int)work_problem_count && table_file != NULL)
         cli_fail(CLI_USAGE, "--table: is not for %s", problem_names[only_problem]);
     cli_table *table = cli_open_output();
