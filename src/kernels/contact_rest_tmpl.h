@@ -55,7 +55,7 @@ SPRING_INLINE real sum_of_sizes(real3 a)
     return vec_abs(a.x) + vec_abs(a.y) + vec_abs(a.z);
 }
 
-/* Whether a contact with the body ends on its tangent plane. */
+/* Whether the surface is its own tangent plane throughout the step. */
 SPRING_INLINE bool is_fixed_plane(const contact_body *b)
 {
     return b->shape == SPRING_PLANE && !b->turns;
@@ -483,7 +483,7 @@ SPRING_INLINE void store_place(scalar *quantity, size_t stride, uint32_t axes, l
         vec_store(quantity + 2 * stride, select_real(where, value.z, vec_load(quantity + 2 * stride)));
 }
 
-/* The particles of a vector that may touch collider c only. Returns the lanes whose motion is complete. */
+/* The step of particles that may touch collider c only: see rest_step. */
 SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where)
 {
     const contact_body *const b = &r->setting->body[c];
@@ -571,7 +571,8 @@ SPRING_INLINE bool can_rest_on(const contact_body *b)
     return !b->slips && b->shape != SPRING_CUSTOM;
 }
 
-/* Collider c, of the lanes of particles k ... whose only candidate it is. Returns the lanes that are complete. */
+/* Computes the contact with collider c in the lanes `where`, whose only candidate it is. k: index of the first lane in
+   the chunk. Returns the lanes whose motion is complete. */
 typedef lane_mask rest_step(resting_chunk *r, size_t k, unsigned c, lane_mask where);
 
 SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)

@@ -185,7 +185,7 @@ static void prepare_state(const spring_scene *s, const scene_particles *p, const
     c->c.x0 = vector_from(c->x0);
 }
 
-/* Leaves of the candidates of a chunk those that masks allow, and none of a pinned particle. */
+/* Removes candidates that masks exclude, and all candidates of pinned particles. */
 static void filter_candidates(const spring_scene *s, const scene_contacts *t, resting_chunk *r)
 {
     const scene_particles *const p = r->particles;
@@ -234,7 +234,7 @@ static void add_impulses(const spring_scene *s, const scene_contacts *t, const r
     }
 }
 
-/* A chunk of particles, in rest_kernel. */
+/* Prepares the arguments of a rest_kernel for a chunk of particles. */
 static void begin_rest(const spring_scene *s, const scene_contacts *t, const scene_particles *p, const scene_motion *m,
                        const kept_motion *kept, size_t from, size_t count, resting_chunk *r)
 {
