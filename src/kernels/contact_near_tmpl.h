@@ -2,11 +2,11 @@
 /*
  * Finding particles that may touch a collider. Their contacts are computed one at a time, by scene/contact.c.
  *
- * Method    The box of the paths of a chunk of particles is compared with boxes that contain the colliders. For colliders
- *           that are left, the distance at the start is compared with the length of the path of each particle. If R is
- *           the reach of the collider, (R + |d|)^2 <= (1 + e) R^2 + (1 + 1/e) d^2 for every e > 0. The bound with
+ * Method    For each particle, the distance from a collider at the start is compared with the length of the path. If R
+ *           is the reach of the collider, (R + |d|)^2 <= (1 + e) R^2 + (1 + 1/e) d^2 for every e > 0. The bound with
  *           e = 1/16 is close for fast particles, the bound with e = 1/256 for slow ones. All factors are rounded up,
- *           for rounding errors.
+ *           for rounding errors. The root of the first bound is below 1.04 R + 4.2 |d|. So colliders are left out whose
+ *           boxes, extended by this, do not meet the box of a chunk of particles. This changes no result.
  */
 #ifndef SPRINGSTEP_CONTACT_NEAR_TMPL_H
 #define SPRINGSTEP_CONTACT_NEAR_TMPL_H
@@ -51,35 +51,63 @@ SPRING_INLINE lane_mask may_touch(const collider_bound *c, real3 x0, real3 x, re
         }
     } else
         square = dot3(arm, arm);
-    const real reach = c->reach + radius, reach_squared = reach * reach, way = c->growth_squared * dot3(d, d);
+    const real reach = c->reach + c->growth * radius, reach_squared = reach * reach;
+    const real way = c->growth * c->growth * dot3(d, d);
     return not_mask(
         square > vec_min((scalar)1.07 * reach_squared + (scalar)17.1 * way, (scalar)1.006 * reach_squared + 258 * way));
 }
 
-/* Bits of the colliders whose boxes meet the box from `low` to -minus_high. */
-SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real low[3], const real minus_high[3])
+/* The box of the starts of paths, and a bound on their lengths. One of each per lane. */
+typedef struct path_bounds {
+    real low[3], minus_high[3], minus_way; /* [m] */
+} path_bounds;
+
+SPRING_INLINE void begin_bounds(path_bounds *b)
 {
-    scalar bounds[2][3] = {{0}}, extent = 0, size = 0;
+    for (int a = 0; a < 3; a++)
+        b->low[a] = b->minus_high[a] = splat(SCALAR_MAX);
+    b->minus_way = splat(0);
+}
+
+SPRING_INLINE void extend_bounds(path_bounds *b, lane_mask where, real3 from, real3 to)
+{
+    const real start[3] = {from.x, from.y, from.z};
     for (int a = 0; a < 3; a++) {
-        scalar each[2][lanes];
-        vec_store(each[0], low[a]);
-        vec_store(each[1], minus_high[a]);
-        for (int side = 0; side < 2; side++) {
-            bounds[side][a] = each[side][0];
-            for (size_t i = 1; i < lanes; i++)
-                bounds[side][a] = each[side][i] < bounds[side][a] ? each[side][i] : bounds[side][a];
-        }
-        extent += -bounds[1][a] - bounds[0][a];
-        const double below = fabs((double)bounds[0][a]), above = fabs((double)bounds[1][a]);
-        size += 2 * (scalar)(below > above ? below : above);
+        b->low[a] = select_real(where, vec_min(start[a], b->low[a]), b->low[a]);
+        b->minus_high[a] = select_real(where, vec_min(-start[a], b->minus_high[a]), b->minus_high[a]);
     }
-    const scalar margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
+    const real3 d = minus3(to, from);
+    const real minus_way = vec_minus_abs(d.x) - vec_abs(d.y) - vec_abs(d.z);
+    b->minus_way = select_real(where, vec_min(minus_way, b->minus_way), b->minus_way);
+}
+
+SPRING_INLINE scalar least_of_lanes(real a)
+{
+    scalar each[lanes], least;
+    vec_store(each, a);
+    least = each[0];
+    for (size_t i = 1; i < lanes; i++)
+        least = each[i] < least ? each[i] : least;
+    return least;
+}
+
+/* Bits of the colliders that particles with these paths may touch. */
+SPRING_NOINLINE uint32_t boxes_on_paths(const collider_bounds *c, const path_bounds *b)
+{
+    scalar low[3], high[3], size = 0;
+    for (int a = 0; a < 3; a++) {
+        low[a] = least_of_lanes(b->low[a]);
+        high[a] = -least_of_lanes(b->minus_high[a]);
+        const scalar below = low[a] < 0 ? -low[a] : low[a], above = high[a] < 0 ? -high[a] : high[a];
+        size += below > above ? below : above;
+    }
+    const scalar way = -least_of_lanes(b->minus_way);
+    const scalar margin = (scalar)4.2 * c->growth * way + 64 * SCALAR_EPSILON * (size + way);
     uint32_t meet = 0;
     for (size_t k = 0; k < c->count; k += lanes) {
         lane_mask apart = {0};
         for (int a = 0; a < 3; a++)
-            apart |=
-                (vec_load(c->low[a] + k) > margin - bounds[1][a]) | (vec_load(c->high[a] + k) < bounds[0][a] - margin);
+            apart |= (vec_load(c->low[a] + k) > high[a] + margin) | (vec_load(c->high[a] + k) < low[a] - margin);
         if (!any(not_mask(apart)))
             continue;
         uint32_t each[lanes];
@@ -88,25 +116,6 @@ SPRING_NOINLINE uint32_t boxes_that_meet(const collider_bounds *c, const real lo
             meet |= each[i] << (k + i);
     }
     return meet;
-}
-
-/* The same for the path of each particle and collider k. All operations are monotonic, so no particle meets a box that
-   boxes_that_meet() excludes, whatever other paths it is given with. */
-SPRING_INLINE lane_mask meets_box(const collider_bounds *c, unsigned k, real3 from, real3 to)
-{
-    const real low[3] = {vec_min(from.x, to.x), vec_min(from.y, to.y), vec_min(from.z, to.z)};
-    const real minus_high[3] = {vec_min(-from.x, -to.x), vec_min(-from.y, -to.y), vec_min(-from.z, -to.z)};
-    real extent = splat(0), size = splat(0);
-    for (int a = 0; a < 3; a++) {
-        const real below = vec_abs(low[a]), above = vec_abs(minus_high[a]);
-        extent += -minus_high[a] - low[a];
-        size += 2 * select_real(below > above, below, above);
-    }
-    const real margin = c->turning * extent + 32 * SCALAR_EPSILON * size;
-    lane_mask apart = not_mask(size >= 0) & (size >= 0);
-    for (int a = 0; a < 3; a++)
-        apart |= (c->low[a][k] > margin - minus_high[a]) | (c->high[a][k] < low[a] - margin);
-    return not_mask(apart);
 }
 
 SPRING_INLINE real3 load_place(const scalar *quantity, size_t stride, uint32_t axes)
@@ -119,17 +128,13 @@ static bool find_near_colliders(const collider_bounds *c, const scene_particles 
                                 const scalar *x, const scalar *radius, size_t radius_stride, size_t first, size_t count,
                                 uint32_t nearby[contact_chunk])
 {
-    real low[3], minus_high[3];
-    for (uint32_t a = 0; a < 3; a++)
-        low[a] = minus_high[a] = splat(a < p->axes ? SCALAR_MAX : 0);
-    for (uint32_t a = 0; a < p->axes; a++)
-        for (size_t i = 0; i < count; i += lanes) {
-            const real from = vec_load(kept->x0[a] + i), to = vec_load(x + a * p->stride + first + i);
-            const lane_mask some = first_lanes(count - i < lanes ? count - i : lanes); /* without padding lanes */
-            low[a] = vec_min(select_real(some, vec_min(from, to), low[a]), low[a]);
-            minus_high[a] = vec_min(select_real(some, vec_min(-from, -to), minus_high[a]), minus_high[a]);
-        }
-    const uint32_t meet = boxes_that_meet(c, low, minus_high);
+    path_bounds b;
+    begin_bounds(&b);
+    for (size_t i = 0; i < count; i += lanes) /* without padding lanes */
+        extend_bounds(&b, first_lanes(count - i < lanes ? count - i : lanes),
+                      load_place(kept->x0[0] + i, contact_chunk, p->axes),
+                      load_place(x + first + i, p->stride, p->axes));
+    const uint32_t meet = boxes_on_paths(c, &b);
     unsigned index[most_colliders], left = 0;
     for (unsigned k = 0; k < c->count; k++) {
         index[left] = k;

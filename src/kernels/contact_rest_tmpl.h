@@ -466,67 +466,100 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     q->change = select3(s.presses, plus3(q->change, change), q->change);
 }
 
-/* Bits of colliders whose boxes meet the paths of some lanes. */
-SPRING_INLINE uint32_t boxes_on_paths(const collider_bounds *c, real3 from, real3 to, lane_mask where)
+/* Particles of a chunk, one in each lane. Lanes beyond `count` repeat the first. */
+typedef struct picked_particles {
+    size_t count, place[lanes]; /* in the chunk */
+    bool consecutive;
+} picked_particles;
+
+/* A quantity of these particles. from: of the first particle of the chunk; step: between particles, 0 or 1 */
+SPRING_NOINLINE void pick(const picked_particles *l, const scalar *from, size_t step, real *to)
 {
-    const real3 end = select3(where, to, from);
-    const real low[3] = {vec_min(from.x, end.x), vec_min(from.y, end.y), vec_min(from.z, end.z)};
-    const real minus_high[3] = {vec_min(-from.x, -end.x), vec_min(-from.y, -end.y), vec_min(-from.z, -end.z)};
-    return boxes_that_meet(c, low, minus_high);
+    scalar each[lanes];
+    if (l->consecutive) {
+        *to = vec_load(from + step * l->place[0]);
+        return;
+    }
+    for (size_t j = 0; j < lanes; j++)
+        each[j] = from[step * l->place[j]];
+    *to = vec_load_lanes(each);
 }
 
-SPRING_INLINE void store_place(scalar *quantity, size_t stride, uint32_t axes, lane_mask where, real3 value)
+/* The same on each axis; stride: between axes. */
+SPRING_NOINLINE void pick3(const picked_particles *l, const scalar *from, size_t stride, size_t step, uint32_t axes,
+                           real3 *to)
 {
-    vec_store(quantity, select_real(where, value.x, vec_load(quantity)));
-    vec_store(quantity + stride, select_real(where, value.y, vec_load(quantity + stride)));
+    pick(l, from, step, &to->x);
+    pick(l, from + stride, step, &to->y);
+    to->z = splat(0);
     if (axes > 2)
-        vec_store(quantity + 2 * stride, select_real(where, value.z, vec_load(quantity + 2 * stride)));
+        pick(l, from + 2 * stride, step, &to->z);
+}
+
+SPRING_NOINLINE void put3(const picked_particles *l, const lane_mask *where, const real3 *value, scalar *to,
+                          size_t stride, uint32_t axes)
+{
+    const real each[3] = {value->x, value->y, value->z};
+    uint32_t changes[lanes];
+    store_bits(changes, bits_where(*where, 1));
+    for (uint32_t a = 0; a < axes; a++) {
+        scalar *const at = to + a * stride, of_lane[lanes];
+        if (l->consecutive) {
+            vec_store(at + l->place[0], select_real(*where, each[a], vec_load(at + l->place[0])));
+            continue;
+        }
+        vec_store(of_lane, each[a]);
+        for (size_t j = 0; j < l->count; j++)
+            if (changes[j] != 0)
+                at[l->place[j]] = of_lane[j];
+    }
 }
 
 /* The step of particles that may touch collider c only: see rest_step. */
-SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where)
+SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
     const scene_motion *const m = r->kick_drift;
-    const size_t i = r->first + k;
+    const size_t first = r->first;
+    const uint32_t axes = p->axes;
     const scalar h = m->drift;
-    const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride);
-    const real drag = p->drag * inverse_mass;
+    const lane_mask where = first_lanes(l->count);
     const bool dragged = p->drag != 0;
+    resting_lanes q;
+    real3 force, held;
+    real inverse_mass;
+    pick(l, p->inverse_mass + first * p->mass_stride, p->mass_stride, &inverse_mass);
+    pick3(l, r->kept->force[0], contact_chunk, 1, axes, &force);
+    pick3(l, p->held + first * p->held_stride, p->stride * p->held_stride, p->held_stride, axes, &held);
+    pick3(l, r->kept->x0[0], contact_chunk, 1, axes, &q.x0);
+    pick3(l, r->kept->v0[0], contact_chunk, 1, axes, &q.v0);
+    pick(l, r->radius + first * r->radius_stride, r->radius_stride, &q.radius);
+    q.friction = splat(1);
+    if (r->friction != NULL)
+        pick(l, r->friction + first, 1, &q.friction);
+    const real drag = p->drag * inverse_mass;
     implicit_factors damping = {splat(1), splat(0)};
     if (dragged)
         damping = implicit_factors_of(m->kick * drag);
-    real free[3], start[3], x0[3], w[3];
+    const real pull[3] = {force.x + held.x, force.y + held.y, force.z + held.z};
+    real free[3], v0[3] = {q.v0.x, q.v0.y, q.v0.z}, w[3];
     for (uint32_t a = 0; a < 3; a++) {
-        free[a] = start[a] = x0[a] = splat(0);
-        if (a >= p->axes)
-            continue;
-        const real force = vec_load(r->kept->force[a] + k) + vec_load(p->held + (a * p->stride + i) * p->held_stride);
-        free[a] = inverse_mass * force + vec_load(p->gravity + a * padding);
-        start[a] = vec_load(r->kept->v0[a] + k);
-        x0[a] = vec_load(r->kept->x0[a] + k);
-        if (!m->ends_previous)
-            continue;
-        start[a] += m->kick * free[a];
-        start[a] = dragged ? implicit_velocity(start[a], &damping) : start[a];
-    }
-    resting_lanes q;
-    q.b = b;
-    q.x0 = (real3){x0[0], x0[1], x0[2]};
-    q.radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
-    q.friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
-    q.v0 = (real3){start[0], start[1], start[2]};
-    q.change = zero_lanes();
-    const real fastest = splat(m->max_speed);
-    lane_mask fine = (vec_abs(q.v0.x) <= fastest) & (vec_abs(q.v0.y) <= fastest) & (vec_abs(q.v0.z) <= fastest);
-    const real v0[3] = {q.v0.x, q.v0.y, q.v0.z};
-    for (uint32_t a = 0; a < 3; a++) {
+        free[a] = a < axes ? inverse_mass * pull[a] + vec_load(p->gravity + a * padding) : splat(0);
+        if (m->ends_previous) {
+            v0[a] += m->kick * free[a];
+            v0[a] = dragged ? implicit_velocity(v0[a], &damping) : v0[a];
+        }
         const real accel = dragged ? free[a] - drag * v0[a] : free[a];
         w[a] = v0[a] + m->kick * accel;
     }
+    q.b = b;
+    q.v0 = (real3){v0[0], v0[1], v0[2]};
     q.w = (real3){w[0], w[1], w[2]};
     q.d = times3(splat(h), q.w);
+    q.change = zero_lanes();
+    const real fastest = splat(m->max_speed);
+    lane_mask fine = (vec_abs(q.v0.x) <= fastest) & (vec_abs(q.v0.y) <= fastest) & (vec_abs(q.v0.z) <= fastest);
     near_lanes at;
     real3 y0, n;
     real gap;
@@ -534,21 +567,23 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
     q.touching &= where;
     if (any(q.touching))
         press_lanes(&q, &at, y0, n, gap, h);
-    const lane_mask changed = where & q.touching;
     fine &= where & not_mask(q.failed);
-    const real3 x = plus3(q.x0, q.d), last = q.w;
+    const real3 x = plus3(q.x0, q.d);
     fine &= not_mask(not_finite(x.x) | not_finite(x.y) | not_finite(x.z));
-    const uint32_t others =
-        r->bounds->count > 1 ? boxes_on_paths(r->bounds, q.x0, x, fine & changed) & ~(UINT32_C(1) << c) : 0;
-    for (unsigned o = 0; o < r->bounds->count && others != 0; o++)
-        if ((others >> o & 1) != 0)
-            fine &= not_mask(changed & meets_box(r->bounds, o, q.x0, x) &
-                             may_touch(&r->bounds->each[o], q.x0, x, q.radius));
-    const lane_mask done = fine & changed;
+    if (r->bounds->count > 1 && any(fine & q.touching)) {
+        path_bounds paths;
+        begin_bounds(&paths);
+        extend_bounds(&paths, fine & q.touching, q.x0, x);
+        const uint32_t others = boxes_on_paths(r->bounds, &paths) & ~(UINT32_C(1) << c);
+        for (unsigned o = 0; o < r->bounds->count; o++)
+            if ((others >> o & 1) != 0)
+                fine &= not_mask(q.touching & may_touch(&r->bounds->each[o], q.x0, x, q.radius));
+    }
+    const lane_mask done = fine & q.touching;
     if (!any(done))
         return fine;
     if (m->predicted != NULL) {
-        const real w_end[3] = {last.x, last.y, last.z};
+        const real w_end[3] = {q.w.x, q.w.y, q.w.z};
         real end[3];
         for (uint32_t a = 0; a < 3; a++) {
             end[a] = w_end[a] + m->kick * free[a];
@@ -556,76 +591,70 @@ SPRING_INLINE lane_mask rest_on_collider(resting_chunk *r, size_t k, unsigned c,
         }
         real3 predicted = {end[0], end[1], end[2]};
         stop_lanes(b, &b->end, &x, &q.radius, &q.friction, q.touching, &predicted);
-        store_place(m->predicted + i, p->stride, p->axes, done, predicted);
+        put3(l, &done, &predicted, m->predicted + first, p->stride, axes);
     }
-    store_place(m->x + i, p->stride, p->axes, done, x);
-    store_place(m->v + i, p->stride, p->axes, done, last);
-    store_bits(r->touched + i, load_bits(r->touched + i) | bits_where(done & q.touching, UINT32_C(1) << c));
-    store_place(r->change[0] + k, contact_chunk, 3, done, q.change);
+    put3(l, &done, &x, m->x + first, p->stride, axes);
+    put3(l, &done, &q.w, m->v + first, p->stride, axes);
+    put3(l, &done, &q.change, r->change[0], contact_chunk, 3);
+    uint32_t touches[lanes];
+    store_bits(touches, bits_where(done, 1));
+    for (size_t j = 0; j < l->count; j++)
+        if (touches[j] != 0)
+            r->touched[first + l->place[j]] = UINT32_C(1) << c;
     return fine;
 }
 
-/* Whether these kernels compute the contacts with a body. */
-SPRING_INLINE bool can_rest_on(const contact_body *b)
-{
-    return !b->slips && b->shape != SPRING_CUSTOM;
-}
-
-/* Computes the contact with collider c in the lanes `where`, whose only candidate it is. k: index of the first lane in
-   the chunk. Returns the lanes whose motion is complete. */
-typedef lane_mask rest_step(resting_chunk *r, size_t k, unsigned c, lane_mask where);
-
-SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
-{
-    for (size_t k = 0; k < r->count; k += lanes) {
-        const size_t some = r->count - k < lanes ? r->count - k : lanes;
-        const lane_bits each = load_bits(r->candidate + k);
-        uint32_t all = 0;
-        for (size_t j = 0; j < some; j++)
-            all |= r->candidate[k + j];
-        for (unsigned c = 0; c < r->setting->count && all != 0; c++)
-            if ((all >> c & 1) != 0 && can_rest_on(&r->setting->body[c])) {
-                const lane_mask where = are_bits(each, UINT32_C(1) << c) & first_lanes(some);
-                const lane_mask done = step(r, k, c, where);
-                store_bits(r->done + k, load_bits(r->done + k) | bits_where(done, 1));
-            }
-    }
-}
-
-/* The implicit kick without contacts. */
-SPRING_INLINE real3 kicked_lanes(const resting_chunk *r, size_t k)
-{
-    const scene_particles *const p = r->particles;
-    const scene_motion *const m = r->kick_drift;
-    const size_t i = r->first + k;
-    const real inverse_mass = vec_load(p->inverse_mass + i * p->mass_stride), drag = p->drag * inverse_mass;
-    const implicit_factors damping = implicit_factors_of(m->kick * drag);
-    real v[3];
-    for (uint32_t a = 0; a < 3; a++) {
-        v[a] = splat(0);
-        if (a >= p->axes)
-            continue;
-        const real held = vec_load(p->held + (a * p->stride + i) * p->held_stride);
-        const real free = inverse_mass * (vec_load(r->kept->force[a] + k) + held) + vec_load(p->gravity + a * padding);
-        v[a] = vec_load(r->kept->v0[a] + k) + m->kick * free;
-        v[a] = p->drag != 0 ? implicit_velocity(v[a], &damping) : v[a];
-    }
-    return (real3){v[0], v[1], v[2]};
-}
-
-SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, size_t k, unsigned c, lane_mask where)
+SPRING_INLINE lane_mask stop_on_collider(resting_chunk *r, const picked_particles *l, unsigned c)
 {
     const contact_body *const b = &r->setting->body[c];
     const scene_particles *const p = r->particles;
-    const size_t i = r->first + k;
-    const real3 kicked = kicked_lanes(r, k), x = load_place(r->place + k, p->stride, p->axes);
-    const real radius = r->radius_stride != 0 ? vec_load(r->radius + i) : splat(*r->radius);
-    const real friction = r->friction != NULL ? vec_load(r->friction + i) : splat(1);
+    const scene_motion *const m = r->kick_drift;
+    const lane_mask where = first_lanes(l->count);
+    real3 x, kicked;
+    real radius, friction = splat(1);
+    pick3(l, r->place, p->stride, 1, p->axes, &x);
+    pick3(l, m->v + r->first, p->stride, 1, p->axes, &kicked);
+    pick(l, r->radius + r->first * r->radius_stride, r->radius_stride, &radius);
+    if (r->friction != NULL)
+        pick(l, r->friction + r->first, 1, &friction);
     real3 v = kicked;
     stop_lanes(b, r->at_end ? &b->end : &b->start, &x, &radius, &friction, where, &v);
-    store_place(r->kick_drift->v + i, p->stride, p->axes, where, v);
-    store_place(r->change[0] + k, contact_chunk, 3, where, minus3(v, kicked));
+    const real3 change = minus3(v, kicked);
+    put3(l, &where, &v, m->v + r->first, p->stride, p->axes);
+    put3(l, &where, &change, r->change[0], contact_chunk, 3);
     return where;
+}
+
+/* Computes the contact of some particles with collider c, their only candidate. Returns the lanes whose motion is
+   complete. */
+typedef lane_mask rest_step(resting_chunk *r, const picked_particles *l, unsigned c);
+
+SPRING_INLINE void for_each_candidate(resting_chunk *r, rest_step *step)
+{
+    uint32_t single = 0;
+    for (size_t k = 0; k < r->count; k++)
+        single |= (r->candidate[k] & (r->candidate[k] - 1)) == 0 ? r->candidate[k] : 0;
+    for (unsigned c = 0; c < r->setting->count; c++) {
+        const contact_body *const b = &r->setting->body[c];
+        if ((single >> c & 1) == 0 || b->slips || b->shape == SPRING_CUSTOM)
+            continue;
+        picked_particles l = {0};
+        for (size_t k = 0; k < r->count;) {
+            if (r->candidate[k] == UINT32_C(1) << c)
+                l.place[l.count++] = k;
+            if (++k < r->count && l.count < lanes)
+                continue;
+            for (size_t j = l.count; j < lanes; j++)
+                l.place[j] = l.place[0];
+            l.consecutive = l.count == lanes && l.place[lanes - 1] - l.place[0] == lanes - 1;
+            uint32_t complete[lanes] = {0};
+            if (l.count > 0)
+                store_bits(complete, bits_where(step(r, &l, c), 1));
+            for (size_t j = 0; j < l.count; j++)
+                r->done[l.place[j]] = complete[j];
+            l.count = 0;
+        }
+    }
 }
 
 static void stop_touching(resting_chunk *r)

@@ -166,13 +166,13 @@ typedef struct collider_bound {
     scalar axis[3][3], half[3];        /* box; plane: normal at the start and at the end */
     scalar offset[2];                  /* [m] plane: normal . at, at the start and at the end */
     scalar segment[3], inverse_square; /* capsule, at the start */
-    scalar reach, growth_squared;
+    scalar reach, growth;              /* see contact_body */
 } collider_bound;
 
 typedef struct collider_bounds {
     unsigned count;
-    scalar turning;                                         /* largest of contact_body.turning */
-    scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, with the radius of particles */
+    scalar growth;                                          /* the largest */
+    scalar low[3][most_colliders], high[3][most_colliders]; /* [m] boxes, extended by the radius of particles */
     collider_bound each[most_colliders];                    /* [colliders of the definition] */
 } collider_bounds;
 

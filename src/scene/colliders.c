@@ -161,8 +161,8 @@ static void place_bound(collider_bounds *bounds, unsigned k, const contact_body 
     const double square = dot_of_vectors(b->start.segment, b->start.segment);
     to->inverse_square = square > 0 ? bounded(1 / square) : 0;
     to->reach = (scalar)((b->shape == SPRING_PLANE ? 0 : b->reach) + rounding);
-    to->growth_squared = (scalar)(b->growth * b->growth);
-    const double margin = (double)largest_radius + rounding;
+    to->growth = (scalar)b->growth;
+    const double margin = 1.04 * b->growth * (double)largest_radius + rounding;
     for (int a = 0; a < 3; a++) {
         bounds->low[a][k] = (scalar)(b->low[a] - margin);
         bounds->high[a][k] = (scalar)(b->high[a] + margin);
@@ -175,15 +175,15 @@ void spring_scene_place_colliders(spring_scene *s, double t0, double t1, bool al
     contact_body *const body = scene_memory(s, ARRAY_PLACED);
     collider_bounds *const bounds = scene_memory(s, ARRAY_BOUNDS);
     bounds->count = s->colliders;
-    double turning = 0;
+    double growth = 1;
     for (uint32_t i = 0; i < s->colliders; i++) {
         if (all || body[i].moves) {
             spring_contact_place(&body[i], &c[i], t0, t1, s->layout.axes);
             place_bound(bounds, i, &body[i], s->largest_radius);
         }
-        turning = fmax(turning, body[i].turning);
+        growth = fmax(growth, body[i].growth);
     }
-    bounds->turning = bounded(turning); /* of this step: particles that are near do not depend on earlier steps */
+    bounds->growth = (scalar)growth; /* of this step: particles that are near do not depend on earlier steps */
     for (uint32_t i = s->colliders; all && i < most_colliders; i++) /* fill the last vector: they touch nothing */
         for (int a = 0; a < 3; a++) {
             bounds->low[a][i] = SCALAR_MAX;

@@ -287,33 +287,30 @@ static double component(vector3 a, int i)
     return i == 0 ? a.x : i == 1 ? a.y : a.z;
 }
 
-/* Extends the bound by the body in a pose that does not turn. */
-static void bound_pose(contact_body *b, const body_pose *p, double reach)
+/* The box around the body at the start of the step, extended by `margin`. */
+static void bound_with_box(contact_body *b, double margin)
 {
+    const body_pose *const p = &b->start;
     for (int a = 0; a < 3; a++) {
-        const double at = component(p->at, a);
-        double below = 0, above = 0;
-        if (b->shape == SPRING_CAPSULE) {
-            const double along = component(direction_out(p, p->segment), a);
-            below = fmin(along, 0);
-            above = fmax(along, 0);
-        }
+        const double at = component(p->at, a), along = component(p->along, a), n = component(p->axis[0], a);
+        double below = b->shape == SPRING_CAPSULE ? fmin(along, 0) : 0;
+        double above = b->shape == SPRING_CAPSULE ? fmax(along, 0) : 0;
         for (int i = 0; i < 3 && b->shape == SPRING_BOX; i++)
             above += !(b->flat && i == 2) ? fabs(component(p->axis[i], a)) * b->half[i] : 0;
         below = b->shape == SPRING_BOX ? -above : below;
-        const double n = b->shape == SPRING_PLANE ? component(p->axis[0], a) : 0;
-        b->low[a] = b->shape == SPRING_PLANE && n != -1 ? -(double)INFINITY : fmin(b->low[a], at + below - reach);
-        b->high[a] = b->shape == SPRING_PLANE && n != 1 ? (double)INFINITY : fmax(b->high[a], at + above + reach);
+        const bool plane = b->shape == SPRING_PLANE;
+        b->low[a] = plane && (n != -1 || b->turns) ? -(double)INFINITY : at + below - margin;
+        b->high[a] = plane && (n != 1 || b->turns) ? (double)INFINITY : at + above + margin;
     }
 }
 
-/* If a body turns by the angle A within a step, points of the frame at the distance r from its origin are displaced by
-   A r, so |y1 - y0| <= |d - shift| + A |x0 - at|, where |x0 - at| <= distance from the core + size of the core. A chord
-   touches the body only if the distance at its start is at most radius + |y1 - y0|. The box is the bound of the poses
-   or, of a body that turns, of a sphere. */
+/* If a body turns by the angle A within a step, points of the frame at the distance l from its origin are displaced by
+   A l, so |y1 - y0| <= |d - shift| + A |x0 - at|, where |x0 - at| <= distance from the core + size of the core. A chord
+   touches the body only if the distance at its start is at most the radii + |y1 - y0|. The box contains all places that
+   contact_near_tmpl.h does not exclude by its weaker inequalities. */
 static void find_bounds(contact_body *b, double angle, double custom_bound)
 {
-    const double core = size_of_core(b), infinite = (double)INFINITY;
+    const double infinite = (double)INFINITY, shift = length3(subtract(b->end.at, b->start.at));
     const double radius =
         b->shape == SPRING_CUSTOM ? b->radius + (custom_bound > 0 ? custom_bound : infinite) : b->radius;
     double stretch = 0;
@@ -321,23 +318,8 @@ static void find_bounds(contact_body *b, double angle, double custom_bound)
         stretch = length3(subtract(b->end.segment, b->start.segment));
     const bool unbounded = !(angle < 0.5);
     b->growth = unbounded ? 1 : 1 / (1 - angle);
-    b->reach = unbounded ? infinite : (radius + stretch + angle * core) * b->growth;
-    const double shift = length3(subtract(b->end.at, b->start.at));
-    b->turning = unbounded ? 0 : angle * b->growth;
-    for (int a = 0; a < 3; a++) {
-        b->low[a] = b->turns ? -infinite : infinite;
-        b->high[a] = b->turns ? infinite : -infinite;
-    }
-    if (!b->turns) {
-        bound_pose(b, &b->start, radius + stretch);
-        bound_pose(b, &b->end, radius + stretch);
-    } else if (!unbounded && b->shape != SPRING_PLANE) {
-        const double reach = core + radius + b->turning * (core + radius + shift);
-        for (int a = 0; a < 3; a++) {
-            b->low[a] = fmin(component(b->start.at, a), component(b->end.at, a)) - reach;
-            b->high[a] = fmax(component(b->start.at, a), component(b->end.at, a)) + reach;
-        }
-    }
+    b->reach = unbounded ? infinite : (radius + stretch + angle * size_of_core(b)) * b->growth;
+    bound_with_box(b, 1.04 * b->reach + 4.2 * b->growth * shift);
 }
 
 void spring_contact_place(contact_body *b, const spring_collider *c, double t0, double t1, uint32_t axes)
@@ -1195,11 +1177,11 @@ static uint32_t near_path(const contact_setting *s, const contact_particle *p)
     uint32_t nearby = 0;
     for (unsigned i = 0; i < s->count; i++) {
         const contact_body *const b = &s->body[i];
-        const double margin = p->radius + b->turning * way + 4 * slop_of(s, p, b);
+        const double margin = b->growth * (1.04 * p->radius + 4.2 * way) + 4 * slop_of(s, p, b);
         bool meets = (b->bits & p->bits) != 0;
         for (int a = 0; a < 3 && meets; a++) {
-            const double from = component(p->x0, a), to = from + component(p->d, a);
-            meets = !(fmax(from, to) < b->low[a] - margin) && !(fmin(from, to) > b->high[a] + margin);
+            const double at = component(p->x0, a);
+            meets = !(at < b->low[a] - margin) && !(at > b->high[a] + margin);
         }
         nearby |= (uint32_t)meets << i;
     }

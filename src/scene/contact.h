@@ -39,11 +39,9 @@ typedef struct contact_body {
     spring_gap_fn *gap;
     void *user;
     body_pose start, end;
-    /* A bound on where it can be touched, see spring_contact_place(). */
-    double low[3], high[3]; /* [m] +-INFINITY: not bounded */
-    double turning;         /* a particle that is displaced by d is touched only within `turning` |d| of these */
-    double reach;           /* [m] touched only if distance from its core at the start <= reach + growth |d - shift| */
-    double growth;
+    /* Bounds on where a particle of radius r is at the start of the step if it can touch the body. */
+    double reach, growth;   /* [m] distance from the core <= reach + growth (r + |d - shift|), d: its displacement */
+    double low[3], high[3]; /* [m] box, to be extended by 1.04 growth r + 4.2 growth |d|; +-INFINITY: not bounded */
 } contact_body;
 
 /* What the contacts of a step have in common. */

@@ -256,11 +256,9 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
                                 particle_kernel *kernel, const scene_particles *p, const scene_motion *m, size_t from,
                                 size_t count, const uint32_t *touched, const scalar *x, bool at_end)
 {
-    kept_motion kept;
     resting_chunk r;
-    kernels->keep_motion(p, m, from, count, &kept);
     kernel(p, m, from, from + count); /* whether it fails does not matter: stops may remove what is too fast */
-    begin_rest(s, t, p, m, &kept, from, count, &r);
+    begin_rest(s, t, p, m, NULL, from, count, &r);
     if (m->kick > 0) { /* particles that touch one collider, with SIMD vectors */
         r.place = x + from;
         r.at_end = at_end;
@@ -274,12 +272,13 @@ SPRING_NOINLINE bool stop_chunk(const spring_scene *s, const scene_contacts *t, 
         const size_t i = from + k;
         const bool pinned = p->inverse_mass[i * p->mass_stride] == 0;
         if (touched[k] != 0 && !pinned && r.done[k] == 0) {
-            contact_state q;
-            prepare_state(s, p, m, &kept, i, k, &q);
-            vector3 v = kicked_implicitly_by(&q, m->kick, q.v0);
-            spring_contact_stop(&t->setting, &q.c, touched[k], at_end, load_vector(x + i, p->stride, p->axes), &v);
+            contact_particle q;
+            scene_contact_particle(s, i, &q);
+            q.x0 = load_vector(x + i, p->stride, p->axes);
+            vector3 v = load_vector(m->v + i, p->stride, p->axes);
+            spring_contact_stop(&t->setting, &q, touched[k], at_end, q.x0, &v);
             store_vector(m->v + i, p->stride, p->axes, v);
-            all_fine = all_fine && !q.c.wrong;
+            all_fine = all_fine && !q.wrong;
         }
         const vector3 v = load_vector(m->v + i, p->stride, p->axes);
         all_fine = all_fine && finite_vector(v) && (pinned || !too_fast_vector(m, v));
