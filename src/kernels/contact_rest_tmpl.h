@@ -316,21 +316,23 @@ SPRING_NOINLINE void find_slide(slide_lanes *s, const real *friction, int most_p
     s->kick = select3(slides, select3(sticks, zero, kick), s->kick);
 }
 
-/* Step 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do */
+/* Step 4, early: the lambda for which x + lambda h n lies on the surface at the end. clear: lanes that surely do. After a
+   step s of Newton's method, the gap to a surface of radius R is less than s^2 sin^2/(2 R), with the angle between the
+   normals. */
 SPRING_NOINLINE void find_lambda_lanes(const resting_lanes *q, const real3 *x, const real3 *n, scalar h, int most,
                                        lane_mask where, real *lambda, lane_mask *clear, lane_mask *failed)
 {
+    const real near_enough = q->slop / 4, radius = (scalar)q->b->radius + q->radius;
     *clear = (lane_mask){0};
-    for (int i = 0; i < most; i++) {
+    for (int i = 0; i < most && any(where & not_mask(*clear)); i++) {
         near_lanes there;
         const real3 at = plus_scaled3(*x, *lambda * h, *n);
         nearest_at_end(q, &at, &there);
-        const real cosine = dot3(*n, there.normal);
-        *clear |= vec_abs(there.gap) < q->slop / 4;
-        if (!any(where & not_mask(*clear)))
-            return;
+        const real cosine = dot3(*n, there.normal), step = there.gap / cosine;
+        *clear |= vec_abs(there.gap) < near_enough;
         *failed |= not_mask(*clear) & not_mask(cosine > least_cosine_lanes);
-        *lambda = select_real(*clear, *lambda, vec_not_negative(*lambda - there.gap / (h * cosine)));
+        *lambda = select_real(*clear, *lambda, vec_not_negative(*lambda - step / h));
+        *clear |= step * step * (1 - cosine * cosine) <= near_enough * radius;
     }
 }
 
@@ -362,24 +364,29 @@ typedef struct pressing_lanes {
 } pressing_lanes;
 
 /* Friction changes where the path ends, and so the impulse: two passes, in the lanes with friction. */
-SPRING_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, scalar h, pressing_lanes *s)
+SPRING_INLINE void find_friction(const resting_lanes *q, const near_lanes *at, const near_lanes *there, scalar h,
+                                 pressing_lanes *s)
 {
     const contact_body *const b = q->b;
     const real mu = (scalar)b->friction * q->friction;
     lane_mask rubs = s->presses & (mu > 0);
     for (int pass = 0; pass < 2 && any(rubs); pass++) {
-        const real3 x = plus3(s->x1, s->shift);
         lane_mask clear = s->clear;
         real lambda = s->lambda;
-        if (b->turns && pass > 0) {
-            const real3 way = way_in_lanes(b, q->x0, plus3(q->d, s->shift));
-            lambda = vec_not_negative(-(s->gap + dot3(at->normal, way))) / (h * s->toward);
+        if (pass == 0) {
+            lambda = vec_not_negative(-there->gap) / (h * cosine_lanes(s->n, there->normal));
+        } else {
+            const real3 x = plus3(s->x1, s->shift);
+            if (b->turns) {
+                const real3 way = way_in_lanes(b, q->x0, plus3(q->d, s->shift));
+                lambda = vec_not_negative(-(s->gap + dot3(at->normal, way))) / (h * s->toward);
+            }
+            if (!is_fixed_plane(b))
+                find_lambda_lanes(q, &x, &s->n, h, 1, rubs, &lambda, &clear, &s->failed);
         }
-        if (!is_fixed_plane(b))
-            find_lambda_lanes(q, &x, &s->n, h, 1, rubs, &lambda, &clear, &s->failed);
         const real friction = 2 * mu * lambda;
         s->sliding.where = rubs;
-        find_slide(&s->sliding, &friction, pass == 0 ? 2 : 4);
+        find_slide(&s->sliding, &friction, pass == 0 ? 1 : 4);
         s->lambda = select_real(rubs, lambda, s->lambda);
         s->clear = (rubs & clear) | (not_mask(rubs) & s->clear);
         s->shift = select3(rubs, minus3(times3(splat(h), s->sliding.mean), s->along), s->shift);
@@ -438,7 +445,7 @@ SPRING_INLINE void press_lanes(resting_lanes *q, const near_lanes *at, real3 y0,
     s.sliding.sticks = s.failed;
     s.sliding.speed = length_lanes(s.sliding.u0);
     s.sliding.still = s.sliding.speed == 0;
-    find_friction(q, at, h, &s);
+    find_friction(q, at, &there, h, &s);
     const lane_mask carried = s.sliding.sticks & (s.sliding.speed * h <= q->slop), free = s.presses & not_mask(carried);
     real3 d = zero_lanes(), change = d;
     if (any(free)) {
